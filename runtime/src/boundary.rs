@@ -1,0 +1,86 @@
+//! The hardware's boundary: what a control period reads and what it writes.
+
+/// One control period's measurements, taken at the start of the period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sample {
+    /// Phase-a current, raw ADC count.
+    pub adc_a: u16,
+    /// Phase-b current, raw ADC count.
+    pub adc_b: u16,
+    /// Hall code `Ha Hb Hc`, Ha in bit 2. 0 and 7 are invalid and trip the drive.
+    pub hall: u8,
+    /// Timer ticks from the last Hall edge to this sample, saturating. Read by drives with
+    /// `hall_capture: timer` only.
+    pub hall_ticks: u16,
+}
+
+/// What a leg of the inverter does for one PWM period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum LegState {
+    /// Both switches follow the timer channel (complementary outputs).
+    Pulsed = 0,
+    /// The lower switch is on for the whole period, the upper one off.
+    Low = 1,
+    /// Both switches are off: the leg floats or its diodes conduct.
+    #[default]
+    Off = 2,
+}
+
+/// The three legs' commands: compare values for a centre-aligned timer and a state per leg.
+///
+/// A compare value is the time during which the upper switch is on, in counts, from 0 to the
+/// timer's period; it is 0 for a leg that is not pulsed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Legs {
+    /// Compare values of phases a, b, c, in timer counts.
+    pub compare: [u16; 3],
+    /// States of legs a, b, c.
+    pub state: [LegState; 3],
+}
+
+impl Legs {
+    /// All legs off: the safe command of a tripped drive.
+    pub const OFF: Self = Self { compare: [0; 3], state: [LegState::Off; 3] };
+    /// All lower switches on: charges the bootstrap capacitors.
+    pub const LOW: Self = Self { compare: [0; 3], state: [LegState::Low; 3] };
+}
+
+/// Why a drive tripped. Latched until `reset()`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// Not tripped.
+    #[default]
+    None = 0,
+    /// An ADC count lay outside the converter's range.
+    AdcRange = 1,
+    /// A phase current exceeded the trip level.
+    OverCurrent = 2,
+    /// The Hall code was 000 or 111.
+    Hall = 3,
+    /// No Hall edge within the stall time-out while a current was demanded.
+    Stall = 4,
+}
+
+/// How a result is rounded to its format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Towards minus infinity.
+    Floor,
+    /// To the nearest, ties towards plus infinity.
+    RoundHalfUp,
+}
+
+/// The fixed-point format of one named signal or coefficient of a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// Name of the signal or coefficient.
+    pub name: &'static str,
+    /// Bits of the word that holds it.
+    pub storage_bits: u8,
+    /// Fraction bits relative to the signal's base (negative: the ulp is larger than the base).
+    pub frac_bits: i8,
+    /// Rounding of results into this format.
+    pub rounding: Rounding,
+}

@@ -1,0 +1,15 @@
+//! What firmware depends on: the boundary types of generated current controllers.
+//!
+//! `hexagen::controller!` emits one `no_std` type per motor; this crate holds the few types that
+//! all of them share: the sample that goes into a step, the leg commands that come out, the
+//! double buffer behind the set-point, and the trait that lets generic firmware hold any drive.
+#![no_std]
+
+mod boundary;
+mod double_buffer;
+mod drive;
+
+pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample};
+pub use double_buffer::DoubleBuffer;
+pub use drive::Drive;
+pub use fixed;

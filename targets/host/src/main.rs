@@ -1,0 +1,2 @@
+//! The hexagen program.
+fn main() {}
