@@ -1,1 +1,6 @@
-//! Under construction.
+//! hexagen-codegen: from a motor's data sheet to a verified fixed-point current controller.
+
+pub mod controllers;
+pub mod design;
+pub mod diagnostics;
+pub mod spec;

@@ -1,0 +1,140 @@
+//! The checked specification: plain SI numbers, every default filled in, every basis resolved.
+//!
+//! Later stages read only these types; how a value was written, in which unit and where, ends at
+//! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
+
+use crate::controllers::ControllerSpec;
+
+/// One drive: what to call it, and its motor, inverter and controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spec {
+    /// Name of the emitted type, `UpperCamelCase`.
+    pub name: String,
+    /// The motor.
+    pub motor: MotorSpec,
+    /// The inverter, its timer and its sensors.
+    pub inverter: InverterSpec,
+    /// The controller and its options.
+    pub controller: ControllerSpec,
+}
+
+/// Shape of the phase EMF over the electrical angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EmfShape {
+    /// Linear ramps and a flat top of the given width in electrical degrees (above 0, below 180).
+    Trapezoidal {
+        /// Width of the flat top, electrical degrees.
+        flat_top_deg: f64,
+    },
+    /// A sine wave.
+    Sinusoidal,
+}
+
+/// Motor data, star equivalent, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotorSpec {
+    /// Free text for documentation, one line.
+    pub description: String,
+    /// Pole pairs, 1 to 64.
+    pub pole_pairs: u32,
+    /// Phase resistance, ohm.
+    pub resistance: f64,
+    /// Phase inductance (inclusive of mutual coupling), henry.
+    pub inductance: f64,
+    /// Peak phase EMF over mechanical speed, V s/rad.
+    pub emf_constant: f64,
+    /// Shape of the EMF.
+    pub emf_shape: EmfShape,
+    /// Rated current, peak of the quasi-square wave, ampere.
+    pub rated_current: f64,
+    /// Rated torque as given, Nm.
+    pub rated_torque: Option<f64>,
+    /// Rated speed, mechanical rad/s.
+    pub rated_speed: f64,
+    /// Rotor inertia, kg m2, where known.
+    pub inertia: Option<f64>,
+    /// Relative tolerance of the inductance, e.g. 0.1.
+    pub inductance_tolerance: f64,
+    /// Relative tolerance of the resistance, e.g. 0.3.
+    pub resistance_tolerance: f64,
+    /// Hall codes of sectors S1 to S6 (Ha in bit 2).
+    pub hall_codes: [u8; 6],
+}
+
+/// Where the bus voltage comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BusSource {
+    /// The nominal value holds.
+    Fixed,
+    /// `set_bus(counts)` tells it.
+    Measured {
+        /// Volt per ADC count.
+        gain: f64,
+        /// Converter bits.
+        adc_bits: u32,
+        /// Least voltage taken, volt.
+        min: f64,
+        /// Greatest voltage taken, volt.
+        max: f64,
+    },
+}
+
+/// How rotor position reaches the controller between Hall edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HallCapture {
+    /// Edges are seen at sampling instants only.
+    Sampled,
+    /// A timer tells the ticks since the last edge; so many ticks make one period.
+    Timer {
+        /// Timer ticks per control period.
+        ticks: u32,
+    },
+}
+
+impl HallCapture {
+    /// Ticks of time since an edge per control period; half periods where edges are sampled.
+    pub fn ticks_per_period(self) -> u32 {
+        match self {
+            Self::Sampled => 2,
+            Self::Timer { ticks } => ticks,
+        }
+    }
+}
+
+/// Inverter, timer and sensors, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InverterSpec {
+    /// Nominal bus voltage, volt.
+    pub v_bus: f64,
+    /// Fixed or measured.
+    pub bus: BusSource,
+    /// Control period = PWM period, second.
+    pub t_s: f64,
+    /// Counts of the centre-aligned timer from 0 to its top: a compare value of this many counts
+    /// is 100 % duty.
+    pub timer_period: u32,
+    /// Dead time per edge, second (told to the data sheet and the simulation).
+    pub dead_time: f64,
+    /// Bits of the phase-current converters, 8 to 16.
+    pub adc_bits: u32,
+    /// Ampere per count; negative for inverting amplifiers.
+    pub adc_gain: f64,
+    /// Count at zero current.
+    pub adc_offset: u32,
+    /// Current that trips the drive, ampere.
+    pub trip_current: f64,
+    /// Largest set-point, ampere.
+    pub max_current: f64,
+    /// Hall edge capture.
+    pub hall_capture: HallCapture,
+    /// Mechanical speed below which the angle is the sector's centre, rad/s.
+    pub minimum_speed: f64,
+    /// Greatest mechanical speed, rad/s.
+    pub maximum_speed: f64,
+    /// Periods without a Hall edge, under current demand, that count as a stall; 0 switches it off.
+    pub stall_periods: u32,
+    /// Base-2 logarithm of the samples averaged by offset calibration (0 to 12).
+    pub calibration_log2: u32,
+    /// Periods of bootstrap pre-charge, 0 to 65535.
+    pub precharge_periods: u32,
+}
