@@ -3,4 +3,5 @@
 pub mod controllers;
 pub mod design;
 pub mod diagnostics;
+pub mod ir;
 pub mod spec;

@@ -1,0 +1,311 @@
+//! Construction of functions: one method per operator, intervals computed on the way.
+//!
+//! The builder never fails: a value that leaves its word keeps its interval (clipped far outside the
+//! word), and [`super::verify()`] reports it. So a caller may try a scaling, look at the violations
+//! and try the next.
+
+use super::graph::{
+    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId, Program, Stage,
+    StateId, Table, TableId, Value, Word,
+};
+
+/// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
+/// cannot overflow however wrong a program is.
+const CLIP: i64 = 1 << 40;
+
+impl Program {
+    /// An empty program.
+    pub fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            constants: vec![],
+            tables: vec![],
+            params: vec![],
+            states: vec![],
+            step: Function::new("step", &[]),
+            setters: vec![],
+        }
+    }
+
+    /// Adds a named constant, or finds the one of the same name and value.
+    pub fn constant(&mut self, name: &str, raw: i32, doc: &[String]) -> ConstantId {
+        if let Some(known) = self.constants.iter().position(|known| known.name == name && known.raw == raw) {
+            return ConstantId(known as u32);
+        }
+        self.constants.push(Constant { name: name.to_owned(), raw, doc: doc.to_vec() });
+        ConstantId(self.constants.len() as u32 - 1)
+    }
+
+    /// Adds a table; entries are padded with zeros to a power of two.
+    pub fn table(&mut self, name: &str, mut values: Vec<i32>, doc: &[String]) -> TableId {
+        values.resize(values.len().next_power_of_two(), 0);
+        self.tables.push(Table { name: name.to_owned(), values, doc: doc.to_vec() });
+        TableId(self.tables.len() as u32 - 1)
+    }
+
+    /// Adds a state word; it is stored in 16 bits where its interval allows that.
+    pub fn state(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> StateId {
+        self.states.push(word(name, initial, interval, doc));
+        StateId(self.states.len() as u32 - 1)
+    }
+
+    /// Adds a set-point word.
+    pub fn param(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> ParamId {
+        self.params.push(Word { storage_bits: 32, ..word(name, initial, interval, doc) });
+        ParamId(self.params.len() as u32 - 1)
+    }
+}
+
+fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
+    let storage_bits = if interval.bits() <= 16 { 16 } else { 32 };
+    Word { name: name.to_owned(), initial, interval, storage_bits, doc: doc.to_owned() }
+}
+
+impl Function {
+    /// An empty function.
+    pub fn new(name: &str, doc: &[&str]) -> Self {
+        Self {
+            name: name.to_owned(),
+            doc: doc.iter().map(|&line| line.to_owned()).collect(),
+            inputs: vec![],
+            nodes: vec![],
+            stages: vec![],
+            outputs: vec![],
+            next_state: vec![],
+            next_params: vec![],
+        }
+    }
+}
+
+/// Builds one function of a program, stage by stage.
+#[derive(Debug)]
+pub struct FunctionBuilder<'p> {
+    /// The program: constants, tables and words may be added while building.
+    pub program: &'p mut Program,
+    function: Function,
+}
+
+impl<'p> FunctionBuilder<'p> {
+    /// Starts a function.
+    pub fn new(program: &'p mut Program, name: &str, doc: &[&str]) -> Self {
+        Self { program, function: Function::new(name, doc) }
+    }
+
+    /// The function, complete.
+    pub fn finish(self) -> Function {
+        self.function
+    }
+
+    /// Opens a stage; all nodes up to the next stage belong to it.
+    pub fn stage(&mut self, name: &str, doc: &[&str]) {
+        self.close();
+        let first = self.function.nodes.len();
+        let doc = doc.iter().map(|&line| line.to_owned()).collect();
+        self.function.stages.push(Stage { name: name.to_owned(), doc, first, end: first, guard: None });
+    }
+
+    /// Opens a stage that runs only where `condition` holds; close it with [`Self::join`].
+    pub fn guarded_stage(&mut self, name: &str, condition: Value, rare: bool, doc: &[&str]) {
+        self.stage(name, doc);
+        let last = self.function.stages.len() - 1;
+        self.function.stages[last].guard = Some(Guard { condition, joins: vec![], rare });
+    }
+
+    /// Closes the guarded stage: per result its name, the value from inside, and the value that holds
+    /// where the stage did not run. A new stage must be opened before further nodes are added.
+    pub fn join<const N: usize>(&mut self, results: [(&str, Value, Value); N]) -> [Value; N] {
+        let last = self.function.stages.len() - 1;
+        self.function.stages[last].end = self.function.nodes.len();
+        let joins = results.map(|(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise }));
+        if let Some(guard) = &mut self.function.stages[last].guard {
+            guard.joins = joins.to_vec();
+        }
+        joins
+    }
+
+    fn close(&mut self) {
+        let end = self.function.nodes.len();
+        if let Some(stage) = self.function.stages.last_mut()
+            && stage.guard.as_ref().is_none_or(|guard| guard.joins.is_empty())
+        {
+            stage.end = end;
+        }
+    }
+
+    /// Names a result of the function.
+    pub fn output(&mut self, name: &str, value: Value) {
+        self.close();
+        self.function.outputs.push((name.to_owned(), value));
+    }
+
+    /// Sets a state word's new value.
+    pub fn set_state(&mut self, state: StateId, value: Value) {
+        self.close();
+        self.function.next_state.push((state, value));
+    }
+
+    /// Sets a set-point word's new value.
+    pub fn set_param(&mut self, param: ParamId, value: Value) {
+        self.close();
+        self.function.next_params.push((param, value));
+    }
+
+    /// The proven interval of a value.
+    pub fn interval(&self, value: Value) -> Interval {
+        self.function.node(value).interval
+    }
+
+    /// Gives an unnamed value a name, so that it becomes a `let` of the emitted code.
+    pub fn name(&mut self, name: &str, value: Value) -> Value {
+        name.clone_into(&mut self.function.nodes[value.index()].name);
+        value
+    }
+
+    fn push(&mut self, name: &str, op: Op) -> Value {
+        let kind = op.kind(|value| self.function.node(value).kind);
+        let operands: Vec<Interval> = op.operands().iter().map(|&value| self.interval(value)).collect();
+        let interval = match op {
+            Op::Input(n) => self.function.inputs[n as usize].interval,
+            Op::Param(id) => self.program.params[id.index()].interval,
+            Op::State(id) => self.program.states[id.index()].interval,
+            Op::Constant(id) => Interval::point(i64::from(self.program.constants[id.index()].raw)),
+            _ => op
+                .interval(&operands, |id| self.program.tables[id.index()].interval())
+                .unwrap_or(Interval::symmetric(CLIP)),
+        };
+        let interval = Interval::new(interval.low.clamp(-CLIP, CLIP), interval.high.clamp(-CLIP, CLIP));
+        self.function.nodes.push(Node { op, kind, interval, name: name.to_owned() });
+        Value(self.function.nodes.len() as u32 - 1)
+    }
+
+    /// Adds an input word and reads it.
+    pub fn input(&mut self, name: &str, interval: Interval, doc: &str) -> Value {
+        self.function.inputs.push(Input { name: name.to_owned(), interval, doc: doc.to_owned() });
+        self.push(name, Op::Input(self.function.inputs.len() as u32 - 1))
+    }
+
+    /// Reads a set-point word.
+    pub fn param(&mut self, param: ParamId) -> Value {
+        let name = self.program.params[param.index()].name.clone();
+        self.push(&name, Op::Param(param))
+    }
+
+    /// Reads a state word as it was before the step.
+    pub fn state(&mut self, state: StateId) -> Value {
+        let name = self.program.states[state.index()].name.clone();
+        self.push(&name, Op::State(state))
+    }
+
+    /// Reads a named constant.
+    pub fn constant(&mut self, id: ConstantId) -> Value {
+        self.push("", Op::Constant(id))
+    }
+
+    /// A small number.
+    pub fn literal(&mut self, value: i32) -> Value {
+        self.push("", Op::Literal(value))
+    }
+
+    /// table[index mod length]
+    pub fn lookup(&mut self, table: TableId, index: Value) -> Value {
+        self.push("", Op::Lookup { table, index })
+    }
+
+    /// `c x` rounded half up at `shift`; the bare product for shift 0.
+    pub fn mul(&mut self, coefficient: Value, signal: Value, shift: u32) -> Value {
+        match shift {
+            0 => self.push("", Op::Product(coefficient, signal)),
+            _ => self.push("", Op::MulRound { coefficient, signal, shift }),
+        }
+    }
+
+    /// floor(a b / 2^shift)
+    pub fn mul_floor(&mut self, a: Value, b: Value, shift: u32) -> Value {
+        self.push("", Op::MulFloor { a, b, shift })
+    }
+
+    /// min(a b, limit), a and b not negative
+    pub fn mul_limited(&mut self, a: Value, b: Value, limit: Value) -> Value {
+        self.push("", Op::MulLimited { a, b, limit })
+    }
+
+    /// a 2^n
+    pub fn shift_left(&mut self, a: Value, n: u32) -> Value {
+        self.push("", Op::ShiftLeft(a, n))
+    }
+
+    /// floor(a / 2^n)
+    pub fn shift_right(&mut self, a: Value, n: u32) -> Value {
+        self.push("", Op::ShiftRight(a, n))
+    }
+
+    /// min(max(x, low), high)
+    pub fn clamp(&mut self, x: Value, low: Value, high: Value) -> Value {
+        self.push("", Op::Clamp { x, low, high })
+    }
+
+    /// floor(numerator 2^shift / denominator)
+    pub fn divide(&mut self, numerator: Value, shift: u32, denominator: Value) -> Value {
+        self.push("", Op::Divide { numerator, shift, denominator })
+    }
+
+    /// floor((2^32 - 1) / a)
+    pub fn turn_over(&mut self, a: Value) -> Value {
+        self.push("", Op::TurnOver(a))
+    }
+
+    /// Segment of the angle.
+    pub fn angle_index(&mut self, angle: Value, segments: u32) -> Value {
+        self.push("", Op::AngleIndex { angle, segments })
+    }
+
+    /// Position within the angle's segment, 31 bits.
+    pub fn angle_fraction(&mut self, angle: Value, segments: u32) -> Value {
+        self.push("", Op::AngleFraction { angle, segments })
+    }
+
+    /// Flag: `a` compared with `b`.
+    pub fn compare(&mut self, how: Comparison, a: Value, b: Value) -> Value {
+        self.push("", Op::Compare(how, a, b))
+    }
+
+    /// `then` where the flag holds, else `otherwise`.
+    pub fn select(&mut self, condition: Value, then: Value, otherwise: Value) -> Value {
+        self.push("", Op::Select { condition, then, otherwise })
+    }
+}
+
+macro_rules! operators {
+    ($($(#[$doc:meta])* $name:ident($($operand:ident),+) = $op:ident;)*) => {
+        impl FunctionBuilder<'_> {$(
+            $(#[$doc])*
+            pub fn $name(&mut self, $($operand: Value),+) -> Value {
+                self.push("", Op::$op($($operand),+))
+            }
+        )*}
+    };
+}
+operators! {
+    /// a + b
+    add(a, b) = Add;
+    /// a - b
+    sub(a, b) = Sub;
+    /// -a
+    neg(a) = Neg;
+    /// |a|
+    abs(a) = Abs;
+    /// min(a, b)
+    min(a, b) = Min;
+    /// max(a, b)
+    max(a, b) = Max;
+    /// (a + b) mod 2^32
+    angle_add(a, b) = AngleAdd;
+    /// (a - b) mod 2^32
+    angle_sub(a, b) = AngleSub;
+    /// Both flags.
+    and(a, b) = And;
+    /// Either flag.
+    or(a, b) = Or;
+    /// Not the flag.
+    not(a) = Not;
+}

@@ -1,0 +1,125 @@
+//! Runs a verified graph with exact integer semantics.
+//!
+//! The arithmetic is [`Op::apply`]; guarded stages run only where their guard holds, as in the
+//! emitted code. A value that leaves its proven interval is reported: that would be a bug of the
+//! generator, and a test that runs the interpreter finds it.
+
+use super::graph::{Function, Op, Program, Value};
+use super::verify::VerifiedGraph;
+
+/// A value left its proven interval, or an operand its operator's domain: a bug of the generator.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Escape {
+    /// Function and name (or number) of the value.
+    pub place: String,
+    /// The value, where there is one.
+    pub value: Option<i64>,
+}
+
+/// A program with its state and set-point words.
+#[derive(Clone, Debug)]
+pub struct Machine<'g> {
+    program: &'g Program,
+    /// State words, in the program's order.
+    pub state: Vec<i32>,
+    /// Set-point words, in the program's order.
+    pub params: Vec<i32>,
+    values: Vec<i64>,
+}
+
+impl<'g> Machine<'g> {
+    /// The program with initial state and set-point.
+    pub fn new(graph: &'g VerifiedGraph) -> Self {
+        Self::of_program(graph.program())
+    }
+
+    /// As [`Machine::new`] for a program that need not pass verification: planted faults are run to
+    /// see whether the comparison with the reference catches them.
+    pub fn of_program(program: &'g Program) -> Self {
+        Self {
+            program,
+            state: program.states.iter().map(|word| word.initial).collect(),
+            params: program.params.iter().map(|word| word.initial).collect(),
+            values: vec![],
+        }
+    }
+
+    /// Runs one step; returns the outputs in the order of the step's list.
+    ///
+    /// # Errors
+    /// [`Escape`] when a value leaves its proven interval.
+    pub fn step(&mut self, inputs: &[i32]) -> Result<Vec<i32>, Escape> {
+        let program = self.program;
+        self.run(&program.step, inputs)
+    }
+
+    /// Runs the setter `name`; unknown names do nothing.
+    ///
+    /// # Errors
+    /// [`Escape`] when a value leaves its proven interval.
+    pub fn set(&mut self, name: &str, inputs: &[i32]) -> Result<(), Escape> {
+        let program = self.program;
+        match program.setters.iter().find(|setter| setter.name == name) {
+            Some(setter) => self.run(setter, inputs).map(drop),
+            None => Ok(()),
+        }
+    }
+
+    fn run(&mut self, function: &Function, inputs: &[i32]) -> Result<Vec<i32>, Escape> {
+        self.values.clear();
+        self.values.resize(function.nodes.len(), 0);
+        let mut node = 0;
+        for stage in &function.stages {
+            let runs = stage.guard.as_ref().is_none_or(|guard| self.values[guard.condition.index()] == 1);
+            if runs {
+                for index in stage.first..stage.end {
+                    self.evaluate(function, index, inputs)?;
+                }
+            }
+            node = stage.end;
+            for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
+                if let Op::Join { taken, otherwise } = function.node(*join).op {
+                    self.values[join.index()] = self.values[if runs { taken } else { otherwise }.index()];
+                }
+                node += 1;
+            }
+        }
+        debug_assert_eq!(node, function.nodes.len(), "stages cover all nodes");
+        let word = |value: Value, values: &[i64]| values[value.index()] as i32;
+        for &(state, value) in &function.next_state {
+            self.state[state.index()] = word(value, &self.values);
+        }
+        for &(param, value) in &function.next_params {
+            self.params[param.index()] = word(value, &self.values);
+        }
+        Ok(function.outputs.iter().map(|&(_, value)| word(value, &self.values)).collect())
+    }
+
+    fn evaluate(&mut self, function: &Function, index: usize, inputs: &[i32]) -> Result<(), Escape> {
+        let node = &function.nodes[index];
+        let mut operands = [0_i64; 3];
+        for (slot, operand) in operands.iter_mut().zip(node.op.operands()) {
+            *slot = self.values[operand.index()];
+        }
+        let result = match node.op {
+            Op::Input(n) => inputs.get(n as usize).map(|&word| i64::from(word)),
+            Op::Param(id) => Some(i64::from(self.params[id.index()])),
+            Op::State(id) => Some(i64::from(self.state[id.index()])),
+            Op::Constant(id) => Some(i64::from(self.program.constants[id.index()].raw)),
+            op => op.apply(&operands, |table, at| {
+                let values = &self.program.tables[table.index()].values;
+                i64::from(values[(at as usize) & (values.len() - 1)])
+            }),
+        };
+        match result {
+            Some(value) if node.interval.low <= value && value <= node.interval.high => {
+                self.values[index] = value;
+                Ok(())
+            }
+            value => {
+                let name = if node.name.is_empty() { format!("%{index}") } else { node.name.clone() };
+                Err(Escape { place: format!("{}: {name}", function.name), value })
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The intermediate representation: integer programs in SSA form, grouped into named stages.
+//!
+//! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals,
+//! [`verify`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
+//! [`interpret`] runs it, [`text`] prints it. Nothing here knows motors, units or Rust syntax:
+//! physical meaning comes along as text for documentation only.
+
+pub mod build;
+pub mod graph;
+pub mod interpret;
+pub mod text;
+pub mod verify;
+
+pub use build::FunctionBuilder;
+pub use graph::{
+    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId, Program,
+    Stage, StateId, Table, TableId, Value, Word,
+};
+pub use interpret::Machine;
+pub use verify::{VerifiedGraph, Violation, verify};

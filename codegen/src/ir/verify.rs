@@ -1,0 +1,311 @@
+//! The verifier: from a program to a [`VerifiedGraph`], or the list of what is wrong with it.
+//!
+//! Invariants: (1) every operand is defined earlier; (2) stages and their joins partition the nodes in
+//! order; (3) values of a guarded stage leave it through its joins only, and joins stand right behind
+//! their stage; (4) operand kinds fit; (5) every stored interval is the one that follows from the
+//! operands, and lies in the 32-bit word; (6) operators stay in their domain: denominators >= 1,
+//! factors and numerators not negative where required, clamp limits in order, shifts and segments in
+//! range; (7) names are unique, and a value without a name is used once, in its own stage; (8) tables
+//! have a power-of-two length; (9) every state word is set once, to a value inside its interval, which
+//! holds its initial value and fits its storage; set-point words likewise in every setter that sets
+//! them; (10) no dead nodes.
+
+use std::collections::HashSet;
+use std::fmt;
+
+use super::graph::{Function, Interval, Kind, Op, Program, Value, Word};
+
+/// A broken invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// Function and value.
+    pub place: String,
+    /// What is wrong.
+    pub what: String,
+    /// The interval that left its word, for a scaling to act on.
+    pub escaped: Option<Interval>,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.what)
+    }
+}
+
+/// A program of which every invariant in this module's header holds. Emitters take nothing else.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VerifiedGraph(Program);
+
+impl VerifiedGraph {
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.0
+    }
+}
+
+/// Checks all invariants.
+///
+/// # Errors
+/// Every violation found.
+pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
+    let mut violations = Violations(vec![]);
+    let mut names = HashSet::new();
+    for constant in &program.constants {
+        if !names.insert(constant.name.as_str()) {
+            violations.add(&constant.name, "constant named twice");
+        }
+    }
+    for table in &program.tables {
+        if !names.insert(table.name.as_str()) {
+            violations.add(&table.name, "table named twice");
+        }
+        if !table.values.len().is_power_of_two() {
+            violations.add(&table.name, "table length is not a power of two");
+        }
+    }
+    for word in program.states.iter().chain(&program.params) {
+        check_word(word, &mut violations);
+    }
+    for function in program.functions() {
+        FunctionCheck { program: &program, function, violations: &mut violations }.run();
+    }
+    let set: Vec<usize> = program.step.next_state.iter().map(|(state, _)| state.index()).collect();
+    for (index, word) in program.states.iter().enumerate() {
+        if set.iter().filter(|&&state| state == index).count() != 1 {
+            violations.add(&word.name, "state word is not set exactly once");
+        }
+    }
+    if violations.0.is_empty() { Ok(VerifiedGraph(program)) } else { Err(violations.0) }
+}
+
+fn check_word(word: &Word, violations: &mut Violations) {
+    let initial = Interval::point(i64::from(word.initial));
+    if !word.interval.contains(initial) {
+        violations.add(&word.name, &format!("initial value {} outside {}", word.initial, word.interval));
+    }
+    if word.interval.bits() > word.storage_bits || ![16, 32].contains(&word.storage_bits) {
+        violations.escape(&word.name, word.interval, word.storage_bits);
+    }
+}
+
+struct Violations(Vec<Violation>);
+
+impl Violations {
+    fn add(&mut self, place: &str, what: &str) {
+        self.0.push(Violation { place: place.to_owned(), what: what.to_owned(), escaped: None });
+    }
+
+    fn escape(&mut self, place: &str, interval: Interval, bits: u32) {
+        let what = format!("interval {interval} needs {} bits, the word has {bits}", interval.bits());
+        self.0.push(Violation { place: place.to_owned(), what, escaped: Some(interval) });
+    }
+}
+
+struct FunctionCheck<'a> {
+    program: &'a Program,
+    function: &'a Function,
+    violations: &'a mut Violations,
+}
+
+impl FunctionCheck<'_> {
+    fn run(mut self) {
+        self.check_order();
+        // Everything below follows operands, so it needs them in place.
+        if self.violations.0.is_empty() {
+            self.check_stages();
+            self.check_nodes();
+            self.check_names();
+            self.check_results();
+        }
+    }
+
+    fn fail(&mut self, value: usize, what: &str) {
+        let place = self.place(value);
+        self.violations.add(&place, what);
+    }
+
+    fn place(&self, value: usize) -> String {
+        match self.function.nodes.get(value).map(|node| node.name.as_str()) {
+            None | Some("") => format!("{}: %{value}", self.function.name),
+            Some(name) => format!("{}: {name}", self.function.name),
+        }
+    }
+
+    fn roots(&self) -> Vec<Value> {
+        let function = self.function;
+        let outputs = function.outputs.iter().map(|&(_, value)| value);
+        let states = function.next_state.iter().map(|&(_, value)| value);
+        let params = function.next_params.iter().map(|&(_, value)| value);
+        let guards = function.stages.iter().filter_map(|stage| stage.guard.as_ref().map(|guard| guard.condition));
+        outputs.chain(states).chain(params).chain(guards).collect()
+    }
+
+    fn check_order(&mut self) {
+        let function = self.function;
+        for (index, node) in function.nodes.iter().enumerate() {
+            if node.op.operands().iter().any(|operand| operand.index() >= index) {
+                self.fail(index, "operand defined later");
+            }
+            let known = match node.op {
+                Op::Input(n) => (n as usize) < function.inputs.len(),
+                Op::Param(id) => id.index() < self.program.params.len(),
+                Op::State(id) => id.index() < self.program.states.len(),
+                Op::Constant(id) => id.index() < self.program.constants.len(),
+                Op::Lookup { table, .. } => table.index() < self.program.tables.len(),
+                _ => true,
+            };
+            if !known {
+                self.fail(index, "names a word, constant or table that does not exist");
+            }
+        }
+        if self.roots().iter().any(|root| root.index() >= function.nodes.len()) {
+            self.violations.add(&function.name, "result is not defined");
+        }
+    }
+
+    /// Stage number of every node; joins belong to no stage.
+    fn stage_of_nodes(&self) -> Vec<Option<usize>> {
+        let mut stage_of = vec![None; self.function.nodes.len()];
+        for (number, stage) in self.function.stages.iter().enumerate() {
+            for slot in stage_of.iter_mut().take(stage.end).skip(stage.first) {
+                *slot = Some(number);
+            }
+        }
+        stage_of
+    }
+
+    fn check_stages(&mut self) {
+        let function = self.function;
+        let mut next = 0;
+        for stage in &function.stages {
+            if stage.first != next || stage.end < stage.first {
+                self.violations.add(&stage.name, "stages do not follow one another");
+            }
+            next = stage.end;
+            for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
+                let behind = join.index() == next;
+                next += 1;
+                let from_inside = match function.node(*join).op {
+                    Op::Join { taken, otherwise } => {
+                        (stage.first..stage.end).contains(&taken.index()) && otherwise.index() < stage.first
+                            || taken.index() < stage.first && otherwise.index() < stage.first
+                    }
+                    _ => false,
+                };
+                if !behind || !from_inside {
+                    self.fail(join.index(), "is no join of the stage before it");
+                }
+            }
+            if let Some(guard) = &stage.guard
+                && guard.condition.index() >= stage.first
+            {
+                self.violations.add(&stage.name, "guard is defined after the stage begins");
+            }
+        }
+        if next != function.nodes.len() {
+            self.violations.add(&function.name, "stages do not cover all nodes");
+        }
+        let stage_of = self.stage_of_nodes();
+        let guarded = |node: usize| stage_of[node].filter(|&stage| function.stages[stage].guard.is_some());
+        for (index, node) in function.nodes.iter().enumerate() {
+            for operand in node.op.operands() {
+                let inside = guarded(operand.index());
+                let own_join = inside.is_some_and(|stage| {
+                    function.stages[stage].guard.as_ref().is_some_and(|guard| guard.joins.contains(&Value(index as u32)))
+                });
+                if inside.is_some() && stage_of[index] != inside && !own_join {
+                    self.fail(operand.index(), "leaves its guarded stage other than by a join");
+                }
+            }
+        }
+        for root in self.roots() {
+            if guarded(root.index()).is_some() {
+                self.fail(root.index(), "leaves its guarded stage other than by a join");
+            }
+        }
+    }
+
+    fn check_nodes(&mut self) {
+        let function = self.function;
+        for (index, node) in function.nodes.iter().enumerate() {
+            let kinds: Vec<Kind> = node.op.operands().iter().map(|&operand| function.node(operand).kind).collect();
+            if node.kind != node.op.kind(|value| function.node(value).kind) || kinds != node.op.operand_kinds(node.kind) {
+                self.fail(index, "operand kinds do not fit the operator");
+            }
+            let operands: Vec<Interval> =
+                node.op.operands().iter().map(|&operand| function.node(operand).interval).collect();
+            if !in_domain(&node.op, &operands) {
+                self.fail(index, "operands may leave the operator's domain");
+                continue;
+            }
+            let derived = match node.op {
+                Op::Input(n) => Some(function.inputs[n as usize].interval),
+                Op::Param(id) => Some(self.program.params[id.index()].interval),
+                Op::State(id) => Some(self.program.states[id.index()].interval),
+                Op::Constant(id) => Some(Interval::point(i64::from(self.program.constants[id.index()].raw))),
+                op => op.interval(&operands, |table| self.program.tables[table.index()].interval()),
+            };
+            if !Interval::WORD.contains(node.interval) {
+                let place = self.place(index);
+                self.violations.escape(&place, node.interval, 32);
+            } else if derived != Some(node.interval) {
+                self.fail(index, &format!("interval {} does not follow from the operands", node.interval));
+            }
+        }
+    }
+
+    fn check_names(&mut self) {
+        let function = self.function;
+        let stage_of = self.stage_of_nodes();
+        let mut names = HashSet::new();
+        let mut uses: Vec<Vec<Option<usize>>> = vec![vec![]; function.nodes.len()];
+        for (index, node) in function.nodes.iter().enumerate() {
+            for operand in node.op.operands() {
+                uses[operand.index()].push(if matches!(node.op, Op::Join { .. }) { None } else { stage_of[index] });
+            }
+            if !node.name.is_empty() && !names.insert(node.name.as_str()) {
+                self.fail(index, "named twice");
+            }
+        }
+        for root in self.roots() {
+            uses[root.index()].push(None);
+        }
+        for (index, node) in function.nodes.iter().enumerate() {
+            let free = matches!(node.op, Op::Constant(_) | Op::Literal(_));
+            if uses[index].is_empty() {
+                self.fail(index, "is never used");
+            } else if node.name.is_empty() && !free && uses[index] != [stage_of[index]] {
+                self.fail(index, "is used more than once or outside its stage and has no name");
+            }
+        }
+    }
+
+    fn check_results(&mut self) {
+        let function = self.function;
+        let states = function.next_state.iter().map(|&(id, value)| (&self.program.states[id.index()], value));
+        let params = function.next_params.iter().map(|&(id, value)| (&self.program.params[id.index()], value));
+        let wrong: Vec<String> = states
+            .chain(params)
+            .filter(|(word, value)| !word.interval.contains(function.node(*value).interval))
+            .map(|(word, value)| format!("{}: set to {}, holds {}", word.name, function.node(value).interval, word.interval))
+            .collect();
+        for what in wrong {
+            self.violations.add(&function.name, &what);
+        }
+    }
+}
+
+/// Shifts, segments and limits in order, besides what [`Op::interval`] itself refuses.
+fn in_domain(op: &Op, x: &[Interval]) -> bool {
+    let formed = match *op {
+        Op::MulRound { shift, .. } => (1..=62).contains(&shift),
+        Op::MulFloor { shift, .. } => shift <= 62,
+        Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
+        Op::Divide { shift, .. } => shift <= 31,
+        Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => (1..=1 << 16).contains(&segments),
+        Op::Clamp { .. } => x[1].high <= x[2].low,
+        _ => true,
+    };
+    let leaf = matches!(op, Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_));
+    formed && (leaf || op.interval(x, |_| Interval::point(0)).is_some())
+}
