@@ -3,5 +3,6 @@
 pub mod controllers;
 pub mod design;
 pub mod diagnostics;
+pub mod interface;
 pub mod ir;
 pub mod spec;
