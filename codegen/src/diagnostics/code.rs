@@ -1,0 +1,151 @@
+//! The codes of all diagnostics. A code keeps its number for good; new ones are appended.
+
+use std::fmt;
+
+macro_rules! codes {
+    ($($(#[$doc:meta])* $name:ident = $number:literal,)*) => {
+        /// The kind of an error. 01xx: structure, 02xx: values, 03xx: motor and inverter,
+        /// 04xx: controller, 05xx: design and formats, 09xx: faults of the generator itself.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl Code {
+            /// Every code, by number.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+
+            /// The number behind `HX`.
+            pub fn number(self) -> u16 {
+                match self {
+                    $(Self::$name => $number,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    /// The macro call or the TOML file cannot be parsed.
+    Syntax = 101,
+    /// A section that does not exist.
+    UnknownSection = 102,
+    /// A field that does not exist in its section.
+    UnknownField = 103,
+    /// A field or section given twice.
+    DuplicateField = 104,
+    /// A field without default is missing.
+    MissingField = 105,
+    /// A section is missing.
+    MissingSection = 106,
+    /// A field stands in the wrong section.
+    MisplacedField = 107,
+    /// A motor file cannot be read or its path is not relative.
+    MotorFile = 108,
+    /// The drive's name is no type name.
+    InvalidName = 109,
+    /// Two fields that say the same thing.
+    ExclusiveFields = 110,
+    /// A field that another field's value needs, or rules out.
+    DependentField = 111,
+    /// A value that cannot be read.
+    MalformedValue = 201,
+    /// A unit that does not exist.
+    UnknownUnit = 202,
+    /// A unit of another quantity.
+    WrongDimension = 203,
+    /// A number without unit.
+    MissingUnit = 204,
+    /// A value without its basis (per phase, line to line, peak).
+    MissingBasis = 205,
+    /// A basis that the value cannot have.
+    WrongBasis = 206,
+    /// A word that the field does not take.
+    UnknownWord = 207,
+    /// A number where a word is wanted, or the reverse.
+    WrongKind = 208,
+    /// Zero or negative where a positive value is wanted.
+    NotPositive = 209,
+    /// A value outside its plausible limits.
+    OutOfRange = 210,
+    /// Hall codes that are no Hall sequence.
+    HallCodes = 211,
+    /// A unit on a plain number.
+    UnwantedUnit = 212,
+    /// The control period is too long for L/R.
+    PeriodTooLong = 301,
+    /// The bus cannot drive the motor at rated speed.
+    BusTooLow = 302,
+    /// Rated torque, rated current and EMF constant contradict each other.
+    TorqueContradiction = 303,
+    /// Torque constant and EMF constant contradict each other.
+    TorqueConstantContradiction = 304,
+    /// The current sensors do not reach the rated current.
+    AdcRangeTooSmall = 305,
+    /// The trip current lies outside the current sensors' range.
+    TripAboveAdcRange = 306,
+    /// The largest set-point reaches the trip current.
+    MaxCurrentAboveTrip = 307,
+    /// Timer clock and PWM frequency give no timer period.
+    TimerPeriod = 308,
+    /// The Hall capture timer does not fit the control period.
+    HallTimer = 309,
+    /// The time of a sector at the least speed does not fit the counter.
+    MinimumSpeed = 310,
+    /// Speeds that are out of order.
+    SpeedOrder = 311,
+    /// Too few control periods in an electrical turn.
+    TooFewPeriods = 312,
+    /// The bus measurement does not fit its limits.
+    BusMeasurement = 313,
+    /// The commutation threshold does not fit the currents.
+    CommutationThreshold = 314,
+    /// The dead time takes too much of the period.
+    DeadTime = 315,
+    /// The ADC offset leaves no room.
+    AdcOffset = 316,
+    /// A controller that does not exist in this version.
+    ControllerUnavailable = 401,
+    /// An option of a controller that does not exist in this version.
+    OptionUnavailable = 402,
+    /// An option of another controller.
+    OptionOfOtherController = 403,
+    /// An option that has no effect beside another one.
+    OptionWithoutEffect = 404,
+    /// A controller variant on the command line that cannot be read.
+    Variant = 405,
+    /// The inductance may lie outside the loop's stable range.
+    InductanceOutsideStableRange = 501,
+    /// The resistance may lie outside the loop's stable range.
+    ResistanceOutsideStableRange = 502,
+    /// The loop is unstable with the nominal motor.
+    Unstable = 503,
+    /// A signal does not fit the word.
+    WordTooNarrow = 504,
+    /// A coefficient does not fit the word.
+    CoefficientOutOfRange = 505,
+    /// The generator broke one of its own invariants.
+    Internal = 901,
+}
+
+/// `HX0203`.
+impl fmt::Display for Code {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "HX{:04}", self.number())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Code;
+
+    #[test]
+    fn numbers_are_unique_and_ascend() {
+        assert!(
+            Code::ALL
+                .windows(2)
+                .all(|pair| pair[0].number() < pair[1].number())
+        );
+        assert_eq!(Code::WrongDimension.to_string(), "HX0203");
+    }
+}

@@ -1,0 +1,62 @@
+//! Diagnostics: what is wrong with a specification, where, and what to change.
+//!
+//! Stages push into a [`Collector`] and turn it into a `Result` at their barrier; forgetting that
+//! panics in debug builds. Every text is built by a constructor of [`catalogue`], every kind of
+//! error has one [`Code`]. Rendering goes to text (`file:line:col: error[HX0203]: …`) and to
+//! `compile_error!` tokens that carry the spans of all fields that take part.
+
+pub mod catalogue;
+mod code;
+mod collector;
+mod location;
+mod number;
+mod render;
+
+pub use code::Code;
+pub use collector::{Collector, Diagnostics};
+pub use location::Location;
+pub use number::{engineering, list, percent, rpm, significant};
+
+/// One error: its kind, its text and the places that take part in it.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// The kind of error.
+    pub code: Code,
+    /// Quantity, given value with unit, limit, what to change; one sentence or two, no full stop.
+    pub message: String,
+    /// Where the error is reported.
+    pub location: Location,
+    /// Further places that take part, each with a short text.
+    pub notes: Vec<Note>,
+}
+
+/// A further place that takes part in an error.
+#[derive(Clone, Debug)]
+pub struct Note {
+    /// What stands there, e.g. ``first `resistance` ``.
+    pub message: String,
+    /// Where.
+    pub location: Location,
+}
+
+impl Diagnostic {
+    /// A diagnostic without notes. Texts come from [`catalogue`] only.
+    pub(crate) fn new(code: Code, location: &Location, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            message: message.into(),
+            location: location.clone(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Adds a place that takes part.
+    #[must_use]
+    pub(crate) fn with_note(mut self, location: &Location, message: impl Into<String>) -> Self {
+        self.notes.push(Note {
+            message: message.into(),
+            location: location.clone(),
+        });
+        self
+    }
+}

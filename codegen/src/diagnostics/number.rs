@@ -1,0 +1,126 @@
+//! Numbers as people read them: four significant digits, engineering prefixes.
+
+/// `value` with four significant digits (all digits of larger whole numbers) and no trailing zeros.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let scientific = format!("{value:.3e}");
+    let exponent: i32 = scientific
+        .rsplit('e')
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(0);
+    if (-3..9).contains(&exponent) {
+        let decimals = usize::try_from(3 - exponent).unwrap_or(0);
+        trim_zeros(&format!("{value:.decimals$}"))
+    } else {
+        let mantissa = scientific.split('e').next().unwrap_or_default();
+        format!("{}e{exponent}", trim_zeros(mantissa))
+    }
+}
+
+fn trim_zeros(text: &str) -> String {
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+/// `value` in `unit` with the prefix that leaves one to three digits before the point,
+/// e.g. `engineering(0.135, "ohm")` is `135 mohm`.
+pub fn engineering(value: f64, unit: &str) -> String {
+    const PREFIXES: [(i32, &str); 8] = [
+        (-12, "p"),
+        (-9, "n"),
+        (-6, "u"),
+        (-3, "m"),
+        (0, ""),
+        (3, "k"),
+        (6, "M"),
+        (9, "G"),
+    ];
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value} {unit}");
+    }
+    let rounded = format!("{:.3e}", value.abs());
+    let exponent: i32 = rounded
+        .rsplit('e')
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(0);
+    let step = (exponent.div_euclid(3) * 3).clamp(-12, 9);
+    let prefix = PREFIXES
+        .iter()
+        .find(|(power, _)| *power == step)
+        .map_or("", |(_, prefix)| prefix);
+    format!("{} {prefix}{unit}", significant(value / 10f64.powi(step)))
+}
+
+/// A ratio in percent, e.g. `30 %`.
+pub fn percent(ratio: f64) -> String {
+    format!("{} %", significant(100.0 * ratio))
+}
+
+/// An angular speed in rad/s as revolutions per minute.
+pub fn rpm(omega: f64) -> String {
+    format!("{} rpm", significant(omega * 30.0 / std::f64::consts::PI))
+}
+
+/// Words in backticks: `` `a`, `b` or `c` ``.
+pub fn list<S: AsRef<str>>(words: &[S], last: &str) -> String {
+    let quoted: Vec<String> = words
+        .iter()
+        .map(|word| format!("`{}`", word.as_ref()))
+        .collect();
+    match quoted.as_slice() {
+        [] => String::new(),
+        [only] => only.clone(),
+        [head @ .., tail] => format!("{} {last} {tail}", head.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{engineering, list, percent, rpm, significant};
+
+    #[test]
+    fn four_significant_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (34.515_6, "34.52"),
+            (1800.0, "1800"),
+            (71_999.9, "72000"),
+            (65_535.0, "65535"),
+            (0.044_31, "0.04431"),
+            (-2.5, "-2.5"),
+            (1.234_56e-7, "1.235e-7"),
+            (999.96, "1000"),
+        ] {
+            assert_eq!(significant(value), text);
+        }
+    }
+
+    #[test]
+    fn engineering_prefixes() {
+        for (value, unit, text) in [
+            (0.135, "ohm", "135 mohm"),
+            (0.00022, "H", "220 uH"),
+            (999.97e-6, "s", "1 ms"),
+            (20_000.0, "Hz", "20 kHz"),
+            (48.0, "V", "48 V"),
+            (1e-13, "F", "0.1 pF"),
+        ] {
+            assert_eq!(engineering(value, unit), text);
+        }
+    }
+
+    #[test]
+    fn ratios_speeds_and_lists() {
+        assert_eq!(percent(0.3), "30 %");
+        assert_eq!(rpm(209.439_510_239), "2000 rpm");
+        assert_eq!(list(&["a", "b", "c"], "or"), "`a`, `b` or `c`");
+        assert_eq!(list(&["a"], "or"), "`a`");
+    }
+}

@@ -1,0 +1,141 @@
+//! Errors as text and as `compile_error!` tokens.
+
+use super::{Diagnostic, Diagnostics, Location};
+use proc_macro2::TokenStream;
+use std::fmt;
+
+/// One line per error and note: `file:line:col: error[HX0203]: message`.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            out,
+            "{}: error[{}]: {}",
+            self.location, self.code, self.message
+        )?;
+        for note in &self.notes {
+            write!(out, "\n{}: note: {}", note.location, note.message)?;
+        }
+        Ok(())
+    }
+}
+
+/// All errors, each on its own lines.
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, error) in self.as_slice().iter().enumerate() {
+            if index > 0 {
+                out.write_str("\n")?;
+            }
+            write!(out, "{error}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Diagnostics {
+    /// One `compile_error!` per error, and one per note whose place differs: the compiler has no
+    /// stable way to attach notes, and every field that takes part shall be marked.
+    ///
+    /// Places outside the macro call (a motor file) are marked at `anchor`, the path literal or
+    /// the type name, and named `file:line:col` in the message.
+    pub fn to_compile_errors(&self, anchor: &TokenStream) -> TokenStream {
+        self.as_slice()
+            .iter()
+            .flat_map(|error| error.to_compile_errors(anchor))
+            .collect()
+    }
+}
+
+impl Diagnostic {
+    fn to_compile_errors(&self, anchor: &TokenStream) -> TokenStream {
+        let mut message = format!("[{}] {}", self.code, self.message);
+        if !matches!(self.location, Location::Macro(_)) {
+            message = format!("{}: {message}", self.location);
+        }
+        let mut marked = Vec::new();
+        for note in &self.notes {
+            match &note.location {
+                Location::Macro(tokens) => {
+                    marked.push((
+                        tokens,
+                        format!("[{}] also here: {}", self.code, note.message),
+                    ));
+                }
+                place => {
+                    message.push_str("\n");
+                    message.push_str(&format!("{place}: {}", note.message));
+                }
+            }
+        }
+        let primary = match &self.location {
+            Location::Macro(tokens) => tokens,
+            _ => anchor,
+        };
+        let mut errors = compile_error(primary, &message);
+        errors.extend(
+            marked
+                .into_iter()
+                .map(|(tokens, text)| compile_error(tokens, &text)),
+        );
+        errors
+    }
+}
+
+/// Spans from the first to the last of `tokens` (the whole call if there are none).
+fn compile_error(tokens: &TokenStream, message: &str) -> TokenStream {
+    syn::Error::new_spanned(tokens, message).to_compile_error()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnostics::{Code, Collector, Diagnostic, Location};
+    use proc_macro2::TokenStream;
+
+    fn tokens(text: &str) -> TokenStream {
+        text.parse().expect("lexes")
+    }
+
+    #[test]
+    fn text_names_place_code_and_notes() {
+        let place = |line| Location::File {
+            file: "motors/hub.toml".into(),
+            line,
+            column: 3,
+        };
+        let error = Diagnostic::new(Code::DuplicateField, &place(9), "`resistance` twice")
+            .with_note(&place(4), "first here");
+        assert_eq!(
+            error.to_string(),
+            "motors/hub.toml:9:3: error[HX0104]: `resistance` twice\nmotors/hub.toml:4:3: note: first here"
+        );
+    }
+
+    #[test]
+    fn every_macro_place_is_marked_and_files_are_named() {
+        let mut errors = Collector::new();
+        errors.push(
+            Diagnostic::new(
+                Code::DuplicateField,
+                &Location::Macro(tokens("1 ohm")),
+                "twice",
+            )
+            .with_note(&Location::Macro(tokens("2 ohm")), "first here"),
+        );
+        let file = Location::File {
+            file: "hub.toml".into(),
+            line: 2,
+            column: 1,
+        };
+        errors.push(Diagnostic::new(Code::MissingField, &file, "missing"));
+        let rendered = errors
+            .finish()
+            .expect("has errors")
+            .to_compile_errors(&tokens("\"hub.toml\""))
+            .to_string();
+        assert_eq!(rendered.matches("compile_error").count(), 3);
+        assert!(
+            rendered.contains("hub.toml:2:1: [HX0105] missing"),
+            "{rendered}"
+        );
+    }
+}
