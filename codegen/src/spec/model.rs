@@ -4,6 +4,8 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::controllers::ControllerSpec;
+use crate::controllers::pdcc::Reference;
+use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// One drive: what to call it, and its motor, inverter and controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +18,39 @@ pub struct Spec {
     pub inverter: InverterSpec,
     /// The controller and its options.
     pub controller: ControllerSpec,
+}
+
+impl Spec {
+    /// k_t: torque in Nm per ampere of set-point, from the EMF's and the current reference's
+    /// shapes ([`EmfShape::quasi_square_factor`], [`EmfShape::proportional_factor`]).
+    pub fn torque_constant(&self) -> f64 {
+        let ControllerSpec::Pdcc(controller) = &self.controller;
+        let shape = self.motor.emf_shape;
+        self.motor.emf_constant
+            * match controller.reference {
+                Reference::QuasiSquare => shape.quasi_square_factor(),
+                Reference::Proportional => shape.proportional_factor(),
+            }
+    }
+
+    /// Ticks of 60 electrical degrees at the least speed, at least 8: the greatest age of a Hall
+    /// edge that is trusted.
+    pub fn age_max(&self) -> u32 {
+        let omega_e = self.inverter.minimum_speed * f64::from(self.motor.pole_pairs);
+        (self.ticks_per_second() * FRAC_PI_3 / omega_e)
+            .floor()
+            .max(8.0) as u32
+    }
+
+    /// Ticks of an electrical turn at the greatest speed, at least 12.
+    pub fn rev_min(&self) -> u32 {
+        let omega_e = self.inverter.maximum_speed * f64::from(self.motor.pole_pairs);
+        (self.ticks_per_second() * TAU / omega_e).floor().max(12.0) as u32
+    }
+
+    fn ticks_per_second(&self) -> f64 {
+        f64::from(self.inverter.hall_capture.ticks_per_period()) / self.inverter.t_s
+    }
 }
 
 /// Shape of the phase EMF over the electrical angle.
@@ -137,4 +172,14 @@ pub struct InverterSpec {
     pub calibration_log2: u32,
     /// Periods of bootstrap pre-charge, 0 to 65535.
     pub precharge_periods: u32,
+}
+
+impl InverterSpec {
+    /// The greatest bus voltage that the controller reckons with, volt.
+    pub fn greatest_bus(&self) -> f64 {
+        match self.bus {
+            BusSource::Fixed => self.v_bus,
+            BusSource::Measured { max, .. } => max,
+        }
+    }
 }

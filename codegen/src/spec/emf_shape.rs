@@ -1,0 +1,148 @@
+//! The unit shape of the phase EMF and the torque factors that follow from it.
+//!
+//! Conventions of DESIGN.md section 3: phase a rises through zero at theta_e = 0, b lags by a
+//! third of a turn; shapes have half-wave symmetry and amplitude 1.
+
+use super::EmfShape;
+use std::f64::consts::{PI, TAU};
+
+impl EmfShape {
+    /// Unit EMF of phase a at the electrical angle `theta_e` (radian), from -1 to 1.
+    pub fn at(self, theta_e: f64) -> f64 {
+        match self {
+            Self::Sinusoidal => theta_e.sin(),
+            Self::Trapezoidal { flat_top_deg } => {
+                let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
+                let angle = theta_e.rem_euclid(TAU);
+                let (sign, half) = if angle < PI {
+                    (1.0, angle)
+                } else {
+                    (-1.0, angle - PI)
+                };
+                sign * (half.min(PI - half) / ramp).clamp(0.0, 1.0)
+            }
+        }
+    }
+
+    /// Peak of the line-to-line EMF over the peak of the phase EMF: 2 for a flat top of at least
+    /// 60 degrees, sqrt(3) for a sine.
+    pub fn line_to_line_peak(self) -> f64 {
+        // f is concave over its half wave, so f(x) + f(120 degrees - x) peaks in the middle.
+        2.0 * self.at(PI / 3.0)
+    }
+
+    /// Mean torque per ampere of a quasi-square current over the phase constant: the mean of
+    /// f_p - f_q over a sector. 2 for a flat top of at least 120 degrees, 3 sqrt(3)/pi for a sine.
+    pub fn quasi_square_factor(self) -> f64 {
+        match self {
+            Self::Sinusoidal => 3.0 * 3f64.sqrt() / PI,
+            Self::Trapezoidal { flat_top_deg } => {
+                // Twice the mean of f from 30 to 90 degrees; the ramp ends at `ramp` degrees.
+                let ramp = (180.0 - flat_top_deg) / 2.0;
+                if ramp <= 30.0 {
+                    2.0
+                } else {
+                    ((ramp * ramp - 900.0) / (2.0 * ramp) + 90.0 - ramp) / 30.0
+                }
+            }
+        }
+    }
+
+    /// Torque per ampere of a current parallel to the EMF over the phase constant, the ampere
+    /// being the phase current where the phase's EMF peaks (theta_e = 90 degrees).
+    ///
+    /// i = (2/3) k_t/k_phase s/|s|^2 with s the zero-sum shape; at 90 degrees f = (1, -y, -y) with
+    /// y = f(30 degrees), so s_a/|s|^2 = 1.5/(1 + y). 2 for a flat top of at least 120 degrees,
+    /// 1.5 for a sine.
+    pub fn proportional_factor(self) -> f64 {
+        1.0 + self.at(PI / 6.0)
+    }
+
+    /// Greatest phase current of the reference parallel to the EMF, per ampere of set-point:
+    /// 1 for a sine, 1.077 for a flat top of 120 degrees (between two corners).
+    pub fn proportional_peak(self) -> f64 {
+        const STEPS: u32 = 7200;
+        (0..STEPS)
+            .map(|step| {
+                let theta_e = TAU * f64::from(step) / f64::from(STEPS);
+                let f = [0.0, 1.0, 2.0].map(|lag| self.at(theta_e - lag * TAU / 3.0));
+                let mean = (f[0] + f[1] + f[2]) / 3.0;
+                let s = f.map(|value| value - mean);
+                let square = 2.0 / 3.0 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+                2.0 / 3.0 * self.proportional_factor() * s[0].abs() / square
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{EmfShape, PI, TAU};
+
+    const SHAPES: [EmfShape; 5] = [
+        EmfShape::Sinusoidal,
+        EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        },
+        EmfShape::Trapezoidal {
+            flat_top_deg: 150.0,
+        },
+        EmfShape::Trapezoidal { flat_top_deg: 80.0 },
+        EmfShape::Trapezoidal { flat_top_deg: 20.0 },
+    ];
+    const STEPS: usize = 200_000;
+
+    fn near(left: f64, right: f64) -> bool {
+        (left - right).abs() < 1e-4
+    }
+
+    /// Midpoints of `STEPS` equal parts of `low..high` degrees, in radian.
+    fn angles(low: f64, high: f64) -> impl Iterator<Item = f64> {
+        (0..STEPS).map(move |k| (low + (high - low) * (k as f64 + 0.5) / STEPS as f64).to_radians())
+    }
+
+    #[test]
+    fn the_trapezoid_follows_the_convention() {
+        let shape = EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        };
+        for (degrees, value) in [
+            (0.0, 0.0),
+            (15.0, 0.5),
+            (30.0, 1.0),
+            (150.0, 1.0),
+            (165.0, 0.5),
+            (270.0, -1.0),
+        ] {
+            assert!(near(shape.at(f64::to_radians(degrees)), value), "{degrees}");
+        }
+    }
+
+    #[test]
+    fn factors_agree_with_integration() {
+        for shape in SHAPES {
+            let line = |theta: f64| shape.at(theta) - shape.at(theta - TAU / 3.0);
+            let peak = angles(0.0, 360.0).map(line).fold(0.0, f64::max);
+            assert!(near(peak, shape.line_to_line_peak()), "{shape:?} {peak}");
+            let mean = angles(30.0, 90.0).map(line).sum::<f64>() / STEPS as f64;
+            assert!(near(mean, shape.quasi_square_factor()), "{shape:?} {mean}");
+        }
+    }
+
+    #[test]
+    fn factors_of_the_two_standard_shapes() {
+        let trapezoid = EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        };
+        assert!(near(trapezoid.quasi_square_factor(), 2.0));
+        assert!(near(trapezoid.proportional_factor(), 2.0));
+        assert!(near(
+            trapezoid.proportional_peak(),
+            (2.0 + 3f64.sqrt()) / (2.0 * 3f64.sqrt())
+        ));
+        let sine = EmfShape::Sinusoidal;
+        assert!(near(sine.quasi_square_factor(), 3.0 * 3f64.sqrt() / PI));
+        assert!(near(sine.proportional_factor(), 1.5));
+        assert!(near(sine.proportional_peak(), 1.0));
+    }
+}

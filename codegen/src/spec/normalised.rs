@@ -1,0 +1,259 @@
+//! The normalised text of a checked specification, as documented in `normalised.md`: TOML, SI
+//! units, a fixed order of keys, every float with the fewest digits that read back the same.
+
+use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+use crate::controllers::ControllerSpec;
+use crate::controllers::pdcc::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
+use crate::design::Discretisation;
+use std::fmt::{Debug, Display};
+
+impl Spec {
+    /// The normalised specification: the same specification gives the same bytes.
+    pub fn to_toml(&self) -> String {
+        let mut text = Text::default();
+        text.word("name", &self.name);
+        self.write_motor(&mut text, &self.motor);
+        self.write_inverter(&mut text, &self.inverter);
+        let ControllerSpec::Pdcc(controller) = &self.controller;
+        write_pdcc(&mut text, controller);
+        text.0
+    }
+
+    fn write_motor(&self, text: &mut Text, motor: &MotorSpec) {
+        text.section("motor");
+        text.number("pole_pairs", motor.pole_pairs);
+        text.number("resistance", motor.resistance);
+        text.number("inductance", motor.inductance);
+        text.number("emf_constant", motor.emf_constant);
+        match motor.emf_shape {
+            EmfShape::Trapezoidal { flat_top_deg } => {
+                text.word("emf_shape", "trapezoidal");
+                text.number("flat_top_deg", flat_top_deg);
+            }
+            EmfShape::Sinusoidal => text.word("emf_shape", "sinusoidal"),
+        }
+        text.number("torque_constant", self.torque_constant());
+        text.number("hall_codes", motor.hall_codes);
+    }
+
+    fn write_inverter(&self, text: &mut Text, inverter: &InverterSpec) {
+        text.section("inverter");
+        text.number("v_bus", inverter.v_bus);
+        match inverter.bus {
+            BusSource::Fixed => text.word("bus", "fixed"),
+            BusSource::Measured {
+                gain,
+                adc_bits,
+                min,
+                max,
+            } => {
+                text.word("bus", "measured");
+                text.number("bus_gain", gain);
+                text.number("bus_adc_bits", adc_bits);
+                text.number("bus_min", min);
+                text.number("bus_max", max);
+            }
+        }
+        text.number("t_s", inverter.t_s);
+        text.number("timer_period", inverter.timer_period);
+        text.number("adc_bits", inverter.adc_bits);
+        text.number("adc_gain", inverter.adc_gain);
+        text.number("adc_offset", inverter.adc_offset);
+        text.number("trip_current", inverter.trip_current);
+        text.number("max_current", inverter.max_current);
+        text.word(
+            "hall_capture",
+            match inverter.hall_capture {
+                HallCapture::Sampled => "sampled",
+                HallCapture::Timer { .. } => "timer",
+            },
+        );
+        text.number("ticks", inverter.hall_capture.ticks_per_period());
+        text.number("age_max", self.age_max());
+        text.number("rev_min", self.rev_min());
+        text.number("omega_max", inverter.maximum_speed);
+        text.number("stall_periods", inverter.stall_periods);
+        text.number("calibration_log2", inverter.calibration_log2);
+        text.number("precharge_periods", inverter.precharge_periods);
+    }
+}
+
+fn write_pdcc(text: &mut Text, controller: &PdccSpec) {
+    text.section("controller");
+    text.word("kind", "pdcc");
+    text.word(
+        "modulation",
+        match controller.modulation {
+            Modulation::ThreePhase => "three_phase",
+            Modulation::Pair => "pair",
+        },
+    );
+    text.word(
+        "saturation",
+        match controller.saturation {
+            Saturation::KeepAngle => "keep_angle",
+            Saturation::Nearest => "nearest",
+            Saturation::TorquePriority => "torque_priority",
+        },
+    );
+    text.word(
+        "emf",
+        match controller.emf {
+            EmfSource::Estimated => "estimated",
+            EmfSource::Model => "model",
+        },
+    );
+    text.number("emf_filter", controller.emf_filter);
+    text.word(
+        "reference",
+        match controller.reference {
+            Reference::QuasiSquare => "quasi_square",
+            Reference::Proportional => "proportional",
+        },
+    );
+    text.number("advance", controller.advance);
+    text.number("delay", controller.delay);
+    text.word(
+        "discretisation",
+        match controller.discretisation {
+            Discretisation::Exact => "exact",
+            Discretisation::Euler => "euler",
+        },
+    );
+    text.number("word", controller.word);
+    text.number("commutation_threshold", controller.commutation_threshold);
+    text.number("commutation_timeout", controller.commutation_timeout);
+}
+
+#[derive(Default)]
+struct Text(String);
+
+impl Text {
+    fn section(&mut self, name: &str) {
+        self.line(&format!("[{name}]"));
+    }
+
+    /// `Debug` of a float is the shortest text that reads back the same.
+    fn number(&mut self, key: &str, value: impl Debug) {
+        self.line(&format!("{key} = {value:?}"));
+    }
+
+    fn word(&mut self, key: &str, value: impl Display) {
+        self.line(&format!("{key} = \"{value}\""));
+    }
+
+    fn line(&mut self, line: &str) {
+        self.0.push_str(line);
+        self.0.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::controllers::ControllerSpec;
+    use crate::controllers::pdcc::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
+    use crate::design::Discretisation;
+    use crate::spec::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+
+    fn hub_drive() -> Spec {
+        Spec {
+            name: "HubDrive".into(),
+            motor: MotorSpec {
+                description: String::new(),
+                pole_pairs: 4,
+                resistance: 0.135,
+                inductance: 0.00022,
+                emf_constant: 0.0824,
+                emf_shape: EmfShape::Trapezoidal {
+                    flat_top_deg: 120.0,
+                },
+                rated_current: 20.0,
+                rated_torque: Some(3.3),
+                rated_speed: 209.5,
+                inertia: None,
+                inductance_tolerance: 0.1,
+                resistance_tolerance: 0.3,
+                hall_codes: [1, 5, 4, 6, 2, 3],
+            },
+            inverter: InverterSpec {
+                v_bus: 48.0,
+                bus: BusSource::Fixed,
+                t_s: 5e-5,
+                timer_period: 1800,
+                dead_time: 0.0,
+                adc_bits: 12,
+                adc_gain: 0.01953125,
+                adc_offset: 2048,
+                trip_current: 38.0,
+                max_current: 20.0,
+                hall_capture: HallCapture::Timer { ticks: 50 },
+                minimum_speed: 4.0,
+                maximum_speed: 314.0,
+                stall_periods: 0,
+                calibration_log2: 8,
+                precharge_periods: 20,
+            },
+            controller: ControllerSpec::Pdcc(PdccSpec {
+                modulation: Modulation::ThreePhase,
+                saturation: Saturation::TorquePriority,
+                emf: EmfSource::Estimated,
+                emf_filter: 1.0,
+                reference: Reference::QuasiSquare,
+                advance: 0.0,
+                delay: 1,
+                discretisation: Discretisation::Exact,
+                word: 32,
+                commutation_threshold: 0.5,
+                commutation_timeout: 8,
+            }),
+        }
+    }
+
+    #[test]
+    fn keys_and_numbers_stand_as_documented() {
+        let expected = r#"name = "HubDrive"
+[motor]
+pole_pairs = 4
+resistance = 0.135
+inductance = 0.00022
+emf_constant = 0.0824
+emf_shape = "trapezoidal"
+flat_top_deg = 120.0
+torque_constant = 0.1648
+hall_codes = [1, 5, 4, 6, 2, 3]
+[inverter]
+v_bus = 48.0
+bus = "fixed"
+t_s = 5e-5
+timer_period = 1800
+adc_bits = 12
+adc_gain = 0.01953125
+adc_offset = 2048
+trip_current = 38.0
+max_current = 20.0
+hall_capture = "timer"
+ticks = 50
+age_max = 65449
+rev_min = 5002
+omega_max = 314.0
+stall_periods = 0
+calibration_log2 = 8
+precharge_periods = 20
+[controller]
+kind = "pdcc"
+modulation = "three_phase"
+saturation = "torque_priority"
+emf = "estimated"
+emf_filter = 1.0
+reference = "quasi_square"
+advance = 0.0
+delay = 1
+discretisation = "exact"
+word = 32
+commutation_threshold = 0.5
+commutation_timeout = 8
+"#;
+        assert_eq!(hub_drive().to_toml(), expected);
+        expected.parse::<toml_edit::DocumentMut>().expect("is TOML");
+    }
+}
