@@ -1,5 +1,7 @@
 //! The hardware's boundary: what a control period reads and what it writes.
 
+use crate::arith::Word;
+
 /// One control period's measurements, taken at the start of the period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
@@ -27,6 +29,19 @@ pub enum LegState {
     Off = 2,
 }
 
+impl LegState {
+    /// The state that a word of the step stands for: 0 pulsed, 1 low, else off.
+    #[inline(always)]
+    #[must_use]
+    pub const fn from_word(word: Word) -> Self {
+        match word.0 {
+            0 => Self::Pulsed,
+            1 => Self::Low,
+            _ => Self::Off,
+        }
+    }
+}
+
 /// The three legs' commands: compare values for a centre-aligned timer and a state per leg.
 ///
 /// A compare value is the time during which the upper switch is on, in counts, from 0 to the
@@ -41,9 +56,15 @@ pub struct Legs {
 
 impl Legs {
     /// All legs off: the safe command of a tripped drive.
-    pub const OFF: Self = Self { compare: [0; 3], state: [LegState::Off; 3] };
+    pub const OFF: Self = Self {
+        compare: [0; 3],
+        state: [LegState::Off; 3],
+    };
     /// All lower switches on: charges the bootstrap capacitors.
-    pub const LOW: Self = Self { compare: [0; 3], state: [LegState::Low; 3] };
+    pub const LOW: Self = Self {
+        compare: [0; 3],
+        state: [LegState::Low; 3],
+    };
 }
 
 /// Why a drive tripped. Latched until `reset()`.
@@ -61,6 +82,36 @@ pub enum Fault {
     Hall = 3,
     /// No Hall edge within the stall time-out while a current was demanded.
     Stall = 4,
+}
+
+impl Fault {
+    /// The fault that a word of the state stands for; words that stand for none count as
+    /// [`Fault::None`].
+    #[inline]
+    #[must_use]
+    pub const fn from_word(word: Word) -> Self {
+        match word.0 {
+            1 => Self::AdcRange,
+            2 => Self::OverCurrent,
+            3 => Self::Hall,
+            4 => Self::Stall,
+            _ => Self::None,
+        }
+    }
+}
+
+/// What a drive is doing: the values of its state word `mode`.
+pub mod mode {
+    use crate::arith::Word;
+
+    /// Current control.
+    pub const RUN: Word = Word(0);
+    /// Averaging the current offsets, all legs off.
+    pub const CALIBRATE: Word = Word(1);
+    /// Charging the bootstrap capacitors, all lower switches on.
+    pub const PRECHARGE: Word = Word(2);
+    /// Tripped, all legs off, until `reset()`.
+    pub const TRIPPED: Word = Word(3);
 }
 
 /// How a result is rounded to its format.

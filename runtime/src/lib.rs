@@ -5,11 +5,13 @@
 //! double buffer behind the set-point, and the trait that lets generic firmware hold any drive.
 #![no_std]
 
+pub mod arith;
 mod boundary;
 mod double_buffer;
 mod drive;
+mod word;
 
-pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample};
+pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
 pub use double_buffer::DoubleBuffer;
 pub use drive::Drive;
 pub use fixed;
