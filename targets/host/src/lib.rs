@@ -1,1 +1,4 @@
 //! Under construction.
+
+pub mod closed_loop;
+pub mod plant;

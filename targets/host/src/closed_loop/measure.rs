@@ -1,0 +1,170 @@
+//! Runs that are measured: settling, the measured window, and the three starts.
+
+use super::{ClosedLoop, CurrentLoop, Delay, Merits, Trace, merits};
+use crate::plant::{Plant, PlantError, PlantParams, Truth};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Electrical start angles in radians (DESIGN.md section 7).
+pub const STARTS: [f64; 3] = [0.1, 0.117, 0.134];
+
+/// Settling time in seconds, at least.
+const SETTLING: f64 = 15e-3;
+
+/// Electrical periods of settling, at least, and of measurement.
+const SETTLING_TURNS: f64 = 2.0;
+const MEASURED_TURNS: f64 = 6.0;
+
+/// Measured time at standstill, where no electrical period ends, in seconds.
+const STANDSTILL: f64 = 50e-3;
+
+/// What to run. Negative speed and torque are meaningful in any combination.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunOptions {
+    /// Mechanical speed in rad/s; the initial one when the speed is free.
+    pub omega_m: f64,
+    /// Amplitude in amperes of the quasi-square reference that tracking and commutation are
+    /// judged against; its sign is the torque's.
+    pub current: f64,
+    /// When commands reach the inverter.
+    pub delay: Delay,
+    /// Current in amperes at which the merits count a commutation as ended.
+    pub commutation_threshold: f64,
+    /// Electrical start angles in radians; each is a run of its own.
+    pub starts: Vec<f64>,
+}
+
+impl RunOptions {
+    /// The standard measurement at a speed in rad/s and a reference amplitude in amperes.
+    pub fn new(omega_m: f64, current: f64) -> Self {
+        Self {
+            omega_m,
+            current,
+            delay: Delay::OnePeriod,
+            commutation_threshold: 0.5,
+            starts: STARTS.to_vec(),
+        }
+    }
+
+    /// Control periods of settling and of measurement for a motor.
+    pub fn periods(&self, params: &PlantParams) -> (usize, usize) {
+        let turn = TAU / (self.omega_m.abs() * f64::from(params.pole_pairs));
+        let (settling, measured) = if turn.is_finite() {
+            (SETTLING.max(SETTLING_TURNS * turn), MEASURED_TURNS * turn)
+        } else {
+            (SETTLING, STANDSTILL)
+        };
+        (
+            (settling / params.t_s).ceil() as usize,
+            ((measured / params.t_s).round() as usize).max(1),
+        )
+    }
+}
+
+/// The merits over all starts and the records behind them.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Worst peak-to-peak ripple of the starts, mean of all else.
+    pub merits: Merits,
+    /// Merits of each start.
+    pub starts: Vec<Merits>,
+    /// Record of each start's measured window.
+    pub traces: Vec<Trace>,
+}
+
+/// Runs one start: settles, then records the measured window.
+fn run_start<C: CurrentLoop>(
+    params: &PlantParams,
+    options: &RunOptions,
+    start: f64,
+    controller: C,
+) -> Result<Trace, PlantError> {
+    let plant = Plant::new(params.clone(), start, options.omega_m)?;
+    let (settling, measured) = options.periods(params);
+    let mut closed = ClosedLoop::new(plant, controller, options.delay);
+    closed.run(settling, &mut ());
+    let mut trace = Trace::new(closed.plant(), measured);
+    closed.run(measured, &mut trace);
+    Ok(trace)
+}
+
+/// Measures a controller as DESIGN.md section 7 says. `make` builds a fresh controller with its
+/// set-point for each start, told the plant's initial state; starts run in parallel.
+///
+/// # Errors
+/// A plant parameter outside its range.
+pub fn measure<C, F>(
+    params: &PlantParams,
+    options: &RunOptions,
+    make: F,
+) -> Result<Measurement, PlantError>
+where
+    C: CurrentLoop,
+    F: Fn(&Truth) -> C + Sync,
+{
+    let traces = options
+        .starts
+        .par_iter()
+        .map(|&start| {
+            let initial = Plant::new(params.clone(), start, options.omega_m)?.truth();
+            run_start(params, options, start, make(&initial))
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let starts: Vec<Merits> = traces
+        .iter()
+        .map(|trace| merits(trace, options.current, options.commutation_threshold))
+        .collect();
+    Ok(Measurement {
+        merits: Merits::of_starts(&starts),
+        starts,
+        traces,
+    })
+}
+
+/// Records a run from its first period on, start-up included, for plots and CSV. Uses the first
+/// start angle; `duration` in seconds.
+///
+/// # Errors
+/// A plant parameter outside its range.
+pub fn record<C: CurrentLoop>(
+    params: &PlantParams,
+    options: &RunOptions,
+    controller: C,
+    duration: f64,
+) -> Result<Trace, PlantError> {
+    let start = options.starts.first().copied().unwrap_or(STARTS[0]);
+    let plant = Plant::new(params.clone(), start, options.omega_m)?;
+    let periods = (duration / params.t_s).round() as usize;
+    let mut trace = Trace::new(&plant, periods);
+    ClosedLoop::new(plant, controller, options.delay).run(periods, &mut trace);
+    Ok(trace)
+}
+
+/// Mean torque over the measured window, mean of the starts, without a record: what the speed
+/// limit's scan needs.
+pub(super) fn mean_torque<C, F>(
+    params: &PlantParams,
+    options: &RunOptions,
+    make: &F,
+) -> Result<f64, PlantError>
+where
+    C: CurrentLoop,
+    F: Fn(&Truth) -> C + Sync,
+{
+    let (settling, measured) = options.periods(params);
+    let mut total = 0.0;
+    for &start in &options.starts {
+        let plant = Plant::new(params.clone(), start, options.omega_m)?;
+        let controller = make(&plant.truth());
+        let mut closed = ClosedLoop::new(plant, controller, options.delay);
+        closed.run(settling, &mut ());
+        let mut sum = 0.0;
+        for _ in 0..measured {
+            closed.run(1, &mut ());
+            sum += closed.plant().truth().mean_torque;
+        }
+        total += sum / measured as f64;
+    }
+    Ok(total / options.starts.len() as f64)
+}

@@ -1,0 +1,326 @@
+//! The merits of a run (DESIGN.md section 7), from its record.
+
+use super::trace::{Trace, quasi_square};
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// What a run is judged by. Percentages of a mean torque or fundamental that is zero are NaN,
+/// which JSON shows as null.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Merits {
+    /// Mean torque in newton metres, with its sign.
+    pub mean_torque_nm: f64,
+    /// Peak-to-peak torque after a moving mean over Ts, in percent of the mean.
+    pub ripple_pp_pct: f64,
+    /// Standard deviation of the same, in percent of the mean.
+    pub ripple_rms_pct: f64,
+    /// Amplitude of the torque's 6th electrical harmonic in percent of the mean.
+    pub h6_pct: f64,
+    /// Amplitude of the 12th.
+    pub h12_pct: f64,
+    /// 5th harmonic of the phase current in percent of the fundamental, mean of the phases.
+    pub i5_pct: f64,
+    /// 7th harmonic, likewise.
+    pub i7_pct: f64,
+    /// 11th harmonic, likewise.
+    pub i11_pct: f64,
+    /// 13th harmonic, likewise.
+    pub i13_pct: f64,
+    /// Total harmonic distortion of the phase current: all that is neither mean nor fundamental,
+    /// switching ripple included, in percent of the fundamental; mean of the phases.
+    pub thd_pct: f64,
+    /// RMS distance of the current from the quasi-square reference of the true sector in the
+    /// alpha-beta plane, in amperes.
+    pub tracking_rms_a: f64,
+    /// Mean time from a change of the true sector until the outgoing phase's current has fallen
+    /// to the threshold, in microseconds.
+    pub commutation_us: f64,
+    /// Turn-ons per device and second, mean of the six switches, in hertz.
+    pub switching_hz: f64,
+    /// Periods whose command lay on the edge of the hexagon, in percent.
+    pub saturated_pct: f64,
+}
+
+/// Harmonics that are computed for a current.
+const ORDERS: [usize; 5] = [1, 5, 7, 11, 13];
+
+/// The merits of one record. `current` is the quasi-square reference's amplitude in amperes, with
+/// the torque's sign; `threshold` ends a commutation, in amperes. The record should span whole
+/// electrical periods.
+pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
+    let mean = mean(&trace.torque);
+    let percent = 100.0 / mean.abs();
+    let smoothed = trace.smoothed_torque();
+    let (least, most) = smoothed
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| {
+            (l.min(x), m.max(x))
+        });
+
+    let i_c: Vec<f64> = trace
+        .i_a
+        .iter()
+        .zip(&trace.i_b)
+        .map(|(a, b)| -a - b)
+        .collect();
+    let mut distortion = [0.0; ORDERS.len()];
+    for phase in [&trace.i_a, &trace.i_b, &i_c] {
+        for (sum, part) in distortion
+            .iter_mut()
+            .zip(current_distortion(phase, &trace.theta_e))
+        {
+            *sum += part / 3.0;
+        }
+    }
+    let torque_harmonic = |order| percent * amplitude(&trace.torque, &trace.theta_e, order);
+
+    let bins = trace.torque.len();
+    let squares = (0..bins).map(|k| {
+        let (i_alpha, i_beta) = trace.i_alpha_beta(k);
+        let (alpha_ref, beta_ref) = quasi_square(trace.theta_e[k], current);
+        (i_alpha - alpha_ref).powi(2) + (i_beta - beta_ref).powi(2)
+    });
+    let tracking = (squares.sum::<f64>() / bins as f64).sqrt();
+
+    let turn_ons: u64 = trace
+        .periods
+        .iter()
+        .map(|row| u64::from(row.turn_ons))
+        .sum();
+    let saturated = trace.periods.iter().filter(|row| row.saturated).count();
+    Merits {
+        mean_torque_nm: mean,
+        ripple_pp_pct: percent * (most - least),
+        ripple_rms_pct: percent * deviation(&smoothed),
+        h6_pct: torque_harmonic(6),
+        h12_pct: torque_harmonic(12),
+        i5_pct: distortion[1],
+        i7_pct: distortion[2],
+        i11_pct: distortion[3],
+        i13_pct: distortion[4],
+        thd_pct: distortion[0],
+        tracking_rms_a: tracking,
+        commutation_us: commutation_time(trace, current, threshold) * 1e6,
+        switching_hz: turn_ons as f64 / 6.0 / trace.duration(),
+        saturated_pct: 100.0 * saturated as f64 / trace.periods.len() as f64,
+    }
+}
+
+impl Merits {
+    /// The merits of several starts: the worst peak-to-peak ripple, the mean of all else.
+    pub(super) fn of_starts(starts: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> f64| starts.iter().map(of).sum::<f64>() / starts.len() as f64;
+        Self {
+            mean_torque_nm: mean(|m| m.mean_torque_nm),
+            ripple_pp_pct: starts
+                .iter()
+                .map(|m| m.ripple_pp_pct)
+                .fold(f64::NAN, f64::max),
+            ripple_rms_pct: mean(|m| m.ripple_rms_pct),
+            h6_pct: mean(|m| m.h6_pct),
+            h12_pct: mean(|m| m.h12_pct),
+            i5_pct: mean(|m| m.i5_pct),
+            i7_pct: mean(|m| m.i7_pct),
+            i11_pct: mean(|m| m.i11_pct),
+            i13_pct: mean(|m| m.i13_pct),
+            thd_pct: mean(|m| m.thd_pct),
+            tracking_rms_a: mean(|m| m.tracking_rms_a),
+            commutation_us: mean(|m| m.commutation_us),
+            switching_hz: mean(|m| m.switching_hz),
+            saturated_pct: mean(|m| m.saturated_pct),
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Amplitude of a harmonic of the electrical angle, by projection; the mean is taken off first so
+/// that it does not leak when the record is not quite a whole number of turns.
+fn amplitude(values: &[f64], theta_e: &[f64], order: usize) -> f64 {
+    let mean = mean(values);
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for (value, theta) in values.iter().zip(theta_e) {
+        let (sin, cos) = (order as f64 * theta).rem_euclid(TAU).sin_cos();
+        cosine += (value - mean) * cos;
+        sine += (value - mean) * sin;
+    }
+    2.0 * cosine.hypot(sine) / values.len() as f64
+}
+
+/// Total distortion first, then harmonics 5, 7, 11 and 13, all in percent of the fundamental.
+fn current_distortion(current: &[f64], theta_e: &[f64]) -> [f64; ORDERS.len()] {
+    let fundamental = amplitude(current, theta_e, 1);
+    let rest = (deviation(current).powi(2) - 0.5 * fundamental.powi(2)).max(0.0);
+    ORDERS.map(|order| {
+        let part = if order == 1 {
+            (2.0 * rest).sqrt()
+        } else {
+            amplitude(current, theta_e, order)
+        };
+        100.0 * part / fundamental
+    })
+}
+
+/// Mean length of the commutations that begin within the record, in seconds; 0 when the sector
+/// never changes.
+fn commutation_time(trace: &Trace, current: f64, threshold: f64) -> f64 {
+    let sectors: Vec<usize> = trace
+        .theta_e
+        .iter()
+        .map(|&theta| crate::plant::sector_of(theta))
+        .collect();
+    let changes = sectors.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    if changes == 0 {
+        return 0.0;
+    }
+    let active = trace
+        .commutating(current, threshold)
+        .iter()
+        .filter(|&&active| active)
+        .count();
+    active as f64 * trace.bin / changes as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_loop::trace::PeriodRow;
+    use crate::plant::{Plant, PlantParams};
+
+    /// A record of six turns of 800 bins with the given torque and currents over the angle.
+    fn synthetic(torque: impl Fn(f64) -> f64, i: impl Fn(f64) -> f64) -> Trace {
+        let plant =
+            Plant::new(PlantParams::ideal(4, 0.1, 1e-3, 0.1, 48.0, 50e-6), 0.0, 1.0).unwrap();
+        let mut trace = Trace::new(&plant, 240);
+        for bin in 0..4800 {
+            let theta = (f64::from(bin) + 0.5) * TAU / 800.0;
+            trace.theta_e.push(theta.rem_euclid(TAU));
+            trace.torque.push(torque(theta));
+            trace.i_a.push(i(theta));
+            trace.i_b.push(i(theta - TAU / 3.0));
+        }
+        let row = PeriodRow {
+            omega_m: 1.0,
+            turn_ons: 2,
+            ..PeriodRow::default()
+        };
+        trace.periods = vec![row; 240];
+        trace.periods[..60]
+            .iter_mut()
+            .for_each(|row| row.saturated = true);
+        trace
+    }
+
+    /// Phase a of the ideal quasi-square current of 20 A, forward and motoring.
+    fn square(theta: f64) -> f64 {
+        let degrees = theta.to_degrees().rem_euclid(360.0);
+        match degrees {
+            d if (30.0..150.0).contains(&d) => 20.0,
+            d if (210.0..330.0).contains(&d) => -20.0,
+            _ => 0.0,
+        }
+    }
+
+    #[track_caller]
+    fn assert_close(got: f64, want: f64, tolerance: f64) {
+        assert!(
+            (got - want).abs() <= tolerance,
+            "got {got}, want {want} +- {tolerance}"
+        );
+    }
+
+    #[test]
+    fn harmonics_distortion_and_tracking_of_an_ideal_square() {
+        let torque =
+            |theta: f64| -3.0 + 0.06 * (6.0 * theta + 0.4).cos() + 0.03 * (12.0 * theta).sin();
+        let merits = merits(&synthetic(torque, square), 20.0, 0.5);
+        assert_close(merits.mean_torque_nm, -3.0, 1e-12);
+        assert_close(merits.h6_pct, 2.0, 1e-9);
+        assert_close(merits.h12_pct, 1.0, 1e-9);
+        // Fourier series of the six-step wave; its total distortion is sqrt(pi^2/9 - 1).
+        for (got, order) in [
+            (merits.i5_pct, 5.0),
+            (merits.i7_pct, 7.0),
+            (merits.i11_pct, 11.0),
+            (merits.i13_pct, 13.0),
+        ] {
+            assert_close(got, 100.0 / order, 0.3);
+        }
+        assert_close(merits.thd_pct, 31.08, 0.1);
+        assert!(merits.tracking_rms_a < 1e-9, "{}", merits.tracking_rms_a);
+        assert_close(merits.commutation_us, 0.0, 0.0);
+        assert_close(merits.switching_hz, 2.0 / 6.0 / 50e-6, 1e-6);
+        assert_close(merits.saturated_pct, 25.0, 0.0);
+    }
+
+    #[test]
+    fn ripple_is_taken_after_a_moving_mean_over_the_period() {
+        // A ripple at the PWM frequency (20 bins) vanishes, a slow one of 10 % remains.
+        let torque = |theta: f64| 2.0 + 0.5 * (40.0 * theta).sin() + 0.1 * theta.sin();
+        let merits = merits(&synthetic(torque, square), 20.0, 0.5);
+        assert_close(merits.ripple_pp_pct, 10.0, 0.05);
+        assert_close(merits.ripple_rms_pct, 5.0 / 2.0_f64.sqrt(), 0.02);
+    }
+
+    #[test]
+    fn commutation_lasts_until_the_outgoing_current_is_gone() {
+        // Every edge of the wave decays linearly from 20 A to zero within 16 degrees; 0.5 A are
+        // reached after 15.6 degrees, which is 34.67 bins of 0.45 degrees. Phase c follows from a
+        // and b and stops at once, so two commutations of three last.
+        let decaying = |theta: f64| {
+            let degrees = theta.to_degrees().rem_euclid(180.0);
+            let sign = if theta.to_degrees().rem_euclid(360.0) < 180.0 {
+                1.0
+            } else {
+                -1.0
+            };
+            match degrees {
+                d if d < 30.0 => 0.0,
+                d if d < 150.0 => sign * 20.0,
+                d => sign * (20.0 - (d - 150.0) / 16.0 * 20.0).max(0.0),
+            }
+        };
+        let trace = synthetic(|_| 1.0, decaying);
+        assert_close(
+            merits(&trace, 20.0, 0.5).commutation_us,
+            34.67 * 2.5 * 2.0 / 3.0,
+            1.7,
+        );
+        assert_close(
+            merits(&trace, 20.0, 10.0).commutation_us,
+            17.78 * 2.5 * 2.0 / 3.0,
+            1.7,
+        );
+        // Against the torque's sign the outgoing current counts as gone at once.
+        assert_close(merits(&trace, -20.0, 0.5).commutation_us, 0.0, 0.0);
+    }
+
+    #[test]
+    fn starts_combine_to_the_worst_peak_and_the_mean_of_all_else() {
+        let quiet = merits(
+            &synthetic(|theta| 2.0 + 0.01 * theta.sin(), square),
+            20.0,
+            0.5,
+        );
+        let loud = merits(
+            &synthetic(|theta| 3.0 + 0.6 * theta.sin(), square),
+            20.0,
+            0.5,
+        );
+        let both = Merits::of_starts(&[quiet, loud, quiet]);
+        assert_eq!(both.ripple_pp_pct, loud.ripple_pp_pct);
+        assert_close(both.mean_torque_nm, 7.0 / 3.0, 1e-9);
+        assert_close(
+            both.ripple_rms_pct,
+            (2.0 * quiet.ripple_rms_pct + loud.ripple_rms_pct) / 3.0,
+            1e-12,
+        );
+    }
+}

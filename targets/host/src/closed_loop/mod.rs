@@ -1,0 +1,143 @@
+//! The closed loop: a controller, the plant, and what is measured on them (DESIGN.md section 7).
+//!
+//! Any controller joins through [`CurrentLoop`]: a compiled drive, an interpreted graph, the
+//! bit-true or the ideal model. Sampling is at the start of each period; the command computed in
+//! period k drives the inverter in period k + 1, or, without delay, in period k.
+
+mod limit;
+mod measure;
+mod merits;
+mod trace;
+
+pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit};
+pub use measure::{Measurement, RunOptions, STARTS, measure, record};
+pub use merits::{Merits, merits};
+pub use trace::{PeriodRow, Trace, quasi_square};
+
+use crate::plant::{Observer, Plant, Truth};
+use hexagen::{Drive, Legs, Sample};
+use serde::{Deserialize, Serialize};
+
+/// A current controller, seen from the plant: one call per control period.
+pub trait CurrentLoop {
+    /// Reads the sample and returns the command. `truth` is the plant's exact state at the same
+    /// instant, for models that do without converters and sensors; real drives ignore it.
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs;
+}
+
+impl<F: FnMut(&Sample, &Truth) -> Legs> CurrentLoop for F {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
+        self(sample, truth)
+    }
+}
+
+/// A generated drive in the loop; sees the sample only.
+#[derive(Debug)]
+pub struct DriveLoop<D>(pub D);
+
+impl<D: Drive> CurrentLoop for DriveLoop<D> {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+        self.0.step(sample)
+    }
+}
+
+/// When a command reaches the inverter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Delay {
+    /// In the period whose sample it was computed from (`delay: 0`).
+    None,
+    /// One period later (`delay: 1`).
+    #[default]
+    OnePeriod,
+}
+
+/// One control period as the loop saw it.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// What the controller read.
+    pub sample: &'a Sample,
+    /// The plant's state at the sample.
+    pub truth: &'a Truth,
+    /// What the inverter did in this period.
+    pub applied: &'a Legs,
+    /// The plant at the end of the period.
+    pub plant: &'a Plant,
+}
+
+/// Sees the solution's segments and, after each period, the period as a whole.
+pub trait Recorder: Observer {
+    /// Called after the period's segments.
+    fn period(&mut self, step: &Step<'_>);
+}
+
+impl Recorder for () {
+    fn period(&mut self, _: &Step<'_>) {}
+}
+
+impl Recorder for crate::plant::EnergyMeter {
+    fn period(&mut self, _: &Step<'_>) {}
+}
+
+impl<A: Recorder, B: Recorder> Recorder for (A, B) {
+    fn period(&mut self, step: &Step<'_>) {
+        self.0.period(step);
+        self.1.period(step);
+    }
+}
+
+impl<T: Recorder + ?Sized> Recorder for &mut T {
+    fn period(&mut self, step: &Step<'_>) {
+        (**self).period(step);
+    }
+}
+
+/// A plant under a controller, ready to be continued.
+#[derive(Debug)]
+pub struct ClosedLoop<C> {
+    plant: Plant,
+    controller: C,
+    delay: Delay,
+    pending: Legs,
+}
+
+impl<C: CurrentLoop> ClosedLoop<C> {
+    /// Closes the loop; until the first command arrives all legs are off.
+    pub fn new(plant: Plant, controller: C, delay: Delay) -> Self {
+        Self {
+            plant,
+            controller,
+            delay,
+            pending: Legs::OFF,
+        }
+    }
+
+    /// The plant.
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// The controller, for instance to change its set-point between two runs.
+    pub fn controller(&mut self) -> &mut C {
+        &mut self.controller
+    }
+
+    /// Runs a number of control periods.
+    pub fn run<R: Recorder>(&mut self, periods: usize, recorder: &mut R) {
+        for _ in 0..periods {
+            let sample = self.plant.sample();
+            let truth = self.plant.truth();
+            let command = self.controller.step(&sample, &truth);
+            let applied = match self.delay {
+                Delay::None => command,
+                Delay::OnePeriod => std::mem::replace(&mut self.pending, command),
+            };
+            self.plant.run_period(&applied, recorder);
+            recorder.period(&Step {
+                sample: &sample,
+                truth: &truth,
+                applied: &applied,
+                plant: &self.plant,
+            });
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! Time series of a run: fine bins for merits and plots, one row per period for CSV.
+//!
+//! Bins of 2.5 us (a whole number per period) hold exact means, integrated on the solution.
+
+use super::{Recorder, Step};
+use crate::plant::{Observer, Segment, Series, TERMS, clarke, integral, sector_of};
+use hexagen::{LegState, Legs};
+use serde::Serialize;
+use std::f64::consts::{FRAC_PI_3, PI};
+use std::io;
+
+/// Length that bins aim at, in seconds.
+const BIN: f64 = 2.5e-6;
+
+/// Phase that is off in sectors S1 to S6.
+const OFF_PHASE: [usize; 6] = [0, 2, 1, 0, 2, 1];
+
+/// Sign of its current before the sector, for positive torque and forward rotation.
+const OFF_SIGN: [f64; 6] = [-1.0, 1.0, -1.0, 1.0, -1.0, 1.0];
+
+/// Quasi-square reference of an electrical angle's sector: Clarke of (+I, -I, 0) on the sector's
+/// pair, with `current` = I in amperes, negative for negative torque. DESIGN.md section 3.
+pub fn quasi_square(theta_e: f64, current: f64) -> (f64, f64) {
+    let angle = (sector_of(theta_e) as f64 - 1.0) * FRAC_PI_3 - PI / 2.0;
+    let length = current * 2.0 / 3.0_f64.sqrt();
+    (length * angle.cos(), length * angle.sin())
+}
+
+/// One control period, at its sampling instant; means are over the period that follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PeriodRow {
+    /// Time in seconds.
+    pub t: f64,
+    /// Electrical angle in radians.
+    pub theta_e: f64,
+    /// Mechanical speed in rad/s.
+    pub omega_m: f64,
+    /// True sector, 1 to 6.
+    pub sector: usize,
+    /// Hall code.
+    pub hall: u8,
+    /// ADC counts of phases a and b.
+    pub adc: [u16; 2],
+    /// Phase currents in amperes.
+    pub currents: [f64; 3],
+    /// Compare values at work in the period.
+    pub compare: [u16; 3],
+    /// Leg states at work: 0 pulsed, 1 low, 2 off.
+    pub state: [u8; 3],
+    /// Mean torque in newton metres.
+    pub torque_mean: f64,
+    /// Mean terminal voltage, alpha axis, in volts.
+    pub v_alpha_mean: f64,
+    /// Mean terminal voltage, beta axis, in volts.
+    pub v_beta_mean: f64,
+    /// Whether the command reached the hexagon's edge: over the legs not off, compare values
+    /// spread from 0 to the full period.
+    pub saturated: bool,
+    /// Turn-ons of all six switches during the period.
+    pub turn_ons: u32,
+}
+
+/// The record of a run.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// Length of a bin in seconds.
+    pub bin: f64,
+    /// Bins per control period.
+    pub bins_per_period: usize,
+    /// Time of the first bin's start in seconds.
+    pub start: f64,
+    /// Electrical angle at each bin's middle in radians.
+    pub theta_e: Vec<f64>,
+    /// Mean torque of each bin in newton metres.
+    pub torque: Vec<f64>,
+    /// Mean current of phase a in each bin in amperes.
+    pub i_a: Vec<f64>,
+    /// Mean current of phase b in each bin in amperes.
+    pub i_b: Vec<f64>,
+    /// One row per control period.
+    pub periods: Vec<PeriodRow>,
+    t_s: f64,
+    timer_period: u16,
+    turn_ons: u64,
+    open: [f64; 3],
+    open_theta: f64,
+    filled: usize,
+}
+
+impl Trace {
+    /// An empty record that continues from the plant's present state; `periods` is the expected
+    /// length.
+    pub fn new(plant: &crate::plant::Plant, periods: usize) -> Self {
+        let t_s = plant.params().t_s;
+        let bins_per_period = ((t_s / BIN).round() as usize).max(1);
+        let bins = periods * bins_per_period;
+        Self {
+            bin: t_s / bins_per_period as f64,
+            bins_per_period,
+            start: plant.time(),
+            theta_e: Vec::with_capacity(bins),
+            torque: Vec::with_capacity(bins),
+            i_a: Vec::with_capacity(bins),
+            i_b: Vec::with_capacity(bins),
+            periods: Vec::with_capacity(periods),
+            t_s,
+            timer_period: plant.params().timer_period,
+            turn_ons: plant.turn_ons(),
+            open: [0.0; 3],
+            open_theta: 0.0,
+            filled: 0,
+        }
+    }
+
+    /// Length of the record in seconds.
+    pub fn duration(&self) -> f64 {
+        self.periods.len() as f64 * self.t_s
+    }
+
+    /// Time of the middle of bin `index` in seconds.
+    pub fn time(&self, index: usize) -> f64 {
+        self.start + (index as f64 + 0.5) * self.bin
+    }
+
+    /// Mean currents (alpha, beta) of bin `index` in amperes.
+    pub fn i_alpha_beta(&self, index: usize) -> (f64, f64) {
+        let (a, b) = (self.i_a[index], self.i_b[index]);
+        clarke([a, b, -a - b])
+    }
+
+    /// Torque after a moving mean over one control period, in newton metres; shorter than the
+    /// record by one period less one bin.
+    pub fn smoothed_torque(&self) -> Vec<f64> {
+        let n = self.bins_per_period;
+        // A sum per window keeps rounding errors from piling up along the record.
+        self.torque
+            .windows(n)
+            .map(|window| window.iter().sum::<f64>() / n as f64)
+            .collect()
+    }
+
+    /// For each bin whether the true state is commutating: after a change of the true sector until
+    /// the outgoing phase's current is at most `threshold` amperes, or the next change. `current`
+    /// is the reference's signed amplitude, whose sign is the torque's.
+    pub fn commutating(&self, current: f64, threshold: f64) -> Vec<bool> {
+        let mut active = false;
+        let mut last = self.theta_e.first().map_or(1, |&theta| sector_of(theta));
+        let rotation = self
+            .periods
+            .first()
+            .map_or(1.0, |row| 1.0_f64.copysign(row.omega_m));
+        (0..self.torque.len())
+            .map(|k| {
+                let sector = sector_of(self.theta_e[k]);
+                if sector != last {
+                    active = true;
+                    last = sector;
+                }
+                let outgoing = match OFF_PHASE[sector - 1] {
+                    0 => self.i_a[k],
+                    1 => self.i_b[k],
+                    _ => -self.i_a[k] - self.i_b[k],
+                };
+                let sign = OFF_SIGN[sector - 1] * rotation * 1.0_f64.copysign(current);
+                active &= sign * outgoing > threshold;
+                active
+            })
+            .collect()
+    }
+
+    /// Writes the period rows as CSV with the columns t, theta_e, sector, hall, comm, ia, ib, ic,
+    /// ialpha_ref, ibeta_ref, torque_mean, valpha_mean, vbeta_mean; SI units. References are the
+    /// quasi-square of the true sector with amplitude `current`; comm as [`Self::commutating`].
+    ///
+    /// # Errors
+    /// The writer's own.
+    pub fn write_csv(
+        &self,
+        out: impl io::Write,
+        current: f64,
+        threshold: f64,
+    ) -> Result<(), csv::Error> {
+        let mut writer = csv::Writer::from_writer(out);
+        let commutating = self.commutating(current, threshold);
+        for (k, row) in self.periods.iter().enumerate() {
+            let (ialpha_ref, ibeta_ref) = quasi_square(row.theta_e, current);
+            writer.serialize(CsvRow {
+                t: row.t,
+                theta_e: row.theta_e,
+                sector: row.sector,
+                hall: row.hall,
+                comm: u8::from(commutating[k * self.bins_per_period]),
+                ia: row.currents[0],
+                ib: row.currents[1],
+                ic: row.currents[2],
+                ialpha_ref,
+                ibeta_ref,
+                torque_mean: row.torque_mean,
+                valpha_mean: row.v_alpha_mean,
+                vbeta_mean: row.v_beta_mean,
+            })?;
+        }
+        writer.flush()?;
+        Ok(())
+    }
+
+    fn close_bin(&mut self) {
+        let scale = 1.0 / self.bin;
+        self.torque.push(self.open[0] * scale);
+        self.i_a.push(self.open[1] * scale);
+        self.i_b.push(self.open[2] * scale);
+        self.theta_e.push(self.open_theta);
+        self.open = [0.0; 3];
+        self.filled += 1;
+    }
+
+    fn add(&mut self, to: [f64; 3], from: [f64; 3]) {
+        for (sum, (to, from)) in self.open.iter_mut().zip(to.iter().zip(from)) {
+            *sum += to - from;
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct CsvRow {
+    t: f64,
+    theta_e: f64,
+    sector: usize,
+    hall: u8,
+    comm: u8,
+    ia: f64,
+    ib: f64,
+    ic: f64,
+    ialpha_ref: f64,
+    ibeta_ref: f64,
+    torque_mean: f64,
+    valpha_mean: f64,
+    vbeta_mean: f64,
+}
+
+impl Observer for Trace {
+    fn segment(&mut self, segment: &Segment) {
+        let terms = segment.terms;
+        let mut torque: Series = [0.0; TERMS];
+        segment.torque(&mut torque);
+        let integrals = |t: f64| {
+            [
+                integral(&torque[..terms], t),
+                integral(&segment.current[0][..terms], t),
+                integral(&segment.current[1][..terms], t),
+            ]
+        };
+        let mut from = [0.0; 3];
+        let end = segment.offset + segment.duration;
+        let angle_at = |offset: f64| segment.theta_e + segment.omega_e * (offset - segment.offset);
+        loop {
+            let middle = (self.filled as f64 + 0.5) * self.bin;
+            if (segment.offset..=end).contains(&middle) {
+                self.open_theta = angle_at(middle);
+            }
+            let edge = (self.filled + 1) as f64 * self.bin;
+            // The period's last bin is closed by the end of the period itself.
+            if edge >= end || self.filled + 1 == self.bins_per_period {
+                self.add(integrals(segment.duration), from);
+                return;
+            }
+            let to = integrals(edge - segment.offset);
+            self.add(to, from);
+            self.close_bin();
+            from = to;
+        }
+    }
+}
+
+/// Whether a command reaches the edge of the voltage hexagon.
+fn saturated(legs: &Legs, timer_period: u16) -> bool {
+    let driven = (0..3).filter(|&x| legs.state[x] != LegState::Off);
+    let values = driven.map(|x| {
+        if legs.state[x] == LegState::Pulsed {
+            legs.compare[x]
+        } else {
+            0
+        }
+    });
+    let (least, most) = values.fold((u16::MAX, 0), |(low, high), c| (low.min(c), high.max(c)));
+    least == 0 && most >= timer_period
+}
+
+impl Recorder for Trace {
+    fn period(&mut self, step: &Step<'_>) {
+        self.close_bin();
+        self.filled = 0;
+        let after = step.plant.truth();
+        let (v_alpha_mean, v_beta_mean) = clarke(after.mean_voltages);
+        let turn_ons = step.plant.turn_ons();
+        self.periods.push(PeriodRow {
+            t: step.truth.t,
+            theta_e: step.truth.theta_e,
+            omega_m: step.truth.omega_m,
+            sector: step.truth.sector,
+            hall: step.sample.hall,
+            adc: [step.sample.adc_a, step.sample.adc_b],
+            currents: step.truth.currents,
+            compare: step.applied.compare,
+            state: step.applied.state.map(|state| state as u8),
+            torque_mean: after.mean_torque,
+            v_alpha_mean,
+            v_beta_mean,
+            saturated: saturated(step.applied, self.timer_period),
+            turn_ons: (turn_ons - self.turn_ons) as u32,
+        });
+        self.turn_ons = turn_ons;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_loop::{ClosedLoop, Delay};
+    use crate::plant::{Plant, PlantParams, Truth};
+    use hexagen::Sample;
+
+    fn plant(omega_m: f64) -> Plant {
+        Plant::new(
+            PlantParams::ideal(4, 0.135, 0.22e-3, 0.0824, 48.0, 50e-6),
+            0.1,
+            omega_m,
+        )
+        .unwrap()
+    }
+
+    fn pulsed(compare: [u16; 3]) -> Legs {
+        Legs {
+            compare,
+            state: [LegState::Pulsed; 3],
+        }
+    }
+
+    #[test]
+    fn bins_hold_the_exact_means_of_the_solution() {
+        let mut closed = ClosedLoop::new(
+            plant(100.0),
+            |_: &Sample, _: &Truth| pulsed([1200, 300, 700]),
+            Delay::None,
+        );
+        let mut trace = Trace::new(closed.plant(), 40);
+        closed.run(40, &mut trace);
+        assert_eq!((trace.bins_per_period, trace.torque.len()), (20, 800));
+        for (row, bins) in trace.periods.iter().zip(trace.torque.chunks(20)) {
+            let mean = bins.iter().sum::<f64>() / 20.0;
+            assert!(
+                (mean - row.torque_mean).abs() < 1e-9,
+                "{mean} {}",
+                row.torque_mean
+            );
+        }
+        // The bin after a sample begins at the sampled current and angle.
+        let row = trace.periods[30];
+        assert!((trace.i_a[600] - row.currents[0]).abs() < 0.3);
+        let half_bin = 100.0 * 4.0 * 1.25e-6;
+        assert!((trace.theta_e[600] - row.theta_e - half_bin).abs() < 1e-9);
+    }
+
+    #[test]
+    fn command_takes_effect_one_period_later_or_at_once() {
+        for (delay, first) in [(Delay::OnePeriod, 1), (Delay::None, 0)] {
+            let mut closed = ClosedLoop::new(
+                plant(0.0),
+                |_: &Sample, _: &Truth| pulsed([1800, 0, 0]),
+                delay,
+            );
+            let mut trace = Trace::new(closed.plant(), 3);
+            closed.run(3, &mut trace);
+            for (k, row) in trace.periods.iter().enumerate() {
+                assert_eq!(row.saturated, k >= first, "{delay:?} {k}");
+                assert_eq!(row.v_alpha_mean > 31.9, k >= first, "{delay:?} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn switching_counts_turn_ons_of_both_switches() {
+        let pair = Legs {
+            compare: [900, 0, 0],
+            state: [LegState::Pulsed, LegState::Low, LegState::Off],
+        };
+        for (legs, per_period) in [(pulsed([900, 600, 300]), 6), (pair, 2), (Legs::LOW, 0)] {
+            let mut closed =
+                ClosedLoop::new(plant(10.0), |_: &Sample, _: &Truth| legs, Delay::None);
+            closed.run(1, &mut ());
+            let mut trace = Trace::new(closed.plant(), 5);
+            closed.run(5, &mut trace);
+            assert!(
+                trace.periods.iter().all(|row| row.turn_ons == per_period),
+                "{legs:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn csv_has_the_documented_columns_and_one_row_per_period() {
+        let mut closed = ClosedLoop::new(
+            plant(100.0),
+            |_: &Sample, _: &Truth| pulsed([1000, 800, 900]),
+            Delay::OnePeriod,
+        );
+        let mut trace = Trace::new(closed.plant(), 7);
+        closed.run(7, &mut trace);
+        let mut out = Vec::new();
+        trace.write_csv(&mut out, 20.0, 0.5).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let mut lines = text.lines();
+        assert_eq!(
+            lines.next(),
+            Some(
+                "t,theta_e,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
+            )
+        );
+        assert_eq!(lines.count(), 7);
+    }
+
+    #[test]
+    fn quasi_square_is_the_clarke_transform_of_each_sectors_pair() {
+        let pairs = [
+            [0.0, -1.0, 1.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 0.0, -1.0],
+            [0.0, 1.0, -1.0],
+            [-1.0, 1.0, 0.0],
+            [-1.0, 0.0, 1.0],
+        ];
+        for (k, pair) in pairs.into_iter().enumerate() {
+            let (alpha, beta) = quasi_square((k as f64 * 60.0 + 7.0).to_radians(), 3.0);
+            let want = clarke(pair.map(|x| 3.0 * x));
+            assert!((alpha - want.0).hypot(beta - want.1) < 1e-12, "S{}", k + 1);
+        }
+    }
+}

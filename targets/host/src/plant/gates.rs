@@ -1,0 +1,202 @@
+//! From compare values to gate signals: centre-aligned pulses and dead time.
+//!
+//! The upper switch of a pulsed leg is on for `compare` counts around the middle of the period,
+//! the lower one otherwise, so the start of a period (the sampling instant) is the middle of the
+//! lower switch's time. Each change between the two switches is preceded by the dead time.
+
+use hexagen::{LegState, Legs};
+
+/// Which switch of a leg conducts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Gate {
+    Upper,
+    Lower,
+    #[default]
+    Off,
+}
+
+/// One leg's switches: what is on, and what is wanted once the dead time is over.
+#[derive(Clone, Copy, Debug, Default)]
+struct LegGate {
+    gate: Gate,
+    wanted: Gate,
+    /// End of the dead time, from the start of the period; infinite when none runs.
+    ready: Option<f64>,
+    turn_ons: u64,
+}
+
+impl LegGate {
+    fn turn(&mut self, gate: Gate) {
+        self.ready = None;
+        self.gate = gate;
+        if gate != Gate::Off {
+            self.turn_ons += 1;
+        }
+    }
+
+    fn request(&mut self, wanted: Gate, t: f64, dead_time: f64) {
+        if wanted == self.wanted {
+            return;
+        }
+        let from_rest = self.wanted == Gate::Off;
+        self.wanted = wanted;
+        if wanted == Gate::Off || from_rest || dead_time == 0.0 {
+            self.turn(wanted);
+        } else {
+            self.gate = Gate::Off;
+            self.ready = Some(t + dead_time);
+        }
+    }
+}
+
+/// The three legs' gate signals over one period at a time.
+#[derive(Clone, Debug)]
+pub(super) struct Gates {
+    legs: [LegGate; 3],
+    /// Requests of the running period: time, leg, gate; sorted by time from `next`.
+    requests: Vec<(f64, usize, Gate)>,
+    next: usize,
+    dead_time: f64,
+}
+
+impl Gates {
+    pub(super) fn new(dead_time: f64) -> Self {
+        Self {
+            legs: [LegGate::default(); 3],
+            requests: Vec::with_capacity(9),
+            next: 0,
+            dead_time,
+        }
+    }
+
+    /// Starts a period of `t_s` seconds with the given command.
+    pub(super) fn begin(&mut self, command: &Legs, timer_period: u16, t_s: f64) {
+        self.requests.clear();
+        self.next = 0;
+        for leg in 0..3 {
+            match command.state[leg] {
+                LegState::Off => self.requests.push((0.0, leg, Gate::Off)),
+                LegState::Low => self.requests.push((0.0, leg, Gate::Lower)),
+                LegState::Pulsed => {
+                    let duty =
+                        f64::from(command.compare[leg].min(timer_period)) / f64::from(timer_period);
+                    if duty < 1.0 {
+                        self.requests.push((0.0, leg, Gate::Lower));
+                    }
+                    if duty > 0.0 {
+                        self.requests
+                            .push((0.5 * t_s * (1.0 - duty), leg, Gate::Upper));
+                    }
+                    if duty > 0.0 && duty < 1.0 {
+                        self.requests
+                            .push((0.5 * t_s * (1.0 + duty), leg, Gate::Lower));
+                    }
+                }
+            }
+        }
+        self.requests.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    /// Ends a period: running dead times continue in the next one.
+    pub(super) fn end(&mut self, t_s: f64) {
+        for leg in &mut self.legs {
+            leg.ready = leg.ready.map(|ready| ready - t_s);
+        }
+    }
+
+    /// Carries out all that is due at or before `t` and returns the time of the next change.
+    pub(super) fn advance_to(&mut self, t: f64) -> f64 {
+        while let Some(&(at, leg, gate)) = self.requests.get(self.next).filter(|r| r.0 <= t) {
+            self.next += 1;
+            self.legs[leg].request(gate, at, self.dead_time);
+        }
+        let mut upcoming = self.requests.get(self.next).map_or(f64::INFINITY, |r| r.0);
+        for leg in &mut self.legs {
+            match leg.ready {
+                Some(ready) if ready <= t => leg.turn(leg.wanted),
+                Some(ready) => upcoming = upcoming.min(ready),
+                None => {}
+            }
+        }
+        upcoming
+    }
+
+    pub(super) fn state(&self) -> [Gate; 3] {
+        self.legs.map(|leg| leg.gate)
+    }
+
+    /// Turn-ons of all six switches so far.
+    pub(super) fn turn_ons(&self) -> u64 {
+        self.legs.iter().map(|leg| leg.turn_ons).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Times at which each leg's gate changes over the periods' commands.
+    fn changes(dead_time: f64, commands: &[Legs]) -> Vec<(f64, usize, Gate)> {
+        let mut gates = Gates::new(dead_time);
+        let mut changes = Vec::new();
+        for (period, command) in commands.iter().enumerate() {
+            gates.begin(command, 100, 1.0);
+            let mut t = 0.0;
+            while t < 1.0 {
+                let before = gates.state();
+                let next = gates.advance_to(t).min(1.0);
+                for (leg, (was, is)) in before.iter().zip(gates.state()).enumerate() {
+                    if *was != is {
+                        changes.push((period as f64 + t, leg, is));
+                    }
+                }
+                t = next;
+            }
+            gates.end(1.0);
+        }
+        changes
+    }
+
+    fn pulsed(compare: u16) -> Legs {
+        Legs {
+            compare: [compare, 0, 0],
+            state: [LegState::Pulsed, LegState::Off, LegState::Off],
+        }
+    }
+
+    #[test]
+    fn pulses_are_centred() {
+        let got = changes(0.0, &[pulsed(50), pulsed(100), pulsed(0)]);
+        let want = [
+            (0.0, Gate::Lower),
+            (0.25, Gate::Upper),
+            (0.75, Gate::Lower),
+            (1.0, Gate::Upper),
+            (2.0, Gate::Lower),
+        ];
+        assert_eq!(got, want.map(|(t, g)| (t, 0, g)));
+    }
+
+    #[test]
+    fn dead_time_delays_every_turn_on_and_swallows_short_pulses() {
+        let got = changes(0.125, &[pulsed(50), pulsed(10), pulsed(100)]);
+        let want = [
+            (0.0, Gate::Lower),
+            (0.25, Gate::Off),
+            (0.375, Gate::Upper),
+            (0.75, Gate::Off),
+            (0.875, Gate::Lower),
+            (1.45, Gate::Off),
+            (1.675, Gate::Lower),
+            (2.0, Gate::Off),
+            (2.125, Gate::Upper),
+        ];
+        assert_eq!(got.len(), want.len(), "{got:?}");
+        for ((t, leg, gate), (t_want, gate_want)) in got.into_iter().zip(want) {
+            assert!(
+                (t - t_want).abs() < 1e-12 && leg == 0 && gate == gate_want,
+                "{t} {gate:?}"
+            );
+        }
+    }
+}

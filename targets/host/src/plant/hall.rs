@@ -1,0 +1,94 @@
+//! Hall sensors: codes, placement errors, and exact times of their edges.
+
+use std::f64::consts::{PI, TAU};
+
+/// Angle of the rising edge of an ideally placed sensor Ha, Hb, Hc in radians.
+const RISE: [f64; 3] = [PI / 6.0, PI / 6.0 + TAU / 3.0, PI / 6.0 + 2.0 * TAU / 3.0];
+
+/// Codes `HaHbHc` of sectors S1 to S6 from the ideal sensors.
+const IDEAL_CODES: [u8; 6] = super::STANDARD_HALL_CODES;
+
+/// The three sensors and the time of the last edge.
+#[derive(Clone, Debug)]
+pub(super) struct Sensors {
+    rise: [f64; 3],
+    codes: [u8; 6],
+    last_edge: f64,
+}
+
+impl Sensors {
+    pub(super) fn new(error_deg: [f64; 3], codes: [u8; 6]) -> Self {
+        let rise = std::array::from_fn(|x| RISE[x] + error_deg[x].to_radians());
+        Self {
+            rise,
+            codes,
+            last_edge: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Time of the last edge in seconds, minus infinity before the first.
+    pub(super) fn last_edge(&self) -> f64 {
+        self.last_edge
+    }
+
+    /// Half-turns from each sensor's rising edge, rounded down; even while the sensor reads 1.
+    fn half_turns(&self, theta_e: f64) -> [f64; 3] {
+        self.rise.map(|rise| ((theta_e - rise) / PI).floor())
+    }
+
+    /// Hall code at an electrical angle, in the motor's wiring. A combination of sensors that the
+    /// ideal placement never shows is passed on as it is.
+    pub(super) fn code(&self, theta_e: f64) -> u8 {
+        let raw = self.half_turns(theta_e).iter().fold(0_u8, |code, n| {
+            code << 1 | u8::from(n.rem_euclid(2.0) == 0.0)
+        });
+        IDEAL_CODES
+            .iter()
+            .position(|&code| code == raw)
+            .map_or(raw, |sector| self.codes[sector])
+    }
+
+    /// Notes edges while the angle moves linearly from `from` to `to` during `[t, t + h]`.
+    pub(super) fn sweep(&mut self, from: f64, to: f64, t: f64, h: f64) {
+        let (before, after) = (self.half_turns(from), self.half_turns(to));
+        for x in 0..3 {
+            if before[x] != after[x] {
+                let edge = self.rise[x] + before[x].max(after[x]) * PI;
+                self.last_edge = self.last_edge.max(t + h * (edge - from) / (to - from));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::sector_of;
+
+    #[test]
+    fn ideal_codes_tell_the_sector() {
+        let sensors = Sensors::new([0.0; 3], IDEAL_CODES);
+        for step in 0..720 {
+            let theta = (f64::from(step) * 0.5 + 0.25).to_radians();
+            assert_eq!(
+                sensors.code(theta),
+                IDEAL_CODES[sector_of(theta) - 1],
+                "{step}"
+            );
+        }
+    }
+
+    #[test]
+    fn edges_are_found_in_both_directions_and_displaced_by_the_placement() {
+        let mut sensors = Sensors::new([5.0, 0.0, 0.0], IDEAL_CODES);
+        let degrees = f64::to_radians;
+        sensors.sweep(degrees(30.0), degrees(34.0), 0.0, 1.0);
+        assert_eq!(sensors.last_edge(), f64::NEG_INFINITY);
+        sensors.sweep(degrees(34.0), degrees(38.0), 1.0, 1.0);
+        assert!((sensors.last_edge() - 1.25).abs() < 1e-12);
+        sensors.sweep(degrees(92.0), degrees(88.0), 3.0, 1.0);
+        assert!((sensors.last_edge() - 3.5).abs() < 1e-12);
+        assert_eq!(sensors.code(degrees(33.0)), 0b001);
+        assert_eq!(sensors.code(degrees(36.0)), 0b101);
+    }
+}

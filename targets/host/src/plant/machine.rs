@@ -1,0 +1,242 @@
+//! The plant as a whole: state, one PWM period at a time, samples and truth.
+
+use super::gates::Gates;
+use super::hall::Sensors;
+use super::network::{Network, balance, set_shape};
+use super::segment::{Segment, Series, TERMS, integral};
+use super::{EmfShape, Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
+use hexagen::{Legs, Sample};
+
+/// Steps per period at least, when the speed is free: it is constant within a step.
+const MECHANICAL_STEPS: f64 = 20.0;
+
+/// The plant's true state at a sampling instant, for ideal controllers and for records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// Time in seconds.
+    pub t: f64,
+    /// Electrical angle in radians, `[0, 2 pi)`.
+    pub theta_e: f64,
+    /// Electrical speed in rad/s.
+    pub omega_e: f64,
+    /// Mechanical speed in rad/s.
+    pub omega_m: f64,
+    /// True sector, 1 to 6.
+    pub sector: usize,
+    /// Phase currents in amperes.
+    pub currents: [f64; 3],
+    /// Mean terminal voltages of the last period in volts against the negative rail; zero before
+    /// the first.
+    pub mean_voltages: [f64; 3],
+    /// Mean torque of the last period in newton metres; zero before the first.
+    pub mean_torque: f64,
+}
+
+/// Sees every segment of the solution; integrates or records what it needs.
+pub trait Observer {
+    /// Called once per segment, in order of time.
+    fn segment(&mut self, segment: &Segment);
+}
+
+/// The observer that looks away.
+impl Observer for () {
+    fn segment(&mut self, _: &Segment) {}
+}
+
+/// Several observers at once.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn segment(&mut self, segment: &Segment) {
+        self.0.segment(segment);
+        self.1.segment(segment);
+    }
+}
+
+impl<T: Observer + ?Sized> Observer for &mut T {
+    fn segment(&mut self, segment: &Segment) {
+        (**self).segment(segment);
+    }
+}
+
+/// A simulated motor with its inverter and sensors.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    params: PlantParams,
+    network: Network,
+    gates: Gates,
+    sensors: Sensors,
+    segment: Segment,
+    period: u64,
+    theta_e: f64,
+    omega_m: f64,
+    currents: [f64; 3],
+    mean_voltages: [f64; 3],
+    mean_torque: f64,
+}
+
+impl Plant {
+    /// A plant without current at electrical angle `theta_e` (radians) and mechanical speed
+    /// `omega_m` (rad/s), all legs off.
+    ///
+    /// # Errors
+    /// A parameter outside its range.
+    pub fn new(params: PlantParams, theta_e: f64, omega_m: f64) -> Result<Self, PlantError> {
+        params.check()?;
+        Ok(Self {
+            network: Network::new(&params),
+            gates: Gates::new(params.dead_time),
+            sensors: Sensors::new(params.hall_error_deg, params.hall_codes),
+            segment: Segment::default(),
+            period: 0,
+            theta_e: wrap(theta_e),
+            omega_m,
+            currents: [0.0; 3],
+            mean_voltages: [0.0; 3],
+            mean_torque: 0.0,
+            params,
+        })
+    }
+
+    /// The plant's parameters.
+    pub fn params(&self) -> &PlantParams {
+        &self.params
+    }
+
+    /// Sets the phase currents in amperes, to start from another state than rest. Their sum must
+    /// be zero; a remainder is taken from the third.
+    pub fn set_currents(&mut self, [i_a, i_b]: [f64; 2]) {
+        self.currents = [i_a, i_b, -i_a - i_b];
+    }
+
+    /// Time in seconds: the start of the next period.
+    pub fn time(&self) -> f64 {
+        self.period as f64 * self.params.t_s
+    }
+
+    /// Turn-ons of all six switches so far.
+    pub fn turn_ons(&self) -> u64 {
+        self.gates.turn_ons()
+    }
+
+    /// The true state now.
+    pub fn truth(&self) -> Truth {
+        Truth {
+            t: self.time(),
+            theta_e: self.theta_e,
+            omega_e: self.omega_m * f64::from(self.params.pole_pairs),
+            omega_m: self.omega_m,
+            sector: sector_of(self.theta_e),
+            currents: self.currents,
+            mean_voltages: self.mean_voltages,
+            mean_torque: self.mean_torque,
+        }
+    }
+
+    /// What the controller's hardware reads now.
+    pub fn sample(&self) -> Sample {
+        let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
+        let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
+        Sample {
+            adc_a: adc::convert(&self.params.adc[0], self.currents[0]),
+            adc_b: adc::convert(&self.params.adc[1], self.currents[1]),
+            hall: self.sensors.code(self.theta_e),
+            hall_ticks: ticks.clamp(0.0, f64::from(u16::MAX)) as u16,
+        }
+    }
+
+    /// Runs one PWM period under a command.
+    pub fn run_period(&mut self, command: &Legs, observer: &mut dyn Observer) {
+        let t_s = self.params.t_s;
+        let mut volt_seconds = [0.0; 3];
+        let mut impulse = 0.0;
+        let mut torque: Series = [0.0; TERMS];
+        let mut t = 0.0;
+        self.gates.begin(command, self.params.timer_period, t_s);
+        while t < t_s {
+            let until = self.gates.advance_to(t).min(t_s);
+            self.prepare_segment(t, until);
+            let gates = self.gates.state();
+            let planned = self.segment.duration;
+            let zero_leg = self
+                .network
+                .solve(gates, &mut self.currents, &mut self.segment);
+            let h = self.segment.duration;
+            observer.segment(&self.segment);
+
+            self.segment.torque(&mut torque);
+            let segment_impulse = integral(&torque[..self.segment.terms], h);
+            impulse += segment_impulse;
+            for (sum, part) in volt_seconds.iter_mut().zip(self.segment.volt_seconds()) {
+                *sum += part;
+            }
+            self.currents = self.segment.currents_at(h);
+            if let Some(leg) = zero_leg {
+                self.currents[leg] = 0.0;
+            }
+            balance(&mut self.currents, gates);
+            let theta_end = self.theta_e + self.segment.omega_e * h;
+            self.sensors
+                .sweep(self.theta_e, theta_end, self.segment.start, h);
+            self.theta_e = wrap(theta_end);
+            if let Some(mechanics) = self.params.mechanics {
+                self.omega_m = speed_after(&mechanics, self.omega_m, segment_impulse, h);
+            }
+            let whole = h >= planned && t + planned >= until - 1e-9 * t_s;
+            t = if whole { until } else { t + h };
+        }
+        self.gates.end(t_s);
+        self.period += 1;
+        self.mean_voltages = volt_seconds.map(|sum| sum / t_s);
+        self.mean_torque = impulse / t_s;
+    }
+
+    /// Fills times, speed and EMF of the next segment, `t` seconds into the period and at most up
+    /// to `until`.
+    fn prepare_segment(&mut self, t: f64, until: f64) {
+        let params = &self.params;
+        let mut h = until - t;
+        let mut omega_m = self.omega_m;
+        if let Some(mechanics) = &params.mechanics {
+            h = h.min(params.t_s / MECHANICAL_STEPS);
+            let torque: f64 = (0..3)
+                .map(|x| {
+                    params.k_phase[x]
+                        * emf::value(params.shape, self.theta_e - emf::LAG[x])
+                        * self.currents[x]
+                })
+                .sum();
+            omega_m = 0.5 * (omega_m + speed_after(mechanics, omega_m, torque * h, h));
+        }
+        let omega_e = omega_m * f64::from(params.pole_pairs);
+        let sine_speed = if params.shape == EmfShape::Sinusoidal {
+            omega_e
+        } else {
+            0.0
+        };
+        h = h.min(self.network.longest_step(sine_speed));
+        if omega_e != 0.0 {
+            h = h.min(emf::angle_to_corner(params.shape, self.theta_e, omega_e) / omega_e.abs());
+        }
+        self.segment.start = self.period as f64 * params.t_s + t;
+        self.segment.offset = t;
+        self.segment.duration = h;
+        self.segment.terms = self.network.terms(sine_speed, h);
+        self.segment.theta_e = self.theta_e;
+        self.segment.omega_e = omega_e;
+        self.segment.omega_m = omega_m;
+        set_shape(params, &mut self.segment);
+    }
+}
+
+/// Mechanical speed after `h` seconds with the given impulse (N m s) of the motor's torque.
+fn speed_after(mechanics: &Mechanics, omega_m: f64, impulse: f64, h: f64) -> f64 {
+    let driving = impulse + (mechanics.external_torque - mechanics.viscous * omega_m) * h;
+    let friction = mechanics.opposing_torque * h;
+    let free = omega_m + driving / mechanics.inertia;
+    // Dry friction takes speed away in the direction of motion, but never reverses it.
+    let slowed = free.abs() - friction / mechanics.inertia;
+    if slowed > 0.0 {
+        slowed.copysign(free)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,43 @@
+//! The simulated plant: motor, inverter, Hall sensors and current converters (DESIGN.md section 4).
+//!
+//! The electrical network is piecewise linear; between two events it is solved by its Taylor
+//! series, which is exact to rounding. Events are switching edges, ends of dead times, corners of
+//! the EMF, current zeros of legs that are off, and floating legs that reach a rail.
+//! Speed is fixed, or free with inertia and load (then integrated to second order in the step).
+//! Units are SI throughout; angles are electrical radians unless a name says otherwise.
+
+mod adc;
+mod emf;
+mod energy;
+mod gates;
+mod hall;
+mod machine;
+mod network;
+mod params;
+mod roots;
+mod segment;
+
+pub use energy::{EnergyBalance, EnergyMeter};
+pub use machine::{Observer, Plant, Truth};
+pub use params::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES};
+pub(crate) use segment::integral;
+pub use segment::{Segment, Series, TERMS, Terminal};
+
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// Sector 1 to 6 of an electrical angle in radians: S_k covers `[-30 + 60(k-1), 30 + 60(k-1))`
+/// degrees (DESIGN.md section 3).
+pub fn sector_of(theta_e: f64) -> usize {
+    ((theta_e / FRAC_PI_3 + 0.5).rem_euclid(6.0).floor() as usize).min(5) + 1
+}
+
+/// Amplitude-invariant Clarke transform (factor 2/3) of three phase quantities: (alpha, beta).
+pub fn clarke([a, b, c]: [f64; 3]) -> (f64, f64) {
+    ((2.0 * a - b - c) / 3.0, (b - c) / 3.0_f64.sqrt())
+}
+
+/// Wraps an angle to `[0, 2 pi)`.
+fn wrap(angle: f64) -> f64 {
+    let wrapped = angle.rem_euclid(TAU);
+    if wrapped < TAU { wrapped } else { 0.0 }
+}

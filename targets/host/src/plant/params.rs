@@ -1,0 +1,270 @@
+//! What the plant needs to know, as plain SI numbers, and the check that they make sense.
+
+use super::adc::full_scale;
+use serde::{Deserialize, Serialize};
+
+/// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of DESIGN.md section 3.
+pub const STANDARD_HALL_CODES: [u8; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
+
+/// Shape of the phase EMF over the electrical angle, amplitude 1, zero and rising at angle 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum EmfShape {
+    /// Linear ramps between flat tops of `flat_top_deg` electrical degrees, 0 to below 180.
+    Trapezoidal {
+        /// Width of the flat top in electrical degrees (120 for the ideal BLDC motor).
+        flat_top_deg: f64,
+    },
+    /// A sine.
+    Sinusoidal,
+}
+
+/// One current channel: `count = round(i / amperes_per_count) + offset`, limited to the range.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AdcChannel {
+    /// Resolution in bits, 1 to 16.
+    pub bits: u32,
+    /// Current per count in amperes; negative for an inverting amplifier.
+    pub amperes_per_count: f64,
+    /// Count at zero current; need not be whole.
+    pub offset: f64,
+}
+
+impl AdcChannel {
+    /// A channel that maps `-range ..= +range` amperes to the full scale of `bits` bits, with zero
+    /// current at mid-scale.
+    pub fn bipolar(bits: u32, range: f64) -> Self {
+        let half = f64::from(1_u32 << (bits - 1));
+        Self {
+            bits,
+            amperes_per_count: range / half,
+            offset: half,
+        }
+    }
+}
+
+/// The mechanical side of a plant whose speed is free.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mechanics {
+    /// Moment of inertia of rotor and load in kg m^2, positive.
+    pub inertia: f64,
+    /// Load torque in N m that opposes the motion, whatever its direction, and holds the rotor at
+    /// rest until it is exceeded (dry friction); not negative.
+    pub opposing_torque: f64,
+    /// External torque in N m that drives the shaft in the positive direction (a hoist's weight:
+    /// negative), at any speed.
+    pub external_torque: f64,
+    /// Viscous friction in N m s/rad; not negative.
+    pub viscous: f64,
+}
+
+/// Motor, inverter and sensors of a simulated plant. Arrays are per phase a, b, c.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantParams {
+    /// Pole pairs.
+    pub pole_pairs: u32,
+    /// Resistance per star phase in ohm.
+    pub resistance: [f64; 3],
+    /// Inductance per star phase (self minus mutual) in henry.
+    pub inductance: [f64; 3],
+    /// Peak phase EMF per mechanical speed in V s/rad; half of the line-to-line constant for a
+    /// trapezoidal EMF.
+    pub k_phase: [f64; 3],
+    /// Shape of the EMF.
+    pub shape: EmfShape,
+    /// Bus voltage in volts. A sag is a plant with a lower value than the controller's.
+    pub v_bus: f64,
+    /// Control and PWM period in seconds.
+    pub t_s: f64,
+    /// Timer counts per PWM period: the compare value of full duty.
+    pub timer_period: u16,
+    /// Time in seconds for which both switches of a leg stay off at each change between them.
+    pub dead_time: f64,
+    /// Forward drop of the freewheel diodes in volts; 0 for ideal diodes. Switches are ideal.
+    pub diode_drop: f64,
+    /// Current channels of phases a and b.
+    pub adc: [AdcChannel; 2],
+    /// Timer ticks per control period of the Hall capture timer.
+    pub hall_ticks_per_period: f64,
+    /// Hall code shown in sectors S1 to S6.
+    pub hall_codes: [u8; 6],
+    /// Placement error of the sensors Ha, Hb, Hc in electrical degrees; positive edges come late
+    /// in forward rotation.
+    pub hall_error_deg: [f64; 3],
+    /// Inertia and load, or `None` for a shaft held at its initial speed.
+    pub mechanics: Option<Mechanics>,
+}
+
+/// Why a set of plant parameters cannot be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlantError {
+    /// A quantity is not a finite number in its range.
+    #[error("plant {name} = {value}: must be {limit}")]
+    Range {
+        /// Name of the field.
+        name: &'static str,
+        /// The value given, in SI units.
+        value: f64,
+        /// The range that is allowed.
+        limit: &'static str,
+    },
+}
+
+impl PlantParams {
+    /// An ideal plant with equal phases: trapezoidal EMF with a 120 degree flat top, no dead time,
+    /// ideal diodes, 12-bit channels of +-40 A, standard Hall wiring, fixed speed, 1800 timer
+    /// counts and 1800 capture ticks per period. Arguments in SI units, `k_phase` in V s/rad.
+    pub fn ideal(pole_pairs: u32, r: f64, l: f64, k_phase: f64, v_bus: f64, t_s: f64) -> Self {
+        Self {
+            pole_pairs,
+            resistance: [r; 3],
+            inductance: [l; 3],
+            k_phase: [k_phase; 3],
+            shape: EmfShape::Trapezoidal {
+                flat_top_deg: 120.0,
+            },
+            v_bus,
+            t_s,
+            timer_period: 1800,
+            dead_time: 0.0,
+            diode_drop: 0.0,
+            adc: [AdcChannel::bipolar(12, 40.0); 2],
+            hall_ticks_per_period: 1800.0,
+            hall_codes: STANDARD_HALL_CODES,
+            hall_error_deg: [0.0; 3],
+            mechanics: None,
+        }
+    }
+
+    /// The same plant with all phases' R, L and EMF constant multiplied by the given factors.
+    #[must_use]
+    pub fn scaled(mut self, r: f64, l: f64, k_b: f64) -> Self {
+        self.resistance = self.resistance.map(|x| x * r);
+        self.inductance = self.inductance.map(|x| x * l);
+        self.k_phase = self.k_phase.map(|x| x * k_b);
+        self
+    }
+
+    /// Checks every field against the range its documentation states.
+    ///
+    /// # Errors
+    /// The first field outside its range.
+    pub fn check(&self) -> Result<(), PlantError> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let not_negative = |x: f64| x.is_finite() && x >= 0.0;
+        let require = |ok: bool, name, value, limit| {
+            if ok {
+                Ok(())
+            } else {
+                Err(PlantError::Range { name, value, limit })
+            }
+        };
+        let pole_pairs = f64::from(self.pole_pairs);
+        require(self.pole_pairs > 0, "pole_pairs", pole_pairs, "at least 1")?;
+        for phase in 0..3 {
+            let (r, l, k) = (
+                self.resistance[phase],
+                self.inductance[phase],
+                self.k_phase[phase],
+            );
+            require(not_negative(r), "resistance", r, "finite and not negative")?;
+            require(positive(l), "inductance", l, "finite and positive")?;
+            require(not_negative(k), "k_phase", k, "finite and not negative")?;
+            let error = self.hall_error_deg[phase];
+            require(
+                error.abs() < 30.0,
+                "hall_error_deg",
+                error,
+                "within -30 to 30 degrees",
+            )?;
+        }
+        if let EmfShape::Trapezoidal { flat_top_deg } = self.shape {
+            let in_range = (0.0..=179.0).contains(&flat_top_deg);
+            require(in_range, "flat_top_deg", flat_top_deg, "0 to 179 degrees")?;
+        }
+        require(
+            positive(self.v_bus),
+            "v_bus",
+            self.v_bus,
+            "finite and positive",
+        )?;
+        require(positive(self.t_s), "t_s", self.t_s, "finite and positive")?;
+        let period = f64::from(self.timer_period);
+        require(self.timer_period > 0, "timer_period", period, "at least 1")?;
+        let dead_ok = (0.0..self.t_s / 2.0).contains(&self.dead_time);
+        require(
+            dead_ok,
+            "dead_time",
+            self.dead_time,
+            "from 0 to below half the period",
+        )?;
+        let drop = self.diode_drop;
+        require(
+            not_negative(drop),
+            "diode_drop",
+            drop,
+            "finite and not negative",
+        )?;
+        for channel in self.adc {
+            let bits = f64::from(channel.bits);
+            require(
+                (1..=16).contains(&channel.bits),
+                "adc bits",
+                bits,
+                "1 to 16",
+            )?;
+            let gain = channel.amperes_per_count;
+            require(
+                positive(gain.abs()),
+                "adc amperes_per_count",
+                gain,
+                "finite and not zero",
+            )?;
+            let in_range = (0.0..=full_scale(channel.bits)).contains(&channel.offset);
+            require(
+                in_range,
+                "adc offset",
+                channel.offset,
+                "within the converter's range",
+            )?;
+        }
+        let ticks = self.hall_ticks_per_period;
+        require(
+            positive(ticks),
+            "hall_ticks_per_period",
+            ticks,
+            "finite and positive",
+        )?;
+        for code in self.hall_codes {
+            require(
+                (1..=6).contains(&code),
+                "hall code",
+                f64::from(code),
+                "1 to 6",
+            )?;
+        }
+        if let Some(m) = self.mechanics {
+            require(
+                positive(m.inertia),
+                "inertia",
+                m.inertia,
+                "finite and positive",
+            )?;
+            let opposing = m.opposing_torque;
+            require(
+                not_negative(opposing),
+                "opposing_torque",
+                opposing,
+                "not negative",
+            )?;
+            let external = m.external_torque;
+            require(external.is_finite(), "external_torque", external, "finite")?;
+            require(
+                not_negative(m.viscous),
+                "viscous",
+                m.viscous,
+                "not negative",
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! One stretch of time between two events, with the exact solution on it.
+
+use super::roots::evaluate;
+
+/// Coefficients kept of each Taylor series.
+pub const TERMS: usize = 16;
+
+/// Taylor coefficients in time from the segment's start, lowest first.
+pub type Series = [f64; TERMS];
+
+/// What fixes a leg's terminal voltage during a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Terminal {
+    /// A switch or a diode connects the leg to a rail.
+    Rail {
+        /// Terminal voltage against the negative rail, diode drop included.
+        volts: f64,
+        /// Whether it is the positive rail.
+        upper: bool,
+        /// Whether a diode conducts, not a switch.
+        diode: bool,
+    },
+    /// Nothing conducts: the leg floats at e + v_n.
+    Floating,
+}
+
+/// The plant's solution on `[0, duration]` seconds after `start`.
+///
+/// Series are valid in their first `terms` coefficients; the rest is undefined.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// Absolute start time in seconds.
+    pub start: f64,
+    /// Start time from the beginning of the control period in seconds.
+    pub offset: f64,
+    /// Length in seconds.
+    pub duration: f64,
+    /// Number of valid coefficients.
+    pub terms: usize,
+    /// Phase currents in amperes, positive into the motor.
+    pub current: [Series; 3],
+    /// Phase EMF per mechanical speed in V s/rad, which is also the torque per ampere.
+    pub shape: [Series; 3],
+    /// Number of coefficients of `shape` that may differ from zero.
+    pub shape_terms: usize,
+    /// Voltage of the star point against the negative rail in volts.
+    pub neutral: Series,
+    /// What the three terminals are connected to.
+    pub terminal: [Terminal; 3],
+    /// Electrical angle at the start in radians.
+    pub theta_e: f64,
+    /// Electrical speed in rad/s, constant over the segment.
+    pub omega_e: f64,
+    /// Mechanical speed in rad/s, constant over the segment.
+    pub omega_m: f64,
+}
+
+impl Default for Segment {
+    fn default() -> Self {
+        Self {
+            start: 0.0,
+            offset: 0.0,
+            duration: 0.0,
+            terms: 1,
+            current: [[0.0; TERMS]; 3],
+            shape: [[0.0; TERMS]; 3],
+            shape_terms: 1,
+            neutral: [0.0; TERMS],
+            terminal: [Terminal::Floating; 3],
+            theta_e: 0.0,
+            omega_e: 0.0,
+            omega_m: 0.0,
+        }
+    }
+}
+
+impl Segment {
+    /// Phase currents in amperes at `t` seconds after the start.
+    pub fn currents_at(&self, t: f64) -> [f64; 3] {
+        self.current
+            .each_ref()
+            .map(|series| evaluate(&series[..self.terms], t))
+    }
+
+    /// Terminal voltages in volts against the negative rail at `t` seconds after the start.
+    pub fn voltages_at(&self, t: f64) -> [f64; 3] {
+        let neutral = evaluate(&self.neutral[..self.terms], t);
+        std::array::from_fn(|x| match self.terminal[x] {
+            Terminal::Rail { volts, .. } => volts,
+            Terminal::Floating => {
+                neutral + self.omega_m * evaluate(&self.shape[x][..self.shape_terms], t)
+            }
+        })
+    }
+
+    /// Integrals of the terminal voltages over the segment in volt-seconds.
+    pub fn volt_seconds(&self) -> [f64; 3] {
+        let h = self.duration;
+        std::array::from_fn(|x| match self.terminal[x] {
+            Terminal::Rail { volts, .. } => volts * h,
+            Terminal::Floating => {
+                integral(&self.neutral[..self.terms], h)
+                    + self.omega_m * integral(&self.shape[x][..self.shape_terms], h)
+            }
+        })
+    }
+
+    /// Writes the torque's series (sum of e_x i_x / omega_m) in newton metres, `terms` long.
+    /// Formed from the shape, so that nothing divides by the speed.
+    pub fn torque(&self, out: &mut Series) {
+        let terms = self.terms;
+        out[..terms].fill(0.0);
+        for (shape, current) in self.shape.iter().zip(&self.current) {
+            for (j, s) in shape[..self.shape_terms.min(terms)].iter().enumerate() {
+                for (sum, c) in out[j..terms].iter_mut().zip(current) {
+                    *sum += s * c;
+                }
+            }
+        }
+    }
+}
+
+/// Integral of a series from 0 to `t`.
+pub(crate) fn integral(series: &[f64], t: f64) -> f64 {
+    t * series
+        .iter()
+        .enumerate()
+        .rev()
+        .fold(0.0, |sum, (k, c)| sum * t + c / (k + 1) as f64)
+}

@@ -1,0 +1,264 @@
+//! A float64 reference experiment: an ideal deadbeat controller on the 660 W motor must give the
+//! PDCC rows of DESIGN.md section 4 that it stands for. Nothing of the generator takes part, so a
+//! difference here is the plant's or the merits'.
+
+use hexagen::{LegState, Legs, Sample};
+use hexagen_host::closed_loop::{
+    CurrentLoop, LimitOptions, LimitOutcome, Merits, RunOptions, measure, quasi_square, speed_limit,
+};
+use hexagen_host::plant::{PlantParams, Truth};
+use std::f64::consts::{PI, TAU};
+
+const R: f64 = 0.135;
+const L: f64 = 0.22e-3;
+const K_PHASE: f64 = 0.1648 / 2.0;
+const V_BUS: f64 = 48.0;
+const T_S: f64 = 50e-6;
+const N: u16 = 1800;
+const TORQUE: f64 = 3.3;
+const CURRENT: f64 = TORQUE / 0.1648;
+
+fn motor() -> PlantParams {
+    PlantParams::ideal(4, R, L, K_PHASE, V_BUS, T_S)
+}
+
+/// What the reference is.
+#[derive(Clone, Copy)]
+enum Reference {
+    QuasiSquare,
+    Proportional,
+}
+
+/// PDCC, three_phase, nearest, model EMF from the true angle, `euler`, delay 1.
+struct Deadbeat {
+    reference: Reference,
+    torque: f64,
+    applied: [f64; 3],
+}
+
+impl Deadbeat {
+    fn new(reference: Reference, torque: f64) -> Self {
+        Self {
+            reference,
+            torque,
+            applied: [0.0; 3],
+        }
+    }
+}
+
+/// Integral of the unit trapezoid (120 degree flat top) from 0 to an angle.
+fn shape_integral(angle: f64) -> f64 {
+    let ramp = PI / 6.0;
+    let x = angle.rem_euclid(TAU);
+    let half = |x: f64| match x {
+        x if x < ramp => x * x / (2.0 * ramp),
+        x if x < PI - ramp => x - ramp / 2.0,
+        x => (PI - ramp) - (PI - x).powi(2) / (2.0 * ramp),
+    };
+    if x < PI {
+        half(x)
+    } else {
+        half(PI) - half(x - PI)
+    }
+}
+
+fn shape(angle: f64) -> f64 {
+    let h = 1e-6;
+    (shape_integral(angle + h) - shape_integral(angle - h)) / (2.0 * h)
+}
+
+fn lagged(theta: f64) -> [f64; 3] {
+    [theta, theta - TAU / 3.0, theta + TAU / 3.0]
+}
+
+/// Mean EMF of a period that begins at `from`, in the three phases, common mode removed.
+fn mean_emf(truth: &Truth, from: f64) -> [f64; 3] {
+    let turn = truth.omega_e * T_S;
+    let (begin, end) = (lagged(from), lagged(from + turn));
+    let raw: [f64; 3] = std::array::from_fn(|x| {
+        let mean = (shape_integral(end[x]) - shape_integral(begin[x])) / turn;
+        K_PHASE * truth.omega_m * if turn == 0.0 { shape(end[x]) } else { mean }
+    });
+    let zero = raw.iter().sum::<f64>() / 3.0;
+    raw.map(|e| e - zero)
+}
+
+impl CurrentLoop for Deadbeat {
+    fn step(&mut self, _: &Sample, truth: &Truth) -> Legs {
+        let (a, b) = (1.0 - R * T_S / L, T_S / L);
+        let turn = truth.omega_e * T_S;
+        let (e_now, e_next) = (
+            mean_emf(truth, truth.theta_e),
+            mean_emf(truth, truth.theta_e + turn),
+        );
+        let i_ref = match self.reference {
+            Reference::QuasiSquare => {
+                // Advance 0: the corner of the sector seen at the sample.
+                let (alpha, beta) = quasi_square(truth.theta_e, self.torque / 0.1648);
+                let half = 3.0_f64.sqrt() / 2.0;
+                [
+                    alpha,
+                    -alpha / 2.0 + half * beta,
+                    -alpha / 2.0 - half * beta,
+                ]
+            }
+            Reference::Proportional => {
+                let f = lagged(truth.theta_e + 2.0 * turn).map(|angle| K_PHASE * shape(angle));
+                let zero = f.iter().sum::<f64>() / 3.0;
+                let f = f.map(|x| x - zero);
+                let square: f64 = f.iter().map(|x| x * x).sum();
+                f.map(|x| self.torque * x / square)
+            }
+        };
+        let v: [f64; 3] = std::array::from_fn(|x| {
+            (i_ref[x] - a * a * truth.currents[x]) / b - a * self.applied[x]
+                + a * e_now[x]
+                + e_next[x]
+        });
+        let most = v.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let least = v.iter().copied().fold(f64::INFINITY, f64::min);
+        let t = v.map(|x| (x - f64::midpoint(most, least) + V_BUS / 2.0).clamp(0.0, V_BUS));
+        let mean = t.iter().sum::<f64>() / 3.0;
+        self.applied = t.map(|x| x - mean);
+        Legs {
+            compare: t.map(|x| (x / V_BUS * f64::from(N)).round() as u16),
+            state: [LegState::Pulsed; 3],
+        }
+    }
+}
+
+fn at(reference: Reference, rpm: f64, torque: f64) -> Merits {
+    let options = RunOptions::new(rpm * TAU / 60.0, torque / 0.1648);
+    let measurement = measure(&motor(), &options, |_: &Truth| {
+        Deadbeat::new(reference, torque)
+    })
+    .unwrap();
+    measurement.merits
+}
+
+fn assert_near(what: &str, got: f64, want: f64, tolerance: f64) {
+    assert!(
+        (got - want).abs() <= tolerance,
+        "{what}: {got:.4}, expected {want} +- {tolerance}"
+    );
+}
+
+#[test]
+fn quasi_square_row_of_the_design_is_met() {
+    let slow = at(Reference::QuasiSquare, 400.0, TORQUE);
+    assert_near("mean at 400 rpm", slow.mean_torque_nm, 3.30, 0.01);
+    assert_near("pp at 400 rpm", slow.ripple_pp_pct, 2.3, 0.1);
+    assert_near("rms at 400 rpm", slow.ripple_rms_pct, 0.2, 0.05);
+    let fast = at(Reference::QuasiSquare, 1500.0, TORQUE);
+    assert_near("mean at 1500 rpm", fast.mean_torque_nm, 3.25, 0.01);
+    assert_near("pp at 1500 rpm", fast.ripple_pp_pct, 12.7, 0.3);
+    assert_near("rms at 1500 rpm", fast.ripple_rms_pct, 3.4, 0.1);
+}
+
+#[test]
+fn proportional_row_of_the_design_is_met() {
+    let slow = at(Reference::Proportional, 400.0, TORQUE);
+    assert_near("pp at 400 rpm", slow.ripple_pp_pct, 0.13, 0.05);
+    assert_near("rms at 400 rpm", slow.ripple_rms_pct, 0.01, 0.02);
+    let fast = at(Reference::Proportional, 1500.0, TORQUE);
+    assert_near("mean at 1500 rpm", fast.mean_torque_nm, 3.30, 0.01);
+    assert_near("pp at 1500 rpm", fast.ripple_pp_pct, 0.5, 0.05);
+    assert_near("rms at 1500 rpm", fast.ripple_rms_pct, 0.06, 0.02);
+}
+
+#[test]
+fn speed_limits_of_the_design_are_met() {
+    let run = RunOptions::new(1.0, CURRENT);
+    for (reference, percent) in [
+        (Reference::QuasiSquare, 87.0),
+        (Reference::Proportional, 117.0),
+    ] {
+        let options = LimitOptions::new(2000.0, TORQUE);
+        let limit = speed_limit(&motor(), &run, &options, |_: &Truth| {
+            Deadbeat::new(reference, TORQUE)
+        })
+        .unwrap();
+        assert_eq!(limit.outcome, LimitOutcome::Found);
+        assert_near("limit", limit.limit_pct.unwrap(), percent, 1.0);
+    }
+}
+
+#[test]
+fn all_four_quadrants_are_alike() {
+    let forward = at(Reference::QuasiSquare, 400.0, TORQUE);
+    let backward = at(Reference::QuasiSquare, -400.0, -TORQUE);
+    assert_near(
+        "reverse motoring mean",
+        backward.mean_torque_nm,
+        -forward.mean_torque_nm,
+        0.003,
+    );
+    assert_near(
+        "reverse motoring rms",
+        backward.ripple_rms_pct,
+        forward.ripple_rms_pct,
+        0.05,
+    );
+    assert_near(
+        "reverse motoring tracking",
+        backward.tracking_rms_a,
+        forward.tracking_rms_a,
+        0.1,
+    );
+    for (rpm, torque) in [(400.0, -TORQUE), (-400.0, TORQUE)] {
+        let braking = at(Reference::QuasiSquare, rpm, torque);
+        assert_near("braking mean", braking.mean_torque_nm, torque, 0.01);
+        assert_near(
+            "braking tracking",
+            braking.tracking_rms_a,
+            forward.tracking_rms_a,
+            0.5,
+        );
+        assert!(
+            braking.commutation_us > 20.0 && braking.commutation_us < 400.0,
+            "{braking:?}"
+        );
+    }
+    let standstill = at(Reference::Proportional, 0.0, TORQUE);
+    assert_near("standstill", standstill.mean_torque_nm, TORQUE, 1e-3);
+}
+
+/// The deadbeat controller, except that it gives up in a narrow band of speeds.
+struct Faltering(Option<Deadbeat>);
+
+impl CurrentLoop for Faltering {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
+        self.0
+            .as_mut()
+            .map_or(Legs::OFF, |controller| controller.step(sample, truth))
+    }
+}
+
+#[test]
+fn speed_limit_is_the_first_crossing_even_if_the_torque_recovers() {
+    let run = RunOptions::new(1.0, CURRENT);
+    let options = LimitOptions {
+        to_rpm: 1000.0,
+        ..LimitOptions::new(2000.0, TORQUE)
+    };
+    let faltering = |from: f64, to: f64| {
+        move |initial: &Truth| {
+            let rpm = initial.omega_m * 60.0 / TAU;
+            let fails = (from..to).contains(&rpm);
+            Faltering((!fails).then(|| Deadbeat::new(Reference::Proportional, TORQUE)))
+        }
+    };
+    let found = speed_limit(&motor(), &run, &options, faltering(750.0, 770.0)).unwrap();
+    assert_eq!(found.outcome, LimitOutcome::Found);
+    assert_near("limit", found.limit_rpm.unwrap(), 740.6, 0.2);
+    let never = speed_limit(&motor(), &run, &options, faltering(0.0, 410.0)).unwrap();
+    assert_eq!(
+        (never.outcome, never.limit_rpm),
+        (LimitOutcome::NeverHeld, None)
+    );
+    let beyond = speed_limit(&motor(), &run, &options, faltering(0.0, 0.0)).unwrap();
+    assert_eq!(
+        (beyond.outcome, beyond.limit_pct),
+        (LimitOutcome::NotReached, Some(50.0))
+    );
+}
