@@ -3,9 +3,14 @@
 //! Wording: quantity, given value with unit, limit, what to change. Given values are quoted as
 //! written; computed numbers have four significant digits. Field names stand in backticks.
 
+mod controller;
 mod design;
+mod drive;
+mod structure;
+mod values;
 
-pub use design::{
-    coefficient_out_of_range, inductance_outside_stable_range, internal,
-    resistance_outside_stable_range, unstable_loop, word_too_narrow,
-};
+pub use controller::*;
+pub use design::*;
+pub use drive::*;
+pub use structure::*;
+pub use values::*;

@@ -1,0 +1,168 @@
+//! Texts about the structure of a specification: syntax, sections, fields, files.
+
+use crate::diagnostics::{Code, Diagnostic, Location, list};
+
+/// The macro call or the file does not parse; `what` is the parser's complaint.
+pub fn syntax(at: &Location, what: &str) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, at, what)
+}
+
+/// A section that does not exist.
+pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
+    let suggestion = did_you_mean(name, known).unwrap_or_default();
+    Diagnostic::new(
+        Code::UnknownSection,
+        at,
+        format!(
+            "unknown section `{name}`{suggestion}; there are {}",
+            list(known, "and")
+        ),
+    )
+}
+
+/// A field that does not exist in its section.
+pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -> Diagnostic {
+    let advice = did_you_mean(name, known)
+        .unwrap_or_else(|| format!("; `{section}` takes {}", list(known, "and")));
+    Diagnostic::new(
+        Code::UnknownField,
+        at,
+        format!("`{section}` has no field `{name}`{advice}"),
+    )
+}
+
+/// A field that belongs to another section.
+pub fn misplaced_field(at: &Location, section: &str, name: &str, right: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MisplacedField,
+        at,
+        format!("`{section}` has no field `{name}`; move it to `{right}`"),
+    )
+}
+
+/// A field or section given twice.
+pub fn duplicate_field(at: &Location, first: &Location, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::DuplicateField,
+        at,
+        format!("`{name}` is given twice; keep one of the two"),
+    )
+    .with_note(first, format!("`{name}` is given here first"))
+}
+
+/// A field without default is missing.
+pub fn missing_field(at: &Location, section: &str, name: &str, example: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingField,
+        at,
+        format!("`{section}` lacks the field `{name}`; add it, for example `{name}: {example}`"),
+    )
+}
+
+/// None of several alternative fields is given.
+pub fn missing_alternative(
+    at: &Location,
+    section: &str,
+    names: [&str; 2],
+    examples: [&str; 2],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingField,
+        at,
+        format!(
+            "`{section}` lacks the field `{0}` or `{1}`; add one, for example `{0}: {2}` or `{1}: {3}`",
+            names[0], names[1], examples[0], examples[1]
+        ),
+    )
+}
+
+/// A section is missing.
+pub fn missing_section(at: &Location, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingSection,
+        at,
+        match name {
+            "controller" => {
+                "the section `controller` is missing; choose one, for example `controller: pdcc`"
+                    .to_owned()
+            }
+            _ => format!("the section `{name}` is missing; give it here or in a motor file"),
+        },
+    )
+}
+
+/// Two fields that say the same thing.
+pub fn exclusive_fields(at: &Location, name: &str, other_at: &Location, other: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::ExclusiveFields,
+        at,
+        format!("`{name}` and `{other}` say the same thing; keep one of the two"),
+    )
+    .with_note(other_at, format!("`{other}` is given here"))
+}
+
+/// A field that only another value of a second field takes.
+///
+/// `condition`: the setting that it needs, e.g. ``v_bus: measured``.
+pub fn needless_field(at: &Location, name: &str, given: &str, condition: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::DependentField,
+        at,
+        format!("`{name}`: {given} is of use only with `{condition}`; set that or remove `{name}`"),
+    )
+}
+
+/// A field that the value of a second field needs.
+pub fn needed_field(at: &Location, setting: &str, name: &str, example: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::DependentField,
+        at,
+        format!("`{setting}` needs the field `{name}`; add it, for example `{name}: {example}`"),
+    )
+}
+
+/// A motor file cannot be read; `why` is the system's reason.
+pub fn unreadable_motor_file(at: &Location, path: &str, why: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        format!(
+            "`motor`: the file {path:?} cannot be read ({why}); give a path relative to the crate's Cargo.toml"
+        ),
+    )
+}
+
+/// A motor file's path is absolute.
+pub fn absolute_motor_file(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        "`motor`: the file's path is absolute; give a path relative to the crate's Cargo.toml, so that the output is the same on every machine",
+    )
+}
+
+/// The drive's name is no type name.
+pub fn invalid_name(at: &Location, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::InvalidName,
+        at,
+        format!(
+            "`name`: {name:?} is no name of a type; use a capital letter first, then letters and digits, for example \"HubDrive\""
+        ),
+    )
+}
+
+/// ``; did you mean `x`?`` for the closest known word, if one is close.
+pub(crate) fn did_you_mean(word: &str, known: &[&str]) -> Option<String> {
+    known
+        .iter()
+        .map(|candidate| {
+            (
+                strsim::normalized_damerau_levenshtein(word, candidate),
+                candidate,
+            )
+        })
+        .filter(|(similarity, _)| *similarity >= 0.5)
+        .max_by(|left, right| left.0.total_cmp(&right.0))
+        .map(|(_, candidate)| format!("; did you mean `{candidate}`?"))
+}

@@ -1,0 +1,233 @@
+//! The syntax tree of a specification: what was written, where, in which unit.
+//!
+//! Macro tokens, TOML files and command-line variants all become this tree; nothing in it is
+//! checked beyond the spelling of values. What could not be read is kept as a diagnostic, so that
+//! the checks report it together with everything else.
+
+use super::units::Unit;
+use crate::diagnostics::{Diagnostic, Location};
+use std::fmt;
+
+/// A specification as written.
+#[derive(Clone, Debug)]
+pub struct SpecAst {
+    /// Name of the drive's type.
+    pub name: Name,
+    /// The motor's fields.
+    pub motor: Section,
+    /// The inverter's fields.
+    pub inverter: Section,
+    /// The controller's fields; its kind is the field `kind`.
+    pub controller: Section,
+    /// Where the data come from, free text: key and text, from `[source]`.
+    pub source: Vec<(String, String)>,
+    /// What could not be read.
+    pub malformed: Vec<Diagnostic>,
+}
+
+/// A name and where it was written.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The name.
+    pub text: String,
+    /// Where it was written; for a file's default name, the start of the file.
+    pub location: Location,
+}
+
+/// The fields of one section, in the order in which they were written.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// Where the section begins; none if it was not written.
+    pub location: Option<Location>,
+    /// The fields; duplicates are kept.
+    pub fields: Vec<Field>,
+    /// Part of the section could not be read: missing fields are no news then.
+    pub incomplete: bool,
+}
+
+/// `name: value`.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// The field's name.
+    pub name: String,
+    /// Where the name was written.
+    pub name_location: Location,
+    /// The value.
+    pub value: Value,
+    /// Where the value was written, unit and basis included.
+    pub location: Location,
+    /// Why the value was assumed, where the data sheet does not give it.
+    pub assumed: Option<String>,
+}
+
+/// A value as written.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// A number, with its unit and basis words.
+    Number(Number),
+    /// A single word, e.g. `star`, `on`, `fcs-mpc`.
+    Word(String),
+    /// Free text (descriptions only).
+    Text(String),
+    /// A list of integers.
+    Integers(Vec<i64>),
+    /// Unreadable; the diagnostic says why.
+    Malformed(Box<Diagnostic>),
+}
+
+/// A number with unit and basis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// The number's digits as written.
+    pub digits: String,
+    /// The number as written, before the unit's factor.
+    pub value: f64,
+    /// The unit, if any.
+    pub unit: Option<Unit>,
+    /// Basis words in the order in which they were written.
+    pub basis: Vec<Basis>,
+}
+
+impl Number {
+    /// The value in SI units (as it stands without a unit).
+    pub fn si(&self) -> f64 {
+        self.unit.map_or(self.value, |unit| unit.to_si(self.value))
+    }
+}
+
+/// What a resistance, inductance or EMF constant refers to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Of one phase winding.
+    PerPhase,
+    /// Between two terminals.
+    LineToLine,
+    /// Of the phase voltage.
+    Phase,
+    /// Amplitude.
+    Peak,
+    /// Root mean square.
+    Rms,
+}
+
+impl Basis {
+    /// Every basis word.
+    pub const ALL: [Self; 5] = [
+        Self::PerPhase,
+        Self::LineToLine,
+        Self::Phase,
+        Self::Peak,
+        Self::Rms,
+    ];
+
+    /// The word as written.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::PerPhase => "per_phase",
+            Self::LineToLine => "line_to_line",
+            Self::Phase => "phase",
+            Self::Peak => "peak",
+            Self::Rms => "rms",
+        }
+    }
+}
+
+impl SpecAst {
+    /// An empty specification of the given name.
+    pub fn new(name: Name) -> Self {
+        Self {
+            name,
+            motor: Section::default(),
+            inverter: Section::default(),
+            controller: Section::default(),
+            source: Vec::new(),
+            malformed: Vec::new(),
+        }
+    }
+
+    /// Lays the fields of `over` on those of this tree, field by field; `over` wins, and gives the
+    /// name. A controller of another kind replaces the whole controller.
+    pub fn overlay(&mut self, over: Self) {
+        self.name = over.name;
+        self.motor.overlay(over.motor);
+        self.inverter.overlay(over.inverter);
+        self.controller.overlay_controller(over.controller);
+        self.source.extend(over.source);
+        self.malformed.extend(over.malformed);
+    }
+}
+
+impl Section {
+    /// The first field of the given name.
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// Replaces fields of the same meaning by those of `over`.
+    pub(super) fn overlay(&mut self, over: Self) {
+        self.fields.retain(|field| {
+            !over
+                .fields
+                .iter()
+                .any(|new| super::schema::same_quantity(&new.name, &field.name))
+        });
+        self.fields.extend(over.fields);
+        self.incomplete |= over.incomplete;
+        if over.location.is_some() {
+            self.location = over.location;
+        }
+    }
+
+    /// As [`Section::overlay`], but options of another kind of controller do not survive.
+    pub(super) fn overlay_controller(&mut self, over: Self) {
+        let kind = |section: &Self| match section.field("kind").map(|field| &field.value) {
+            Some(Value::Word(word)) => Some(word.clone()),
+            _ => None,
+        };
+        if kind(&over).is_some() && kind(&over) != kind(self) {
+            self.fields.clear();
+            self.incomplete = false;
+        }
+        self.overlay(over);
+    }
+}
+
+/// Values are equal when they were written alike; unreadable values never are.
+impl PartialEq for Value {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Number(left), Self::Number(right)) => left == right,
+            (Self::Word(left), Self::Word(right)) | (Self::Text(left), Self::Text(right)) => {
+                left == right
+            }
+            (Self::Integers(left), Self::Integers(right)) => left == right,
+            _ => false,
+        }
+    }
+}
+
+/// The value as a user would write it, e.g. `135 mohm per_phase`.
+impl fmt::Display for Value {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(out, "{number}"),
+            Self::Word(word) => out.write_str(word),
+            Self::Text(text) => write!(out, "{text:?}"),
+            Self::Integers(list) => write!(out, "{list:?}"),
+            Self::Malformed(_) => out.write_str("(unreadable)"),
+        }
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.digits)?;
+        if let Some(unit) = self.unit {
+            write!(out, " {}", unit.symbol)?;
+        }
+        for basis in &self.basis {
+            write!(out, " {}", basis.word())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+//! The EMF constant against rated torque, rated current and torque constant.
+//!
+//! All of them say the same thing about a motor. Where they do not, some basis or shape is wrong:
+//! the commonest mistake of this field. The checks try the others and say which would fit.
+
+use super::motor::{Motor, Winding, is_line_to_line, phase_constant};
+use super::reader::Given;
+use crate::diagnostics::{Collector, catalogue};
+use crate::spec::EmfShape;
+use crate::spec::units::Dimension;
+use std::f64::consts::SQRT_2;
+
+/// Data sheets round, and rate torque with iron losses: so much is no contradiction.
+const TOLERANCE: f64 = 0.15;
+
+pub(super) fn check(motor: &Motor, errors: &mut Collector) {
+    let Some(constants) = Constants::of(motor) else {
+        return;
+    };
+    check_rated_torque(motor, &constants, errors);
+    check_torque_constant(motor, &constants, errors);
+}
+
+/// What the EMF constant can be read as.
+struct Constants<'a> {
+    back_emf: &'a Given<'a>,
+    line_to_line: bool,
+    winding: Winding,
+    shape: EmfShape,
+    pole_pairs: u32,
+}
+
+/// One reading: what is changed, and the torque per peak ampere that it gives.
+struct Reading {
+    change: String,
+    quasi_square: f64,
+    sinusoidal: f64,
+}
+
+impl<'a> Constants<'a> {
+    fn of(motor: &'a Motor) -> Option<Self> {
+        // An implausible constant is an error of its own.
+        motor.emf_constant?;
+        let (back_emf, winding) = (motor.back_emf.as_ref()?, motor.winding?);
+        Some(Self {
+            back_emf,
+            line_to_line: is_line_to_line(back_emf, winding),
+            winding,
+            shape: motor.emf_shape?,
+            pole_pairs: motor.pole_pairs?,
+        })
+    }
+
+    fn reading(&self, change: &str, line_to_line: bool, shape: EmfShape, factor: f64) -> Reading {
+        let phase = factor * phase_constant(self.back_emf, line_to_line, shape, self.pole_pairs);
+        Reading {
+            change: change.to_owned(),
+            quasi_square: phase * shape.quasi_square_factor(),
+            sinusoidal: phase * 1.5,
+        }
+    }
+
+    fn stated(&self) -> Reading {
+        self.reading("", self.line_to_line, self.shape, 1.0)
+    }
+
+    /// The other basis, the other shape, rms for peak, and two of them together, in this order:
+    /// a single slip is likelier than two.
+    fn others(&self) -> Vec<Reading> {
+        let basis = !self.line_to_line;
+        let basis_text = if basis {
+            "`back_emf` as `line_to_line`"
+        } else {
+            "`back_emf` as `phase`"
+        };
+        let (shape, shape_text) = match self.shape {
+            EmfShape::Trapezoidal { .. } => (EmfShape::Sinusoidal, "`emf_shape: sinusoidal`"),
+            EmfShape::Sinusoidal => (
+                EmfShape::Trapezoidal {
+                    flat_top_deg: 120.0,
+                },
+                "`emf_shape: trapezoidal`",
+            ),
+        };
+        let rms = "`back_emf` taken as rms";
+        let mut readings = vec![
+            self.reading(shape_text, self.line_to_line, shape, 1.0),
+            self.reading(rms, self.line_to_line, self.shape, SQRT_2),
+            self.reading(
+                &format!("{shape_text} and {rms}"),
+                self.line_to_line,
+                shape,
+                SQRT_2,
+            ),
+        ];
+        // Flux linkages and speed constants say their basis by themselves.
+        if self.back_emf.dimension == Some(Dimension::EmfConstant) && self.winding == Winding::Star
+        {
+            readings.insert(0, self.reading(basis_text, basis, self.shape, 1.0));
+            let both = format!("{basis_text} and {shape_text}");
+            readings.push(self.reading(&both, basis, shape, 1.0));
+            readings.push(self.reading(
+                &format!("{basis_text} and {rms}"),
+                basis,
+                self.shape,
+                SQRT_2,
+            ));
+        }
+        readings
+    }
+}
+
+fn fits(expected: f64, given: f64) -> bool {
+    (expected / given - 1.0).abs() <= TOLERANCE
+}
+
+/// Those readings that fit, single changes first; two changes only where no single one fits.
+fn fitting(candidates: Vec<(String, f64)>, given: f64) -> Vec<(String, f64)> {
+    let (single, double): (Vec<_>, Vec<_>) = candidates
+        .into_iter()
+        .filter(|(_, expected)| fits(*expected, given))
+        .partition(|(change, _)| !change.contains(" and "));
+    if single.is_empty() { double } else { single }
+}
+
+/// Accepted: torque within 15 % of k_t times the current, whether the current is quasi-square or
+/// sinusoidal (of the same peak).
+fn check_rated_torque(motor: &Motor, constants: &Constants, errors: &mut Collector) -> Option<()> {
+    let (torque, current) = (motor.rated_torque.as_ref()?, motor.rated_current.as_ref()?);
+    let stated = constants.stated();
+    let expected = stated.quasi_square * current.si;
+    let sinusoidal_machine = constants.shape == EmfShape::Sinusoidal;
+    if fits(expected, torque.si)
+        || (sinusoidal_machine && fits(stated.sinusoidal * current.si, torque.si))
+    {
+        return Some(());
+    }
+    let mut candidates: Vec<(String, f64)> = constants
+        .others()
+        .into_iter()
+        .map(|reading| (reading.change, reading.quasi_square * current.si))
+        .collect();
+    candidates.insert(
+        0,
+        ("`rated_current` taken as rms".to_owned(), SQRT_2 * expected),
+    );
+    errors.push(catalogue::torque_contradiction(
+        &torque.part,
+        &current.part,
+        &constants.back_emf.part,
+        torque.si,
+        expected,
+        &fitting(candidates, torque.si),
+    ));
+    Some(())
+}
+
+/// Accepted: a torque constant within 15 % of what the EMF constant gives with either shape of
+/// current.
+fn check_torque_constant(
+    motor: &Motor,
+    constants: &Constants,
+    errors: &mut Collector,
+) -> Option<()> {
+    let constant = motor.torque_constant.as_ref()?;
+    let stated = constants.stated();
+    if fits(stated.quasi_square, constant.si) || fits(stated.sinusoidal, constant.si) {
+        return Some(());
+    }
+    let mut candidates: Vec<(String, f64)> = constants
+        .others()
+        .into_iter()
+        .map(|reading| (reading.change, reading.quasi_square))
+        .collect();
+    let rms = "`torque_constant` taken per rms ampere".to_owned();
+    candidates.insert(0, (rms, SQRT_2 * stated.sinusoidal));
+    errors.push(catalogue::torque_constant_contradiction(
+        &constant.part,
+        &constants.back_emf.part,
+        constant.si,
+        stated.quasi_square,
+        stated.sinusoidal,
+        &fitting(candidates, constant.si),
+    ));
+    Some(())
+}

@@ -1,0 +1,385 @@
+//! The inverter's data: bus, timer, converters, currents and speeds.
+
+use super::motor::Motor;
+use super::reader::{Given, Reader};
+use super::relations;
+use crate::controllers::ControllerSpec;
+use crate::controllers::pdcc::Reference;
+use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, engineering, rpm};
+use crate::spec::units::Dimension;
+use crate::spec::{BusSource, HallCapture, InverterSpec};
+
+/// The inverter as far as it could be read.
+pub(super) struct Inverter<'a> {
+    pub v_bus: Option<Given<'a>>,
+    pub bus: Option<BusSource>,
+    /// `f_pwm` or `sampling_time` as written.
+    pub period: Option<Given<'a>>,
+    pub t_s: Option<f64>,
+    pub timer_period: Option<u32>,
+    pub dead_time: Option<Given<'a>>,
+    pub adc: Option<Adc>,
+    pub trip_current: Option<Given<'a>>,
+    pub max_current: Option<Given<'a>>,
+    pub hall_timer_clock: Option<Given<'a>>,
+    /// Whether `hall_timer_clock` was written, readable or not.
+    pub hall_timer_clock_given: bool,
+    pub minimum_speed: Option<Given<'a>>,
+    pub maximum_speed: Option<Given<'a>>,
+    pub stall_timeout: Option<Given<'a>>,
+    pub calibration_log2: u32,
+    pub precharge: Option<Given<'a>>,
+}
+
+/// The phase-current converters.
+#[derive(Clone, Debug)]
+pub(super) struct Adc {
+    pub bits: u32,
+    /// Ampere per count, positive.
+    pub gain: f64,
+    pub inverted: bool,
+    pub offset: u32,
+    /// Greatest current that both signs can show, ampere, a count of slack included.
+    pub reach: f64,
+    /// `adc_range` or `adc_gain` as written.
+    pub part: Part,
+}
+
+/// Pre-charge time where none is given, second.
+const PRECHARGE: f64 = 1e-3;
+
+pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<'a> {
+    reader.require(errors, &["bus_voltage", "adc_bits"]);
+    reader.require_one_of(errors, ["f_pwm", "sampling_time"]);
+    reader.require_one_of(errors, ["timer_clock", "timer_period"]);
+    reader.require_one_of(errors, ["adc_range", "adc_gain"]);
+    let v_bus = reader.plain_quantity(errors, "bus_voltage");
+    let bus = read_bus(reader, v_bus.as_ref(), errors);
+    let f_pwm = reader.plain_quantity(errors, "f_pwm");
+    let sampling_time = reader.plain_quantity(errors, "sampling_time");
+    let t_s = f_pwm
+        .as_ref()
+        .map(|given| 1.0 / given.si)
+        .or(sampling_time.as_ref().map(|given| given.si));
+    let period = f_pwm.or(sampling_time);
+    let timer_period = read_timer_period(reader, period.as_ref(), errors);
+    Inverter {
+        v_bus,
+        bus,
+        period,
+        t_s,
+        timer_period,
+        dead_time: reader.plain_quantity(errors, "dead_time"),
+        adc: read_adc(reader, errors),
+        trip_current: reader.plain_quantity(errors, "trip_current"),
+        max_current: reader.plain_quantity(errors, "max_current"),
+        hall_timer_clock: reader.plain_quantity(errors, "hall_timer_clock"),
+        hall_timer_clock_given: reader.field("hall_timer_clock").is_some(),
+        minimum_speed: reader.plain_quantity(errors, "minimum_speed"),
+        maximum_speed: reader.plain_quantity(errors, "maximum_speed"),
+        stall_timeout: reader.plain_quantity(errors, "stall_timeout"),
+        calibration_log2: read_calibration(reader, errors),
+        precharge: reader.plain_quantity(errors, "precharge"),
+    }
+}
+
+/// Fixed or measured bus; a measured one needs its converter and takes limits.
+fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> Option<BusSource> {
+    const NEEDED: [(&str, &str); 2] = [("bus_adc_bits", "12"), ("bus_adc_range", "80 V")];
+    let adc_bits = reader.integer(errors, "bus_adc_bits");
+    let range = reader.plain_quantity(errors, "bus_adc_range");
+    let min = reader.plain_quantity(errors, "bus_min");
+    let max = reader.plain_quantity(errors, "bus_max");
+    let measured = reader
+        .word(errors, "v_bus", &[("fixed", false), ("measured", true)])
+        .or_else(|| reader.field("v_bus").is_none().then_some(false))?;
+    if !measured {
+        for name in ["bus_adc_bits", "bus_adc_range", "bus_min", "bus_max"] {
+            if let Some(field) = reader.field(name) {
+                let (at, given) = (&field.location, field.value.to_string());
+                errors.push(catalogue::needless_field(
+                    at,
+                    name,
+                    &given,
+                    "v_bus: measured",
+                ));
+            }
+        }
+        return Some(BusSource::Fixed);
+    }
+    for (name, example) in NEEDED {
+        if reader.field(name).is_none() {
+            let at = reader
+                .field("v_bus")
+                .map_or(reader.location(), |field| &field.location);
+            errors.push(catalogue::needed_field(
+                at,
+                "v_bus: measured",
+                name,
+                example,
+            ));
+        }
+    }
+    let (nominal, adc_bits, range) = (v_bus?, adc_bits?, range?);
+    let low = min.map_or(0.7 * nominal.si, |given| given.si);
+    let high = max.map_or(1.3 * nominal.si, |given| given.si);
+    let low_part = reader.part("bus_min", || engineering(low, "V"));
+    let high_part = reader.part("bus_max", || engineering(high, "V"));
+    if low >= nominal.si {
+        errors.push(catalogue::bus_measurement(
+            &low_part,
+            "below",
+            &nominal.part,
+        ));
+    }
+    if high <= nominal.si {
+        errors.push(catalogue::bus_measurement(
+            &high_part,
+            "above",
+            &nominal.part,
+        ));
+    } else if range.si < high {
+        errors.push(catalogue::bus_measurement(
+            &range.part,
+            "at least",
+            &high_part,
+        ));
+    }
+    Some(BusSource::Measured {
+        gain: range.si / f64::from(1_u32 << adc_bits),
+        adc_bits,
+        min: low,
+        max: high,
+    })
+}
+
+/// Counts of the centre-aligned timer: clock/(2 f_pwm), a whole number.
+fn read_timer_period(
+    reader: &Reader,
+    period: Option<&Given>,
+    errors: &mut Collector,
+) -> Option<u32> {
+    let given = reader.integer(errors, "timer_period");
+    let clock = reader.plain_quantity(errors, "timer_clock");
+    if given.is_some() {
+        return given;
+    }
+    let (clock, period) = (clock?, period?);
+    let f_pwm = match period.dimension {
+        Some(Dimension::Frequency) => period.si,
+        _ => 1.0 / period.si,
+    };
+    let counts = clock.si / (2.0 * f_pwm);
+    if is_whole(counts) && (100.0..=65535.0).contains(&counts.round()) {
+        return Some(counts.round() as u32);
+    }
+    errors.push(catalogue::timer_period(
+        &clock.part,
+        &period.part,
+        counts,
+        clock.si,
+        f_pwm,
+    ));
+    None
+}
+
+/// Whole but for the rounding of decimal units.
+fn is_whole(value: f64) -> bool {
+    (value - value.round()).abs() <= 1e-6 * value.abs().max(1.0)
+}
+
+fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
+    let bits = reader.integer(errors, "adc_bits");
+    let range = reader.plain_quantity(errors, "adc_range");
+    let gain = reader.plain_quantity(errors, "adc_gain");
+    let offset = reader.integer(errors, "adc_offset");
+    let inverted = reader.word(errors, "adc_inverted", &[("off", false), ("on", true)]);
+    let bits = bits?;
+    let full = 1_u32 << bits;
+    let offset = offset.unwrap_or(full / 2);
+    if !(full / 4..=full - full / 4).contains(&offset) {
+        let part = reader.part("adc_offset", || offset.to_string());
+        errors.push(catalogue::adc_offset(&part, full));
+        return None;
+    }
+    let part = range
+        .as_ref()
+        .or(gain.as_ref())
+        .map(|given| given.part.clone())?;
+    let gain = match range {
+        Some(range) => 2.0 * range.si / f64::from(full),
+        None => gain?.si,
+    };
+    let reach = gain * f64::from(offset.min(full - offset));
+    Some(Adc {
+        bits,
+        gain,
+        inverted: inverted.unwrap_or(false),
+        offset,
+        reach,
+        part,
+    })
+}
+
+fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
+    let samples = reader.integer(errors, "calibration_samples").unwrap_or(256);
+    if !samples.is_power_of_two() {
+        let part = reader.part("calibration_samples", String::new);
+        let above = samples.next_power_of_two();
+        errors.push(catalogue::not_a_power_of_two(
+            &part.location,
+            "calibration_samples",
+            &part.given,
+            above / 2,
+            above,
+        ));
+    }
+    samples.ilog2()
+}
+
+/// Fills in the defaults that depend on motor and controller and checks what follows from them.
+/// None if something is missing or in error.
+pub(super) fn finish(
+    reader: &Reader,
+    inverter: &Inverter,
+    motor: &Motor,
+    capture: Option<HallCapture>,
+    controller: Option<&ControllerSpec>,
+    errors: &mut Collector,
+) -> Option<InverterSpec> {
+    let adc = inverter.adc.as_ref();
+    let rated = motor.rated_current.as_ref();
+    let currents =
+        adc.and_then(|adc| finish_currents(reader, inverter, adc, motor, controller, errors));
+    let speeds = motor.rated_speed.as_ref().map(|rated| {
+        let minimum = inverter
+            .minimum_speed
+            .as_ref()
+            .map_or(0.02 * rated.si, |given| given.si);
+        let maximum = inverter
+            .maximum_speed
+            .as_ref()
+            .map_or(1.5 * rated.si, |given| given.si);
+        let minimum_part = reader.part("minimum_speed", || rpm(minimum));
+        let maximum_part = reader.part("maximum_speed", || rpm(maximum));
+        relations::check_speeds(
+            inverter,
+            motor,
+            capture,
+            (minimum, &minimum_part),
+            (maximum, &maximum_part),
+            errors,
+        );
+        (minimum, maximum)
+    });
+    let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
+        (inverter.t_s?, adc?, currents?, speeds?);
+    rated?;
+    let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
+    if let Some(given) = &inverter.dead_time
+        && dead_time > 0.1 * t_s * (1.0 + 1e-9)
+    {
+        errors.push(catalogue::dead_time(&given.part, t_s));
+    }
+    Some(InverterSpec {
+        v_bus: inverter.v_bus.as_ref()?.si,
+        bus: inverter.bus?,
+        t_s,
+        timer_period: inverter.timer_period?,
+        dead_time,
+        adc_bits: adc.bits,
+        adc_gain: if adc.inverted { -adc.gain } else { adc.gain },
+        adc_offset: adc.offset,
+        trip_current,
+        max_current,
+        hall_capture: capture?,
+        minimum_speed,
+        maximum_speed,
+        stall_periods: inverter
+            .stall_timeout
+            .as_ref()
+            .map_or(0, |given| periods(given.si, t_s)),
+        calibration_log2: inverter.calibration_log2,
+        precharge_periods: finish_precharge(reader, inverter, t_s, errors),
+    })
+}
+
+/// Whole periods that cover a time; a time that is whole but for its rounding is that number.
+fn periods(time: f64, t_s: f64) -> u32 {
+    (time / t_s - 1e-6).ceil().max(0.0) as u32
+}
+
+fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {
+    let time = inverter
+        .precharge
+        .as_ref()
+        .map_or(PRECHARGE, |given| given.si);
+    let count = periods(time, t_s);
+    if count > 65535 {
+        let part = reader.part("precharge", || engineering(time, "s"));
+        let longest = engineering(65535.0 * t_s, "s");
+        errors.push(catalogue::out_of_range(
+            &part.location,
+            "precharge",
+            &part.given,
+            "0 s",
+            &longest,
+        ));
+    }
+    count
+}
+
+/// Trip current and largest set-point: by default 95 % of the converters' range and the rated
+/// current.
+fn finish_currents(
+    reader: &Reader,
+    inverter: &Inverter,
+    adc: &Adc,
+    motor: &Motor,
+    controller: Option<&ControllerSpec>,
+    errors: &mut Collector,
+) -> Option<(f64, f64)> {
+    let trip = inverter
+        .trip_current
+        .as_ref()
+        .map_or(0.95 * adc.reach, |given| given.si);
+    let trip_part = reader.part("trip_current", || engineering(trip, "A"));
+    // The topmost count is the last one that the converter can show.
+    let shown = adc.reach - adc.gain;
+    if trip > shown * (1.0 + 1e-9) {
+        errors.push(catalogue::trip_above_adc_range(
+            &trip_part, &adc.part, shown,
+        ));
+        return None;
+    }
+    let rated = motor.rated_current.as_ref()?;
+    if adc.reach < rated.si {
+        errors.push(catalogue::adc_range_too_small(
+            &adc.part,
+            &rated.part,
+            adc.reach,
+        ));
+        return None;
+    }
+    let max = inverter
+        .max_current
+        .as_ref()
+        .map_or(rated.si, |given| given.si);
+    let max_part = reader.part("max_current", || engineering(max, "A"));
+    let peak = max
+        * match (controller, motor.emf_shape) {
+            (Some(ControllerSpec::Pdcc(options)), Some(shape))
+                if options.reference == Reference::Proportional =>
+            {
+                shape.proportional_peak()
+            }
+            _ => 1.0,
+        };
+    if peak > trip * (1.0 + 1e-9) {
+        errors.push(catalogue::max_current_above_trip(
+            &max_part, &trip_part, peak,
+        ));
+    }
+    Some((trip, max))
+}

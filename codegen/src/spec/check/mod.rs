@@ -1,0 +1,78 @@
+//! The first barrier: from what was written to a [`Spec`] in SI units, or all errors at once.
+//!
+//! Single fields first (`reader`), then motor, inverter and controller each by itself, then what
+//! must fit together (`relations`, `consistency`). A value in error never causes a second error.
+
+mod consistency;
+mod controller;
+mod inverter;
+mod motor;
+mod origins;
+pub(crate) mod reader;
+mod relations;
+
+pub use origins::{Origin, Origins};
+
+use super::{Spec, SpecAst, schema};
+use crate::diagnostics::{Collector, Diagnostics, catalogue};
+use reader::Reader;
+
+/// Checks a specification and fills in every default.
+///
+/// # Errors
+/// Everything that is wrong with it, at the places where it was written.
+pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
+    let mut errors = Collector::new();
+    errors.extend(ast.malformed.iter().cloned());
+    check_name(ast, &mut errors);
+
+    let fallback = &ast.name.location;
+    let motor_reader = Reader::new("motor", &ast.motor, schema::MOTOR, fallback);
+    let inverter_reader = Reader::new("inverter", &ast.inverter, schema::INVERTER, fallback);
+    motor_reader.check_fields(&mut errors, |_, _| false);
+    let motor = motor::read(&motor_reader, &mut errors);
+    inverter_reader.check_fields(&mut errors, |_, _| false);
+    let inverter = inverter::read(&inverter_reader, &mut errors);
+    let (controller, capture) =
+        controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
+
+    consistency::check(&motor, &mut errors);
+    relations::check(&motor_reader, &motor, &inverter, &mut errors);
+    let finished = inverter::finish(
+        &inverter_reader,
+        &inverter,
+        &motor,
+        capture,
+        controller.as_ref(),
+        &mut errors,
+    );
+
+    let origins = Origins::new(ast);
+    match (motor.finish(), finished, controller) {
+        (Some(motor), Some(inverter), Some(controller)) => {
+            let name = ast.name.text.clone();
+            errors.into_result((
+                Spec {
+                    name,
+                    motor,
+                    inverter,
+                    controller,
+                },
+                origins,
+            ))
+        }
+        _ => Err(errors.finish().unwrap_or_else(|| {
+            catalogue::internal(fallback, "a specification without error is incomplete").into()
+        })),
+    }
+}
+
+fn check_name(ast: &SpecAst, errors: &mut Collector) {
+    let name = &ast.name.text;
+    let is_type_name = name.starts_with(|c: char| c.is_ascii_uppercase())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && name != "Self";
+    if !is_type_name {
+        errors.push(catalogue::invalid_name(&ast.name.location, name));
+    }
+}

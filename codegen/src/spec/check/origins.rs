@@ -1,0 +1,78 @@
+//! Where the values of a checked specification were written, for the errors of later stages.
+
+use crate::diagnostics::Location;
+use crate::spec::ast::{Section, SpecAst};
+use std::collections::BTreeMap;
+
+/// Places and texts of all fields, by paths such as `motor.inductance_tolerance`.
+#[derive(Clone, Debug)]
+pub struct Origins {
+    name: Location,
+    sections: BTreeMap<&'static str, Location>,
+    fields: BTreeMap<String, Origin>,
+}
+
+/// Where and how a field was written.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// The value as written, e.g. `10 %`.
+    pub given: String,
+    /// Where it was written.
+    pub location: Location,
+    /// Why it was assumed, where the data sheet lacks it.
+    pub assumed: Option<String>,
+}
+
+impl Origins {
+    pub(super) fn new(ast: &SpecAst) -> Self {
+        let mut origins = Self {
+            name: ast.name.location.clone(),
+            sections: BTreeMap::new(),
+            fields: BTreeMap::new(),
+        };
+        origins.take("motor", &ast.motor);
+        origins.take("inverter", &ast.inverter);
+        origins.take("controller", &ast.controller);
+        origins
+    }
+
+    fn take(&mut self, name: &'static str, section: &Section) {
+        if let Some(location) = &section.location {
+            self.sections.insert(name, location.clone());
+        }
+        for field in &section.fields {
+            let origin = Origin {
+                given: field.value.to_string(),
+                location: field.location.clone(),
+                assumed: field.assumed.clone(),
+            };
+            self.fields.insert(format!("{name}.{}", field.name), origin);
+        }
+    }
+
+    /// Where the field of `path` was written; for a default, where its section or the drive's
+    /// name stands.
+    pub fn at(&self, path: &str) -> &Location {
+        let section = path.split('.').next().unwrap_or_default();
+        self.fields
+            .get(path)
+            .map(|origin| &origin.location)
+            .or_else(|| self.sections.get(section))
+            .unwrap_or(&self.name)
+    }
+
+    /// The field's value as written, or `default` marked as one.
+    pub fn given(&self, path: &str, default: &str) -> String {
+        self.fields.get(path).map_or_else(
+            || format!("{default} (default)"),
+            |origin| origin.given.clone(),
+        )
+    }
+
+    /// Every field that was written, by path.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Origin)> {
+        self.fields
+            .iter()
+            .map(|(path, origin)| (path.as_str(), origin))
+    }
+}

@@ -1,0 +1,448 @@
+//! Typed access to the fields of a section: reports what is wrong with a single field, and hands
+//! out values in SI units.
+
+use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, Location, engineering, percent, rpm, significant};
+use crate::spec::ast::{Basis, Field, Number, Section, Value};
+use crate::spec::schema::{self, Kind, Rule};
+use crate::spec::units::Dimension;
+
+/// One section's fields under their rules.
+pub(crate) struct Reader<'a> {
+    name: &'static str,
+    section: &'a Section,
+    rules: &'static [Rule],
+    /// Where to report what is missing.
+    at: Location,
+}
+
+/// A number that was read.
+#[derive(Clone, Debug)]
+pub(crate) struct Given<'a> {
+    /// The value in SI units.
+    pub si: f64,
+    /// The unit's quantity; none for plain numbers.
+    pub dimension: Option<Dimension>,
+    /// Basis words.
+    pub basis: &'a [Basis],
+    /// The number as written.
+    pub number: &'a Number,
+    /// Name, text and place for messages.
+    pub part: Part,
+}
+
+impl<'a> Reader<'a> {
+    /// `fallback`: where to report a missing section.
+    pub fn new(
+        name: &'static str,
+        section: &'a Section,
+        rules: &'static [Rule],
+        fallback: &Location,
+    ) -> Self {
+        let at = section.location.as_ref().unwrap_or(fallback).clone();
+        Self {
+            name,
+            section,
+            rules,
+            at,
+        }
+    }
+
+    /// Where the section begins.
+    pub fn location(&self) -> &Location {
+        &self.at
+    }
+
+    /// Reports a missing section, unknown and repeated fields, and unreadable values.
+    ///
+    /// `elsewhere` reports a field that is known to others; it returns whether it did.
+    pub fn check_fields(
+        &self,
+        errors: &mut Collector,
+        elsewhere: impl Fn(&Field, &mut Collector) -> bool,
+    ) {
+        if self.section.location.is_none() {
+            errors.push(catalogue::missing_section(&self.at, self.name));
+        }
+        let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
+        for (index, field) in self.section.fields.iter().enumerate() {
+            let at = &field.name_location;
+            if let Some(first) = self.section.fields[..index]
+                .iter()
+                .find(|f| f.name == field.name)
+            {
+                errors.push(catalogue::duplicate_field(
+                    at,
+                    &first.name_location,
+                    &field.name,
+                ));
+            } else if known.contains(&field.name.as_str()) {
+                if let Value::Malformed(error) = &field.value {
+                    errors.push((**error).clone());
+                }
+            } else if let Some(right) = schema::section_of(&field.name) {
+                errors.push(catalogue::misplaced_field(
+                    at,
+                    self.name,
+                    &field.name,
+                    right,
+                ));
+            } else if !elsewhere(field, errors) {
+                errors.push(catalogue::unknown_field(at, self.name, &field.name, &known));
+            }
+        }
+    }
+
+    /// Reports each field that is missing, if the section is there at all.
+    pub fn require(&self, errors: &mut Collector, names: &[&str]) {
+        for name in names {
+            if self.may_lack(name) {
+                errors.push(catalogue::missing_field(
+                    &self.at,
+                    self.name,
+                    name,
+                    schema::example(name),
+                ));
+            }
+        }
+    }
+
+    /// Reports when neither or both of two fields are given.
+    pub fn require_one_of(&self, errors: &mut Collector, names: [&str; 2]) {
+        match names.map(|name| self.section.field(name)) {
+            [Some(one), Some(other)] => errors.push(catalogue::exclusive_fields(
+                &other.name_location,
+                &other.name,
+                &one.name_location,
+                &one.name,
+            )),
+            [None, None] if self.may_lack(names[0]) => errors.push(catalogue::missing_alternative(
+                &self.at,
+                self.name,
+                names,
+                names.map(schema::example),
+            )),
+            _ => {}
+        }
+    }
+
+    fn may_lack(&self, name: &str) -> bool {
+        self.section.location.is_some()
+            && !self.section.incomplete
+            && self.section.field(name).is_none()
+    }
+
+    /// The field of this name, if it was written.
+    pub fn field(&self, name: &str) -> Option<&'a Field> {
+        self.section.field(name)
+    }
+
+    /// How a field takes part in a message: as written, or as the default says.
+    pub fn part(&self, name: &'static str, default: impl FnOnce() -> String) -> Part {
+        match self.field(name) {
+            Some(field) => Part {
+                field: name,
+                given: field.value.to_string(),
+                location: field.location.clone(),
+            },
+            None => Part {
+                field: name,
+                given: format!("{} (default)", default()),
+                location: self.at.clone(),
+            },
+        }
+    }
+
+    fn rule(&self, name: &str) -> Option<(&'a Field, &'static Rule)> {
+        let field = self.field(name)?;
+        let rule = self.rules.iter().find(|rule| rule.name == name)?;
+        Some((field, rule))
+    }
+
+    /// The number of a field that takes one.
+    fn number(&self, errors: &mut Collector, name: &'static str) -> Option<(Given<'a>, Kind)> {
+        let (field, rule) = self.rule(name)?;
+        let wanted = match rule.kind {
+            Kind::Quantity { .. } => "a number with a unit",
+            Kind::Plain { .. } => "a number",
+            Kind::Integer { .. } => "a whole number",
+            _ => return None,
+        };
+        match &field.value {
+            Value::Number(number) => {
+                let part = Part {
+                    field: name,
+                    given: number.to_string(),
+                    location: field.location.clone(),
+                };
+                let given = Given {
+                    si: number.si(),
+                    dimension: number.unit.map(|unit| unit.dimension),
+                    basis: &number.basis,
+                    number,
+                    part,
+                };
+                Some((given, rule.kind))
+            }
+            Value::Malformed(_) => None,
+            other => {
+                let given = other.to_string();
+                let error =
+                    catalogue::wrong_kind(&field.location, name, &given, wanted, rule.example);
+                errors.push(error);
+                None
+            }
+        }
+    }
+
+    /// A number with a unit, in SI, within its limits.
+    pub fn quantity(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
+        let (given, kind) = self.number(errors, name)?;
+        let Kind::Quantity {
+            dimensions,
+            low,
+            high,
+        } = kind
+        else {
+            return None;
+        };
+        let (at, text, example) = (
+            &given.part.location,
+            &given.part.given,
+            schema::example(name),
+        );
+        let Some(dimension) = given.dimension else {
+            errors.push(catalogue::missing_unit(at, name, text, example));
+            return None;
+        };
+        if !dimensions.contains(&dimension) {
+            let (got, wanted) = (dimension.name(), dimensions[0].name());
+            errors.push(catalogue::wrong_dimension(
+                at, name, text, got, wanted, example,
+            ));
+            return None;
+        }
+        self.within(
+            errors,
+            &given,
+            [low, high],
+            [
+                quantity_text(low, dimension),
+                quantity_text(high, dimension),
+            ],
+        )
+        .then_some(given)
+    }
+
+    /// A quantity without basis words.
+    pub fn plain_quantity(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
+        let given = self.quantity(errors, name)?;
+        self.refuse_basis(errors, &given, "remove the word")
+            .then_some(given)
+    }
+
+    /// A time or a number of control periods (bare or with its unit), not yet limited.
+    pub fn timespan(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
+        let (given, _) = self.number(errors, name)?;
+        let (at, text) = (&given.part.location, &given.part.given);
+        if let Some(dimension) = given.dimension
+            && !matches!(dimension, Dimension::Time | Dimension::Periods)
+        {
+            let wanted = "a time or a number of periods";
+            let (got, example) = (dimension.name(), schema::example(name));
+            errors.push(catalogue::wrong_dimension(
+                at, name, text, got, wanted, example,
+            ));
+            return None;
+        }
+        self.refuse_basis(errors, &given, "remove the word")
+            .then_some(given)
+    }
+
+    /// Reports basis words where none can be; returns whether there are none.
+    pub fn refuse_basis(&self, errors: &mut Collector, given: &Given, remedy: &str) -> bool {
+        if let Some(basis) = given.basis.first() {
+            let (at, text) = (&given.part.location, &given.part.given);
+            errors.push(catalogue::wrong_basis(
+                at,
+                given.part.field,
+                text,
+                basis.word(),
+                remedy,
+            ));
+        }
+        given.basis.is_empty()
+    }
+
+    /// A number without unit, within its limits.
+    pub fn plain(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
+        let (given, kind) = self.number(errors, name)?;
+        let Kind::Plain { low, high } = kind else {
+            return None;
+        };
+        (self.refuse_unit(errors, &given)
+            && self.within(
+                errors,
+                &given,
+                [low, high],
+                [significant(low), significant(high)],
+            ))
+        .then_some(given)
+    }
+
+    /// A whole number without unit, within its limits.
+    pub fn integer(&self, errors: &mut Collector, name: &'static str) -> Option<u32> {
+        let (given, kind) = self.number(errors, name)?;
+        let Kind::Integer { low, high } = kind else {
+            return None;
+        };
+        if !self.refuse_unit(errors, &given) {
+            return None;
+        }
+        if given.si.fract() != 0.0 {
+            let (at, text, example) = (
+                &given.part.location,
+                &given.part.given,
+                schema::example(name),
+            );
+            errors.push(catalogue::wrong_kind(
+                at,
+                name,
+                text,
+                "a whole number",
+                example,
+            ));
+            return None;
+        }
+        let limits = [f64::from(low), f64::from(high)];
+        self.within(errors, &given, limits, [low.to_string(), high.to_string()])
+            .then_some(given.si as u32)
+    }
+
+    fn refuse_unit(&self, errors: &mut Collector, given: &Given) -> bool {
+        let plain = given.dimension.is_none() && given.basis.is_empty();
+        if !plain {
+            let (at, text) = (&given.part.location, &given.part.given);
+            let digits = &given.number.digits;
+            errors.push(catalogue::unwanted_unit(at, given.part.field, text, digits));
+        }
+        plain
+    }
+
+    fn within(
+        &self,
+        errors: &mut Collector,
+        given: &Given,
+        [low, high]: [f64; 2],
+        [low_text, high_text]: [String; 2],
+    ) -> bool {
+        // A decimal limit and the same decimal value may differ in the last bit.
+        let slack = 1e-9;
+        let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
+        if given.si < 0.0 || (given.si == 0.0 && low > 0.0) {
+            // Limits that are only set to refuse zero are no help.
+            let bounded = high < f64::MAX;
+            let error = if low > 0.0 && bounded {
+                catalogue::not_positive(at, name, text, &low_text, &high_text)
+            } else if bounded {
+                catalogue::out_of_range(at, name, text, &low_text, &high_text)
+            } else {
+                catalogue::not_above_zero(at, name, text, schema::example(name))
+            };
+            errors.push(error);
+            return false;
+        }
+        let inside = given.si >= low * (1.0 - slack) && given.si <= high * (1.0 + slack);
+        if !inside {
+            errors.push(catalogue::out_of_range(
+                at, name, text, &low_text, &high_text,
+            ));
+        }
+        inside
+    }
+
+    /// One of some words.
+    pub fn word<T: Copy>(
+        &self,
+        errors: &mut Collector,
+        name: &'static str,
+        choices: &[(&str, T)],
+    ) -> Option<T> {
+        let (field, _) = self.rule(name)?;
+        let given = match &field.value {
+            Value::Malformed(_) => return None,
+            Value::Word(word) => word.clone(),
+            other => other.to_string(),
+        };
+        let found = choices
+            .iter()
+            .find(|(word, _)| *word == given)
+            .map(|(_, choice)| *choice);
+        if found.is_none() {
+            let known: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
+            errors.push(catalogue::unknown_word(
+                &field.location,
+                name,
+                &given,
+                &known,
+            ));
+        }
+        found
+    }
+
+    /// A list of integers.
+    pub fn integers(
+        &self,
+        errors: &mut Collector,
+        name: &'static str,
+    ) -> Option<(&'a [i64], Part)> {
+        let (field, rule) = self.rule(name)?;
+        let part = Part {
+            field: name,
+            given: field.value.to_string(),
+            location: field.location.clone(),
+        };
+        match &field.value {
+            Value::Integers(list) => Some((list, part)),
+            Value::Malformed(_) => None,
+            _ => {
+                let wanted = "a list of whole numbers";
+                let error =
+                    catalogue::wrong_kind(&part.location, name, &part.given, wanted, rule.example);
+                errors.push(error);
+                None
+            }
+        }
+    }
+
+    /// Free text.
+    pub fn text(&self, name: &str) -> Option<&'a str> {
+        match &self.field(name)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+/// A limit as it is shown: in the unit that users of the field think in.
+fn quantity_text(si: f64, dimension: Dimension) -> String {
+    match dimension {
+        Dimension::Resistance => engineering(si, "ohm"),
+        Dimension::Inductance => engineering(si, "H"),
+        Dimension::Current => engineering(si, "A"),
+        Dimension::Voltage => engineering(si, "V"),
+        Dimension::Time => engineering(si, "s"),
+        Dimension::Frequency => engineering(si, "Hz"),
+        Dimension::Speed => rpm(si),
+        Dimension::EmfConstant => engineering(si, "V/(rad/s)"),
+        Dimension::SpeedConstant => engineering(si, "(rad/s)/V"),
+        Dimension::FluxLinkage => engineering(si, "Wb"),
+        Dimension::Torque => engineering(si, "Nm"),
+        Dimension::TorqueConstant => engineering(si, "Nm/A"),
+        Dimension::Inertia => format!("{} kg m2", significant(si)),
+        Dimension::Angle => format!("{} deg", significant(si)),
+        Dimension::Ratio => percent(si),
+        Dimension::CurrentPerCount => engineering(si, "A/count"),
+        Dimension::Periods => format!("{} periods", significant(si)),
+    }
+}

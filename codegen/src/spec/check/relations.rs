@@ -1,0 +1,121 @@
+//! Motor and inverter together: control period, bus voltage, speeds.
+
+use super::inverter::Inverter;
+use super::motor::Motor;
+use super::reader::Reader;
+use crate::diagnostics::Collector;
+use crate::diagnostics::catalogue::{self, Part};
+use crate::spec::HallCapture;
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// Greatest R Ts/L: beyond it the current decays within a period and prediction is pointless.
+const GREATEST_DECAY: f64 = 0.5;
+
+/// Greatest ticks of the Hall timer in 60 electrical degrees; it counts in 16 bits.
+const GREATEST_AGE: f64 = 65_000.0;
+
+/// Least control periods in an electrical turn, one per sector.
+const LEAST_PERIODS: f64 = 6.0;
+
+pub(super) fn check(
+    motor_reader: &Reader,
+    motor: &Motor,
+    inverter: &Inverter,
+    errors: &mut Collector,
+) {
+    check_period(motor_reader, motor, inverter, errors);
+    check_bus(motor, inverter, errors);
+}
+
+/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
+fn check_period(
+    reader: &Reader,
+    motor: &Motor,
+    inverter: &Inverter,
+    errors: &mut Collector,
+) -> Option<()> {
+    let (period, t_s) = (inverter.period.as_ref()?, inverter.t_s?);
+    let time_constant = motor.inductance? / motor.resistance?;
+    if t_s / time_constant > GREATEST_DECAY * (1.0 + 1e-9) {
+        let resistance = reader.part("resistance", String::new);
+        let inductance = reader.part("inductance", String::new);
+        errors.push(catalogue::period_too_long(
+            &period.part,
+            &resistance,
+            &inductance,
+            t_s,
+            time_constant,
+        ));
+    }
+    Some(())
+}
+
+/// Accepted: a line-to-line EMF at rated speed below the bus voltage, however little is left to
+/// drive the current.
+fn check_bus(motor: &Motor, inverter: &Inverter, errors: &mut Collector) -> Option<()> {
+    let (bus, speed, back_emf) = (
+        inverter.v_bus.as_ref()?,
+        motor.rated_speed.as_ref()?,
+        motor.back_emf.as_ref()?,
+    );
+    let line_to_line = motor.emf_constant? * motor.emf_shape?.line_to_line_peak();
+    let emf = line_to_line * speed.si;
+    if emf > bus.si {
+        let drop = 2.0 * motor.resistance? * motor.rated_current.as_ref()?.si;
+        let reachable = bus.si / line_to_line;
+        errors.push(catalogue::bus_too_low(
+            &bus.part,
+            &speed.part,
+            &back_emf.part,
+            emf,
+            drop,
+            reachable,
+        ));
+    }
+    Some(())
+}
+
+/// Least, rated and greatest speed in this order, each of them countable.
+pub(super) fn check_speeds(
+    inverter: &Inverter,
+    motor: &Motor,
+    capture: Option<HallCapture>,
+    (minimum, minimum_part): (f64, &Part),
+    (maximum, maximum_part): (f64, &Part),
+    errors: &mut Collector,
+) -> Option<()> {
+    let rated = motor.rated_speed.as_ref()?;
+    if minimum >= rated.si {
+        errors.push(catalogue::speed_order(minimum_part, &rated.part));
+        return None;
+    }
+    if maximum < rated.si * (1.0 - 1e-9) {
+        errors.push(catalogue::speed_order(&rated.part, maximum_part));
+        return None;
+    }
+    let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
+    let pole_pairs = f64::from(motor.pole_pairs?);
+    let periods = TAU / (maximum * pole_pairs * t_s);
+    if periods < LEAST_PERIODS * (1.0 - 1e-9) {
+        let fastest = maximum * periods / LEAST_PERIODS;
+        let f_pwm = LEAST_PERIODS / (periods * t_s);
+        errors.push(catalogue::too_few_periods(
+            maximum_part,
+            &period.part,
+            periods,
+            fastest,
+            f_pwm,
+        ));
+    }
+    let per_second = f64::from(capture?.ticks_per_period()) / t_s;
+    let ticks = per_second * FRAC_PI_3 / (minimum * pole_pairs);
+    if ticks > GREATEST_AGE {
+        let least = minimum * ticks / GREATEST_AGE;
+        let clock = match capture? {
+            HallCapture::Sampled => None,
+            HallCapture::Timer { .. } => Some(per_second * GREATEST_AGE / ticks),
+        };
+        errors.push(catalogue::minimum_speed(minimum_part, ticks, least, clock));
+    }
+    Some(())
+}

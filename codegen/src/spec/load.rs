@@ -1,0 +1,84 @@
+//! Reading motor files.
+
+use super::SpecAst;
+use super::toml_syntax::parse_toml;
+use crate::diagnostics::{Diagnostics, Location, catalogue};
+use std::path::Path;
+
+/// Reads and parses the motor file `relative` under `root` (the crate's folder).
+///
+/// Messages name the relative path only. `at`: where the path was written.
+///
+/// # Errors
+/// If the path is absolute, the file cannot be read or is no TOML.
+pub fn load_motor_file(root: &Path, relative: &str, at: &Location) -> Result<SpecAst, Diagnostics> {
+    if Path::new(relative).has_root() || relative.contains(':') {
+        return Err(catalogue::absolute_motor_file(at).into());
+    }
+    let text = std::fs::read_to_string(root.join(relative)).map_err(|error| {
+        catalogue::unreadable_motor_file(at, relative, &error.kind().to_string())
+    })?;
+    parse_toml(&text, relative)
+}
+
+/// Name of a type for a file without a name of its own: `motors/rear-hub.toml` is `RearHub`.
+pub(super) fn type_name(file_name: &str) -> String {
+    let stem = Path::new(file_name)
+        .file_stem()
+        .and_then(|stem| stem.to_str())
+        .unwrap_or_default();
+    let mut name: String = stem
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .flat_map(|word| {
+            let mut letters = word.chars();
+            letters
+                .next()
+                .map(|first| first.to_ascii_uppercase())
+                .into_iter()
+                .chain(letters)
+        })
+        .collect();
+    if !name.starts_with(|c: char| c.is_ascii_uppercase()) {
+        name.insert_str(0, "Motor");
+    }
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{load_motor_file, type_name};
+    use crate::diagnostics::Location;
+    use std::path::Path;
+
+    #[test]
+    fn names_of_types() {
+        assert_eq!(
+            type_name("targets/motors/trivedi-keshri-660w.toml"),
+            "TrivediKeshri660w"
+        );
+        assert_eq!(type_name("5sme.toml"), "Motor5sme");
+    }
+
+    #[test]
+    fn no_absolute_path_is_read_or_told() {
+        let at = Location::File {
+            file: "macro".into(),
+            line: 1,
+            column: 1,
+        };
+        let error = load_motor_file(Path::new("/nowhere"), "/etc/hub.toml", &at)
+            .expect_err("is absolute")
+            .to_string();
+        assert!(
+            error.contains("absolute") && !error.contains("/etc"),
+            "{error}"
+        );
+        let error = load_motor_file(Path::new("/nowhere"), "hub.toml", &at)
+            .expect_err("does not exist")
+            .to_string();
+        assert_eq!(
+            error,
+            "macro:1:1: error[HX0108]: `motor`: the file \"hub.toml\" cannot be read (entity not found); give a path relative to the crate's Cargo.toml"
+        );
+    }
+}

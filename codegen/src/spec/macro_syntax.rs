@@ -1,0 +1,367 @@
+//! Front end: the tokens of `controller! { … }` to a [`SpecAst`].
+//!
+//! Works on token trees, comma by comma, so that one unreadable entry costs only itself; `syn`
+//! reads attributes, visibility and literals.
+
+use super::ast::{Field, Name, Section, SpecAst, Value};
+use super::value::{parse_value, plain_number};
+use super::{load_motor_file, schema};
+use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use quote::ToTokens;
+use std::path::Path;
+use syn::parse::{ParseStream, Parser};
+
+/// A macro call: the type to emit and its specification.
+#[derive(Clone, Debug)]
+pub struct MacroInput {
+    /// Doc comments and other attributes of the type.
+    pub attributes: Vec<syn::Attribute>,
+    /// Visibility of the type.
+    pub visibility: syn::Visibility,
+    /// Name of the type.
+    pub name: syn::Ident,
+    /// The motor file, if the call names one.
+    pub motor_file: Option<MotorFile>,
+    /// The fields of the call alone.
+    pub ast: SpecAst,
+}
+
+/// `motor: "motors/hub.toml"`.
+#[derive(Clone, Debug)]
+pub struct MotorFile {
+    /// The path literal, relative to the crate's root. For `include_str!` tracking.
+    pub path: syn::LitStr,
+}
+
+impl MacroInput {
+    /// The whole specification: the motor file under `root` (the crate's folder), if one is named,
+    /// with the call's own fields laid over it.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is no TOML.
+    pub fn load(&self, root: &Path) -> Result<SpecAst, Diagnostics> {
+        let Some(file) = &self.motor_file else {
+            return Ok(self.ast.clone());
+        };
+        let location = Location::Macro(file.path.to_token_stream());
+        let mut ast = load_motor_file(root, &file.path.value(), &location)?;
+        ast.overlay(self.ast.clone());
+        Ok(ast)
+    }
+
+    /// Where errors of a motor file are marked: the path literal, else the type's name.
+    pub fn anchor(&self) -> TokenStream {
+        match &self.motor_file {
+            Some(file) => file.path.to_token_stream(),
+            None => self.name.to_token_stream(),
+        }
+    }
+}
+
+/// Parses the tokens of a macro call.
+///
+/// # Errors
+/// If the call has not the shape `pub Name { … }`. Errors inside the braces are kept in the tree
+/// and come with [`super::check`].
+pub fn parse_macro(tokens: TokenStream) -> Result<MacroInput, Diagnostics> {
+    let (attributes, visibility, name, body) = header
+        .parse2(tokens)
+        .map_err(|error| catalogue::syntax(&location_of(&error), &error.to_string()))?;
+    let location = Location::Macro(name.to_token_stream());
+    let mut input = MacroInput {
+        attributes,
+        visibility,
+        motor_file: None,
+        ast: SpecAst::new(Name {
+            text: name.to_string(),
+            location,
+        }),
+        name,
+    };
+    for entry in entries(body) {
+        if let Err(error) = read_section(&mut input, &entry) {
+            input.ast.malformed.push(error);
+        }
+    }
+    Ok(input)
+}
+
+type Header = (
+    Vec<syn::Attribute>,
+    syn::Visibility,
+    syn::Ident,
+    TokenStream,
+);
+
+fn header(input: ParseStream) -> syn::Result<Header> {
+    let attributes = input.call(syn::Attribute::parse_outer)?;
+    let visibility = input.parse()?;
+    let name: syn::Ident = input.parse().map_err(|error| {
+        syn::Error::new(
+            error.span(),
+            "expected the name of the type to make, as in `pub HubDrive { motor: { … }, … }`",
+        )
+    })?;
+    let body: proc_macro2::Group = input.parse().map_err(|error| {
+        syn::Error::new(
+            error.span(),
+            "expected braces with `motor`, `inverter` and `controller`",
+        )
+    })?;
+    if body.delimiter() != Delimiter::Brace {
+        return Err(syn::Error::new(
+            body.span_open(),
+            "expected braces with `motor`, `inverter` and `controller`",
+        ));
+    }
+    if !input.is_empty() {
+        return Err(
+            input.error("nothing may follow the type's braces; write one macro call per drive")
+        );
+    }
+    Ok((attributes, visibility, name, body.stream()))
+}
+
+fn location_of(error: &syn::Error) -> Location {
+    let mark = proc_macro2::Ident::new("here", error.span());
+    Location::Macro(mark.to_token_stream())
+}
+
+/// `name: value` as tokens.
+struct Entry {
+    tokens: Vec<TokenTree>,
+}
+
+/// Splits at commas; an empty last part is a trailing comma.
+fn entries(tokens: TokenStream) -> Vec<Entry> {
+    let all: Vec<TokenTree> = flatten(tokens);
+    let mut parts: Vec<Entry> = all
+        .split(|token| is_punct(token, ','))
+        .map(|part| Entry {
+            tokens: part.to_vec(),
+        })
+        .collect();
+    if parts.last().is_some_and(|last| last.tokens.is_empty()) {
+        parts.pop();
+    }
+    parts
+}
+
+/// Takes the invisible groups away that `macro_rules!` puts around its fragments.
+fn flatten(tokens: TokenStream) -> Vec<TokenTree> {
+    tokens
+        .into_iter()
+        .flat_map(|token| match token {
+            TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
+                flatten(group.stream())
+            }
+            other => vec![other],
+        })
+        .collect()
+}
+
+fn is_punct(token: &TokenTree, sign: char) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
+}
+
+fn location(tokens: &[TokenTree]) -> Location {
+    Location::Macro(tokens.iter().cloned().collect())
+}
+
+impl Entry {
+    /// Name, its tokens and the value's tokens.
+    fn split(&self) -> Result<(String, &[TokenTree], &[TokenTree]), Diagnostic> {
+        let (name, value) = match self.tokens.as_slice() {
+            [TokenTree::Ident(name), colon, value @ ..] if is_punct(colon, ':') => (name, value),
+            [] => {
+                return Err(catalogue::syntax(
+                    &location(&[]),
+                    "expected `name: value` before the comma",
+                ));
+            }
+            tokens => {
+                return Err(catalogue::syntax(
+                    &location(tokens),
+                    "expected `name: value`",
+                ));
+            }
+        };
+        let head = &self.tokens[..1];
+        if value.is_empty() {
+            return Err(catalogue::syntax(
+                &location(head),
+                &format!(
+                    "`{name}` has no value; write `{name}: {}`",
+                    schema::example(&name.to_string())
+                ),
+            ));
+        }
+        // `a: 1 ohm b: 2 H`: the comma in between was forgotten.
+        if let Some(colon) = value.iter().position(|token| is_punct(token, ':')) {
+            let next = &value[colon.saturating_sub(1)..=colon];
+            return Err(catalogue::syntax(
+                &location(&next[..1]),
+                &format!("expected a comma before `{}`", next[0]),
+            ));
+        }
+        Ok((name.to_string(), head, value))
+    }
+}
+
+fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic> {
+    let (name, head, value) = entry.split()?;
+    let at = location(head);
+    match (name.as_str(), value) {
+        ("motor", [TokenTree::Literal(literal)]) => {
+            let path: syn::LitStr = syn::parse2(TokenTree::from(literal.clone()).into())
+                .map_err(|_| expected_section(value, "motor"))?;
+            if input.motor_file.is_some() || input.ast.motor.location.is_some() {
+                return Err(twice(&at, &input.ast.motor, "motor"));
+            }
+            input.ast.motor.location = Some(at);
+            input.motor_file = Some(MotorFile { path });
+        }
+        ("motor", [TokenTree::Group(group)]) if group.delimiter() == Delimiter::Brace => {
+            let section = &mut input.ast.motor;
+            read_fields(
+                section,
+                &mut input.ast.malformed,
+                at,
+                "motor",
+                group.stream(),
+            )?;
+        }
+        ("inverter", [TokenTree::Group(group)]) if group.delimiter() == Delimiter::Brace => {
+            let section = &mut input.ast.inverter;
+            read_fields(
+                section,
+                &mut input.ast.malformed,
+                at,
+                "inverter",
+                group.stream(),
+            )?;
+        }
+        ("controller", tokens) => read_controller(input, at, tokens)?,
+        ("motor" | "inverter", _) => return Err(expected_section(value, &name)),
+        _ => {
+            return Err(catalogue::unknown_section(
+                &at,
+                &name,
+                &["motor", "inverter", "controller"],
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn expected_section(value: &[TokenTree], name: &str) -> Diagnostic {
+    let wanted = match name {
+        "motor" => "`motor` takes braces with fields or the path of a motor file",
+        "controller" => {
+            "`controller` takes the name of a controller and braces with its options, as in `controller: pdcc { emf: model }`"
+        }
+        _ => "`inverter` takes braces with fields",
+    };
+    catalogue::syntax(&location(value), wanted)
+}
+
+fn twice(at: &Location, section: &Section, name: &str) -> Diagnostic {
+    catalogue::duplicate_field(at, section.location.as_ref().unwrap_or(at), name)
+}
+
+fn read_controller(
+    input: &mut MacroInput,
+    at: Location,
+    value: &[TokenTree],
+) -> Result<(), Diagnostic> {
+    let (kind, options) = match value {
+        [kind @ .., TokenTree::Group(group)] if group.delimiter() == Delimiter::Brace => {
+            (kind, group.stream())
+        }
+        kind => (kind, TokenStream::new()),
+    };
+    let kind_location = location(kind);
+    let word = parse_value("kind", &text_of(kind), &kind_location);
+    if kind.is_empty() || !matches!(word, Value::Word(_)) {
+        return Err(expected_section(value, "controller"));
+    }
+    let section = &mut input.ast.controller;
+    read_fields(section, &mut input.ast.malformed, at, "controller", options)?;
+    section.fields.insert(
+        0,
+        Field {
+            name: "kind".to_owned(),
+            name_location: kind_location.clone(),
+            value: word,
+            location: kind_location,
+            assumed: None,
+        },
+    );
+    Ok(())
+}
+
+fn read_fields(
+    section: &mut Section,
+    malformed: &mut Vec<Diagnostic>,
+    at: Location,
+    name: &str,
+    tokens: TokenStream,
+) -> Result<(), Diagnostic> {
+    if section.location.is_some() {
+        return Err(twice(&at, section, name));
+    }
+    section.location = Some(at);
+    for entry in entries(tokens) {
+        match entry.split() {
+            Ok((name, head, value)) => section.fields.push(Field {
+                value: read_value(&name, value),
+                name,
+                name_location: location(head),
+                location: location(value),
+                assumed: None,
+            }),
+            Err(error) => {
+                malformed.push(error);
+                section.incomplete = true;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn read_value(field: &str, tokens: &[TokenTree]) -> Value {
+    let at = location(tokens);
+    if let [TokenTree::Literal(literal)] = tokens {
+        let literal = TokenTree::from(literal.clone());
+        if let Ok(text) = syn::parse2::<syn::LitStr>(literal.clone().into()) {
+            return parse_value(field, &text.value(), &at);
+        }
+        if let Ok(number) = syn::parse2::<syn::LitInt>(literal.into())
+            && number.suffix().is_empty()
+        {
+            return plain_number(field, number.base10_digits(), &at);
+        }
+    }
+    parse_value(field, &text_of(tokens), &at)
+}
+
+/// The tokens as text; white space carries no meaning for the value's reader.
+fn text_of(tokens: &[TokenTree]) -> String {
+    let parts: Vec<String> = tokens
+        .iter()
+        .map(|token| match token {
+            TokenTree::Group(group) => {
+                let inner = text_of(&flatten(group.stream()));
+                match group.delimiter() {
+                    Delimiter::Parenthesis => format!("({inner})"),
+                    Delimiter::Bracket => format!("[{inner}]"),
+                    Delimiter::Brace => format!("{{{inner}}}"),
+                    Delimiter::None => inner,
+                }
+            }
+            other => other.to_string(),
+        })
+        .collect();
+    parts.join(" ")
+}

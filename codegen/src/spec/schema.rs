@@ -1,0 +1,257 @@
+//! Which fields there are, what kind of value each takes and between which limits.
+//!
+//! The limits keep out slips of unit and decimal point; they are wider than any motor that this
+//! crate is made for. The reference table for users is the documentation of [`crate::spec`].
+
+use super::units::Dimension as D;
+use crate::controllers::pdcc::OPTIONS;
+
+/// A field: its name, what it takes, and an example for messages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rule {
+    pub name: &'static str,
+    pub kind: Kind,
+    pub example: &'static str,
+}
+
+/// What a field takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// A number with one of the units; limits in SI units of the first. A `low` of 0 allows 0.
+    Quantity {
+        dimensions: &'static [D],
+        low: f64,
+        high: f64,
+    },
+    /// A number without unit. A `low` of 0 allows 0.
+    Plain { low: f64, high: f64 },
+    /// A whole number without unit.
+    Integer { low: u32, high: u32 },
+    /// One of some words, which the checks know.
+    Word,
+    /// A list of integers.
+    Integers,
+    /// Free text.
+    Text,
+}
+
+pub(crate) const fn quantity(
+    name: &'static str,
+    dimensions: &'static [D],
+    low: f64,
+    high: f64,
+    example: &'static str,
+) -> Rule {
+    Rule {
+        name,
+        kind: Kind::Quantity {
+            dimensions,
+            low,
+            high,
+        },
+        example,
+    }
+}
+
+pub(crate) const fn integer(
+    name: &'static str,
+    low: u32,
+    high: u32,
+    example: &'static str,
+) -> Rule {
+    Rule {
+        name,
+        kind: Kind::Integer { low, high },
+        example,
+    }
+}
+
+pub(crate) const fn plain(name: &'static str, low: f64, high: f64, example: &'static str) -> Rule {
+    Rule {
+        name,
+        kind: Kind::Plain { low, high },
+        example,
+    }
+}
+
+pub(crate) const fn word(name: &'static str, example: &'static str) -> Rule {
+    Rule {
+        name,
+        kind: Kind::Word,
+        example,
+    }
+}
+
+const fn text(name: &'static str, example: &'static str) -> Rule {
+    Rule {
+        name,
+        kind: Kind::Text,
+        example,
+    }
+}
+
+/// 1 rpm in rad/s.
+const RPM: f64 = std::f64::consts::PI / 30.0;
+
+const EMF: &[D] = &[D::EmfConstant, D::SpeedConstant, D::FluxLinkage];
+
+/// Fields of the motor. The limits of `back_emf` hold for the phase constant that it becomes.
+pub(crate) const MOTOR: &[Rule] = &[
+    text("name", "\"HubDrive\""),
+    text("description", "\"Rear hub drive\""),
+    integer("pole_pairs", 1, 64, "4"),
+    quantity(
+        "resistance",
+        &[D::Resistance],
+        1e-4,
+        1e3,
+        "135 mohm per_phase",
+    ),
+    quantity(
+        "inductance",
+        &[D::Inductance],
+        1e-7,
+        1.0,
+        "0.22 mH per_phase",
+    ),
+    word("winding", "star"),
+    quantity(
+        "back_emf",
+        EMF,
+        f64::MIN_POSITIVE,
+        f64::MAX,
+        "17.3 V/krpm line_to_line peak",
+    ),
+    word("emf_shape", "trapezoidal"),
+    quantity("flat_top", &[D::Angle], 1.0, 179.0, "120 deg"),
+    quantity("rated_current", &[D::Current], 0.01, 1e4, "20 A"),
+    quantity("rated_torque", &[D::Torque], 1e-5, 1e5, "3.3 Nm"),
+    quantity(
+        "torque_constant",
+        &[D::TorqueConstant],
+        1e-5,
+        100.0,
+        "0.16 Nm/A",
+    ),
+    quantity("rated_speed", &[D::Speed], RPM, 2e5 * RPM, "2000 rpm"),
+    quantity("inertia", &[D::Inertia], 1e-9, 100.0, "24 g cm2"),
+    quantity("inductance_tolerance", &[D::Ratio], 0.0, 0.9, "10 %"),
+    quantity("resistance_tolerance", &[D::Ratio], 0.0, 0.9, "30 %"),
+    Rule {
+        name: "hall_codes",
+        kind: Kind::Integers,
+        example: "[1, 5, 4, 6, 2, 3]",
+    },
+];
+
+/// Fields of the inverter.
+pub(crate) const INVERTER: &[Rule] = &[
+    quantity("bus_voltage", &[D::Voltage], 1.0, 2000.0, "48 V"),
+    word("v_bus", "fixed"),
+    integer("bus_adc_bits", 8, 16, "12"),
+    quantity("bus_adc_range", &[D::Voltage], 1.0, 4000.0, "80 V"),
+    quantity("bus_min", &[D::Voltage], 0.5, 2000.0, "36 V"),
+    quantity("bus_max", &[D::Voltage], 1.0, 4000.0, "60 V"),
+    quantity("f_pwm", &[D::Frequency], 500.0, 500e3, "20 kHz"),
+    quantity("sampling_time", &[D::Time], 2e-6, 2e-3, "50 us"),
+    quantity("timer_clock", &[D::Frequency], 100e3, 1e9, "72 MHz"),
+    integer("timer_period", 100, 65535, "1800"),
+    quantity("dead_time", &[D::Time], 0.0, 20e-6, "500 ns"),
+    integer("adc_bits", 8, 16, "12"),
+    quantity("adc_range", &[D::Current], 0.01, 2e4, "40 A"),
+    quantity(
+        "adc_gain",
+        &[D::CurrentPerCount],
+        1e-7,
+        100.0,
+        "19.5 mA/count",
+    ),
+    integer("adc_offset", 0, 65535, "2048"),
+    word("adc_inverted", "off"),
+    quantity("trip_current", &[D::Current], 0.01, 2e4, "38 A"),
+    quantity("max_current", &[D::Current], 0.01, 2e4, "20 A"),
+    quantity("hall_timer_clock", &[D::Frequency], 1e3, 1e9, "1 MHz"),
+    quantity(
+        "minimum_speed",
+        &[D::Speed],
+        0.01 * RPM,
+        1e5 * RPM,
+        "40 rpm",
+    ),
+    quantity("maximum_speed", &[D::Speed], RPM, 3e5 * RPM, "3000 rpm"),
+    quantity("stall_timeout", &[D::Time], 1e-3, 60.0, "500 ms"),
+    integer("calibration_samples", 1, 4096, "256"),
+    quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
+];
+
+/// The sections and their fields.
+pub(crate) const SECTIONS: [(&str, &[Rule]); 3] = [
+    ("motor", MOTOR),
+    ("inverter", INVERTER),
+    ("controller", OPTIONS),
+];
+
+/// Fields that state one quantity in two ways.
+const ALTERNATIVES: [[&str; 2]; 3] = [
+    ["f_pwm", "sampling_time"],
+    ["timer_clock", "timer_period"],
+    ["adc_range", "adc_gain"],
+];
+
+/// Whether the one field replaces the other.
+pub(crate) fn same_quantity(one: &str, other: &str) -> bool {
+    one == other
+        || ALTERNATIVES
+            .iter()
+            .any(|pair| one != other && pair.contains(&one) && pair.contains(&other))
+}
+
+/// The rule of a field, in whichever section.
+fn find(name: &str) -> Option<&'static Rule> {
+    SECTIONS
+        .iter()
+        .flat_map(|(_, rules)| rules.iter())
+        .find(|rule| rule.name == name)
+}
+
+/// Whether the field takes free text.
+pub(crate) fn is_text(name: &str) -> bool {
+    find(name).is_some_and(|rule| matches!(rule.kind, Kind::Text))
+}
+
+/// An example of the field's value.
+pub(crate) fn example(name: &str) -> &'static str {
+    find(name).map_or("20 A", |rule| rule.example)
+}
+
+/// The section that has a field of this name.
+pub(crate) fn section_of(name: &str) -> Option<&'static str> {
+    SECTIONS
+        .iter()
+        .find(|(_, rules)| rules.iter().any(|rule| rule.name == name))
+        .map(|(section, _)| *section)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SECTIONS, example, same_quantity, section_of};
+
+    #[test]
+    fn field_names_are_unique_over_all_sections() {
+        let names: Vec<&str> = SECTIONS
+            .iter()
+            .flat_map(|(_, rules)| rules.iter().map(|rule| rule.name))
+            .collect();
+        for (index, name) in names.iter().enumerate() {
+            assert!(!names[..index].contains(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn lookups() {
+        assert_eq!(section_of("modulation"), Some("controller"));
+        assert_eq!(example("bus_voltage"), "48 V");
+        assert!(same_quantity("f_pwm", "sampling_time"));
+        assert!(!same_quantity("f_pwm", "timer_clock"));
+    }
+}

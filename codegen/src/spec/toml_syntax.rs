@@ -1,0 +1,250 @@
+//! Front end: a TOML motor file to a [`SpecAst`].
+//!
+//! Sections `[motor]`, `[inverter]`, `[controller]` with the macro's fields and values as strings;
+//! `[assumed.motor]` and `[assumed.inverter]` with `{ value = "…", reason = "…" }` for what the
+//! data sheet lacks; `[source]` free text. Every place is kept as file, line and column.
+
+use super::ast::{Field, Name, Section, SpecAst, Value};
+use super::value::{parse_value, plain_number};
+use super::{load, schema};
+use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
+use std::ops::Range;
+use toml_edit::{Document, Item, Key, TableLike};
+
+const SECTIONS: [&str; 5] = ["motor", "inverter", "controller", "assumed", "source"];
+
+/// Parses the text of a motor file; `file_name` is used in messages and, without folder and
+/// extension, as the default name of the drive.
+///
+/// # Errors
+/// If the text is no TOML. Errors in fields are kept in the tree and come with [`super::check`].
+pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
+    let file = File {
+        name: file_name,
+        text,
+    };
+    let document = Document::parse(text).map_err(|error| file.syntax_error(&error))?;
+    let mut ast = SpecAst::new(Name {
+        text: load::type_name(file_name),
+        location: file.at(0),
+    });
+    for (name, item) in document.iter() {
+        let at = file.key(document.key(name), item);
+        let Some(table) = item.as_table_like() else {
+            ast.malformed
+                .push(catalogue::unknown_section(&at, name, &SECTIONS));
+            continue;
+        };
+        match name {
+            "motor" => file.read_fields(&mut ast.motor, at, table),
+            "inverter" => file.read_fields(&mut ast.inverter, at, table),
+            "controller" => file.read_fields(&mut ast.controller, at, table),
+            "assumed" => file.read_assumed(&mut ast, table),
+            "source" => ast.source.extend(
+                table
+                    .iter()
+                    .filter_map(|(key, item)| Some((key.to_owned(), item.as_str()?.to_owned()))),
+            ),
+            _ => ast
+                .malformed
+                .push(catalogue::unknown_section(&at, name, &SECTIONS)),
+        }
+    }
+    // The drive's name is written beside the motor's data but is no datum of it.
+    if let Some(index) = ast
+        .motor
+        .fields
+        .iter()
+        .position(|field| field.name == "name")
+    {
+        let field = ast.motor.fields.remove(index);
+        if let Value::Text(text) = field.value {
+            ast.name = Name {
+                text,
+                location: field.location,
+            };
+        }
+    }
+    Ok(ast)
+}
+
+struct File<'a> {
+    name: &'a str,
+    text: &'a str,
+}
+
+impl File<'_> {
+    fn at(&self, offset: usize) -> Location {
+        Location::in_file(self.name, self.text, offset)
+    }
+
+    fn span(&self, span: Option<Range<usize>>) -> Location {
+        self.at(span.map_or(0, |range| range.start))
+    }
+
+    fn key(&self, key: Option<&Key>, item: &Item) -> Location {
+        self.span(key.and_then(Key::span).or_else(|| item.span()))
+    }
+
+    fn read_fields(&self, section: &mut Section, at: Location, table: &dyn TableLike) {
+        section.location.get_or_insert(at);
+        for (name, item) in table.iter() {
+            let location = self.span(item.span());
+            section.fields.push(Field {
+                name: name.to_owned(),
+                name_location: self.key(table.key(name), item),
+                value: read_value(name, item, &location),
+                location,
+                assumed: None,
+            });
+        }
+    }
+
+    /// `[assumed.motor]`: `field = { value = "…", reason = "…" }`.
+    fn read_assumed(&self, ast: &mut SpecAst, assumed: &dyn TableLike) {
+        for (name, item) in assumed.iter() {
+            let at = self.key(assumed.key(name), item);
+            let section = match name {
+                "motor" => &mut ast.motor,
+                "inverter" => &mut ast.inverter,
+                _ => {
+                    let known = ["motor", "inverter"];
+                    ast.malformed
+                        .push(catalogue::unknown_section(&at, name, &known));
+                    continue;
+                }
+            };
+            let Some(table) = item.as_table_like() else {
+                ast.malformed.push(not_a_table(&at, name));
+                continue;
+            };
+            section.location.get_or_insert(at);
+            for (field, item) in table.iter() {
+                let name_location = self.key(table.key(field), item);
+                match self.read_assumption(field, item, name_location) {
+                    Ok(field) => section.fields.push(field),
+                    Err(error) => {
+                        ast.malformed.push(error);
+                        section.incomplete = true;
+                    }
+                }
+            }
+        }
+    }
+
+    fn read_assumption(
+        &self,
+        name: &str,
+        item: &Item,
+        name_location: Location,
+    ) -> Result<Field, Diagnostic> {
+        let table = item
+            .as_table_like()
+            .ok_or_else(|| not_a_table(&name_location, name))?;
+        let value = table
+            .get("value")
+            .ok_or_else(|| not_a_table(&name_location, name))?;
+        let reason = table
+            .get("reason")
+            .and_then(Item::as_str)
+            .ok_or_else(|| not_a_table(&name_location, name))?;
+        let location = self.span(value.span());
+        Ok(Field {
+            name: name.to_owned(),
+            name_location,
+            value: read_value(name, value, &location),
+            location,
+            assumed: Some(reason.to_owned()),
+        })
+    }
+
+    fn syntax_error(&self, error: &toml_edit::TomlError) -> Diagnostics {
+        let span = error.span();
+        let start = span.as_ref().map_or(0, |range| range.start);
+        let at = self.at(start);
+        if error.message().contains("duplicate key") {
+            let key = span
+                .and_then(|range| self.text.get(range))
+                .unwrap_or_default();
+            if let Some(first) = self.earlier_key(key.trim(), start) {
+                return catalogue::duplicate_field(&at, &self.at(first), key.trim()).into();
+            }
+        }
+        catalogue::syntax(&at, &format!("no TOML: {}", error.message())).into()
+    }
+
+    /// Byte offset of the same key or section header before `end`; a key's search ends at its
+    /// section's header.
+    fn earlier_key(&self, key: &str, end: usize) -> Option<usize> {
+        let before = self.text.get(..end)?;
+        let lines: Vec<(usize, &str)> = before
+            .split_inclusive('\n')
+            .scan(0, |offset, line| {
+                let start = *offset;
+                *offset += line.len();
+                Some((start, line))
+            })
+            .collect();
+        let is_header = lines
+            .last()
+            .is_some_and(|(_, line)| line.trim_start().starts_with('['));
+        for (start, line) in lines.iter().rev().skip(usize::from(is_header)) {
+            let indent = line.len() - line.trim_start().len();
+            let content = line.trim();
+            if is_header {
+                if content
+                    .trim_start_matches('[')
+                    .split(']')
+                    .next()
+                    .map(str::trim)
+                    == Some(key)
+                {
+                    return Some(start + indent + 1);
+                }
+            } else if content.starts_with('[') {
+                return None;
+            } else if content.split('=').next().map(str::trim) == Some(key) {
+                return Some(start + indent);
+            }
+        }
+        None
+    }
+}
+
+fn not_a_table(at: &Location, name: &str) -> Diagnostic {
+    let example = "{ value = \"20 A\", reason = \"not in the data sheet\" }";
+    catalogue::malformed_value(at, name, "assumption", example)
+}
+
+fn read_value(field: &str, item: &Item, at: &Location) -> Value {
+    let unreadable = |given: &str| {
+        let example = schema::example(field);
+        Value::Malformed(Box::new(catalogue::malformed_value(
+            at, field, given, example,
+        )))
+    };
+    match item.as_value() {
+        Some(toml_edit::Value::String(text)) => parse_value(field, text.value(), at),
+        Some(toml_edit::Value::Integer(number)) => {
+            plain_number(field, &number.value().to_string(), at)
+        }
+        Some(toml_edit::Value::Float(number)) => {
+            let digits = number
+                .as_repr()
+                .and_then(|repr| repr.as_raw().as_str())
+                .map(str::to_owned);
+            plain_number(
+                field,
+                &digits.unwrap_or_else(|| number.value().to_string()),
+                at,
+            )
+        }
+        Some(toml_edit::Value::Boolean(flag)) => Value::Word(flag.value().to_string()),
+        Some(toml_edit::Value::Array(list)) => {
+            let numbers: Option<Vec<i64>> = list.iter().map(toml_edit::Value::as_integer).collect();
+            numbers.map_or_else(|| unreadable(list.to_string().trim()), Value::Integers)
+        }
+        Some(other) => unreadable(other.to_string().trim()),
+        None => unreadable("a table"),
+    }
+}
