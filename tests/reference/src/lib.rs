@@ -1,1 +1,23 @@
-//! Under construction.
+//! The reference models of every controller, written by hand and independent of the generator.
+//!
+//! Model A (`Ideal`) is the control law in f64 and physical units, without any rounding. Model B
+//! (`BitTrue`) computes every bit of the emitted code in f64 with an explicit quantiser at every
+//! rounding point. Both are built from a drive's normalised specification; only the format table
+//! crosses over from the generator, as data.
+
+mod discrete_phase;
+mod emf_shape;
+mod error;
+pub mod exact;
+mod formats;
+pub mod pdcc;
+mod spec;
+
+pub use discrete_phase::DiscretePhase;
+pub use emf_shape::EmfShape;
+pub use error::Error;
+pub use formats::FormatTable;
+pub use spec::{
+    Bus, BusSense, Controller, Discretisation, EmfShapeKind, EmfSource, HallCapture, Inverter,
+    Modulation, Motor, Pdcc, Reference, Saturation, Spec,
+};

@@ -1,0 +1,36 @@
+//! The discretised plant i(k+1) = a i(k) + b (v(k) - e(k)) of one phase (DESIGN section 4).
+
+use crate::spec::{Discretisation, Spec};
+
+/// Coefficients of the discretised phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscretePhase {
+    /// Pole: the share of the current that is left after one period.
+    pub a: f64,
+    /// Ampere per volt applied for one period.
+    pub b: f64,
+}
+
+impl DiscretePhase {
+    /// The phase of the specified motor at the specified period and discretisation.
+    pub fn new(spec: &Spec) -> Self {
+        let (r, l, t_s) = (
+            spec.motor.resistance,
+            spec.motor.inductance,
+            spec.inverter.t_s,
+        );
+        match spec.pdcc().discretisation {
+            Discretisation::Exact => {
+                let decay = -(-r * t_s / l).exp_m1();
+                Self {
+                    a: 1.0 - decay,
+                    b: decay / r,
+                }
+            }
+            Discretisation::Euler => Self {
+                a: 1.0 - r * t_s / l,
+                b: t_s / l,
+            },
+        }
+    }
+}

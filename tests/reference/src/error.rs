@@ -1,0 +1,48 @@
+//! What can be wrong with the data that the reference models are built from.
+
+/// Why a reference model could not be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The text is not a normalised specification.
+    #[error("the specification does not read as normalised TOML: {0}")]
+    Syntax(String),
+    /// A field's value makes no sense.
+    #[error("specification field `{field}` is {value}: {expected}")]
+    Field {
+        /// Dotted name of the field.
+        field: &'static str,
+        /// The value given.
+        value: String,
+        /// What would be acceptable.
+        expected: &'static str,
+    },
+    /// A field that the other fields make necessary is missing.
+    #[error("specification field `{field}` is missing: {reason}")]
+    Missing {
+        /// Dotted name of the field.
+        field: &'static str,
+        /// Why it is needed.
+        reason: &'static str,
+    },
+    /// The format table has no entry of this name.
+    #[error("the format table has no entry `{0}`")]
+    NoFormat(&'static str),
+    /// An entry of the format table cannot be used.
+    #[error("format `{name}` has frac_bits = {frac_bits}: {expected}")]
+    Format {
+        /// The entry's name.
+        name: &'static str,
+        /// Its fraction bits.
+        frac_bits: i32,
+        /// What would be acceptable.
+        expected: &'static str,
+    },
+    /// A coefficient does not fit its word.
+    #[error("coefficient `{name}` is {raw}, wider than a 32-bit word")]
+    Range {
+        /// The coefficient's name.
+        name: &'static str,
+        /// Its value as a word.
+        raw: f64,
+    },
+}

@@ -1,0 +1,350 @@
+//! Exact integer operations in f64, for words of 32 bits.
+//!
+//! A word is an f64 with a whole value of at most 32 bits and sign. Sums and products that stay
+//! below 2^53 are exact in f64; longer products are split at 16 bits first (floor(C x/2^s) =
+//! floor((Ch x + floor(Cl x/2^16))/2^(s-16)) with C = Ch 2^16 + Cl), so every intermediate is
+//! exact. Debug builds assert the bounds; the tests compare with 128-bit integers.
+
+/// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to a whole number.
+const MAGIC: f64 = 6_755_399_441_055_744.0;
+const TWO_16: f64 = 65_536.0;
+const TWO_32: f64 = 4_294_967_296.0;
+/// Most bits that a remainder below 2^32 can be shifted by in one digit.
+const DIGIT: u32 = 21;
+
+#[inline]
+fn debug_whole(x: f64) {
+    debug_assert!(
+        x.trunc() == x && x.abs() < 9_007_199_254_740_992.0,
+        "{x} is not exact"
+    );
+}
+
+/// 2^exponent, for |exponent| <= 1022.
+#[inline]
+pub fn pow2(exponent: i32) -> f64 {
+    debug_assert!(exponent.abs() <= 1022);
+    f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
+}
+
+/// The greatest whole number not above `y`, |y| < 2^51.
+#[inline]
+pub fn floor(y: f64) -> f64 {
+    debug_assert!(
+        y.abs() < 2_251_799_813_685_248.0,
+        "{y} is too large for floor"
+    );
+    let nearest = (y + MAGIC) - MAGIC;
+    if nearest > y { nearest - 1.0 } else { nearest }
+}
+
+/// floor(x/2): the arithmetic shift by one.
+#[inline]
+pub fn halve(x: f64) -> f64 {
+    debug_whole(x);
+    floor(x * 0.5)
+}
+
+/// floor(x/2^n), |x| < 2^51.
+#[inline]
+pub fn floor_shift(x: f64, n: u32) -> f64 {
+    debug_whole(x);
+    floor(x * pow2(-(n as i32)))
+}
+
+/// R(x) = floor(x + 1/2): how a real constant becomes a word.
+pub fn round_half_up(x: f64) -> f64 {
+    (x + 0.5).floor()
+}
+
+/// x modulo 2^32, from 0 up; |x| < 2^51.
+#[inline]
+pub fn wrap32(x: f64) -> f64 {
+    debug_whole(x);
+    x - floor(x * (1.0 / TWO_32)) * TWO_32
+}
+
+/// The two's complement word of a whole x, |x| < 2^31.
+#[inline]
+pub fn to_i32(x: f64) -> i32 {
+    debug_assert!(
+        x.trunc() == x && (-2_147_483_648.0..2_147_483_648.0).contains(&x),
+        "{x} is no 32-bit word"
+    );
+    (x + MAGIC).to_bits() as i32
+}
+
+/// The 16-bit count of a whole x, 0 <= x < 2^16.
+#[inline]
+pub fn to_u16(x: f64) -> u16 {
+    debug_assert!(
+        x.trunc() == x && (0.0..TWO_16).contains(&x),
+        "{x} is no 16-bit count"
+    );
+    (x + MAGIC).to_bits() as u16
+}
+
+/// floor(n 2^s/den) for words n >= 0 and den > 0, digit by digit. Quotients of 2^53 and more come
+/// out as some value of at least 2^53.
+#[inline]
+pub fn div_floor(n: f64, s: u32, den: f64) -> f64 {
+    debug_whole(n);
+    debug_assert!(
+        (0.0..TWO_32).contains(&n) && (1.0..TWO_32).contains(&den),
+        "{n}/{den}"
+    );
+    // Floor of the rounded quotient is exact: two whole numbers below 2^53 are never so near to
+    // the next whole quotient that rounding reaches it.
+    let mut quotient = floor(n / den);
+    let mut remainder = n - quotient * den;
+    let mut left = s;
+    while left > 0 {
+        let bits = left.min(DIGIT);
+        left -= bits;
+        remainder *= pow2(bits as i32);
+        let digit = floor(remainder / den);
+        remainder -= digit * den;
+        quotient = quotient * pow2(bits as i32) + digit;
+    }
+    quotient
+}
+
+/// A coefficient word with its shift, split for [`Coefficient::mul`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Coefficient {
+    /// The upper part over 2^(s-16).
+    high: f64,
+    /// The lower 16 bits over 2^16.
+    low: f64,
+    /// 2^(16-s).
+    low_weight: f64,
+}
+
+impl Coefficient {
+    /// Splits the word `raw` with shift `s` <= 62.
+    #[inline]
+    pub fn new(raw: f64, s: u32) -> Self {
+        debug_whole(raw);
+        debug_assert!(
+            raw.abs() < TWO_32 && s <= 62,
+            "coefficient {raw}, shift {s}"
+        );
+        if s > 16 {
+            let high = floor(raw * (1.0 / TWO_16));
+            let low_weight = pow2(16 - s as i32);
+            Self {
+                high: high * low_weight,
+                low: (raw - high * TWO_16) * (1.0 / TWO_16),
+                low_weight,
+            }
+        } else {
+            // The product is as short as its shifted result plus 16 bits.
+            Self {
+                high: raw * pow2(-(s as i32)),
+                low: 0.0,
+                low_weight: 0.0,
+            }
+        }
+    }
+
+    /// mul(c, x) = floor((c x + 2^(s-1))/2^s) for a word x; the bare product for s = 0.
+    #[inline]
+    pub fn mul(&self, x: f64) -> f64 {
+        debug_whole(x);
+        debug_assert!(x.abs() <= 2.0 * TWO_32, "{x} is no word");
+        floor(self.high * x + (floor(self.low * x) * self.low_weight + 0.5))
+    }
+}
+
+/// A shift for products of two run-time words.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shift {
+    bits: u32,
+    /// 2^-s.
+    weight: f64,
+    /// 2^(16-s).
+    low_weight: f64,
+}
+
+impl Shift {
+    /// A shift by `bits` <= 62.
+    pub fn new(bits: u32) -> Self {
+        Self {
+            bits,
+            weight: pow2(-(bits as i32)),
+            low_weight: pow2(16 - bits as i32),
+        }
+    }
+
+    /// The number of bits.
+    #[inline]
+    pub fn bits(&self) -> u32 {
+        self.bits
+    }
+
+    /// floor(x y/2^s + bias), bias a multiple of 1/2 (0 for s = 0).
+    #[inline]
+    fn product(&self, x: f64, y: f64, bias: f64) -> f64 {
+        debug_whole(x);
+        debug_whole(y);
+        debug_assert!(
+            x.abs() <= TWO_32 && y.abs() <= 2.0 * TWO_32,
+            "{x} times {y}"
+        );
+        if self.bits > 16 {
+            let high = floor(x * (1.0 / TWO_16));
+            let low = x - high * TWO_16;
+            let tail = floor(low * y * (1.0 / TWO_16));
+            floor(high * y * self.low_weight + (tail * self.low_weight + bias))
+        } else {
+            debug_whole(x * y);
+            floor(x * y * self.weight + bias)
+        }
+    }
+
+    /// floor(x y/2^s) for words x, y.
+    #[inline]
+    pub fn floor_product(&self, x: f64, y: f64) -> f64 {
+        self.product(x, y, 0.0)
+    }
+
+    /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
+    #[inline]
+    pub fn round_product(&self, x: f64, y: f64) -> f64 {
+        self.product(x, y, 0.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAIRS: usize = 4_000_000;
+
+    /// Words of every length, with the extremes and their neighbours often among them.
+    fn word(random: &mut fastrand::Rng) -> i64 {
+        const CORNERS: [i64; 9] = [
+            0,
+            1,
+            -1,
+            i32::MAX as i64,
+            i32::MIN as i64,
+            i32::MIN as i64 + 1,
+            65_535,
+            65_536,
+            -65_536,
+        ];
+        if random.u8(..) < 24 {
+            CORNERS[random.usize(..CORNERS.len())]
+        } else {
+            i64::from(random.i32(..) >> random.u32(..32))
+        }
+    }
+
+    fn fits_word(x: i128) -> bool {
+        i32::try_from(x).is_ok()
+    }
+
+    #[test]
+    fn floor_and_shifts() {
+        let mut random = fastrand::Rng::with_seed(1);
+        for _ in 0..PAIRS {
+            let (x, n) = (random.i64(-(1 << 50)..1 << 50), random.u32(..52));
+            assert_eq!(floor_shift(x as f64, n) as i64, x >> n, "{x} >> {n}");
+            assert_eq!(wrap32(x as f64) as i64, x.rem_euclid(1 << 32), "{x}");
+            let x = word(&mut random);
+            assert_eq!(i64::from(to_i32(x as f64)), x);
+            assert_eq!(halve(x as f64) as i64, x >> 1);
+        }
+        for x in 0..=u16::MAX {
+            assert_eq!(to_u16(f64::from(x)), x);
+        }
+        for (y, floored) in [
+            (-0.5, -1.0),
+            (0.5, 0.0),
+            (1.5, 1.0),
+            (-1.5, -2.0),
+            (2.0, 2.0),
+            (-2.0, -2.0),
+            (0.0, 0.0),
+        ] {
+            assert_eq!(floor(y), floored);
+        }
+    }
+
+    #[test]
+    fn products_of_words() {
+        let mut random = fastrand::Rng::with_seed(2);
+        let mut kept = 0;
+        while kept < PAIRS {
+            let (c, x, s) = (word(&mut random), word(&mut random), random.u32(..62));
+            let product = i128::from(c) * i128::from(x);
+            let rounded = if s == 0 {
+                product
+            } else {
+                (product + (1 << (s - 1))) >> s
+            };
+            if !fits_word(rounded) {
+                continue;
+            }
+            kept += 1;
+            assert_eq!(
+                Coefficient::new(c as f64, s).mul(x as f64) as i128,
+                rounded,
+                "{c} * {x} >> {s}"
+            );
+            let shift = Shift::new(s);
+            assert_eq!(
+                shift.round_product(c as f64, x as f64) as i128,
+                rounded,
+                "{c} * {x} >> {s}"
+            );
+            assert_eq!(
+                shift.floor_product(c as f64, x as f64) as i128,
+                product >> s,
+                "{c} * {x} >> {s}"
+            );
+        }
+    }
+
+    #[test]
+    fn products_at_ties_and_next_to_them() {
+        // c = odd * 2^k and x chosen so that c x lies on, just below and just above a half.
+        let mut random = fastrand::Rng::with_seed(3);
+        for _ in 0..PAIRS {
+            let (s, x) = (random.u32(1..40), i128::from(random.i32(1..)));
+            let want = i128::from(random.i32(..) >> random.u32(..31));
+            let half = ((2 * want + 1) << s) / 2;
+            for c in [half / x, half / x + 1, half / x - 1] {
+                let product = c * x;
+                let rounded = (product + (1 << (s - 1))) >> s;
+                if fits_word(c) && fits_word(rounded) {
+                    assert_eq!(
+                        Coefficient::new(c as f64, s).mul(x as f64) as i128,
+                        rounded,
+                        "{c} * {x} >> {s}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quotients() {
+        let mut random = fastrand::Rng::with_seed(4);
+        for _ in 0..PAIRS {
+            let (n, den, s) = (
+                word(&mut random).abs(),
+                word(&mut random).abs().max(1),
+                random.u32(..62),
+            );
+            let exact = (i128::from(n) << s) / i128::from(den);
+            let found = div_floor(n as f64, s, den as f64);
+            if exact < 1 << 53 {
+                assert_eq!(found as i128, exact, "({n} << {s}) / {den}");
+            } else {
+                assert!(found >= 9_007_199_254_740_992.0);
+            }
+        }
+    }
+}

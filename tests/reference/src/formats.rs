@@ -1,0 +1,59 @@
+//! The format table of a drive: the only numbers that cross over from the generator.
+
+use crate::Error;
+use hexagen::Format;
+
+/// Formats of a drive's signals and coefficients, by name.
+#[derive(Clone, Debug)]
+pub struct FormatTable {
+    formats: Vec<Format>,
+}
+
+impl FormatTable {
+    /// A table of the given formats (`Drive::FORMATS`).
+    pub fn new(formats: &[Format]) -> Self {
+        Self {
+            formats: formats.to_vec(),
+        }
+    }
+
+    /// The format of this name.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn get(&self, name: &'static str) -> Result<&Format, Error> {
+        self.formats
+            .iter()
+            .find(|format| format.name == name)
+            .ok_or(Error::NoFormat(name))
+    }
+
+    /// Fraction bits of a signal, or the shift of a coefficient, which must not be negative.
+    ///
+    /// # Errors
+    /// When there is no such format or its fraction bits are negative.
+    pub fn frac_bits(&self, name: &'static str) -> Result<u32, Error> {
+        let frac_bits = i32::from(self.get(name)?.frac_bits);
+        u32::try_from(frac_bits).map_err(|_| Error::Format {
+            name,
+            frac_bits,
+            expected: "expected 0 or more",
+        })
+    }
+
+    /// Number of segments of a table: the `frac_bits` of the entry of this name.
+    ///
+    /// # Errors
+    /// When there is no such entry or the number is none of 12, 24, 48, 96.
+    pub fn segments(&self, name: &'static str) -> Result<u32, Error> {
+        let segments = self.frac_bits(name)?;
+        match segments {
+            12 | 24 | 48 | 96 => Ok(segments),
+            _ => Err(Error::Format {
+                name,
+                frac_bits: segments as i32,
+                expected: "expected 12, 24, 48 or 96 segments",
+            }),
+        }
+    }
+}

@@ -1,0 +1,469 @@
+//! Model B: every bit of the emitted code, in f64 with an explicit quantiser at every rounding
+//! point.
+//!
+//! All signals are words held in f64 (see `crate::exact`); only table indices and small enums are
+//! integers. Coefficients are rounded here, from the specification; of the generator only the
+//! format table is used. Section numbers are those of `semantics.md`.
+
+mod applied;
+mod constants;
+mod limit;
+mod rotor;
+mod state;
+mod tables;
+
+use super::hall::HallClock;
+use super::sector::{self, HallEvent};
+use super::supervision::{Limits, Mode, Observation};
+use super::trace::{PhysicalState, Reach, Trace};
+use crate::exact::{Coefficient, div_floor, floor, halve, pow2, to_u16};
+use crate::{EmfSource, Error, FormatTable, Modulation, Pdcc, Reference, Spec};
+use constants::Constants;
+use hexagen::{Fault, LegState, Legs, Sample};
+use state::State;
+use std::f64::consts::TAU;
+
+/// The bit-true predictive deadbeat controller of one drive.
+#[derive(Clone, Debug)]
+pub struct BitTrue {
+    pdcc: Pdcc,
+    rotor: bool,
+    hall_sectors: [usize; 8],
+    clock: HallClock,
+    limits: Limits,
+    k: Constants,
+    // Set-point words.
+    j: f64,
+    v_bus: f64,
+    ratio: f64,
+    /// `ratio`, split.
+    to_duty: Coefficient,
+    state: State,
+    last: Signals,
+}
+
+/// Words of the last step, for [`BitTrue::trace`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Signals {
+    i: [f64; 2],
+    e: [f64; 2],
+    v_now: [f64; 2],
+    u_unsat: [f64; 2],
+    u: [f64; 2],
+    theta: f64,
+    step_angle: f64,
+    sector_eff: usize,
+    commutating: bool,
+    reach: Reach,
+    run: bool,
+}
+
+/// A command to the inverter and the terminal voltages that it stands for.
+#[derive(Clone, Copy, Debug)]
+struct Command {
+    legs: Legs,
+    /// `t_a_cmd` to `t_c_cmd` (pair modulation).
+    terminal: [f64; 3],
+    /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
+    off: usize,
+}
+
+impl BitTrue {
+    /// A controller at rest with zero set-point.
+    ///
+    /// # Errors
+    /// When the specification is inconsistent, a format is missing, or a coefficient does not fit
+    /// its format.
+    pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
+        let pdcc = *spec.pdcc();
+        let k = Constants::new(spec, formats)?;
+        let mut model = Self {
+            pdcc,
+            rotor: super::hall::needs_rotor(&pdcc),
+            hall_sectors: sector::hall_sectors(&spec.motor),
+            clock: HallClock::new(spec),
+            limits: Limits::new(&spec.inverter, k.i_trip)?,
+            j: 0.0,
+            v_bus: k.v_bus_nominal,
+            ratio: pow2(k.ratio_bits as i32),
+            to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
+            state: State::default(),
+            last: Signals::default(),
+            k,
+        };
+        model.state.offset = [model.k.offset; 2];
+        Ok(model)
+    }
+
+    /// Sets the current set-point from the bits of an `I16F16` in ampere.
+    pub fn set_current(&mut self, bits: i32) {
+        self.j = self
+            .k
+            .k_set
+            .mul(f64::from(bits).clamp(-self.k.i_max_bits, self.k.i_max_bits));
+    }
+
+    /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
+    pub fn set_torque(&mut self, bits: i32) {
+        self.j = self
+            .k
+            .k_torque
+            .mul(f64::from(bits).clamp(-self.k.t_max_bits, self.k.t_max_bits));
+    }
+
+    /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
+    pub fn set_bus(&mut self, counts: u16) {
+        if let Some(bus) = &self.k.bus {
+            let measured = bus.k_bus.mul(f64::from(counts).min(bus.count_max));
+            self.v_bus = measured.clamp(bus.v_min, bus.v_max);
+            self.ratio = div_floor(self.k.v_bus_nominal, self.k.ratio_bits, self.v_bus);
+            self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
+        }
+    }
+
+    /// The set-point words `j`, `v_bus`, `ratio`.
+    pub fn set_point_words(&self) -> [f64; 3] {
+        [self.j, self.v_bus, self.ratio]
+    }
+
+    /// Clears a trip and all control state; keeps the offsets and the set-point.
+    pub fn reset(&mut self) {
+        self.state = State {
+            offset: self.state.offset,
+            ..State::default()
+        };
+    }
+
+    /// Starts current-offset calibration.
+    pub fn calibrate(&mut self) {
+        self.state.supervisor.calibrate(&self.limits);
+    }
+
+    /// Starts bootstrap pre-charge.
+    pub fn precharge(&mut self) {
+        self.state.supervisor.precharge(&self.limits);
+    }
+
+    /// Why the drive is tripped.
+    pub fn fault(&self) -> Fault {
+        self.state.supervisor.fault
+    }
+
+    /// What the drive is doing.
+    pub fn mode(&self) -> Mode {
+        self.state.supervisor.mode
+    }
+
+    /// Signals of the last step in physical units.
+    pub fn trace(&self) -> Trace {
+        let Signals {
+            i,
+            e,
+            v_now,
+            u_unsat,
+            u,
+            theta,
+            step_angle,
+            sector_eff,
+            commutating,
+            reach,
+            run,
+        } = self.last;
+        let turn = TAU * pow2(-32);
+        Trace {
+            i: i.map(|word| word * self.k.ampere),
+            e: e.map(|word| word * self.k.volt),
+            v_now: v_now.map(|word| word * self.k.volt),
+            u_unsat: u_unsat.map(|word| word * self.k.volt),
+            u: u.map(|word| word * self.k.volt),
+            theta: theta * turn,
+            step_angle: step_angle * turn,
+            sector_eff,
+            commutating,
+            reach,
+            run,
+        }
+    }
+
+    /// The whole state in physical units: what an ideal model can be rebuilt from.
+    pub fn physical_state(&self) -> PhysicalState {
+        self.state.to_physical(&self.k)
+    }
+
+    /// Names of the state words, in the order of [`Self::state_words`].
+    pub fn state_names(&self) -> Vec<&'static str> {
+        state::names(self.k.parts)
+    }
+
+    /// Copies the state words to `words`, which holds as many as there are names.
+    #[inline]
+    pub fn state_words(&self, words: &mut [i32]) {
+        self.state.write(self.k.parts, words);
+    }
+
+    /// Overwrites the state with words of [`Self::state_words`].
+    pub fn set_state_words(&mut self, words: &[i32]) {
+        self.state.read(self.k.parts, words);
+    }
+
+    /// One control period: reads the sample, returns the command for the inverter.
+    #[inline]
+    pub fn step(&mut self, sample: &Sample) -> Legs {
+        let k = &self.k;
+        // 1 measure
+        let adc = [f64::from(sample.adc_a), f64::from(sample.adc_b)];
+        let counted = |x: usize| {
+            (adc[x].min(self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
+        };
+        let i = [counted(0), counted(1)];
+        let i_c = -(i[0] + i[1]);
+
+        // 2 hall, 3 supervise
+        let event = HallEvent::new(&self.hall_sectors, sample.hall, self.state.sector_prev);
+        let direction_before = self.state.timing.direction;
+        self.state.timing.turn_direction(&event);
+        let seen = Observation {
+            adc,
+            i: [i[0], i[1], i_c],
+            code: event.code,
+            edge: event.edge,
+            demand: self.j != 0.0,
+        };
+        if self.state.supervisor.step(&self.limits, &seen) {
+            self.state.offset = self
+                .state
+                .supervisor
+                .sum
+                .map(|sum| floor(sum * k.calibration));
+        }
+        let run = self.state.supervisor.mode == Mode::Run;
+
+        // 4 rotor
+        let sector = event.sector;
+        let mut angle = rotor::Angle {
+            sector_eff: sector,
+            ..rotor::Angle::default()
+        };
+        if self.rotor {
+            self.state.timing.step(
+                &self.clock,
+                &event,
+                direction_before,
+                f64::from(sample.hall_ticks),
+            );
+            angle = rotor::angle(&self.clock, k, &self.state, &event);
+            self.state.omega = angle.omega;
+        }
+        let sector_eff = angle.sector_eff;
+
+        // 5 commutation
+        let pair = self.pdcc.modulation == Modulation::Pair;
+        if pair {
+            self.state
+                .commutate(k, sector_eff, self.j, &[i[0], i[1], i_c]);
+        }
+
+        // 6 reference
+        let delayed = self.pdcc.delay == 1;
+        let j_ref = match self.pdcc.reference {
+            Reference::QuasiSquare => [
+                sector::CORNER_A[sector_eff] * self.j,
+                sector::CORNER_B[sector_eff] * self.j,
+            ],
+            Reference::Proportional => {
+                let theta_ref = if delayed {
+                    angle.theta + 2.0 * angle.step
+                } else {
+                    angle.theta + angle.step
+                };
+                k.shape
+                    .both(theta_ref)
+                    .map(|shape| k.shape_product.round_product(shape, self.j))
+            }
+        };
+
+        // 7 applied voltage
+        let v_now = match (delayed, pair) {
+            (false, _) => [0.0; 2],
+            (true, false) => self.state.v_cmd,
+            (true, true) => {
+                let State {
+                    t_cmd,
+                    off_cmd,
+                    e_prev,
+                    ..
+                } = &self.state;
+                applied::voltage(k, self.v_bus, t_cmd, *off_cmd, &[i[0], i[1], i_c], *e_prev)
+            }
+        };
+
+        // 8 EMF
+        let e = match self.pdcc.emf {
+            EmfSource::Estimated => [0, 1].map(|x| {
+                let State {
+                    i_prev,
+                    v_prev,
+                    e_prev,
+                    ..
+                } = &self.state;
+                let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
+                let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
+                if k.filtered {
+                    e_prev[x] + k.k_filter.mul(e - e_prev[x])
+                } else {
+                    e
+                }
+            }),
+            EmfSource::Model => {
+                let theta_start = if delayed {
+                    angle.theta + angle.step
+                } else {
+                    angle.theta
+                };
+                let start = k.flux.both(theta_start);
+                let end = k.flux.both(theta_start + angle.step);
+                [0, 1].map(|x| {
+                    floor((end[x] - start[x]) * k.flux_to_voltage).clamp(-k.e_max, k.e_max)
+                })
+            }
+        };
+
+        // 9 deadbeat voltage
+        let u_unsat = [0, 1].map(|x| {
+            let held = j_ref[x] - k.k_hold.mul(i[x]);
+            if delayed {
+                held + k.k_decay.mul(v_now[x] - e[x]) + 2.0 * e[x] - v_now[x]
+            } else {
+                held + e[x]
+            }
+        });
+
+        // 10 limit, 11 modulate
+        let (u, reach) = limit::limit(self.pdcc.saturation, k, self.v_bus, u_unsat, e);
+        let command = if !run {
+            let legs = if self.state.supervisor.mode == Mode::Precharge {
+                Legs::LOW
+            } else {
+                Legs::OFF
+            };
+            Command {
+                legs,
+                terminal: [0.0; 3],
+                off: 0,
+            }
+        } else if pair && !self.state.commutating {
+            self.pulse_pair(sector_eff, u_unsat)
+        } else {
+            self.pulse_three(u, pair)
+        };
+
+        // 12 remember
+        if run {
+            self.state.v_prev = match (delayed, pair) {
+                (true, _) => v_now,
+                (false, false) => u,
+                (false, true) => applied::voltage(
+                    &self.k,
+                    self.v_bus,
+                    &command.terminal,
+                    command.off,
+                    &[i[0], i[1], i_c],
+                    e,
+                ),
+            };
+            self.state.v_cmd = u;
+            self.state.t_cmd = command.terminal;
+            self.state.off_cmd = command.off;
+            self.state.e_prev = e;
+        } else {
+            self.state.stop();
+        }
+        self.state.i_prev = i;
+        self.state.sector_prev = sector;
+        self.state.sector_eff_prev = sector_eff;
+        self.last = Signals {
+            i,
+            e,
+            v_now,
+            u_unsat,
+            u,
+            theta: angle.theta,
+            step_angle: angle.step,
+            sector_eff,
+            commutating: self.state.commutating,
+            reach,
+            run,
+        };
+        command.legs
+    }
+
+    /// A timer compare value from a word of whole and half counts.
+    #[inline]
+    fn compare(&self, counts: f64) -> u16 {
+        to_u16(
+            floor((counts + self.k.half_count) * self.k.to_counts).clamp(0.0, self.k.timer_period),
+        )
+    }
+
+    /// Three pulsed legs, their common mode in the middle of the bus.
+    #[inline]
+    fn pulse_three(&self, u: [f64; 2], pair: bool) -> Command {
+        let u = [u[0], u[1], -(u[0] + u[1])];
+        let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
+        let compare = u.map(|u_x| {
+            let t = u_x - middle;
+            let t = if self.k.bus.is_some() {
+                self.to_duty.mul(t)
+            } else {
+                t
+            };
+            self.compare(t + self.k.half)
+        });
+        let terminal = if pair {
+            let half_bus = halve(self.v_bus);
+            u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, self.v_bus))
+        } else {
+            [0.0; 3]
+        };
+        Command {
+            legs: Legs {
+                compare,
+                state: [LegState::Pulsed; 3],
+            },
+            terminal,
+            off: 0,
+        }
+    }
+
+    /// One pulsed leg of the conducting pair, the other low, the third off.
+    #[inline]
+    fn pulse_pair(&self, sector_eff: usize, u: [f64; 2]) -> Command {
+        let mut command = Command {
+            legs: Legs::OFF,
+            terminal: [0.0; 3],
+            off: 0,
+        };
+        if sector_eff == 0 {
+            return command;
+        }
+        let u = [u[0], u[1], -(u[0] + u[1])];
+        let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
+        let v = (u[plus] - u[minus]).clamp(-self.v_bus, self.v_bus);
+        let (pulsed, low, t) = if v >= 0.0 {
+            (plus, minus, v)
+        } else {
+            (minus, plus, -v)
+        };
+        let counts = if self.k.bus.is_some() {
+            self.to_duty.mul(t)
+        } else {
+            t
+        };
+        command.legs.compare[pulsed] = self.compare(counts);
+        command.legs.state[pulsed] = LegState::Pulsed;
+        command.legs.state[low] = LegState::Low;
+        command.terminal[pulsed] = t;
+        command.off = sector::OUT_PHASE[sector_eff] + 1;
+        command
+    }
+}

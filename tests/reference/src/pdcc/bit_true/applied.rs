@@ -1,0 +1,32 @@
+//! The voltage that a command really applies, off leg included (section 7).
+
+use super::constants::Constants;
+use crate::exact::halve;
+
+/// Phase voltages a, b of the terminal voltages `terminal` with leg `off` (0: none, 1 to 3) off,
+/// at currents `i` and EMF `e`.
+#[inline]
+pub fn voltage(
+    k: &Constants,
+    v_bus: f64,
+    terminal: &[f64; 3],
+    off: usize,
+    i: &[f64; 3],
+    e: [f64; 2],
+) -> [f64; 2] {
+    let mut t = *terminal;
+    if let Some(leg) = off.checked_sub(1) {
+        let e = [e[0], e[1], -(e[0] + e[1])];
+        let driven = halve(t[0] + t[1] + t[2] - t[leg]);
+        let floating = driven + e[leg] + halve(e[leg]);
+        t[leg] = if i[leg] > k.i_comm {
+            0.0
+        } else if i[leg] < -k.i_comm {
+            v_bus
+        } else {
+            floating.clamp(0.0, v_bus)
+        };
+    }
+    let mean = k.k_third.mul(t[0] + t[1] + t[2]);
+    [t[0] - mean, t[1] - mean]
+}

@@ -1,0 +1,129 @@
+//! Limiting to the hexagon of reachable voltages (section 10).
+
+use super::constants::Constants;
+use crate::Saturation;
+use crate::exact::{Coefficient, Shift, div_floor, floor, floor_shift, halve};
+use crate::pdcc::Reach;
+
+/// Fraction bits of the blend between torque priority and the nearest point.
+const BLEND_BITS: u32 = 15;
+/// Torque priority blends over `p_max >> BLEND_SHARE` past its reach.
+const BLEND_SHARE: u32 = 1;
+/// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
+const LIGHT_SHARE: u32 = 2;
+const BLEND_ONE: f64 = 32_768.0;
+
+/// Limits phase voltages a, b; `e` is the EMF of phases a, b.
+#[inline]
+pub fn limit(
+    rule: Saturation,
+    k: &Constants,
+    v_bus: f64,
+    u: [f64; 2],
+    e: [f64; 2],
+) -> ([f64; 2], Reach) {
+    let u_c = -(u[0] + u[1]);
+    let max = u[0].max(u[1]).max(u_c);
+    let min = u[0].min(u[1]).min(u_c);
+    let spread = max - min;
+    if spread <= v_bus {
+        return (u, Reach::Inside);
+    }
+    match rule {
+        Saturation::KeepAngle => {
+            let scale = Coefficient::new(div_floor(v_bus, k.scale_bits, spread), k.scale_bits);
+            (u.map(|u_x| scale.mul(u_x)), Reach::Outside)
+        }
+        Saturation::Nearest => (
+            nearest(k, v_bus, [u[0], u[1], u_c], max, min),
+            Reach::Outside,
+        ),
+        Saturation::TorquePriority => {
+            let near = nearest(k, v_bus, [u[0], u[1], u_c], max, min);
+            torque_priority(
+                k,
+                v_bus,
+                [u[0], u[1], u_c],
+                [e[0], e[1], -(e[0] + e[1])],
+                near,
+            )
+        }
+    }
+}
+
+/// The nearest point of the hexagon.
+#[inline]
+fn nearest(k: &Constants, v_bus: f64, u: [f64; 3], max: f64, min: f64) -> [f64; 2] {
+    let middle = halve(max + min);
+    let half_bus = halve(v_bus);
+    let t = u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, v_bus));
+    let mean = k.k_third.mul(t[0] + t[1] + t[2]);
+    [t[0] - mean, t[1] - mean]
+}
+
+/// The point of the hexagon that keeps the component of `u` along the EMF `f`; `near` is the
+/// nearest point.
+fn torque_priority(
+    k: &Constants,
+    v_bus: f64,
+    u: [f64; 3],
+    f: [f64; 3],
+    near: [f64; 2],
+) -> ([f64; 2], Reach) {
+    let product = |x, y| k.emf_product.floor_product(x, y);
+    let mut d = 0;
+    for phase in 1..3 {
+        if f[phase].abs() > f[d].abs() {
+            d = phase;
+        }
+    }
+    let (x, y) = ((d + 1) % 3, (d + 2) % 3);
+    if f[d].abs() < floor_shift(v_bus, 8) {
+        return (near, Reach::Outside);
+    }
+    let s1 = if f[d] >= 0.0 { 1.0 } else { -1.0 };
+    let (f_x, f_y) = ((-s1 * f[x]).max(0.0), (-s1 * f[y]).max(0.0));
+    let (mut along_x, mut along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
+    let mut p = product(f_x, along_x) + product(f_y, along_y);
+    let mut sign = s1;
+    if p < 0.0 {
+        (along_x, along_y, p, sign) = (-along_x, -along_y, -p, -s1);
+    }
+    let (q_x, q_y) = (product(f_x, v_bus), product(f_y, v_bus));
+    let p_max = q_x + q_y;
+    let p_in = p.min(p_max);
+    let x_is_heavy = along_x >= along_y;
+    let (q_heavy, f_light) = if x_is_heavy { (q_x, f_y) } else { (q_y, f_x) };
+    let n = p_in - q_heavy;
+    let f_max = f[d].abs();
+    let den = if n > 0.0 {
+        f_light.max(floor_shift(f_max, LIGHT_SHARE))
+    } else {
+        f_max
+    }
+    .max(1.0);
+    let quotient = div_floor(n.abs(), k.emf_product.bits(), den).min(v_bus);
+    let light = if n > 0.0 { quotient } else { -quotient };
+    let heavy = (light + v_bus).min(v_bus);
+    let (mut to_x, mut to_y) = if x_is_heavy {
+        (heavy, light)
+    } else {
+        (light, heavy)
+    };
+
+    let mut reach = Reach::Outside;
+    if p > p_max {
+        reach = Reach::PastReach;
+        let share = floor_shift(p_max, BLEND_SHARE).max(1.0);
+        let blend = floor((p - p_max) * BLEND_ONE / share).min(BLEND_ONE);
+        let near = [near[0], near[1], -(near[0] + near[1])];
+        let mul15 = Shift::new(BLEND_BITS);
+        to_x += mul15.round_product(blend, sign * (near[d] - near[x]) - to_x);
+        to_y += mul15.round_product(blend, sign * (near[d] - near[y]) - to_y);
+    }
+    let mut limited = [0.0; 3];
+    limited[d] = k.k_third.mul(sign * (to_x + to_y));
+    limited[x] = limited[d] - sign * to_x;
+    limited[y] = limited[d] - sign * to_y;
+    ([limited[0], limited[1]], reach)
+}

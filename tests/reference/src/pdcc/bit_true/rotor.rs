@@ -1,0 +1,88 @@
+//! The rotor's angle from the timing of the Hall edges (section 4).
+
+use super::constants::Constants;
+use super::state::State;
+use crate::exact::{floor, pow2, wrap32};
+use crate::pdcc::hall::HallClock;
+use crate::pdcc::sector::HallEvent;
+
+/// SIXTH: 60 degrees as an angle word, floor(2^32/6).
+const SIXTH: f64 = 715_827_882.0;
+/// 30 degrees as an angle word, rounded up.
+const TWELFTH: f64 = 357_913_942.0;
+/// Angle words at which sectors 1 to 6 begin (entry 0 stands for "no sector").
+const SECTOR_START: [f64; 7] = [
+    0.0,
+    3_937_053_355.0,
+    357_913_942.0,
+    1_073_741_824.0,
+    1_789_569_707.0,
+    2_505_397_590.0,
+    3_221_225_472.0,
+];
+
+/// The rotor at this sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Angle {
+    /// Angle word, 0 to 2^32 - 1.
+    pub theta: f64,
+    /// Angle per period, signed.
+    pub step: f64,
+    /// Angle per tick.
+    pub omega: f64,
+    /// Sector with its advance.
+    pub sector_eff: usize,
+}
+
+/// The angle after `state.timing` has followed the sample.
+#[inline]
+pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent) -> Angle {
+    let timing = &state.timing;
+    let turning = timing.edges == 2;
+    let omega = if !turning {
+        0.0
+    } else if event.edge {
+        floor((pow2(32) - 1.0) / timing.rev.max(clock.rev_min))
+    } else {
+        state.omega
+    };
+    let progress = (omega * timing.age_prev).min(SIXTH - 1.0);
+    let turn = (omega * clock.ticks).min(floor(SIXTH / 2.0));
+    let step = timing.direction * turn;
+    let in_sector = if !turning {
+        floor(SIXTH / 2.0)
+    } else if timing.direction > 0.0 {
+        progress
+    } else {
+        SIXTH - 1.0 - progress
+    };
+    let theta = wrap32(SECTOR_START[event.sector] + in_sector);
+    let sector_eff = if k.advanced && turning {
+        let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
+        floor(ahead * 6.0 * pow2(-32)) as usize + 1
+    } else {
+        event.sector
+    };
+    Angle {
+        theta,
+        step,
+        omega,
+        sector_eff,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sectors_start_at_the_first_word_past_their_edge() {
+        for (sector, start) in SECTOR_START.iter().enumerate().skip(1) {
+            let degrees = (60 * (sector as i128 - 1) - 30).rem_euclid(360);
+            assert_eq!(*start as i128, ((degrees << 32) + 359) / 360);
+            let index = |theta: f64| floor(wrap32(theta + TWELFTH) * 6.0 * pow2(-32)) as usize;
+            assert_eq!(index(*start), sector - 1);
+            assert_eq!(index(*start + SIXTH - 1.0), sector - 1);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Tables of periodic functions of the electrical angle, quadratic in every segment.
+
+use crate::exact::{Shift, floor, pow2, round_half_up, wrap32};
+use std::f64::consts::TAU;
+
+/// A third of a turn as an angle word.
+const THIRD: f64 = 1_431_655_765.0;
+
+/// A table of one function.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// Segments per turn over 2^32.
+    scale: f64,
+    mul31: Shift,
+    segments: Vec<[f64; 3]>,
+}
+
+impl Table {
+    /// Tabulates `y(theta)` (radians) in `segments` segments with `frac_bits` fraction bits.
+    pub fn new(segments: u32, frac_bits: u32, y: impl Fn(f64) -> f64) -> Self {
+        let width = TAU / f64::from(segments);
+        let raw = |value: f64| round_half_up(value * pow2(frac_bits as i32));
+        let coefficients = |index: u32| {
+            let left = f64::from(index) * width;
+            let (y0, y1, y2) = (y(left), y(left + width / 2.0), y(left + width));
+            [
+                raw(y0),
+                raw(4.0 * y1 - 3.0 * y0 - y2),
+                raw(2.0 * (y0 + y2) - 4.0 * y1),
+            ]
+        };
+        Self {
+            scale: f64::from(segments) * pow2(-32),
+            mul31: Shift::new(31),
+            segments: (0..segments).map(coefficients).collect(),
+        }
+    }
+
+    /// The function of phases a and b at an angle word of phase a (not yet wrapped).
+    #[inline]
+    pub fn both(&self, theta: f64) -> [f64; 2] {
+        [self.at(wrap32(theta)), self.at(wrap32(theta - THIRD))]
+    }
+
+    /// The function at an angle word from 0 to 2^32 - 1.
+    #[inline]
+    fn at(&self, theta: f64) -> f64 {
+        let position = theta * self.scale;
+        let index = floor(position);
+        let t = floor((position - index) * pow2(31));
+        let [c0, c1, c2] = self.segments[index as usize];
+        c0 + self
+            .mul31
+            .round_product(t, c1 + self.mul31.round_product(t, c2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_follows_the_function() {
+        let table = Table::new(24, 24, f64::sin);
+        for step in 0..10_000 {
+            let theta = floor(f64::from(step) * 429_496.729_6);
+            let [a, b] = table.both(theta).map(|word| word * pow2(-24));
+            let exact = theta * TAU * pow2(-32);
+            assert!((a - exact.sin()).abs() < 2e-4, "{a} at {exact}");
+            assert!(
+                (b - (exact - TAU / 3.0).sin()).abs() < 2e-4,
+                "{b} at {exact}"
+            );
+        }
+    }
+}

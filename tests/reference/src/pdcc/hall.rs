@@ -1,0 +1,121 @@
+//! Timing of Hall edges (section 4 of the semantics): age of the last edge, length of the last
+//! turn, and when they stop being trustworthy. Ticks are whole numbers, so nothing is rounded.
+
+use super::sector::HallEvent;
+use crate::spec::{EmfSource, HallCapture, Inverter, Pdcc, Reference, Spec};
+
+/// Whether the variant needs the rotor's angle.
+pub fn needs_rotor(pdcc: &Pdcc) -> bool {
+    pdcc.emf == EmfSource::Model || pdcc.advance > 0.0 || pdcc.reference == Reference::Proportional
+}
+
+/// Constants of the timing, in ticks.
+#[derive(Clone, Copy, Debug)]
+pub struct HallClock {
+    pub timer: bool,
+    pub ticks: f64,
+    pub age_max: f64,
+    pub rev_min: f64,
+}
+
+impl HallClock {
+    pub fn new(spec: &Spec) -> Self {
+        let Inverter {
+            hall_capture,
+            ticks,
+            age_max,
+            rev_min,
+            ..
+        } = spec.inverter;
+        Self {
+            timer: hall_capture == HallCapture::Timer,
+            ticks: f64::from(ticks),
+            age_max: f64::from(age_max),
+            rev_min: f64::from(rev_min),
+        }
+    }
+}
+
+/// State of the edge timing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HallTiming {
+    /// 1 forward, -1 backward.
+    pub direction: f64,
+    /// Ticks from the last edge to the last sample.
+    pub age_prev: f64,
+    /// 0: nothing known; 1: one edge seen; 2: `turn` is valid.
+    pub edges: u8,
+    /// The last six edge-to-edge intervals, newest first.
+    pub intervals: [f64; 6],
+    /// Their sum: ticks of one electrical turn.
+    pub rev: f64,
+}
+
+impl Default for HallTiming {
+    fn default() -> Self {
+        Self {
+            direction: 1.0,
+            age_prev: 0.0,
+            edges: 0,
+            intervals: [1.0; 6],
+            rev: 6.0,
+        }
+    }
+}
+
+impl HallTiming {
+    /// Follows the direction only.
+    #[inline]
+    pub fn turn_direction(&mut self, event: &HallEvent) {
+        if event.edge {
+            if event.forward {
+                self.direction = 1.0;
+            } else if event.backward {
+                self.direction = -1.0;
+            }
+        }
+    }
+
+    /// One sample; `direction_before` is the direction before this sample's edge was judged.
+    /// Leaves the age now in `age_prev`.
+    #[inline]
+    pub fn step(
+        &mut self,
+        clock: &HallClock,
+        event: &HallEvent,
+        direction_before: f64,
+        hall_ticks: f64,
+    ) {
+        let age_before = self.age_prev + clock.ticks;
+        let age = if clock.timer {
+            hall_ticks.min(clock.age_max + 1.0)
+        } else if event.edge {
+            1.0
+        } else {
+            age_before.min(clock.age_max + 1.0)
+        };
+        if event.edge {
+            let interval = (age_before - age).clamp(1.0, clock.age_max);
+            let step_ok = event.forward || event.backward;
+            let again = step_ok && self.direction == direction_before && self.edges >= 1;
+            if again && self.edges == 1 {
+                self.intervals = [interval; 6];
+            } else if again {
+                self.intervals.rotate_right(1);
+                self.intervals[0] = interval;
+            }
+            self.edges = if !step_ok {
+                0
+            } else if again {
+                2
+            } else {
+                1
+            };
+            self.rev = self.intervals.iter().sum();
+        }
+        if age > clock.age_max || (self.edges == 2 && 3.0 * age > self.rev) {
+            self.edges = 0;
+        }
+        self.age_prev = age;
+    }
+}

@@ -1,0 +1,499 @@
+//! Model A: the deadbeat law in f64 and physical units, with no rounding anywhere.
+//!
+//! Vectors are amplitude-invariant alpha-beta (DESIGN section 3); the inputs are the same ADC
+//! counts, Hall codes and timer ticks that the generated code reads, the outputs exact duties.
+
+mod limit;
+
+use super::hall::{HallClock, needs_rotor};
+use super::sector::{self, HallEvent};
+use super::supervision::{Limits, Mode, Observation};
+use super::trace::{PhysicalState, Trace};
+use crate::emf_shape::THIRD;
+use crate::{
+    BusSense, DiscretePhase, EmfShape, EmfSource, Error, Modulation, Pdcc, Reference, Spec,
+};
+use hexagen::{LegState, Legs, Sample};
+use nalgebra::{Vector2, Vector3};
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
+
+/// A sector is half open: its last angle stays this far (radians) before the next one.
+const SECTOR_END: f64 = FRAC_PI_3 * (1.0 - 1e-9);
+
+/// Exact leg commands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Duties {
+    /// Share of the period during which the upper switch is on, 0 to 1, phases a, b, c.
+    pub duty: [f64; 3],
+    /// States of legs a, b, c.
+    pub state: [LegState; 3],
+}
+
+impl Duties {
+    const LOW: Self = Self {
+        duty: [0.0; 3],
+        state: [LegState::Low; 3],
+    };
+    const OFF: Self = Self {
+        duty: [0.0; 3],
+        state: [LegState::Off; 3],
+    };
+
+    /// The nearest timer compare values, ties up.
+    pub fn to_legs(self, timer_period: u16) -> Legs {
+        let compare = self
+            .duty
+            .map(|duty| (duty * f64::from(timer_period) + 0.5).floor() as u16);
+        Legs {
+            compare,
+            state: self.state,
+        }
+    }
+}
+
+/// What the inverter does in one period.
+#[derive(Clone, Copy, Debug)]
+struct Command {
+    duties: Duties,
+    /// Terminal voltages, volt.
+    terminal: Vector3<f64>,
+    off: Option<usize>,
+}
+
+/// The ideal predictive deadbeat controller of one drive.
+#[derive(Clone, Debug)]
+pub struct Ideal {
+    // From the specification.
+    pdcc: Pdcc,
+    phase: DiscretePhase,
+    shape: EmfShape,
+    hall_sectors: [usize; 8],
+    clock: HallClock,
+    rotor: bool,
+    limits: Limits,
+    gain: f64,
+    offset_nominal: f64,
+    bus_sense: Option<BusSense>,
+    bus_count_max: f64,
+    timer_period: u16,
+    di_max: f64,
+    e_max: f64,
+    max_current: f64,
+    k_t: f64,
+    k_phase: f64,
+    pp_t_s: f64,
+    // Set-points.
+    current: f64,
+    v_bus: f64,
+    state: PhysicalState,
+    trace: Trace,
+}
+
+impl Ideal {
+    /// A controller at rest with zero set-point.
+    ///
+    /// # Errors
+    /// When the specification is inconsistent.
+    pub fn new(spec: &Spec) -> Result<Self, Error> {
+        let (motor, inverter, pdcc) = (&spec.motor, &spec.inverter, *spec.pdcc());
+        let phase = DiscretePhase::new(spec);
+        let bus_sense = inverter.bus_sense()?;
+        let gain = inverter.adc_gain;
+        let limits = Limits::new(inverter, inverter.trip_current)?;
+        let pole_pairs = f64::from(motor.pole_pairs);
+        let mut ideal = Self {
+            pdcc,
+            phase,
+            shape: EmfShape::new(motor)?,
+            hall_sectors: sector::hall_sectors(motor),
+            clock: HallClock::new(spec),
+            rotor: needs_rotor(&pdcc),
+            limits,
+            gain,
+            offset_nominal: f64::from(inverter.adc_offset),
+            bus_sense,
+            bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
+            timer_period: inverter.timer_period as u16,
+            di_max: (2.0 * limits.adc_max * gain.abs())
+                .min(2.0 * phase.b * 4.0 / 3.0 * inverter.v_bus_max()?),
+            e_max: 1.5 * motor.emf_constant * inverter.omega_max,
+            max_current: inverter.max_current,
+            k_t: motor.torque_constant,
+            k_phase: motor.emf_constant,
+            pp_t_s: pole_pairs * inverter.t_s,
+            current: 0.0,
+            v_bus: inverter.v_bus,
+            state: PhysicalState::default(),
+            trace: Trace::default(),
+        };
+        ideal.state.offset = [ideal.offset_nominal; 2];
+        Ok(ideal)
+    }
+
+    /// Sets the current set-point, ampere; saturates at the largest current.
+    pub fn set_current_amps(&mut self, current: f64) {
+        self.current = current.clamp(-self.max_current, self.max_current);
+    }
+
+    /// Sets the current set-point from the bits of an `I16F16` in ampere.
+    pub fn set_current(&mut self, bits: i32) {
+        self.set_current_amps(f64::from(bits) / 65_536.0);
+    }
+
+    /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
+    pub fn set_torque(&mut self, bits: i32) {
+        self.set_current_amps(f64::from(bits) / 65_536.0 / self.k_t);
+    }
+
+    /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
+    pub fn set_bus(&mut self, counts: u16) {
+        if let Some(bus) = self.bus_sense {
+            self.v_bus =
+                (f64::from(counts).min(self.bus_count_max) * bus.gain).clamp(bus.min, bus.max);
+        }
+    }
+
+    /// Clears a trip and all control state; keeps the offsets and the set-point.
+    pub fn reset(&mut self) {
+        self.state = PhysicalState {
+            offset: self.state.offset,
+            ..PhysicalState::default()
+        };
+    }
+
+    /// Starts current-offset calibration.
+    pub fn calibrate(&mut self) {
+        self.state.supervisor.calibrate(&self.limits);
+    }
+
+    /// Starts bootstrap pre-charge.
+    pub fn precharge(&mut self) {
+        self.state.supervisor.precharge(&self.limits);
+    }
+
+    /// Signals of the last step.
+    pub fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    /// Takes over another model's state, so that one step's error can be measured.
+    pub fn rebuild_from(&mut self, state: &PhysicalState) {
+        self.state = *state;
+    }
+
+    /// One control period: reads the sample, returns the exact command.
+    pub fn step(&mut self, sample: &Sample) -> Duties {
+        // 1 measure
+        let adc = [sample.adc_a, sample.adc_b].map(f64::from);
+        let [i_a, i_b] =
+            [0, 1].map(|x| (adc[x].min(self.limits.adc_max) - self.state.offset[x]) * self.gain);
+        let i_abc = Vector3::new(i_a, i_b, -(i_a + i_b));
+        let i = clarke(&i_abc);
+
+        // 2 hall, 3 supervise
+        let event = HallEvent::new(&self.hall_sectors, sample.hall, self.state.sector_prev);
+        let direction_before = self.state.timing.direction;
+        self.state.timing.turn_direction(&event);
+        let seen = Observation {
+            adc,
+            i: i_abc.into(),
+            code: event.code,
+            edge: event.edge,
+            demand: self.current != 0.0,
+        };
+        if self.state.supervisor.step(&self.limits, &seen) {
+            self.state.offset = self
+                .state
+                .supervisor
+                .sum
+                .map(|sum| sum / self.limits.calibration_samples);
+        }
+        let run = self.state.supervisor.mode == Mode::Run;
+
+        // 4 rotor
+        let sector = event.sector;
+        let (theta, step_angle, sector_eff) = if self.rotor {
+            self.state.timing.step(
+                &self.clock,
+                &event,
+                direction_before,
+                f64::from(sample.hall_ticks),
+            );
+            self.angle(sector)
+        } else {
+            (0.0, 0.0, sector)
+        };
+
+        // 5 commutation
+        let pair = self.pdcc.modulation == Modulation::Pair;
+        if pair {
+            self.commutate(sector_eff, &i_abc);
+        }
+
+        // 6 reference
+        let target = f64::from(1 + self.pdcc.delay) * step_angle;
+        let i_ref = match self.pdcc.reference {
+            Reference::QuasiSquare => {
+                from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * self.current
+            }
+            Reference::Proportional => {
+                let f = self.shape.alpha_beta(theta + target);
+                f * (2.0 / 3.0 * self.k_t / self.k_phase * self.current / f.norm_squared())
+            }
+        };
+
+        // 7 applied voltage
+        let delayed = self.pdcc.delay == 1;
+        let [e_a, e_b] = self.state.e_prev;
+        let v_now = match (delayed, pair) {
+            (false, _) => Vector2::zeros(),
+            (true, false) => from_ab(self.state.v_cmd[0], self.state.v_cmd[1]),
+            (true, true) => self.applied(
+                &Vector3::from(self.state.t_cmd),
+                self.state.off_cmd,
+                &i_abc,
+                &from_ab(e_a, e_b),
+            ),
+        };
+
+        // 8 EMF
+        let e = match self.pdcc.emf {
+            EmfSource::Estimated => {
+                let [pa, pb] = self.state.i_prev;
+                let d = from_ab(
+                    (i_a - pa).clamp(-self.di_max, self.di_max),
+                    (i_b - pb).clamp(-self.di_max, self.di_max),
+                );
+                let i_prev = from_ab(pa, pb);
+                let DiscretePhase { a, b } = self.phase;
+                // v - (i - a i_prev)/b, with i - a i_prev = d + (1 - a) i_prev.
+                let raw = from_ab(self.state.v_prev[0], self.state.v_prev[1])
+                    - (d + i_prev * (1.0 - a)) / b;
+                let e_prev = from_ab(e_a, e_b);
+                e_prev + (raw - e_prev) * self.pdcc.emf_filter
+            }
+            EmfSource::Model => {
+                let (start, end) = (
+                    theta + f64::from(self.pdcc.delay) * step_angle,
+                    theta + target,
+                );
+                let [e_a, e_b] = [0.0, THIRD].map(|lag| {
+                    let linkage = self.shape.zero_sum_integral(end - lag)
+                        - self.shape.zero_sum_integral(start - lag);
+                    (self.k_phase / self.pp_t_s * linkage).clamp(-self.e_max, self.e_max)
+                });
+                from_ab(e_a, e_b)
+            }
+        };
+
+        // 9 deadbeat voltage
+        let DiscretePhase { a, b } = self.phase;
+        let i_then = if delayed { i * a + (v_now - e) * b } else { i };
+        let u_unsat = (i_ref - i_then * a) / b + e;
+
+        // 10 limit, 11 modulate
+        let limited = limit::limit(
+            self.pdcc.saturation,
+            &phases(&u_unsat),
+            &phases(&e),
+            self.v_bus,
+        );
+        let command = if !run {
+            let duties = if self.state.supervisor.mode == Mode::Precharge {
+                Duties::LOW
+            } else {
+                Duties::OFF
+            };
+            Command {
+                duties,
+                terminal: Vector3::zeros(),
+                off: None,
+            }
+        } else if pair && !self.state.commutating {
+            self.pulse_pair(sector_eff, &phases(&u_unsat))
+        } else {
+            self.pulse_three(&limited.u)
+        };
+
+        // 12 remember
+        self.state.i_prev = [i_a, i_b];
+        self.state.sector_prev = sector;
+        self.state.sector_eff_prev = sector_eff;
+        let u = clarke(&limited.u);
+        if run {
+            self.state.v_prev = to_ab(&match (delayed, pair) {
+                (true, _) => v_now,
+                (false, false) => u,
+                (false, true) => self.applied(&command.terminal, command.off, &i_abc, &e),
+            });
+            self.state.v_cmd = to_ab(&u);
+            self.state.t_cmd = command.terminal.into();
+            self.state.off_cmd = command.off;
+            self.state.e_prev = to_ab(&e);
+        } else {
+            self.state.v_prev = [0.0; 2];
+            self.state.v_cmd = [0.0; 2];
+            self.state.t_cmd = [0.0; 3];
+            self.state.off_cmd = None;
+            self.state.e_prev = [0.0; 2];
+            self.state.commutating = false;
+            self.state.commutation_age = 0.0;
+        }
+        self.trace = Trace {
+            i: [i_a, i_b],
+            e: to_ab(&e),
+            v_now: to_ab(&v_now),
+            u_unsat: to_ab(&u_unsat),
+            u: to_ab(&u),
+            theta,
+            step_angle,
+            sector_eff,
+            commutating: self.state.commutating,
+            reach: limited.reach,
+            run,
+        };
+        command.duties
+    }
+
+    /// Angle at the sample and angle per period (radians), and the sector with its advance.
+    fn angle(&self, sector: usize) -> (f64, f64, usize) {
+        let timing = &self.state.timing;
+        let omega = if timing.edges == 2 {
+            TAU / timing.rev.max(self.clock.rev_min)
+        } else {
+            0.0
+        };
+        let progress = (omega * timing.age_prev).min(SECTOR_END);
+        let step_angle = timing.direction * (omega * self.clock.ticks).min(FRAC_PI_6);
+        let in_sector = if timing.edges != 2 {
+            FRAC_PI_6
+        } else if timing.direction > 0.0 {
+            progress
+        } else {
+            SECTOR_END - progress
+        };
+        let theta = sector as f64 * FRAC_PI_3 - FRAC_PI_3 - FRAC_PI_6 + in_sector;
+        let sector_eff = if timing.edges == 2 && sector != 0 {
+            let ahead = ((in_sector + self.pdcc.advance * step_angle) / FRAC_PI_3).floor() as i64;
+            (sector as i64 - 1 + ahead).rem_euclid(6) as usize + 1
+        } else {
+            sector
+        };
+        (theta, step_angle, sector_eff)
+    }
+
+    /// Follows the commutation (section 5).
+    fn commutate(&mut self, sector_eff: usize, i: &Vector3<f64>) {
+        let state = &mut self.state;
+        let timeout = f64::from(self.pdcc.commutation_timeout);
+        let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
+        let torque = if self.current < 0.0 { -1.0 } else { 1.0 };
+        let sign = sector::OUT_SIGN[sector_eff] * torque * state.timing.direction;
+        let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= self.pdcc.commutation_threshold
+            || state.commutation_age >= timeout;
+        state.commutating = changed || (state.commutating && !ended);
+        state.commutation_age = if changed {
+            0.0
+        } else {
+            (state.commutation_age + 1.0).min(timeout)
+        };
+    }
+
+    /// Voltage that a command really applies while the currents are `i` (section 7).
+    fn applied(
+        &self,
+        terminal: &Vector3<f64>,
+        off: Option<usize>,
+        i: &Vector3<f64>,
+        e: &Vector2<f64>,
+    ) -> Vector2<f64> {
+        let mut terminal = *terminal;
+        if let Some(off) = off {
+            let driven = terminal.sum() - terminal[off];
+            let threshold = self.pdcc.commutation_threshold;
+            terminal[off] = if i[off] > threshold {
+                0.0
+            } else if i[off] < -threshold {
+                self.v_bus
+            } else {
+                // e_o + v_n, v_n the mean of v - e over the two driven legs, e summing to zero.
+                (driven / 2.0 + 1.5 * phases(e)[off]).clamp(0.0, self.v_bus)
+            };
+        }
+        clarke(&terminal)
+    }
+
+    /// Three pulsed legs, their common mode in the middle of the bus.
+    fn pulse_three(&self, u: &Vector3<f64>) -> Command {
+        let terminal = u
+            .map(|u_x| (u_x - u.max().midpoint(u.min()) + self.v_bus / 2.0).clamp(0.0, self.v_bus));
+        let duties = Duties {
+            duty: (terminal / self.v_bus).into(),
+            state: [LegState::Pulsed; 3],
+        };
+        Command {
+            duties,
+            terminal,
+            off: None,
+        }
+    }
+
+    /// One pulsed leg of the conducting pair, the other low, the third off.
+    fn pulse_pair(&self, sector_eff: usize, u: &Vector3<f64>) -> Command {
+        let mut terminal = Vector3::zeros();
+        let mut duties = Duties::OFF;
+        if sector_eff == 0 {
+            return Command {
+                duties,
+                terminal,
+                off: None,
+            };
+        }
+        let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
+        let v = (u[plus] - u[minus]).clamp(-self.v_bus, self.v_bus);
+        let (pulsed, low) = if v >= 0.0 {
+            (plus, minus)
+        } else {
+            (minus, plus)
+        };
+        terminal[pulsed] = v.abs();
+        duties.duty[pulsed] = v.abs() / self.v_bus;
+        duties.state[pulsed] = LegState::Pulsed;
+        duties.state[low] = LegState::Low;
+        Command {
+            duties,
+            terminal,
+            off: Some(sector::OUT_PHASE[sector_eff]),
+        }
+    }
+
+    /// As [`Self::step`], rounded to timer counts.
+    pub fn step_legs(&mut self, sample: &Sample) -> Legs {
+        self.step(sample).to_legs(self.timer_period)
+    }
+}
+
+/// Amplitude-invariant Clarke transform.
+fn clarke(x: &Vector3<f64>) -> Vector2<f64> {
+    Vector2::new(
+        (2.0 * x[0] - x[1] - x[2]) / 3.0,
+        (x[1] - x[2]) / 3f64.sqrt(),
+    )
+}
+
+/// The zero-sum phase values of an alpha-beta vector.
+fn phases(x: &Vector2<f64>) -> Vector3<f64> {
+    let (half_a, quadrature) = (x[0] / 2.0, x[1] * 3f64.sqrt() / 2.0);
+    Vector3::new(x[0], quadrature - half_a, -quadrature - half_a)
+}
+
+/// Alpha-beta of phases a, b with zero sum.
+fn from_ab(a: f64, b: f64) -> Vector2<f64> {
+    clarke(&Vector3::new(a, b, -(a + b)))
+}
+
+/// Phases a, b of an alpha-beta vector.
+fn to_ab(x: &Vector2<f64>) -> [f64; 2] {
+    let phases = phases(x);
+    [phases[0], phases[1]]
+}

@@ -1,0 +1,89 @@
+//! Limiting to the hexagon of reachable voltages (section 10), as plane geometry.
+
+use crate::Saturation;
+use crate::pdcc::Reach;
+use nalgebra::Vector3;
+
+/// A limited voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct Limited {
+    /// Phase voltages, zero sum, volt.
+    pub u: Vector3<f64>,
+    /// Where the voltage lay before.
+    pub reach: Reach,
+}
+
+/// Limits the zero-sum phase voltages `u` to the hexagon of bus voltage `v_bus`; `f` are the
+/// zero-sum phase EMFs, used by torque priority.
+pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -> Limited {
+    let spread = u.max() - u.min();
+    if spread <= v_bus {
+        return Limited {
+            u: *u,
+            reach: Reach::Inside,
+        };
+    }
+    let mut reach = Reach::Outside;
+    let u = match rule {
+        Saturation::KeepAngle => u * (v_bus / spread),
+        Saturation::Nearest => nearest(u, v_bus),
+        Saturation::TorquePriority if f.amax() < v_bus / 256.0 => nearest(u, v_bus),
+        Saturation::TorquePriority => {
+            let p = u.dot(f);
+            let p_max = v_bus * f.amax();
+            if p.abs() > p_max {
+                reach = Reach::PastReach;
+            }
+            let kept = clip_across(u, f, p.clamp(-p_max, p_max), v_bus);
+            let blend = ((p.abs() - p_max) / (p_max * BLEND_SHARE)).clamp(0.0, 1.0);
+            kept + (nearest(u, v_bus) - kept) * blend
+        }
+    };
+    Limited { u, reach }
+}
+
+/// Share of the reach over which torque priority passes into the nearest point.
+const BLEND_SHARE: f64 = 1.0 / 2.0;
+/// Least weight of a line-to-line voltage, as a share of the largest EMF.
+const LIGHT_SHARE: f64 = 1.0 / 4.0;
+
+/// The nearest point of the hexagon: the terminal voltages clipped about their middle.
+fn nearest(u: &Vector3<f64>, v_bus: f64) -> Vector3<f64> {
+    let middle = u.max().midpoint(u.min());
+    let clipped = u.map(|u_x| (u_x - middle).clamp(-v_bus / 2.0, v_bus / 2.0));
+    clipped.add_scalar(-clipped.mean())
+}
+
+/// The point on the hexagon's edge, on `u`'s side, that has the scalar product `p` with `f`
+/// (|p| at most what the hexagon gives).
+///
+/// Seen from the phase d of the largest EMF, the hexagon is |X|, |Y|, |X - Y| <= v_bus in the
+/// line-to-line voltages X, Y to the two others, and p = f_x X + f_y Y with weights of one sign.
+/// Where the lighter one's weight vanishes it would jump along the edge; the floor under its
+/// weight keeps it continuous for less than the demanded product.
+fn clip_across(u: &Vector3<f64>, f: &Vector3<f64>, p: f64, v_bus: f64) -> Vector3<f64> {
+    let d = f.iamax();
+    let (x, y) = ((d + 1) % 3, (d + 2) % 3);
+    // Turned so that product and weights are positive.
+    let turn = if p < 0.0 { -1.0 } else { 1.0 };
+    let sense = turn * f[d].signum();
+    let across = |other: usize| sense * (u[d] - u[other]);
+    let weight = |other: usize| (-f[d].signum() * f[other]).max(0.0);
+    let (heavy, light) = if across(x) >= across(y) {
+        (x, y)
+    } else {
+        (y, x)
+    };
+    let missing = p.abs() - weight(heavy) * v_bus;
+    let to_light = if missing > 0.0 {
+        (missing / weight(light).max(f[d].abs() * LIGHT_SHARE)).min(v_bus)
+    } else {
+        (missing / f[d].abs()).max(-v_bus)
+    };
+    let to_heavy = (to_light + v_bus).min(v_bus);
+    let mut kept = Vector3::zeros();
+    kept[d] = sense * (to_heavy + to_light) / 3.0;
+    kept[heavy] = kept[d] - sense * to_heavy;
+    kept[light] = kept[d] - sense * to_light;
+    kept
+}

@@ -1,0 +1,174 @@
+//! Modes, faults and the start-up sequence (section 3 of the semantics). Nothing here is rounded:
+//! currents and trip level are compared in whatever unit the model uses.
+
+use crate::Error;
+use crate::spec::Inverter;
+use hexagen::Fault;
+
+/// What the drive is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Controlling the currents.
+    #[default]
+    Run = 0,
+    /// Averaging the ADC offsets, all legs off.
+    Calibrate = 1,
+    /// Charging the bootstrap capacitors, all legs low.
+    Precharge = 2,
+    /// Latched after a fault, all legs off.
+    Tripped = 3,
+}
+
+impl Mode {
+    /// The mode of a state word.
+    pub fn from_word(word: i32) -> Self {
+        match word {
+            0 => Self::Run,
+            1 => Self::Calibrate,
+            2 => Self::Precharge,
+            _ => Self::Tripped,
+        }
+    }
+}
+
+/// The fault of a state word.
+pub fn fault_from_word(word: i32) -> Fault {
+    match word {
+        1 => Fault::AdcRange,
+        2 => Fault::OverCurrent,
+        3 => Fault::Hall,
+        4 => Fault::Stall,
+        _ => Fault::None,
+    }
+}
+
+/// Limits of the supervision, `i_trip` in the model's unit of current.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    pub adc_max: f64,
+    pub i_trip: f64,
+    pub calibration_samples: f64,
+    pub precharge_periods: f64,
+    pub stall_periods: f64,
+}
+
+impl Limits {
+    pub fn new(inverter: &Inverter, i_trip: f64) -> Result<Self, Error> {
+        let samples = 1u32
+            .checked_shl(inverter.calibration_log2)
+            .ok_or(Error::Field {
+                field: "inverter.calibration_log2",
+                value: inverter.calibration_log2.to_string(),
+                expected: "expected less than 32",
+            })?;
+        Ok(Self {
+            adc_max: f64::from((1u32 << inverter.adc_bits) - 1),
+            i_trip,
+            calibration_samples: f64::from(samples),
+            precharge_periods: f64::from(inverter.precharge_periods),
+            stall_periods: f64::from(inverter.stall_periods),
+        })
+    }
+}
+
+/// What the supervision sees of one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation {
+    /// ADC counts as read.
+    pub adc: [f64; 2],
+    /// Phase currents.
+    pub i: [f64; 3],
+    /// Sector of the Hall code, 0 for an invalid code.
+    pub code: usize,
+    /// A Hall edge was seen.
+    pub edge: bool,
+    /// The set-point is not zero.
+    pub demand: bool,
+}
+
+/// State of the supervision.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Supervisor {
+    pub mode: Mode,
+    pub fault: Fault,
+    pub countdown: f64,
+    pub sum: [f64; 2],
+    pub stall_count: f64,
+}
+
+impl Supervisor {
+    /// Starts the calibration of the current offsets; ignored when tripped.
+    pub fn calibrate(&mut self, limits: &Limits) {
+        if self.mode != Mode::Tripped {
+            self.mode = Mode::Calibrate;
+            self.countdown = limits.calibration_samples;
+            self.sum = [0.0; 2];
+        }
+    }
+
+    /// Starts the bootstrap pre-charge; ignored when tripped.
+    pub fn precharge(&mut self, limits: &Limits) {
+        if self.mode != Mode::Tripped && limits.precharge_periods > 0.0 {
+            self.mode = Mode::Precharge;
+            self.countdown = limits.precharge_periods;
+        }
+    }
+
+    /// One period. Returns true when the calibration is complete: the offsets are the sums'
+    /// means from the next period on.
+    #[inline]
+    pub fn step(&mut self, limits: &Limits, seen: &Observation) -> bool {
+        if limits.stall_periods > 0.0 {
+            self.stall_count = if seen.edge || !seen.demand {
+                0.0
+            } else {
+                (self.stall_count + 1.0).min(limits.stall_periods)
+            };
+        }
+        let i_max = seen.i[0].abs().max(seen.i[1].abs()).max(seen.i[2].abs());
+        let fault_now = if seen.adc[0] > limits.adc_max || seen.adc[1] > limits.adc_max {
+            Fault::AdcRange
+        } else if i_max > limits.i_trip {
+            Fault::OverCurrent
+        } else if seen.code == 0 {
+            Fault::Hall
+        } else if limits.stall_periods > 0.0 && self.stall_count == limits.stall_periods {
+            Fault::Stall
+        } else {
+            Fault::None
+        };
+        if self.mode == Mode::Run && fault_now == Fault::None {
+            return false;
+        }
+        let mut calibrated = false;
+        match self.mode {
+            Mode::Run | Mode::Tripped => {}
+            Mode::Calibrate => {
+                for (sum, adc) in self.sum.iter_mut().zip(seen.adc) {
+                    *sum += adc.min(limits.adc_max);
+                }
+                self.countdown = (self.countdown - 1.0).max(0.0);
+                if self.countdown == 0.0 {
+                    calibrated = true;
+                    self.countdown = limits.precharge_periods;
+                    self.mode = if limits.precharge_periods > 0.0 {
+                        Mode::Precharge
+                    } else {
+                        Mode::Run
+                    };
+                }
+            }
+            Mode::Precharge => {
+                self.countdown = (self.countdown - 1.0).max(0.0);
+                if self.countdown == 0.0 {
+                    self.mode = Mode::Run;
+                }
+            }
+        }
+        if fault_now != Fault::None && self.mode != Mode::Tripped {
+            self.mode = Mode::Tripped;
+            self.fault = fault_now;
+        }
+        calibrated
+    }
+}

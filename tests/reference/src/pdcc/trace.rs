@@ -1,0 +1,71 @@
+//! What a model can tell about its last step, and the state that one model takes over from
+//! another, in physical units.
+
+use super::hall::HallTiming;
+use super::supervision::Supervisor;
+
+/// Signals of the last step. Pairs are phases a, b; phase c is minus their sum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// Measured currents, ampere.
+    pub i: [f64; 2],
+    /// EMF in the target period, volt.
+    pub e: [f64; 2],
+    /// Voltage applied in the period that starts now, volt (0 with delay 0).
+    pub v_now: [f64; 2],
+    /// Deadbeat voltage before limiting, volt.
+    pub u_unsat: [f64; 2],
+    /// The same after limiting, volt.
+    pub u: [f64; 2],
+    /// Electrical angle at the sample, radians (0 where the variant has no angle).
+    pub theta: f64,
+    /// Electrical angle per period, radians, signed.
+    pub step_angle: f64,
+    /// Sector that reference and commutation follow.
+    pub sector_eff: usize,
+    /// A commutation is under way (pair modulation).
+    pub commutating: bool,
+    /// Where the deadbeat voltage lay.
+    pub reach: Reach,
+    /// The drive is in control (neither tripped nor starting).
+    pub run: bool,
+}
+
+/// Where a voltage lies, seen from the hexagon of voltages that the inverter can make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reach {
+    /// Inside: nothing was limited.
+    #[default]
+    Inside,
+    /// Outside: the saturation rule decided.
+    Outside,
+    /// So far outside that not even its component along the EMF fits (torque priority only).
+    PastReach,
+}
+
+/// A controller's whole state in physical units.
+///
+/// Fields that the variant at hand does not use are at their initial values.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PhysicalState {
+    pub(super) supervisor: Supervisor,
+    pub(super) timing: HallTiming,
+    pub(super) sector_prev: usize,
+    pub(super) sector_eff_prev: usize,
+    pub(super) commutating: bool,
+    pub(super) commutation_age: f64,
+    /// ADC offsets, counts.
+    pub offset: [f64; 2],
+    /// Currents of phases a, b at the last sample, ampere.
+    pub i_prev: [f64; 2],
+    /// Voltage that the last step commanded (`three_phase`), phases a, b, volt.
+    pub v_cmd: [f64; 2],
+    /// Terminal voltages that the last step commanded (`pair`), phases a, b, c, volt.
+    pub t_cmd: [f64; 3],
+    /// The leg that the last step turned off (`pair`).
+    pub off_cmd: Option<usize>,
+    /// Voltage applied in the period that ends with the next sample, phases a, b, volt.
+    pub v_prev: [f64; 2],
+    /// EMF of the last step, phases a, b, volt.
+    pub e_prev: [f64; 2],
+}
