@@ -5,4 +5,7 @@ pub mod design;
 pub mod diagnostics;
 pub mod interface;
 pub mod ir;
+pub mod lower;
+pub mod pipeline;
+pub mod scaling;
 pub mod spec;

@@ -4,6 +4,10 @@
 //! where its name says so. The generator proves that every result fits its word; the `_narrow`
 //! forms are chosen where the product (or dividend) itself fits 32 bits, which saves a 64-bit
 //! product on small cores. On a Cortex-M4 `mul_round::<32>` is one SMMULR.
+#![expect(
+    clippy::inline_always,
+    reason = "each is a handful of instructions, and firmware is debugged unoptimised, too"
+)]
 
 pub use crate::word::Word;
 
@@ -40,24 +44,26 @@ pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
     Word(product.min(i64::from(limit.0)) as i32)
 }
 
-/// `floor(numerator 2^SHIFT / denominator)`, numerator not negative, denominator at least 1.
+/// `min(floor(numerator 2^SHIFT / denominator), limit)`, numerator not negative, denominator at least 1.
 /// `SHIFT` is 0 to 31. Divides 64 bits: for rare paths.
 #[inline(always)]
 #[must_use]
-pub fn divide<const SHIFT: u32>(numerator: Word, denominator: Word) -> Word {
+pub fn divide<const SHIFT: u32>(numerator: Word, denominator: Word, limit: Word) -> Word {
     const { assert!(SHIFT <= 31) };
     // The proven lower limit, repeated where the compiler sees it: no division by zero to check.
     let denominator = denominator.0.max(1) as u64;
-    Word((((numerator.0 as u32 as u64) << SHIFT) / denominator) as i32)
+    let quotient = ((numerator.0 as u32 as u64) << SHIFT) / denominator;
+    Word(quotient.min(limit.0 as u32 as u64) as i32)
 }
 
 /// As [`divide`], where the shifted numerator fits 32 unsigned bits: one UDIV where the core has it.
 #[inline(always)]
 #[must_use]
-pub fn divide_narrow<const SHIFT: u32>(numerator: Word, denominator: Word) -> Word {
+pub fn divide_narrow<const SHIFT: u32>(numerator: Word, denominator: Word, limit: Word) -> Word {
     const { assert!(SHIFT <= 31) };
     let denominator = denominator.0.max(1) as u32;
-    Word((((numerator.0 as u32) << SHIFT) / denominator) as i32)
+    let quotient = ((numerator.0 as u32) << SHIFT) / denominator;
+    Word(quotient.min(limit.0 as u32) as i32)
 }
 
 /// `floor((2^32 - 1) / ticks)`: the angle per tick, one turn being 2^32, where a turn lasts
@@ -92,4 +98,11 @@ pub fn angle_fraction<const SEGMENTS: u32>(angle: Word) -> Word {
 pub fn lookup<T: Copy + Into<Word>, const N: usize>(table: &[T; N], index: Word) -> Word {
     const { assert!(N.is_power_of_two()) };
     table[index.0 as usize & (N - 1)].into()
+}
+
+/// `then` where the condition holds, else `otherwise`; both are evaluated.
+#[inline(always)]
+#[must_use]
+pub fn select<T>(condition: bool, then: T, otherwise: T) -> T {
+    if condition { then } else { otherwise }
 }

@@ -1,5 +1,7 @@
 //! From the checked specification to the numbers of the control law, in f64 and SI units.
 
+pub mod emf;
 mod plant;
+pub mod vectors;
 
 pub use plant::{Discretisation, DiscretePlant};

@@ -114,11 +114,18 @@ impl<'p> FunctionBuilder<'p> {
     /// Closes the guarded stage: per result its name, the value from inside, and the value that holds
     /// where the stage did not run. A new stage must be opened before further nodes are added.
     pub fn join<const N: usize>(&mut self, results: [(&str, Value, Value); N]) -> [Value; N] {
+        let joined = self.join_all(&results);
+        std::array::from_fn(|index| joined[index])
+    }
+
+    /// [`Self::join`] for a list of any length.
+    pub fn join_all(&mut self, results: &[(&str, Value, Value)]) -> Vec<Value> {
         let last = self.function.stages.len() - 1;
         self.function.stages[last].end = self.function.nodes.len();
-        let joins = results.map(|(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise }));
+        let joins: Vec<Value> =
+            results.iter().map(|&(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise })).collect();
         if let Some(guard) = &mut self.function.stages[last].guard {
-            guard.joins = joins.to_vec();
+            guard.joins.clone_from(&joins);
         }
         joins
     }
@@ -169,6 +176,14 @@ impl<'p> FunctionBuilder<'p> {
             Op::Param(id) => self.program.params[id.index()].interval,
             Op::State(id) => self.program.states[id.index()].interval,
             Op::Constant(id) => Interval::point(i64::from(self.program.constants[id.index()].raw)),
+            Op::Join { taken, otherwise } => {
+                let guard = self.function.stages.last().and_then(|stage| stage.guard.as_ref());
+                let outside = match guard {
+                    Some(guard) => self.function.interval_where_not(guard.condition, otherwise),
+                    None => self.interval(otherwise),
+                };
+                self.interval(taken).union(outside)
+            }
             _ => op
                 .interval(&operands, |id| self.program.tables[id.index()].interval())
                 .unwrap_or(Interval::symmetric(CLIP)),
@@ -184,16 +199,26 @@ impl<'p> FunctionBuilder<'p> {
         self.push(name, Op::Input(self.function.inputs.len() as u32 - 1))
     }
 
-    /// Reads a set-point word.
+    /// Reads a set-point word; a second read is the same value.
     pub fn param(&mut self, param: ParamId) -> Value {
+        if let Some(value) = self.find(Op::Param(param)) {
+            return value;
+        }
         let name = self.program.params[param.index()].name.clone();
         self.push(&name, Op::Param(param))
     }
 
-    /// Reads a state word as it was before the step.
+    /// Reads a state word as it was before the step; a second read is the same value.
     pub fn state(&mut self, state: StateId) -> Value {
+        if let Some(value) = self.find(Op::State(state)) {
+            return value;
+        }
         let name = self.program.states[state.index()].name.clone();
         self.push(&name, Op::State(state))
+    }
+
+    fn find(&self, op: Op) -> Option<Value> {
+        self.function.nodes.iter().position(|node| node.op == op).map(|index| Value(index as u32))
     }
 
     /// Reads a named constant.
@@ -244,9 +269,9 @@ impl<'p> FunctionBuilder<'p> {
         self.push("", Op::Clamp { x, low, high })
     }
 
-    /// floor(numerator 2^shift / denominator)
-    pub fn divide(&mut self, numerator: Value, shift: u32, denominator: Value) -> Value {
-        self.push("", Op::Divide { numerator, shift, denominator })
+    /// min(floor(numerator 2^shift / denominator), limit)
+    pub fn divide(&mut self, numerator: Value, shift: u32, denominator: Value, limit: Value) -> Value {
+        self.push("", Op::Divide { numerator, shift, denominator, limit })
     }
 
     /// floor((2^32 - 1) / a)

@@ -209,7 +209,7 @@ pub enum Op {
         /// Upper limit.
         high: Value,
     },
-    /// floor(numerator 2^shift / denominator), numerator >= 0, denominator >= 1
+    /// min(floor(numerator 2^shift / denominator), limit), numerator >= 0, denominator >= 1
     Divide {
         /// Not negative.
         numerator: Value,
@@ -217,6 +217,8 @@ pub enum Op {
         shift: u32,
         /// At least 1.
         denominator: Value,
+        /// Upper limit, a word.
+        limit: Value,
     },
     /// floor((2^32 - 1) / a), a >= 2
     TurnOver(Value),
@@ -292,7 +294,6 @@ impl Op {
             | Self::MulFloor { a, b, .. }
             | Self::Min(a, b)
             | Self::Max(a, b)
-            | Self::Divide { numerator: a, denominator: b, .. }
             | Self::AngleAdd(a, b)
             | Self::AngleSub(a, b)
             | Self::Compare(_, a, b)
@@ -300,8 +301,49 @@ impl Op {
             | Self::Or(a, b)
             | Self::Join { taken: a, otherwise: b } => vec![a, b],
             Self::MulLimited { a, b, limit: c }
+            | Self::Divide { numerator: a, denominator: b, limit: c, .. }
             | Self::Clamp { x: a, low: b, high: c }
             | Self::Select { condition: a, then: b, otherwise: c } => vec![a, b, c],
+        }
+    }
+
+    /// Replaces every operand.
+    pub(crate) fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
+        match self {
+            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) | Self::Literal(_) => {}
+            Self::Neg(a)
+            | Self::Abs(a)
+            | Self::ShiftLeft(a, _)
+            | Self::ShiftRight(a, _)
+            | Self::TurnOver(a)
+            | Self::Not(a)
+            | Self::AngleIndex { angle: a, .. }
+            | Self::AngleFraction { angle: a, .. }
+            | Self::Lookup { index: a, .. } => *a = f(*a),
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Product(a, b)
+            | Self::MulRound { coefficient: a, signal: b, .. }
+            | Self::MulFloor { a, b, .. }
+            | Self::Min(a, b)
+            | Self::Max(a, b)
+            | Self::AngleAdd(a, b)
+            | Self::AngleSub(a, b)
+            | Self::Compare(_, a, b)
+            | Self::And(a, b)
+            | Self::Or(a, b)
+            | Self::Join { taken: a, otherwise: b } => {
+                *a = f(*a);
+                *b = f(*b);
+            }
+            Self::MulLimited { a, b, limit: c }
+            | Self::Divide { numerator: a, denominator: b, limit: c, .. }
+            | Self::Clamp { x: a, low: b, high: c }
+            | Self::Select { condition: a, then: b, otherwise: c } => {
+                *a = f(*a);
+                *b = f(*b);
+                *c = f(*c);
+            }
         }
     }
 
@@ -357,7 +399,7 @@ impl Op {
                 if x[0] < 0 || x[1] < 1 {
                     return None;
                 }
-                (x[0] << shift) / x[1]
+                ((x[0] << shift) / x[1]).min(x[2])
             }
             Self::TurnOver(_) => {
                 if x[0] < 2 {
@@ -414,7 +456,8 @@ impl Op {
                 if x[0].low < 0 || x[1].low < 1 {
                     return None;
                 }
-                Interval::new((x[0].low << shift) / x[1].high, (x[0].high << shift) / x[1].low)
+                let quotient = Interval::new((x[0].low << shift) / x[1].high, (x[0].high << shift) / x[1].low);
+                Interval::new(quotient.low.min(x[2].low), quotient.high.min(x[2].high))
             }
             Self::TurnOver(_) => {
                 if x[0].low < 2 {
@@ -553,6 +596,45 @@ impl Function {
     /// The node that defines `value`.
     pub fn node(&self, value: Value) -> &Node {
         &self.nodes[value.index()]
+    }
+
+    /// The interval of `value` where the flag `condition` does not hold.
+    ///
+    /// One relation is known besides the value's own interval, the spread rule: for three numbers that sum
+    /// to zero, `c = -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of
+    /// them by 2/3 limit (it and its counterweight lie at most `limit` apart, and two of three share a sign)
+    /// and max + min, which is minus the middle one, by 1/3 limit.
+    pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
+        let own = self.node(value).interval;
+        let Some((limit, legs, high, low)) = self.spread_condition(condition) else { return own };
+        let limit = self.node(limit).interval.high.max(0);
+        let bound = if legs.contains(&value) {
+            limit * 2 / 3
+        } else if self.is_half_sum(value, high, low) {
+            limit / 6 + 1
+        } else {
+            return own;
+        };
+        Interval::new(own.low.max(-bound), own.high.min(bound))
+    }
+
+    /// Matches `limit < max(a, b, c) - min(a, b, c)` with c = -(a + b): limit, legs, max, min.
+    fn spread_condition(&self, condition: Value) -> Option<(Value, [Value; 3], Value, Value)> {
+        let Op::Compare(Comparison::Less, limit, spread) = self.node(condition).op else { return None };
+        let Op::Sub(high, low) = self.node(spread).op else { return None };
+        let Op::Max(high_pair, c) = self.node(high).op else { return None };
+        let Op::Max(a, b) = self.node(high_pair).op else { return None };
+        let Op::Min(low_pair, low_c) = self.node(low).op else { return None };
+        let Op::Neg(sum) = self.node(c).op else { return None };
+        let same = self.node(low_pair).op == Op::Min(a, b) && low_c == c && self.node(sum).op == Op::Add(a, b);
+        same.then_some((limit, [a, b, c], high, low))
+    }
+
+    fn is_half_sum(&self, value: Value, high: Value, low: Value) -> bool {
+        match self.node(value).op {
+            Op::ShiftRight(sum, 1) => self.node(sum).op == Op::Add(high, low),
+            _ => false,
+        }
     }
 }
 

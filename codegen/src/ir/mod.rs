@@ -1,6 +1,6 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
-//! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals,
+//! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
 //! [`verify`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`interpret`] runs it, [`text`] prints it. Nothing here knows motors, units or Rust syntax:
 //! physical meaning comes along as text for documentation only.
@@ -8,6 +8,7 @@
 pub mod build;
 pub mod graph;
 pub mod interpret;
+mod prune;
 pub mod text;
 pub mod verify;
 

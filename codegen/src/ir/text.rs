@@ -98,8 +98,8 @@ impl Program {
             Op::Min(a, b) => format!("min({}, {})", of(a), of(b)),
             Op::Max(a, b) => format!("max({}, {})", of(a), of(b)),
             Op::Clamp { x, low, high } => format!("clamp({}, {}, {})", of(x), of(low), of(high)),
-            Op::Divide { numerator, shift, denominator } => {
-                format!("({} << {shift}) / {}", of(numerator), of(denominator))
+            Op::Divide { numerator, shift, denominator, limit } => {
+                format!("min(({} << {shift}) / {}, {})", of(numerator), of(denominator), of(limit))
             }
             Op::TurnOver(a) => format!("turn / {}", of(a)),
             Op::AngleAdd(a, b) => format!("angle {} + {}", of(a), of(b)),

@@ -3,7 +3,7 @@
 //! Invariants: (1) every operand is defined earlier; (2) stages and their joins partition the nodes in
 //! order; (3) values of a guarded stage leave it through its joins only, and joins stand right behind
 //! their stage; (4) operand kinds fit; (5) every stored interval is the one that follows from the
-//! operands, and lies in the 32-bit word; (6) operators stay in their domain: denominators >= 1,
+//! operands (and, at a join, the guard: [`Function::interval_where_not`]), and lies in the 32-bit word; (6) operators stay in their domain: denominators >= 1,
 //! factors and numerators not negative where required, clamp limits in order, shifts and segments in
 //! range; (7) names are unique, and a value without a name is used once, in its own stage; (8) tables
 //! have a power-of-two length; (9) every state word is set once, to a value inside its interval, which
@@ -227,6 +227,10 @@ impl FunctionCheck<'_> {
 
     fn check_nodes(&mut self) {
         let function = self.function;
+        let guard_of = |index: usize| {
+            let guards = function.stages.iter().filter_map(|stage| stage.guard.as_ref());
+            guards.filter(|guard| guard.joins.contains(&Value(index as u32))).map(|guard| guard.condition).next()
+        };
         for (index, node) in function.nodes.iter().enumerate() {
             let kinds: Vec<Kind> = node.op.operands().iter().map(|&operand| function.node(operand).kind).collect();
             if node.kind != node.op.kind(|value| function.node(value).kind) || kinds != node.op.operand_kinds(node.kind) {
@@ -243,6 +247,9 @@ impl FunctionCheck<'_> {
                 Op::Param(id) => Some(self.program.params[id.index()].interval),
                 Op::State(id) => Some(self.program.states[id.index()].interval),
                 Op::Constant(id) => Some(Interval::point(i64::from(self.program.constants[id.index()].raw))),
+                Op::Join { otherwise, .. } => {
+                    guard_of(index).map(|guard| operands[0].union(function.interval_where_not(guard, otherwise)))
+                }
                 op => op.interval(&operands, |table| self.program.tables[table.index()].interval()),
             };
             if !Interval::WORD.contains(node.interval) {

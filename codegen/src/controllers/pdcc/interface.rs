@@ -1,0 +1,209 @@
+//! What users see of an emitted deadbeat controller: documentation, tables and associated constants.
+
+use super::PdccDesign;
+use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
+use crate::diagnostics::{engineering, percent, rpm};
+use crate::interface::{Interface, PublicConstant, PublicValue};
+use crate::scaling::Scaled;
+use crate::spec::{BusSource, HallCapture, Spec};
+use nalgebra::Vector2;
+
+/// Stable ranges of true over stated inductance and resistance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StableRange {
+    /// Of the inductance.
+    pub inductance: (f64, f64),
+    /// Of the resistance.
+    pub resistance: (f64, f64),
+}
+
+/// Builds the interface of a scaled controller.
+pub fn interface(spec: &Spec, design: &PdccDesign, scaled: &Scaled, stable: StableRange) -> Interface {
+    let inverter = &spec.inverter;
+    Interface {
+        type_name: spec.name.clone(),
+        doc: documentation(spec, design, stable),
+        header: header(spec, design, scaled),
+        spec_toml: spec.to_toml(),
+        formats: scaled.formats.clone(),
+        constants: constants(spec, design, stable),
+        timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
+        measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
+        calibration_samples: 1 << inverter.calibration_log2,
+        precharge_periods: inverter.precharge_periods as i32,
+    }
+}
+
+fn ratios((low, high): (f64, f64)) -> String {
+    let bound = |ratio: f64| {
+        if ratio <= 0.1001 {
+            "10 % or less".to_owned()
+        } else if ratio >= 9.9 {
+            "1000 % or more".to_owned()
+        } else {
+            percent(ratio)
+        }
+    };
+    format!("{} to {}", bound(low), bound(high))
+}
+
+fn documentation(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<String> {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let name = if motor.description.is_empty() { "BLDC motor".to_owned() } else { motor.description.clone() };
+    vec![
+        format!("Predictive deadbeat current controller: {name}."),
+        String::new(),
+        format!(
+            "Motor: {} pole pairs, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
+            motor.pole_pairs,
+            engineering(motor.resistance, "ohm"),
+            engineering(motor.inductance, "H"),
+            engineering(motor.emf_constant, "V s/rad"),
+            engineering(motor.rated_current, "A"),
+            rpm(motor.rated_speed),
+        ),
+        format!(
+            "Inverter: {} bus, period {}, timer of {} counts, {}-bit ADC with {} per count, trip at {}.",
+            engineering(inverter.v_bus, "V"),
+            engineering(inverter.t_s, "s"),
+            inverter.timer_period,
+            inverter.adc_bits,
+            engineering(inverter.adc_gain, "A"),
+            engineering(inverter.trip_current, "A"),
+        ),
+        format!("Variant: {}.", variant(spec)),
+        String::new(),
+        "# Stability".to_owned(),
+        String::new(),
+        format!(
+            "The current loop is stable while the true inductance is {} of the stated one and the true resistance",
+            ratios(stable.inductance)
+        ),
+        format!(
+            "is {} of the stated one (closed-loop poles with the emitted coefficients, one parameter off at a time;",
+            ratios(stable.resistance)
+        ),
+        "searched from 10 % to 1000 %).".to_owned(),
+        String::new(),
+        "# Safe states".to_owned(),
+        String::new(),
+        "An ADC count outside the converter's range, a phase current above the trip level, a Hall code of 000 or 111".to_owned(),
+        if inverter.stall_periods > 0 {
+            format!("or {} periods without a Hall edge under current demand turn all legs off until `reset()`.", inverter.stall_periods)
+        } else {
+            "turns all legs off until `reset()`.".to_owned()
+        },
+        format!("`calibrate()` averages {} samples with all legs off, at rest; `precharge()` holds all lower switches on for", 1 << inverter.calibration_log2),
+        format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
+        format!("One volt over one period changes a phase current by {}.", engineering(design.plant.gain, "A")),
+    ]
+}
+
+/// The options as the normalised specification writes them.
+fn variant(spec: &Spec) -> String {
+    let text = spec.to_toml();
+    let options = text.split("[controller]\n").nth(1).unwrap_or_default();
+    let pairs: Vec<String> = options.lines().filter(|line| !line.starts_with("kind")).map(|line| line.replace('"', "")).collect();
+    pairs.join(", ")
+}
+
+fn header(spec: &Spec, design: &PdccDesign, scaled: &Scaled) -> Vec<String> {
+    let scale = scaled.scale;
+    let derived = [
+        ("pole a", format!("{:.9}", design.plant.pole)),
+        ("gain b", engineering(design.plant.gain, "A/V")),
+        ("K = 1/b", engineering(design.k_di, "V/A")),
+        ("torque constant k_t", engineering(spec.torque_constant(), "Nm/A")),
+        ("largest believed change of current", engineering(design.di_max, "A")),
+        ("one word of current", engineering(1.0 / scale.current(), "A")),
+        ("one word of voltage", engineering(1.0 / scale.voltage(), "V")),
+    ];
+    let mut lines = vec![
+        format!("Current controller `{}`, generated by hexagen {}.", spec.name, env!("CARGO_PKG_VERSION")),
+        String::new(),
+        "| derived value | |".to_owned(),
+        "|---|---|".to_owned(),
+    ];
+    lines.extend(derived.iter().map(|(name, value)| format!("| {name} | {value} |")));
+    lines
+}
+
+/// Fraction bits at which `largest` fits a 32-bit word.
+fn fraction_bits(largest: f64) -> u32 {
+    (30.0 - largest.abs().max(1e-9).log2()).floor().clamp(0.0, 31.0) as u32
+}
+
+fn fixed(name: &str, value: f64, unit: &str, doc: &str) -> PublicConstant {
+    let frac_bits = fraction_bits(value);
+    let bits = (value * f64::from(frac_bits).exp2()).round() as i32;
+    let error = f64::from(bits) / f64::from(frac_bits).exp2() - value;
+    PublicConstant {
+        name: name.to_owned(),
+        value: PublicValue::Fixed { bits, frac_bits },
+        doc: vec![format!("{doc}: {}; {frac_bits} fraction bits, {error:.1e} off.", engineering(value, unit))],
+    }
+}
+
+fn vectors(name: &str, list: &[Vector2<f64>], doc: Vec<String>) -> PublicConstant {
+    let largest = list.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    let frac_bits = fraction_bits(largest);
+    let scale = f64::from(frac_bits).exp2();
+    let bits = list.iter().map(|v| [(v.x * scale).round() as i32, (v.y * scale).round() as i32]).collect();
+    PublicConstant { name: name.to_owned(), value: PublicValue::Vectors { bits, frac_bits }, doc }
+}
+
+fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> PublicConstant {
+    PublicConstant { name: name.to_owned(), value: PublicValue::Integer { rust_type, value }, doc: vec![doc.to_owned()] }
+}
+
+fn constants(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<PublicConstant> {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let v_bus = inverter.v_bus;
+    let three: Vec<Vector2<f64>> = THREE_PHASE.iter().map(|&legs| leg_vector(legs, v_bus)).collect();
+    let two: Vec<Vector2<f64>> = TWO_PHASE.iter().map(|&legs| leg_vector(legs, v_bus)).collect();
+    let period = f64::from(inverter.timer_period);
+    let svm: Vec<Vector2<f64>> = (0..6).flat_map(|n| svm_coefficients(n, v_bus)).map(|c| c * period).collect();
+    let text = |low_high: (f64, f64)| PublicValue::Text(ratios(low_high));
+    vec![
+        integer("POLE_PAIRS", "u32", i64::from(motor.pole_pairs), "Pole pairs."),
+        integer("T_S_NS", "u32", (inverter.t_s * 1e9).round() as i64, "Control period, ns."),
+        integer("TIMER_PERIOD", "u16", i64::from(inverter.timer_period), "Compare value of 100 % duty: top of the centre-aligned timer."),
+        integer("ADC_BITS", "u32", i64::from(inverter.adc_bits), "Bits of the phase-current converters."),
+        fixed("V_BUS", v_bus, "V", "Nominal bus voltage"),
+        fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
+        fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
+        fixed("TORQUE_CONSTANT", spec.torque_constant(), "Nm/A", "Torque per ampere of set-point, k_t"),
+        fixed("POLE", design.plant.pole, "", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
+        fixed("GAIN", design.plant.gain, "A/V", "Gain b of the discrete plant"),
+        fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),
+        vectors(
+            "THREE_PHASE_VECTORS",
+            &three,
+            vec!["Vectors V1 to V6 at the nominal bus, (alpha, beta) in volt: the commutation vectors of the paper's Table 2; sector S_k takes V_(k+1).".to_owned()],
+        ),
+        vectors(
+            "TWO_PHASE_VECTORS",
+            &two,
+            vec!["Vectors V12 to V61 at the nominal bus, (alpha, beta) in volt: the vectors of Table 2 outside commutation; sector S_k takes V_(k,k+1).".to_owned()],
+        ),
+        vectors(
+            "SVM_COEFFICIENTS",
+            &svm,
+            vec![
+                "Coefficients of (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
+                String::new(),
+                "The step reaches the same times by min/max injection, which needs none of them.".to_owned(),
+            ],
+        ),
+        PublicConstant {
+            name: "STABLE_INDUCTANCE".to_owned(),
+            value: text(stable.inductance),
+            doc: vec!["True over stated inductance within which the loop is stable.".to_owned()],
+        },
+        PublicConstant {
+            name: "STABLE_RESISTANCE".to_owned(),
+            value: text(stable.resistance),
+            doc: vec!["True over stated resistance within which the loop is stable.".to_owned()],
+        },
+    ]
+}

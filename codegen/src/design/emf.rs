@@ -1,0 +1,152 @@
+//! The EMF's shape over the electrical angle, and the periodic functions derived from it.
+//!
+//! Convention (DESIGN section 3): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase peak.
+
+use crate::spec::EmfShape;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Integral of the unit EMF of phase a from 0 to `theta`, its mean over a turn removed.
+fn phase_integral(shape: EmfShape, theta: f64) -> f64 {
+    match shape {
+        EmfShape::Sinusoidal => -theta.cos(),
+        EmfShape::Trapezoidal { flat_top_deg } => {
+            let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
+            // Even about pi/2 shifted: from the positive zero crossing the integral rises by `area`
+            // over half a turn and falls again over the other half.
+            let rise = |x: f64| {
+                if x <= ramp {
+                    x * x / (2.0 * ramp)
+                } else {
+                    x - ramp / 2.0
+                }
+            };
+            let area = 2.0 * rise(FRAC_PI_2);
+            let turned = theta.rem_euclid(TAU);
+            let (half, sign) = if turned < PI { (turned, 1.0) } else { (turned - PI, -1.0) };
+            let risen = if half <= FRAC_PI_2 { rise(half) } else { area - rise(PI - half) };
+            sign * (risen - area / 2.0)
+        }
+    }
+}
+
+const THIRD: f64 = TAU / 3.0;
+
+/// The part of phase a's unit EMF that drives current: f_a less the mean of the three phases.
+pub fn zero_sum_shape(shape: EmfShape, theta: f64) -> f64 {
+    let f = |shift: f64| shape.at(theta - shift);
+    f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
+}
+
+/// Integral of [`zero_sum_shape`] over the angle, zero mean, radians.
+pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
+    let f = |shift: f64| phase_integral(shape, theta - shift);
+    f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
+}
+
+/// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
+pub fn squared_length(shape: EmfShape, theta: f64) -> f64 {
+    [0.0, THIRD, 2.0 * THIRD].iter().map(|shift| zero_sum_shape(shape, theta - shift).powi(2)).sum::<f64>() * 2.0 / 3.0
+}
+
+/// Phase-a current per ampere of set-point that is parallel to the EMF and makes constant torque:
+/// (2/3) (k_t/k_phase) s_a / |f|^2 with `ratio` = k_t/k_phase.
+pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
+    2.0 / 3.0 * ratio * zero_sum_shape(shape, theta) / squared_length(shape, theta)
+}
+
+/// A periodic function as parabolas over equal segments of a turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parabolas {
+    /// Per segment the coefficients of 1, t, t^2 with t from 0 to 1 over the segment.
+    pub coefficients: Vec<[f64; 3]>,
+    /// Largest distance from the function.
+    pub error: f64,
+}
+
+impl Parabolas {
+    /// Fits with the fewest of 12, 24, 48, 96 segments whose error is at most `tolerance`, else 96.
+    /// Corners of 120-degree trapezoids lie on segment borders, where the fit of their integral is exact.
+    pub fn fit(function: impl Fn(f64) -> f64, tolerance: f64) -> Self {
+        let mut best = Self::with_segments(&function, 12);
+        for segments in [24, 48, 96] {
+            if best.error > tolerance {
+                best = Self::with_segments(&function, segments);
+            }
+        }
+        best
+    }
+
+    fn with_segments(function: &impl Fn(f64) -> f64, segments: u32) -> Self {
+        const PROBES: u32 = 16;
+        let width = TAU / f64::from(segments);
+        let mut error = 0.0_f64;
+        let coefficients = (0..segments)
+            .map(|segment| {
+                let left = f64::from(segment) * width;
+                let [y0, y1, y2] = [0.0, 0.5, 1.0].map(|t| function(left + t * width));
+                let [c0, c1, c2] = [y0, -3.0 * y0 + 4.0 * y1 - y2, 2.0 * y0 - 4.0 * y1 + 2.0 * y2];
+                for probe in 0..=PROBES {
+                    let t = f64::from(probe) / f64::from(PROBES);
+                    error = error.max((c0 + t * (c1 + t * c2) - function(left + t * width)).abs());
+                }
+                [c0, c1, c2]
+            })
+            .collect();
+        Self { coefficients, error }
+    }
+
+    /// Largest magnitude of any coefficient.
+    pub fn magnitude(&self) -> f64 {
+        self.coefficients.iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPES: [EmfShape; 3] = [
+        EmfShape::Sinusoidal,
+        EmfShape::Trapezoidal { flat_top_deg: 120.0 },
+        EmfShape::Trapezoidal { flat_top_deg: 97.0 },
+    ];
+
+    #[test]
+    fn the_integral_is_the_integral_of_the_shape() {
+        for shape in SHAPES {
+            let mut mean = 0.0;
+            for step in 0..720 {
+                let theta = f64::from(step) * TAU / 720.0 + 0.001;
+                let slope = (zero_sum_integral(shape, theta + 1e-5) - zero_sum_integral(shape, theta - 1e-5)) / 2e-5;
+                assert!((slope - zero_sum_shape(shape, theta)).abs() < 1e-4, "{shape:?} at {theta}");
+                mean += zero_sum_integral(shape, theta) / 720.0;
+            }
+            assert!(mean.abs() < 1e-5, "{shape:?}: mean {mean}");
+        }
+    }
+
+    #[test]
+    fn a_trapezoid_has_the_corners_of_table_1() {
+        let shape = EmfShape::Trapezoidal { flat_top_deg: 120.0 };
+        // Entry of S3 (90 degrees): (4/3, 0) E; entry of S2 (30 degrees): (2/3, -2/sqrt3) E.
+        assert!((zero_sum_shape(shape, PI / 2.0) - 4.0 / 3.0).abs() < 1e-12);
+        assert!((zero_sum_shape(shape, PI / 6.0) - 2.0 / 3.0).abs() < 1e-12);
+        assert!((squared_length(shape, PI / 6.0).sqrt() - 4.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_flux_of_a_trapezoid_is_exact_in_twelve_parabolas() {
+        let shape = EmfShape::Trapezoidal { flat_top_deg: 120.0 };
+        let fit = Parabolas::fit(|theta| zero_sum_integral(shape, theta), 1e-9);
+        assert_eq!(fit.coefficients.len(), 12);
+        assert!(fit.error < 1e-12);
+    }
+
+    #[test]
+    fn the_proportional_current_is_the_set_point_where_the_emf_peaks() {
+        for shape in SHAPES {
+            let current = proportional_current(shape, shape.proportional_factor(), PI / 2.0);
+            assert!((current - 1.0).abs() < 1e-12, "{shape:?}: {current}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Removes what no result needs: values, joins, stages, constants and tables.
+//!
+//! Building blocks compute all that some variant may want; what this variant does not use goes here.
+//! Words (state, set-point) and inputs stay: they are the interface.
+
+use super::graph::{ConstantId, Function, Op, Program, TableId, Value};
+
+impl Program {
+    /// The program without dead values, constants and tables.
+    #[must_use]
+    pub fn pruned(mut self) -> Self {
+        self.step.prune();
+        self.setters.iter_mut().for_each(Function::prune);
+        let mut constants = vec![false; self.constants.len()];
+        let mut tables = vec![false; self.tables.len()];
+        for node in self.functions().flat_map(|function| &function.nodes) {
+            match node.op {
+                Op::Constant(id) => constants[id.index()] = true,
+                Op::Lookup { table, .. } => tables[table.index()] = true,
+                _ => {}
+            }
+        }
+        let new_constants = renumbered(&constants);
+        let new_tables = renumbered(&tables);
+        for function in std::iter::once(&mut self.step).chain(&mut self.setters) {
+            for node in &mut function.nodes {
+                match &mut node.op {
+                    Op::Constant(id) => *id = ConstantId(new_constants[id.index()]),
+                    Op::Lookup { table, .. } => *table = TableId(new_tables[table.index()]),
+                    _ => {}
+                }
+            }
+        }
+        let mut keep = constants.iter();
+        self.constants.retain(|_| *keep.next().unwrap_or(&true));
+        let mut keep = tables.iter();
+        self.tables.retain(|_| *keep.next().unwrap_or(&true));
+        self
+    }
+}
+
+/// New position of every kept element.
+fn renumbered(kept: &[bool]) -> Vec<u32> {
+    let mut next = 0;
+    kept.iter()
+        .map(|&keep| {
+            let position = next;
+            next += u32::from(keep);
+            position
+        })
+        .collect()
+}
+
+impl Function {
+    fn prune(&mut self) {
+        let live = self.live();
+        let position = renumbered(&live);
+        let moved = |value: Value| Value(position[value.index()]);
+        let before = |index: usize| position.get(index).map_or(live.iter().filter(|&&x| x).count(), |&p| p as usize);
+        for stage in &mut self.stages {
+            stage.first = before(stage.first);
+            stage.end = before(stage.end);
+            if let Some(guard) = &mut stage.guard {
+                guard.joins.retain(|join| live[join.index()]);
+                guard.joins.iter_mut().for_each(|join| *join = moved(*join));
+                guard.condition = moved(guard.condition);
+            }
+        }
+        self.stages.retain(|stage| match &stage.guard {
+            None => stage.first < stage.end,
+            Some(guard) => !guard.joins.is_empty(),
+        });
+        let mut keep = live.iter();
+        self.nodes.retain(|_| *keep.next().unwrap_or(&true));
+        for node in &mut self.nodes {
+            node.op.map_operands(moved);
+        }
+        self.outputs.iter_mut().for_each(|(_, value)| *value = moved(*value));
+        self.next_state.iter_mut().for_each(|(_, value)| *value = moved(*value));
+        self.next_params.iter_mut().for_each(|(_, value)| *value = moved(*value));
+    }
+
+    /// Which nodes some result needs; a join needs its stage's guard.
+    fn live(&self) -> Vec<bool> {
+        let mut live = vec![false; self.nodes.len()];
+        let results = self.outputs.iter().map(|&(_, value)| value);
+        let words = self.next_state.iter().map(|&(_, value)| value).chain(self.next_params.iter().map(|&(_, value)| value));
+        let mut wanted: Vec<Value> = results.chain(words).collect();
+        while let Some(value) = wanted.pop() {
+            if std::mem::replace(&mut live[value.index()], true) {
+                continue;
+            }
+            wanted.extend(self.node(value).op.operands());
+            let guards = self.stages.iter().filter_map(|stage| stage.guard.as_ref());
+            wanted.extend(guards.filter(|guard| guard.joins.contains(&value)).map(|guard| guard.condition));
+        }
+        live
+    }
+}

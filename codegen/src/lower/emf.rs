@@ -1,0 +1,171 @@
+//! Functions of the rotor angle: flux tables behind the modelled EMF, and the proportional reference
+//! (semantics, steps 6 and 8 and the section on tables).
+
+use super::rotor::Rotor;
+use super::Lowering;
+use crate::design::emf::{proportional_current, zero_sum_integral, Parabolas};
+use crate::interface::Rounding;
+use crate::ir::{Interval, TableId, Value};
+
+/// A third of a turn: phase b lags phase a by it.
+const THIRD_TURN: i64 = 1_431_655_765;
+/// Fraction bits of the proportional reference's table: its values stay below 4.
+const SHAPE_BITS: u32 = 28;
+
+/// A periodic function as tables of parabola coefficients.
+#[derive(Clone, Copy, Debug)]
+struct PeriodicTable {
+    coefficients: [TableId; 3],
+    segments: u32,
+}
+
+/// The flux linkage table and its fraction bits.
+#[derive(Clone, Copy, Debug)]
+pub struct FluxModel {
+    table: PeriodicTable,
+    frac_bits: u32,
+}
+
+impl Lowering<'_> {
+    fn periodic_table(&mut self, name: &'static str, fit: &Parabolas, frac_bits: u32, doc: &str) -> PeriodicTable {
+        let scale = f64::from(frac_bits).exp2();
+        let segments = fit.coefficients.len() as u32;
+        let coefficients = [0, 1, 2].map(|power| {
+            let words = fit.coefficients.iter().map(|c| (c[power] * scale + 0.5).floor() as i32).collect();
+            let lines = [
+                format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from 0 to 1."),
+                String::new(),
+                format!("{frac_bits} fraction bits; the parabolas are at most {:.1e} off.", fit.error),
+            ];
+            self.b.program.table(&format!("{name}_c{power}"), words, &lines)
+        });
+        self.format(name, 32, frac_bits as i32, Rounding::RoundHalfUp, doc);
+        let count = match name {
+            "flux" => "flux_segments",
+            _ => "shape_segments",
+        };
+        self.format(count, 32, segments as i32, Rounding::Floor, "segments of a turn in the table (a count, not bits)");
+        PeriodicTable { coefficients, segments }
+    }
+
+    fn evaluate(&mut self, name: &str, table: PeriodicTable, angle: Value) -> Value {
+        let index = self.b.angle_index(angle, table.segments);
+        self.b.name(&format!("{name}_segment"), index);
+        let t = self.b.angle_fraction(angle, table.segments);
+        self.b.name(&format!("{name}_t"), t);
+        let c2 = self.b.lookup(table.coefficients[2], index);
+        let slope = self.b.mul(t, c2, 31);
+        let c1 = self.b.lookup(table.coefficients[1], index);
+        let slope = self.b.add(c1, slope);
+        let rise = self.b.mul(t, slope, 31);
+        let c0 = self.b.lookup(table.coefficients[0], index);
+        let value = self.b.add(c0, rise);
+        self.b.name(name, value)
+    }
+
+    fn lagging(&mut self, name: &str, theta: Value) -> Value {
+        let third = self.number("third_turn", THIRD_TURN, "A third of a turn: phase b lags phase a by it.");
+        let lagged = self.b.angle_sub(theta, third);
+        self.b.name(name, lagged)
+    }
+
+    /// Angle `periods` control periods ahead of now, for `periods` 0, 1 or 2.
+    fn ahead(&mut self, name: &str, rotor: &Rotor, periods: u32) -> Value {
+        let step = match periods {
+            0 => return rotor.theta,
+            1 => rotor.step_angle,
+            _ => self.b.shift_left(rotor.step_angle, 1),
+        };
+        let angle = self.b.angle_add(rotor.theta, step);
+        self.b.name(name, angle)
+    }
+
+    /// Prepares the flux table; its scale is the finest at which differences fit a word.
+    pub fn flux_model(&mut self) -> FluxModel {
+        let (motor, inverter) = (&self.spec.motor, &self.spec.inverter);
+        let shape = motor.emf_shape;
+        let volts = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / self.scale.volt_per_count;
+        let unit = Parabolas::fit(|theta| zero_sum_integral(shape, theta), 1e-5);
+        let coefficients = unit.coefficients.iter().map(|c| c.map(|x| x * volts)).collect();
+        let fit = Parabolas { coefficients, error: unit.error * volts };
+        // Two values and a slope must fit one word together: 2^29 for each.
+        let frac_bits = (29.0 - fit.magnitude().log2()).floor().clamp(0.0, 28.0) as u32;
+        let doc = "Flux linkage of phase a over the period, in timer counts of bus voltage, over the electrical angle";
+        let table = self.periodic_table("flux", &fit, frac_bits, doc);
+        FluxModel { table, frac_bits }
+    }
+
+    /// Mean EMF over the target period as the difference of flux linkage at its ends; phases a and b.
+    pub fn model_emf(&mut self, flux: FluxModel, rotor: &Rotor, delay: u32, e_limit: f64) -> [Value; 2] {
+        let bits = self.scale.voltage_bits;
+        if flux.frac_bits < bits {
+            self.misfits.push("flux".to_owned());
+        }
+        self.b.stage(
+            "model_emf",
+            &[
+                "Mean EMF over the target period: the difference of flux linkage between its end and its start,",
+                "which is exact for any shape and needs no speed factor.",
+            ],
+        );
+        let start = self.ahead("theta_start", rotor, delay);
+        let end = self.ahead("theta_end", rotor, delay + 1);
+        let limit = self.volts_word(e_limit);
+        let starts = [start, self.lagging("theta_start_b", start)];
+        let ends = [end, self.lagging("theta_end_b", end)];
+        [0, 1].map(|x| {
+            let at_start = self.evaluate(["flux_start_a", "flux_start_b"][x], flux.table, starts[x]);
+            let at_end = self.evaluate(["flux_end_a", "flux_end_b"][x], flux.table, ends[x]);
+            let change = self.b.sub(at_end, at_start);
+            let volts = if flux.frac_bits > bits { self.b.shift_right(change, flux.frac_bits - bits) } else { change };
+            let doc = "Largest EMF that is believed: one and a half times that of the greatest speed.";
+            let (low, high) = (self.number("e_min", -limit, doc), self.number("e_max", limit, doc));
+            let e = self.b.clamp(volts, low, high);
+            self.b.name(["e_a", "e_b"][x], e)
+        })
+    }
+
+    /// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and b.
+    pub fn proportional_reference(&mut self, rotor: &Rotor, set_point: Value, delay: u32) -> [Value; 2] {
+        let motor = &self.spec.motor;
+        let (shape, ratio) = (motor.emf_shape, self.spec.torque_constant() / motor.emf_constant);
+        let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
+        let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
+        let table = self.periodic_table("shape", &fit, SHAPE_BITS, doc);
+        self.b.stage(
+            "reference_proportional",
+            &["Reference parallel to the EMF at the end of the target period: constant torque at least copper loss."],
+        );
+        let theta = self.ahead("theta_ref", rotor, delay + 1);
+        let angles = [theta, self.lagging("theta_ref_b", theta)];
+        [0, 1].map(|x| {
+            let current = self.evaluate(["shape_a", "shape_b"][x], table, angles[x]);
+            let volts = self.b.mul(current, set_point, SHAPE_BITS);
+            self.b.name(["j_a", "j_b"][x], volts)
+        })
+    }
+
+    /// Reference at the sector's corner, as voltage words of phases a and b.
+    pub fn quasi_square_reference(&mut self, sector: Value, set_point: Value) -> [Value; 2] {
+        let corner = |phase: usize| {
+            let signs = crate::design::vectors::SECTOR_CURRENT;
+            std::iter::once(0).chain(signs.iter().map(|legs| legs[phase])).collect::<Vec<i32>>()
+        };
+        let doc = |phase: &str| [format!("Sign of the phase-{phase} reference in sectors 1 to 6: the conducting pair carries (+I, -I).")];
+        let tables = [
+            self.b.program.table("corner_a", corner(0), &doc("a")),
+            self.b.program.table("corner_b", corner(1), &doc("b")),
+        ];
+        self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as the voltage that would carry it within one period: K i_ref."]);
+        [0, 1].map(|x| {
+            let sign = self.b.lookup(tables[x], sector);
+            let volts = self.b.mul(sign, set_point, 0);
+            self.b.name(["j_a", "j_b"][x], volts)
+        })
+    }
+
+    /// The interval of a clamped signal, for state declared before the clamp is built.
+    pub fn clamped(&self, volts: f64) -> Interval {
+        Interval::symmetric(self.volts_word(volts))
+    }
+}

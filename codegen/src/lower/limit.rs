@@ -1,0 +1,296 @@
+//! The voltage limit: what gives way outside the hexagon (semantics, step 10).
+//!
+//! In phase coordinates that sum to zero the hexagon is "largest less smallest at most V_BUS", so one
+//! comparison finds saturation and everything else is off the normal path.
+
+use super::{Bus, Coefficient, Lowering};
+use crate::interface::Rounding;
+use crate::ir::{Comparison, Value};
+
+/// What gives way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitRule {
+    /// Scale to the edge.
+    KeepAngle,
+    /// Nearest point of the hexagon.
+    Nearest,
+    /// Keep the component along the EMF.
+    TorquePriority,
+}
+
+/// A voltage inside the hexagon.
+#[derive(Clone, Copy, Debug)]
+pub struct Limited {
+    /// Phase voltages a, b.
+    pub u: [Value; 2],
+    /// Phase voltage c.
+    pub u_c: Value,
+    /// (max + min) / 2 of the three, rounded down: the offset that centres the pulses.
+    pub middle: Value,
+}
+
+/// Fraction bits of the ratio in keep_angle.
+const SCALE_BITS: u32 = 30;
+/// Fraction bits of the blend towards the nearest point.
+const BLEND_BITS: u32 = 15;
+
+impl Lowering<'_> {
+    /// Limits the voltage `u` (phases a, b) to the hexagon; `e` is the EMF (phases a, b).
+    pub fn limit_voltage(&mut self, rule: LimitRule, u: [Value; 2], e: [Value; 2], bus: Bus, third: Coefficient) -> Limited {
+        self.b.stage("find_saturation", &["Largest less smallest phase voltage: more than the bus means saturation."]);
+        let u_c = self.third_phase("u_c_unsat", u[0], u[1]);
+        let [high, low] = self.extremes(["u_max", "u_min"], [u[0], u[1], u_c]);
+        let spread = self.b.sub(high, low);
+        self.b.name("spread", spread);
+        let sum = self.b.add(high, low);
+        let middle = self.b.shift_right(sum, 1);
+        self.b.name("middle_unsat", middle);
+        let saturated = self.b.compare(Comparison::Less, bus.volts, spread);
+        self.b.name("saturated", saturated);
+        let free = Limited { u, u_c, middle };
+        let limited = match rule {
+            LimitRule::KeepAngle => {
+                self.b.guarded_stage("limit_keep_angle", saturated, true, &["Scales the voltage to the edge of the hexagon; its angle stays."]);
+                self.format("scale", 32, SCALE_BITS as i32, Rounding::Floor, "bus over spread, at most 1");
+                let one = self.b.literal(1 << SCALE_BITS);
+                let divisor = self.at_least_one(spread);
+                let scale = self.b.divide(bus.volts, SCALE_BITS, divisor, one);
+                self.b.name("scale", scale);
+                [0, 1].map(|x| {
+                    let scaled = self.b.mul(scale, u[x], SCALE_BITS);
+                    self.within_bus(scaled, bus.volts)
+                })
+            }
+            LimitRule::Nearest => {
+                self.b.guarded_stage(
+                    "limit_nearest",
+                    saturated,
+                    true,
+                    &["Nearest point of the hexagon: with the offset that centres the pulses, each leg is clamped for itself."],
+                );
+                self.nearest(free, bus, third)
+            }
+            LimitRule::TorquePriority => {
+                self.b.guarded_stage(
+                    "limit_torque_priority",
+                    saturated,
+                    true,
+                    &[
+                        "Keeps the component of the voltage along the EMF, which makes torque, and clips the rest.",
+                        "",
+                        "d is the phase of the largest EMF, x and y the next two; with X = u_d - u_x, Y = u_d - u_y and",
+                        "F = (-f_x, -f_y) the hexagon is |X|, |Y|, |X - Y| <= V_BUS and the component is F_x X + F_y Y.",
+                        "Past the reachable component the result goes over to the nearest point without a jump.",
+                    ],
+                );
+                self.torque_priority(free, e, bus, third)
+            }
+        };
+        let names = ["u_a_limited", "u_b_limited"];
+        let inside = [0, 1].map(|x| self.b.name(names[x], limited[x]));
+        let inside_c = self.third_phase("u_c_limited", inside[0], inside[1]);
+        let [high, low] = self.extremes(["limited_max", "limited_min"], [inside[0], inside[1], inside_c]);
+        let sum = self.b.add(high, low);
+        let inside_middle = self.b.shift_right(sum, 1);
+        self.b.name("limited_middle", inside_middle);
+        let [u_a, u_b, u_c, middle] = self.b.join([
+            ("u_a", inside[0], u[0]),
+            ("u_b", inside[1], u[1]),
+            ("u_c", inside_c, u_c),
+            ("middle", inside_middle, middle),
+        ]);
+        Limited { u: [u_a, u_b], u_c, middle }
+    }
+
+    fn at_least_one(&mut self, value: Value) -> Value {
+        let one = self.b.literal(1);
+        self.b.max(value, one)
+    }
+
+    /// The nearest point's phase voltages a and b, added to the open stage.
+    fn nearest(&mut self, free: Limited, bus: Bus, third: Coefficient) -> [Value; 2] {
+        let half = self.b.shift_right(bus.volts, 1);
+        let lift = self.b.sub(half, free.middle);
+        self.b.name("lift", lift);
+        let names = ["terminal_a", "terminal_b", "terminal_c"];
+        let terminals = [0, 1, 2].map(|x| {
+            let phase = [free.u[0], free.u[1], free.u_c][x];
+            let lifted = self.b.add(phase, lift);
+            let zero = self.zero();
+            let terminal = self.b.clamp(lifted, zero, bus.volts);
+            self.b.name(names[x], terminal)
+        });
+        let sum = self.b.add(terminals[0], terminals[1]);
+        let sum = self.b.add(sum, terminals[2]);
+        let mean = self.times(third, sum);
+        self.b.name("terminal_mean", mean);
+        [0, 1].map(|x| self.b.sub(terminals[x], mean))
+    }
+
+    /// A value that cannot leave the bus, held there for the proof (a third or two of the bus at most).
+    fn within_bus(&mut self, value: Value, bus: Value) -> Value {
+        let low = self.b.neg(bus);
+        let low = self.b.max(value, low);
+        self.b.min(low, bus)
+    }
+
+    fn torque_priority(&mut self, free: Limited, e: [Value; 2], bus: Bus, third: Coefficient) -> [Value; 2] {
+        let near = self.nearest(free, bus, third);
+        let near = [0, 1].map(|x| self.b.name(["u_a_near", "u_b_near"][x], near[x]));
+        let near_c = self.third_phase("u_c_near", near[0], near[1]);
+
+        // d, x, y: the phase of the largest EMF and the next two.
+        let e_c = self.third_phase("e_c", e[0], e[1]);
+        let size = [e[0], e[1], e_c].map(|phase| self.b.abs(phase));
+        let size = [0, 1, 2].map(|x| self.b.name(["e_a_size", "e_b_size", "e_c_size"][x], size[x]));
+        let over_b = self.b.compare(Comparison::LessEqual, size[1], size[0]);
+        let over_c = self.b.compare(Comparison::LessEqual, size[2], size[0]);
+        let d_is_a = self.b.and(over_b, over_c);
+        self.b.name("d_is_a", d_is_a);
+        let d_is_b = self.b.compare(Comparison::LessEqual, size[2], size[1]);
+        self.b.name("d_is_b", d_is_b);
+        let rotate = |lowering: &mut Self, [a, b, c]: [Value; 3]| {
+            [[a, b, c], [b, c, a], [c, a, b]].map(|phases| lowering.pick(d_is_a, d_is_b, phases))
+        };
+        let [f_d, f_x, f_y] = rotate(self, [e[0], e[1], e_c]);
+        for (name, value) in [("f_d", f_d), ("f_x", f_x), ("f_y", f_y)] {
+            self.b.name(name, value);
+        }
+        let [u_d, u_x, u_y] = rotate(self, [free.u[0], free.u[1], free.u_c]);
+        self.b.name("u_d", u_d);
+        let [n_d, n_x, n_y] = rotate(self, [near[0], near[1], near_c]);
+        self.b.name("near_d", n_d);
+
+        // Signs such that F and the component are not negative.
+        let zero = self.zero();
+        let positive = self.b.compare(Comparison::LessEqual, zero, f_d);
+        self.b.name("f_positive", positive);
+        let [f_x, f_y] = [(f_x, "force_x"), (f_y, "force_y")].map(|(f, name)| {
+            let turned = self.b.neg(f);
+            let along = self.b.select(positive, turned, f);
+            let zero = self.zero();
+            let force = self.b.max(along, zero);
+            self.b.name(name, force)
+        });
+        let mut differences = |d: Value, x: Value, name: &str| {
+            let difference = self.b.sub(d, x);
+            self.b.name(name, difference)
+        };
+        let line = [differences(u_d, u_x, "line_x"), differences(u_d, u_y, "line_y")];
+        let near_line = [differences(n_d, n_x, "near_line_x"), differences(n_d, n_y, "near_line_y")];
+        let flip = |lowering: &mut Self, flag: Value, value: Value| {
+            let turned = lowering.b.neg(value);
+            lowering.b.select(flag, value, turned)
+        };
+        let forward = [0, 1].map(|k| {
+            let value = flip(self, positive, line[k]);
+            self.b.name(["forward_x", "forward_y"][k], value)
+        });
+        let shift = self.product_shift([f_x, f_y], forward);
+        let along = [0, 1].map(|k| self.b.mul_floor([f_x, f_y][k], forward[k], shift));
+        let component = self.b.add(along[0], along[1]);
+        self.b.name("component_signed", component);
+        let zero = self.zero();
+        let pushing = self.b.compare(Comparison::LessEqual, zero, component);
+        self.b.name("pushing", pushing);
+        let [x, y] = [0, 1].map(|k| {
+            let value = flip(self, pushing, forward[k]);
+            self.b.name(["x", "y"][k], value)
+        });
+        let component = self.b.abs(component);
+        self.b.name("component", component);
+
+        // The point of the hexagon with that component (or the greatest one) nearest to (x, y).
+        let reach = [0, 1].map(|k| {
+            let q = self.b.mul_floor([f_x, f_y][k], bus.volts, shift);
+            self.b.name(["reach_x", "reach_y"][k], q)
+        });
+        let reachable = self.b.add(reach[0], reach[1]);
+        self.b.name("reachable", reachable);
+        let kept = self.b.min(component, reachable);
+        let x_heavy = self.b.compare(Comparison::LessEqual, y, x);
+        self.b.name("x_heavy", x_heavy);
+        let full = self.b.select(x_heavy, reach[0], reach[1]);
+        let rest = self.b.sub(kept, full);
+        self.b.name("rest", rest);
+        let zero = self.zero();
+        let beyond = self.b.compare(Comparison::Less, zero, rest);
+        self.b.name("beyond_corner", beyond);
+        let light_force = self.b.select(x_heavy, f_y, f_x);
+        let f_size = self.b.abs(f_d);
+        self.b.name("f_size", f_size);
+        // A quarter of the EMF at least: where the light force vanishes in mid-sector the exact quotient
+        // would jump along a whole edge for an error of one ulp.
+        let quarter = self.b.shift_right(f_size, 2);
+        let light_force = self.b.max(light_force, quarter);
+        let force = self.b.select(beyond, light_force, f_size);
+        let force = self.at_least_one(force);
+        let size = self.b.abs(rest);
+        let quotient = self.b.divide(size, shift.min(31), force, bus.volts);
+        self.b.name("quotient", quotient);
+        let back = self.b.neg(quotient);
+        let light = self.b.select(beyond, quotient, back);
+        self.b.name("light", light);
+        let heavy = self.b.add(light, bus.volts);
+        let heavy = self.b.min(heavy, bus.volts);
+        self.b.name("heavy", heavy);
+        let kept_x = self.b.select(x_heavy, heavy, light);
+        let kept_y = self.b.select(x_heavy, light, heavy);
+        let kept = [self.b.name("kept_x", kept_x), self.b.name("kept_y", kept_y)];
+
+        // Past the reach: over to the nearest point within half of it.
+        let past = self.b.sub(component, reachable);
+        let zero = self.zero();
+        let past = self.b.max(past, zero);
+        let half = self.b.shift_right(reachable, 1);
+        let half = self.at_least_one(half);
+        let one = self.b.literal(1 << BLEND_BITS);
+        let blend = self.b.divide(past, BLEND_BITS, half, one);
+        self.b.name("blend", blend);
+        let chosen = [0, 1].map(|k| {
+            let near = flip(self, positive, near_line[k]);
+            let near = flip_named(self, pushing, near, ["near_x_forward", "near_y_forward"][k]);
+            let way = self.b.sub(near, kept[k]);
+            let part = self.b.mul(blend, way, BLEND_BITS);
+            let blended = self.b.add(kept[k], part);
+            let back = flip_named(self, pushing, blended, ["blended_x", "blended_y"][k]);
+            flip_named(self, positive, back, ["turned_x", "turned_y"][k])
+        });
+        let chosen = [0, 1].map(|k| self.b.name(["chosen_x", "chosen_y"][k], chosen[k]));
+        let sum = self.b.add(chosen[0], chosen[1]);
+        let new_d = self.times(third, sum);
+        self.b.name("new_d", new_d);
+        let new_x = self.b.sub(new_d, chosen[0]);
+        self.b.name("new_x", new_x);
+        let new_y = self.b.sub(new_d, chosen[1]);
+        self.b.name("new_y", new_y);
+        // Back from (d, x, y) to (a, b).
+        let u_a = self.pick(d_is_a, d_is_b, [new_d, new_y, new_x]);
+        let u_b = self.pick(d_is_a, d_is_b, [new_x, new_d, new_y]);
+        let least = self.b.shift_right(bus.volts, 8);
+        let directed = self.b.compare(Comparison::LessEqual, least, f_size);
+        self.b.name("directed", directed);
+        [(u_a, near[0]), (u_b, near[1])].map(|(kept, near)| {
+            let chosen = self.b.select(directed, kept, near);
+            self.within_bus(chosen, bus.volts)
+        })
+    }
+
+    /// The least shift at which the sum of two products fits a word with room for one more bit.
+    fn product_shift(&mut self, forces: [Value; 2], lines: [Value; 2]) -> u32 {
+        let bits = |values: [Value; 2]| values.map(|value| self.b.interval(value).bits()).into_iter().max().unwrap_or(32);
+        let shift = (bits(forces) + bits(lines)).saturating_sub(31);
+        if shift > 31 {
+            self.misfits.push("emf_product".to_owned());
+        }
+        self.format("emf_product", 32, shift as i32, Rounding::Floor, "products of EMF and voltage in torque priority");
+        shift
+    }
+}
+
+/// `value` where the flag holds, else `-value`; the argument gets a name because it is used twice.
+fn flip_named(lowering: &mut Lowering<'_>, flag: Value, value: Value, name: &str) -> Value {
+    lowering.b.name(name, value);
+    let turned = lowering.b.neg(value);
+    lowering.b.select(flag, value, turned)
+}

@@ -1,0 +1,105 @@
+//! ADC counts to phase currents, Hall code to sector (semantics, steps 1 and 2).
+
+use super::Lowering;
+use crate::ir::{Comparison, Interval, StateId, Value};
+
+/// Phase currents of this sample, in words of current.
+#[derive(Clone, Copy, Debug)]
+pub struct Currents {
+    /// ADC counts of phases a and b, limited to the converter's range.
+    pub counts: [Value; 2],
+    /// Flag: a count lay outside the range; `None` where every 16-bit word is in range.
+    pub out_of_range: Option<Value>,
+    /// Currents of phases a, b, c.
+    pub phases: [Value; 3],
+}
+
+/// Sector and edge of this sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Hall {
+    /// Sector that the code names, 0 for an invalid code.
+    pub code: Value,
+    /// Sector in force: the last valid one where the code is invalid; 0 before the first.
+    pub sector: Value,
+    /// Sector of the last sample.
+    pub sector_prev: Value,
+    /// Flag: the sector changed.
+    pub edge: Value,
+}
+
+impl Lowering<'_> {
+    /// Currents from ADC counts and the offset words.
+    pub fn measure(&mut self, offsets: [StateId; 2]) -> Currents {
+        let inverter = &self.spec.inverter;
+        let (bits, inverted) = (inverter.adc_bits, inverter.adc_gain < 0.0);
+        let shift = self.scale.current_bits;
+        self.b.stage(
+            "measure_currents",
+            &[
+                "Phase currents from ADC counts less offset; the third from Kirchhoff's law.",
+                "",
+                "A count outside the converter's range is limited to it and trips the drive.",
+            ],
+        );
+        let word = Interval::new(0, i64::from(u16::MAX));
+        let raw = [
+            self.b.input("adc_a", word, "Phase-a current, ADC count."),
+            self.b.input("adc_b", word, "Phase-b current, ADC count."),
+        ];
+        let (counts, out_of_range) = if bits == 16 {
+            (raw, None)
+        } else {
+            let top = (1 << bits) - 1;
+            let doc = "Largest count of the phase-current converters.";
+            let outside = raw.map(|count| {
+                let limit = self.number("adc_max", top, doc);
+                self.b.compare(Comparison::Less, limit, count)
+            });
+            let either = self.b.or(outside[0], outside[1]);
+            self.b.name("out_of_range", either);
+            let names = ["count_a", "count_b"];
+            let limited = [0, 1].map(|x| {
+                let limit = self.number("adc_max", top, doc);
+                let count = self.b.min(raw[x], limit);
+                self.b.name(names[x], count)
+            });
+            (limited, Some(either))
+        };
+        let names = ["i_a", "i_b"];
+        let [a, b] = [0, 1].map(|x| {
+            let offset = self.b.state(offsets[x]);
+            let scaled = self.b.shift_left(counts[x], shift);
+            let current = if inverted { self.b.sub(offset, scaled) } else { self.b.sub(scaled, offset) };
+            self.b.name(names[x], current)
+        });
+        let c = self.third_phase("i_c", a, b);
+        Currents { counts, out_of_range, phases: [a, b, c] }
+    }
+
+    /// Sector and edge.
+    pub fn read_hall(&mut self, sector_prev: StateId) -> Hall {
+        self.b.stage(
+            "read_hall",
+            &["Sector from the Hall code; an invalid code (000, 111) keeps the last sector and trips the drive."],
+        );
+        let hall = self.b.input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
+        let mut sectors = vec![0; 8];
+        for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
+            sectors[usize::from(code & 7)] = sector;
+        }
+        let decode = self.b.program.table("hall_sector", sectors, &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()]);
+        let code = self.b.lookup(decode, hall);
+        self.b.name("hall_code_sector", code);
+        let sector_prev = self.b.state(sector_prev);
+        let zero = self.zero();
+        let valid = self.b.compare(Comparison::NotEqual, code, zero);
+        let sector = self.b.select(valid, code, sector_prev);
+        self.b.name("sector", sector);
+        let changed = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        let zero = self.zero();
+        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+        let edge = self.b.and(changed, known);
+        self.b.name("edge", edge);
+        Hall { code, sector, sector_prev, edge }
+    }
+}

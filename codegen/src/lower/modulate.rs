@@ -1,0 +1,338 @@
+//! Voltages to leg commands, commutation, and what a pair command really applies (semantics, steps 5, 7, 11).
+
+use super::measure::Currents;
+use super::{Bus, Coefficient, Limited, Lowering};
+use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN, SECTOR_CURRENT};
+use crate::ir::{Comparison, Interval, StateId, Value};
+
+/// Compare values and leg states of phases a, b, c.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    /// Compare values.
+    pub compares: [Value; 3],
+    /// Leg states: 0 pulsed, 1 low, 2 off.
+    pub legs: [Value; 3],
+}
+
+/// Terminal voltages of the three legs and which leg is off (0 none, 1 to 3: a to c).
+#[derive(Clone, Copy, Debug)]
+pub struct Applied {
+    /// Mean terminal voltages; of an off leg 0.
+    pub terminals: [Value; 3],
+    /// Number of the off leg.
+    pub off: Value,
+}
+
+/// State words and flags of pair modulation.
+#[derive(Clone, Copy, Debug)]
+pub struct PairModulation {
+    /// Sector in force at the last sample.
+    pub sector_prev: StateId,
+    /// Whether a commutation was going on.
+    pub commutating: StateId,
+    /// Periods since it began.
+    pub age: StateId,
+}
+
+impl Lowering<'_> {
+    /// Three centred pulses from a limited voltage.
+    pub fn modulate(&mut self, limited: Limited, bus: Bus) -> Command {
+        self.b.stage(
+            "modulate",
+            &["Compare values of a centre-aligned timer; (max + min)/2 as offset centres the pulses as space-vector modulation does."],
+        );
+        let voltage = [limited.u[0], limited.u[1], limited.u_c];
+        let compares = [0, 1, 2].map(|x| {
+            let centred = self.b.sub(voltage[x], limited.middle);
+            self.compare_centred(["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x], centred, bus)
+        });
+        let legs = [0; 3].map(|pulsed| self.b.literal(pulsed));
+        Command { compares, legs }
+    }
+
+    fn compare_centred(&mut self, name: &str, centred: Value, bus: Bus) -> Value {
+        let bits = self.scale.voltage_bits;
+        let scaled = self.to_nominal(centred, bus);
+        let half = i64::from(self.spec.inverter.timer_period) << (bits - 1);
+        let offset = self.number("half_period", half + (1 << (bits - 1)), "Half the timer period, and half a count to round.");
+        let lifted = self.b.add(scaled, offset);
+        self.to_counts(name, lifted)
+    }
+
+    /// A voltage of the measured bus as a share of the nominal one, which the timer period stands for.
+    fn to_nominal(&mut self, volts: Value, bus: Bus) -> Value {
+        match bus.ratio {
+            None => volts,
+            Some((ratio, shift)) => self.b.mul(ratio, volts, shift),
+        }
+    }
+
+    fn to_counts(&mut self, name: &str, lifted: Value) -> Value {
+        let counts = self.b.shift_right(lifted, self.scale.voltage_bits);
+        let zero = self.zero();
+        let top = self.number("timer_period", i64::from(self.spec.inverter.timer_period), "Compare value of 100 % duty.");
+        let compare = self.b.clamp(counts, zero, top);
+        self.b.name(name, compare)
+    }
+
+    /// Declares the words of pair modulation.
+    pub fn pair_words(&mut self, timeout: u32) -> PairModulation {
+        PairModulation {
+            sector_prev: self.state("sector_eff_prev", 0, Interval::new(0, 6), "Sector in force at the last sample; 0 before the first."),
+            commutating: self.state("commutating", 0, Interval::new(0, 1), "1 while the outgoing phase still carries current."),
+            age: self.state("commutation_age", 0, Interval::new(0, i64::from(timeout)), "Periods since the commutation began."),
+        }
+    }
+
+    /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector.
+    pub fn commutation(
+        &mut self,
+        words: PairModulation,
+        [sector, direction, set_point]: [Value; 3],
+        currents: &Currents,
+        threshold: f64,
+        timeout: u32,
+    ) -> [Value; 3] {
+        let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
+        let phases = self.b.program.table("off_phase", table(OFF_PHASE), &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()]);
+        let signs = self.b.program.table(
+            "outgoing_sign",
+            table(OUTGOING_SIGN),
+            &["Sign of the outgoing current on entry of sectors 1 to 6, positive torque, forward.".to_owned()],
+        );
+        self.b.stage(
+            "detect_commutation",
+            &[
+                "A commutation begins at the first sample in a new sector and ends at a later one, when the outgoing",
+                "current has fallen to the threshold or the time-out has passed.",
+            ],
+        );
+        let sector_prev = self.b.state(words.sector_prev);
+        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        let zero = self.zero();
+        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+        let changed = self.b.and(different, known);
+        self.b.name("changed", changed);
+        let phase = self.b.lookup(phases, sector);
+        self.b.name("outgoing_phase", phase);
+        let outgoing = self.of_phase(phase, currents.phases);
+        let sign = self.b.lookup(signs, sector);
+        let zero = self.zero();
+        let braking = self.b.compare(Comparison::Less, set_point, zero);
+        let turned = self.b.mul(sign, direction, 0);
+        self.b.name("outgoing_sign_turned", turned);
+        let back = self.b.neg(turned);
+        let sign = self.b.select(braking, back, turned);
+        let outgoing = self.b.mul(sign, outgoing, 0);
+        let threshold = self.ampere_word(threshold);
+        let limit = self.number("i_comm", threshold, "Outgoing current at which a commutation ends, words of current.");
+        let decayed = self.b.compare(Comparison::LessEqual, outgoing, limit);
+        let age = self.b.state(words.age);
+        let doc = "Periods after which a commutation is taken as ended.";
+        let limit = self.number("commutation_timeout", i64::from(timeout), doc);
+        let expired = self.b.compare(Comparison::LessEqual, limit, age);
+        let ended = self.b.or(decayed, expired);
+        let was = self.b.state(words.commutating);
+        let zero = self.zero();
+        let was = self.b.compare(Comparison::NotEqual, was, zero);
+        let going_on = self.b.not(ended);
+        let still = self.b.and(was, going_on);
+        let commutating = self.b.or(changed, still);
+        self.b.name("in_commutation", commutating);
+        let one = self.b.literal(1);
+        let older = self.b.add(age, one);
+        let limit = self.number("commutation_timeout", i64::from(timeout), doc);
+        let older = self.b.min(older, limit);
+        let zero = self.zero();
+        let age = self.b.select(changed, zero, older);
+        self.b.name("commutation_age_now", age);
+        let (one, zero) = (self.b.literal(1), self.zero());
+        let word = self.b.select(commutating, one, zero);
+        self.b.name("commutating_now", word);
+        [commutating, word, age]
+    }
+
+    /// The value of the phase numbered 0 to 2 by `phase`.
+    fn of_phase(&mut self, phase: Value, values: [Value; 3]) -> Value {
+        let zero = self.zero();
+        let is_a = self.b.compare(Comparison::Equal, phase, zero);
+        let one = self.b.literal(1);
+        let is_b = self.b.compare(Comparison::Equal, phase, one);
+        self.pick(is_a, is_b, values)
+    }
+
+    /// Three pulses while commutating, else the conducting pair alone: one leg pulsed, its partner low, the third off.
+    pub fn modulate_pair(
+        &mut self,
+        [sector, commutating]: [Value; 2],
+        unlimited: [Value; 2],
+        limited: Limited,
+        bus: Bus,
+    ) -> (Command, Applied) {
+        self.b.stage("modulate_three", &["Three centred pulses, for commutation."]);
+        let voltage = [limited.u[0], limited.u[1], limited.u_c];
+        let half_bus = self.b.shift_right(bus.volts, 1);
+        let lift = self.b.sub(half_bus, limited.middle);
+        self.b.name("lift_three", lift);
+        let mut three = vec![];
+        for x in 0..3 {
+            let centred = self.b.sub(voltage[x], limited.middle);
+            let compare = self.compare_centred(["compare_a_three", "compare_b_three", "compare_c_three"][x], centred, bus);
+            let lifted = self.b.add(voltage[x], lift);
+            let zero = self.zero();
+            let terminal = self.b.clamp(lifted, zero, bus.volts);
+            three.push((compare, self.b.name(["terminal_a_three", "terminal_b_three", "terminal_c_three"][x], terminal)));
+        }
+        let pairing = self.b.not(commutating);
+        self.b.name("pairing", pairing);
+        let none = self.b.literal(0);
+        let outside = self.b.literal(0);
+
+        let signs = [0, 1, 2].map(|phase| {
+            let column = std::iter::once(0).chain(SECTOR_CURRENT.iter().map(|legs| legs[phase])).collect();
+            let name = ["pair_sign_a", "pair_sign_b", "pair_sign_c"][phase];
+            let doc = format!("Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.", ["a", "b", "c"][phase]);
+            self.b.program.table(name, column, &[doc])
+        });
+        self.b.guarded_stage(
+            "modulate_pair",
+            pairing,
+            false,
+            &["Outside commutation only the line voltage of the conducting pair counts: one leg pulsed, its partner low, the third off."],
+        );
+        let u_c = self.third_phase("u_c_pair", unlimited[0], unlimited[1]);
+        let voltages = [unlimited[0], unlimited[1], u_c];
+        let sign = [0, 1, 2].map(|x| {
+            let sign = self.b.lookup(signs[x], sector);
+            self.b.name(["sign_a", "sign_b", "sign_c"][x], sign)
+        });
+        let terms = [0, 1, 2].map(|x| self.b.mul(sign[x], voltages[x], 0));
+        let line = self.b.add(terms[0], terms[1]);
+        let line = self.b.add(line, terms[2]);
+        let low = self.b.neg(bus.volts);
+        let line = self.b.max(line, low);
+        let line = self.b.min(line, bus.volts);
+        self.b.name("line", line);
+        let zero = self.zero();
+        let forward = self.b.compare(Comparison::LessEqual, zero, line);
+        self.b.name("line_forward", forward);
+        let volts = self.b.abs(line);
+        self.b.name("line_volts", volts);
+        let bits = self.scale.voltage_bits;
+        let nominal = self.to_nominal(volts, bus);
+        let round = self.b.literal(1 << (bits - 1));
+        let lifted = self.b.add(nominal, round);
+        let compare = self.to_counts("compare_line", lifted);
+        let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
+        let pulsed_sign = self.b.select(forward, plus, minus);
+        self.b.name("pulsed_sign", pulsed_sign);
+        let mut results: Vec<(&str, Value, Value)> = vec![];
+        for x in 0..3 {
+            let is_pulsed = self.b.compare(Comparison::Equal, sign[x], pulsed_sign);
+            self.b.name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed);
+            let zero = self.zero();
+            let own_compare = self.b.select(is_pulsed, compare, zero);
+            let zero = self.zero();
+            let own_terminal = self.b.select(is_pulsed, volts, zero);
+            let zero = self.zero();
+            let is_off = self.b.compare(Comparison::Equal, sign[x], zero);
+            let (pulsed, low, off) = (self.b.literal(0), self.b.literal(1), self.b.literal(2));
+            let driven = self.b.select(is_pulsed, pulsed, low);
+            let leg = self.b.select(is_off, off, driven);
+            self.b.name(["compare_a_pair", "compare_b_pair", "compare_c_pair"][x], own_compare);
+            self.b.name(["leg_a_pair", "leg_b_pair", "leg_c_pair"][x], leg);
+            self.b.name(["terminal_a_pair", "terminal_b_pair", "terminal_c_pair"][x], own_terminal);
+            results.push((["compare_a_run", "compare_b_run", "compare_c_run"][x], own_compare, three[x].0));
+            results.push((["leg_a_run", "leg_b_run", "leg_c_run"][x], leg, outside));
+            results.push((["terminal_a_run", "terminal_b_run", "terminal_c_run"][x], own_terminal, three[x].1));
+        }
+        let off = {
+            let zero = self.zero();
+            let (one, two, three_word) = (self.b.literal(1), self.b.literal(2), self.b.literal(3));
+            let is_a = self.b.compare(Comparison::Equal, sign[0], zero);
+            let zero = self.zero();
+            let is_b = self.b.compare(Comparison::Equal, sign[1], zero);
+            let number = self.pick(is_a, is_b, [one, two, three_word]);
+            // Without a sector all three are off and none is to be rebuilt.
+            let zero = self.zero();
+            let known = self.b.compare(Comparison::NotEqual, sector, zero);
+            let zero = self.zero();
+            self.b.select(known, number, zero)
+        };
+        self.b.name("off_pair", off);
+        results.push(("off_run", off, none));
+        let joined = self.b.join_all(&results);
+        let command = Command { compares: [joined[0], joined[3], joined[6]], legs: [joined[1], joined[4], joined[7]] };
+        (command, Applied { terminals: [joined[2], joined[5], joined[8]], off: joined[9] })
+    }
+
+    /// Mean phase voltages a, b (zero-sum) that a command really applies, given the currents at its start
+    /// and the EMF: an off leg with current is clamped to a rail by its diode, without it floats.
+    pub fn applied_voltage(
+        &mut self,
+        names: [&str; 2],
+        applied: Applied,
+        currents: &Currents,
+        e: [Value; 2],
+        bus: Bus,
+        third: Coefficient,
+        threshold: f64,
+    ) -> [Value; 2] {
+        self.b.stage(
+            "applied_voltage",
+            &[
+                "Phase voltages that the inverter really applies during this period.",
+                "",
+                "A leg that is off is clamped to a rail by its diode while it carries current, else it sits at its EMF",
+                "above the star point of the driven pair.",
+            ],
+        );
+        let threshold = self.ampere_word(threshold);
+        let e_c = self.third_phase("e_c_last", e[0], e[1]);
+        let one = self.b.literal(1);
+        let off_a = self.b.compare(Comparison::Equal, applied.off, one);
+        self.b.name("off_a", off_a);
+        let two = self.b.literal(2);
+        let off_b = self.b.compare(Comparison::Equal, applied.off, two);
+        self.b.name("off_b", off_b);
+        let three = self.b.literal(3);
+        let off_c = self.b.compare(Comparison::Equal, applied.off, three);
+        self.b.name("off_c", off_c);
+        let e_off = self.pick(off_a, off_b, [e[0], e[1], e_c]);
+        self.b.name("e_off", e_off);
+        let i_off = self.pick(off_a, off_b, currents.phases);
+        self.b.name("i_off", i_off);
+        // The off leg's own terminal word is 0, so the sum of all three is that of the driven pair.
+        let pair = self.b.add(applied.terminals[0], applied.terminals[1]);
+        let pair = self.b.add(pair, applied.terminals[2]);
+        let star = self.b.shift_right(pair, 1);
+        let half_e = self.b.shift_right(e_off, 1);
+        let floating = self.b.add(star, e_off);
+        let floating = self.b.add(floating, half_e);
+        let zero = self.zero();
+        let floating = self.b.clamp(floating, zero, bus.volts);
+        let doc = "Current above which an off leg's diode conducts, words of current.";
+        let limit = self.number("i_comm", threshold, doc);
+        let inward = self.b.compare(Comparison::Less, limit, i_off);
+        let limit = self.number("i_comm", threshold, doc);
+        let negative = self.b.neg(limit);
+        let outward = self.b.compare(Comparison::Less, i_off, negative);
+        let clamped = self.b.select(outward, bus.volts, floating);
+        let zero = self.zero();
+        let off_terminal = self.b.select(inward, zero, clamped);
+        self.b.name("terminal_off", off_terminal);
+        let flags = [off_a, off_b, off_c];
+        let terminals = [0, 1, 2].map(|x| {
+            let terminal = self.b.select(flags[x], off_terminal, applied.terminals[x]);
+            self.b.name(["terminal_a_now", "terminal_b_now", "terminal_c_now"][x], terminal)
+        });
+        let sum = self.b.add(terminals[0], terminals[1]);
+        let sum = self.b.add(sum, terminals[2]);
+        let mean = self.times(third, sum);
+        self.b.name("terminal_mean_now", mean);
+        [0, 1].map(|x| {
+            let volts = self.b.sub(terminals[x], mean);
+            self.b.name(names[x], volts)
+        })
+    }
+}

@@ -1,0 +1,248 @@
+//! Faults, start-up sequence and the safe command (semantics, steps 3 and 12).
+
+use super::measure::{Currents, Hall};
+use super::modulate::Command;
+use super::Lowering;
+use crate::ir::{Comparison, Interval, StateId, Value};
+
+/// Operating modes as the state word `mode` holds them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Mode {
+    /// The current loop runs.
+    Run = 0,
+    /// Offset calibration: legs off.
+    Calibrate = 1,
+    /// Bootstrap pre-charge: legs low.
+    Precharge = 2,
+    /// Tripped: legs off until reset.
+    Tripped = 3,
+}
+
+/// State words of the supervisor, present in every controller.
+#[derive(Clone, Copy, Debug)]
+pub struct SupervisorWords {
+    mode: StateId,
+    fault: StateId,
+    countdown: StateId,
+    sums: [StateId; 2],
+    /// Offsets of the current converters.
+    pub offsets: [StateId; 2],
+    /// Sector of the last sample.
+    pub sector_prev: StateId,
+    stall_count: Option<StateId>,
+}
+
+impl Lowering<'_> {
+    /// Declares the supervisor's state words.
+    pub fn supervisor_words(&mut self) -> SupervisorWords {
+        let inverter = self.spec.inverter.clone();
+        let top = i64::from((1_u32 << inverter.adc_bits) - 1);
+        let offset = (i64::from(inverter.adc_offset) << self.scale.current_bits) as i32;
+        let offset_range = Interval::new(0, self.current_span());
+        let sum_range = Interval::new(0, top << inverter.calibration_log2);
+        SupervisorWords {
+            mode: self.state("mode", 0, Interval::new(0, 3), "0 run, 1 calibrate, 2 pre-charge, 3 tripped."),
+            fault: self.state("fault", 0, Interval::new(0, 4), "What tripped the drive: 0 nothing, 1 ADC range, 2 over-current, 3 Hall code, 4 stall."),
+            countdown: self.state("countdown", 0, Interval::new(0, i64::from(u16::MAX)), "Periods left in calibration or pre-charge."),
+            sums: ["sum_a", "sum_b"].map(|name| self.state(name, 0, sum_range, "Sum of calibration samples, ADC counts.")),
+            offsets: ["offset_a", "offset_b"].map(|name| self.state(name, offset, offset_range, "Offset at zero current, words of current.")),
+            sector_prev: self.state("sector_prev", 0, Interval::new(0, 6), "Sector of the last sample; 0 before the first."),
+            stall_count: (inverter.stall_periods > 0).then(|| {
+                self.state("stall_count", 0, Interval::new(0, i64::from(inverter.stall_periods)), "Periods without a Hall edge under current demand.")
+            }),
+        }
+    }
+
+    /// Detects faults and advances the start-up sequence; returns the mode of this period's command.
+    pub fn supervise(&mut self, words: SupervisorWords, currents: &Currents, hall: &Hall, set_point: Value) -> Value {
+        self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
+        let trip = self.ampere_word(self.spec.inverter.trip_current);
+        let [a, b, c] = currents.phases.map(|current| self.b.abs(current));
+        let pair = self.b.max(a, b);
+        let peak = self.b.max(pair, c);
+        let limit = self.number("i_trip", trip, "Trip level of the phase currents, words of current.");
+        let over_current = self.b.compare(Comparison::Less, limit, peak);
+        self.b.name("over_current", over_current);
+        let zero = self.zero();
+        let no_hall = self.b.compare(Comparison::Equal, hall.code, zero);
+        self.b.name("no_hall", no_hall);
+        let mut any = self.b.or(over_current, no_hall);
+        if let Some(outside) = currents.out_of_range {
+            any = self.b.or(outside, any);
+        }
+        if let Some(stall_count) = words.stall_count {
+            let stalled = self.stalled(stall_count, hall, set_point);
+            any = self.b.or(stalled, any);
+        }
+        self.b.name("faulty", any);
+        let mode = self.b.state(words.mode);
+        let fault = self.b.state(words.fault);
+        let zero = self.zero();
+        let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
+        self.b.name("sequencing", sequencing);
+        let sequenced = self.sequence(words, currents, mode, sequencing);
+        self.latch(words, currents.out_of_range, [over_current, no_hall], any, [sequenced, fault])
+    }
+
+    fn stalled(&mut self, stall_count: StateId, hall: &Hall, set_point: Value) -> Value {
+        let periods = i64::from(self.spec.inverter.stall_periods);
+        let doc = "Periods without a Hall edge that count as a stall.";
+        let count = self.b.state(stall_count);
+        let one = self.b.literal(1);
+        let more = self.b.add(count, one);
+        let limit = self.number("stall_periods", periods, doc);
+        let counted = self.b.min(more, limit);
+        let zero = self.zero();
+        let idle = self.b.compare(Comparison::Equal, set_point, zero);
+        let restart = self.b.or(hall.edge, idle);
+        let zero = self.zero();
+        let count = self.b.select(restart, zero, counted);
+        self.b.name("stall_count_now", count);
+        self.b.set_state(stall_count, count);
+        let limit = self.number("stall_periods", periods, doc);
+        self.b.compare(Comparison::Equal, count, limit)
+    }
+
+    /// Calibration and pre-charge; returns the mode behind them.
+    fn sequence(&mut self, words: SupervisorWords, currents: &Currents, mode: Value, running: Value) -> Value {
+        let inverter = self.spec.inverter.clone();
+        let countdown = self.b.state(words.countdown);
+        let sums = words.sums.map(|sum| self.b.state(sum));
+        let offsets = words.offsets.map(|offset| self.b.state(offset));
+        self.b.guarded_stage(
+            "advance_sequence",
+            running,
+            true,
+            &[
+                "Start-up: offset calibration averages the ADC counts with all legs off, pre-charge then holds all",
+                "lower switches on; a tripped drive stays tripped.",
+            ],
+        );
+        let one = self.b.literal(1);
+        let left = self.b.sub(countdown, one);
+        let zero = self.zero();
+        let left = self.b.max(left, zero);
+        self.b.name("countdown_left", left);
+        let zero = self.zero();
+        let done = self.b.compare(Comparison::Equal, left, zero);
+        self.b.name("countdown_done", done);
+        let calibrate = self.b.literal(Mode::Calibrate as i32);
+        let calibrating = self.b.compare(Comparison::Equal, mode, calibrate);
+        self.b.name("calibrating", calibrating);
+        let calibrated = self.b.and(calibrating, done);
+        self.b.name("calibrated", calibrated);
+        let top = i64::from((1_u32 << inverter.adc_bits) - 1) << inverter.calibration_log2;
+        let mut new_sums = vec![];
+        let mut new_offsets = vec![];
+        for x in 0..2 {
+            let sum = self.b.add(sums[x], currents.counts[x]);
+            // The countdown ends the sum before this limit; it is here for the proof.
+            let limit = self.number("calibration_sum_max", top, "Sum of calibration samples that are all at the ADC's largest count.");
+            let sum = self.b.min(sum, limit);
+            let sum = self.b.select(calibrating, sum, sums[x]);
+            self.b.name(["sum_a_now", "sum_b_now"][x], sum);
+            let (bits, log2) = (self.scale.current_bits, inverter.calibration_log2);
+            let mean = if bits >= log2 { self.b.shift_left(sum, bits - log2) } else { self.b.shift_right(sum, log2 - bits) };
+            let offset = self.b.select(calibrated, mean, offsets[x]);
+            self.b.name(["offset_a_now", "offset_b_now"][x], offset);
+            new_sums.push(sum);
+            new_offsets.push(offset);
+        }
+        let precharge = self.b.literal(Mode::Precharge as i32);
+        let precharging = self.b.compare(Comparison::Equal, mode, precharge);
+        self.b.name("precharging", precharging);
+        let charged = self.b.and(precharging, done);
+        let run = self.b.literal(Mode::Run as i32);
+        let uncalibrated = self.b.select(charged, run, mode);
+        let after = if inverter.precharge_periods > 0 { Mode::Precharge } else { Mode::Run };
+        let after = self.b.literal(after as i32);
+        let next_mode = self.b.select(calibrated, after, uncalibrated);
+        self.b.name("mode_advanced", next_mode);
+        let periods = self.number("precharge_periods", i64::from(inverter.precharge_periods), "Periods of bootstrap pre-charge.");
+        let timed = self.b.or(calibrating, precharging);
+        let running_down = self.b.select(timed, left, countdown);
+        let next_countdown = self.b.select(calibrated, periods, running_down);
+        self.b.name("countdown_advanced", next_countdown);
+        let joined = self.b.join([
+            ("mode_sequenced", next_mode, mode),
+            ("countdown_next", next_countdown, countdown),
+            ("sum_a_next", new_sums[0], sums[0]),
+            ("sum_b_next", new_sums[1], sums[1]),
+            ("offset_a_next", new_offsets[0], offsets[0]),
+            ("offset_b_next", new_offsets[1], offsets[1]),
+        ]);
+        self.b.set_state(words.countdown, joined[1]);
+        self.b.set_state(words.sums[0], joined[2]);
+        self.b.set_state(words.sums[1], joined[3]);
+        self.b.set_state(words.offsets[0], joined[4]);
+        self.b.set_state(words.offsets[1], joined[5]);
+        joined[0]
+    }
+
+    fn latch(
+        &mut self,
+        words: SupervisorWords,
+        out_of_range: Option<Value>,
+        [over_current, no_hall]: [Value; 2],
+        faulty: Value,
+        [mode, fault]: [Value; 2],
+    ) -> Value {
+        self.b.guarded_stage("latch_fault", faulty, true, &["Trips the drive and keeps the first cause until reset."]);
+        let (hall, stall) = (self.b.literal(3), self.b.literal(4));
+        let mut cause = self.b.select(no_hall, hall, stall);
+        let code = self.b.literal(2);
+        cause = self.b.select(over_current, code, cause);
+        if let Some(outside) = out_of_range {
+            let code = self.b.literal(1);
+            cause = self.b.select(outside, code, cause);
+        }
+        let tripped = self.b.literal(Mode::Tripped as i32);
+        let already = self.b.compare(Comparison::Equal, mode, tripped);
+        let latched = self.b.select(already, fault, cause);
+        self.b.name("fault_latched", latched);
+        let tripped = self.b.literal(Mode::Tripped as i32);
+        let [mode, fault] = self.b.join([("mode_next", tripped, mode), ("fault_next", latched, fault)]);
+        self.b.set_state(words.mode, mode);
+        self.b.set_state(words.fault, fault);
+        mode
+    }
+
+    /// The command and the words that are remembered, replaced by the safe ones where the mode is not run.
+    pub fn hold_unless_running(&mut self, mode: Value, command: &Command, remembered: &[(StateId, &str, Value)]) {
+        self.b.stage("check_mode", &["Whether the drive may run."]);
+        let zero = self.zero();
+        let resting = self.b.compare(Comparison::NotEqual, mode, zero);
+        self.b.name("resting", resting);
+        self.b.guarded_stage(
+            "rest",
+            resting,
+            true,
+            &["Safe command: all legs low in pre-charge, off in calibration and after a trip; the memory of voltages is cleared."],
+        );
+        let precharge = self.b.literal(Mode::Precharge as i32);
+        let precharging = self.b.compare(Comparison::Equal, mode, precharge);
+        let (low, off) = (self.b.literal(1), self.b.literal(2));
+        let leg = self.b.select(precharging, low, off);
+        self.b.name("leg_resting", leg);
+        let mut results: Vec<(&str, Value, Value)> = vec![];
+        for (name, value) in ["compare_a", "compare_b", "compare_c"].into_iter().zip(command.compares) {
+            let zero = self.zero();
+            results.push((name, zero, value));
+        }
+        for (name, value) in ["leg_a", "leg_b", "leg_c"].into_iter().zip(command.legs) {
+            results.push((name, leg, value));
+        }
+        for &(_, name, value) in remembered {
+            let zero = self.zero();
+            results.push((name, zero, value));
+        }
+        let joined = self.b.join_all(&results);
+        for (result, value) in results.iter().take(6).zip(&joined) {
+            self.b.output(result.0, *value);
+        }
+        for (&(state, ..), value) in remembered.iter().zip(&joined[6..]) {
+            self.b.set_state(state, *value);
+        }
+    }
+}
