@@ -31,7 +31,7 @@ pub enum LegState {
 
 impl LegState {
     /// The state that a word of the step stands for: 0 pulsed, 1 low, else off.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn from_word(word: Word) -> Self {
         match word.0 {
@@ -134,4 +134,22 @@ pub struct Format {
     pub frac_bits: i8,
     /// Rounding of results into this format.
     pub rounding: Rounding,
+}
+
+impl Format {
+    /// A row of the format table.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        storage_bits: u8,
+        frac_bits: i8,
+        rounding: Rounding,
+    ) -> Self {
+        Self {
+            name,
+            storage_bits,
+            frac_bits,
+            rounding,
+        }
+    }
 }

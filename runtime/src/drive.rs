@@ -38,6 +38,8 @@ pub trait Drive {
     fn precharge(&mut self);
     /// Why the drive is tripped, or [`Fault::None`].
     fn fault(&self) -> Fault;
+    /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+    fn is_running(&self) -> bool;
     /// State word `index` (see [`Drive::STATE_NAMES`]); 0 past the end. For verification.
     fn state_word(&self, index: usize) -> i32;
     /// Overwrites state word `index` with a value inside its range. For verification.

@@ -1,0 +1,6 @@
+//! Emitters: from a verified graph and its interface to text or tokens.
+//!
+//! Each knows the graph, its tables and its naming, never the specification and never another
+//! emitter, and none can fail.
+
+pub mod rust;

@@ -1,0 +1,388 @@
+//! Operators as Rust expressions, with the parentheses that grammar and readers need.
+//!
+//! A value with a name is that name; a value without one stands where it is used. Products and
+//! dividends that provably fit 32 bits take the `_narrow` helpers.
+
+use super::names::{loaded, number, screaming, snake};
+use crate::ir::{Comparison, Function, Interval, Node, Op, Program, Value};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// How tightly an expression binds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Branch,
+    Or,
+    And,
+    Compare,
+    Shift,
+    Sum,
+    Product,
+    Unary,
+    Atom,
+}
+
+/// An expression and what it takes to embed it.
+struct Expression {
+    tokens: TokenStream,
+    binding: Binding,
+    /// A branch as a call of `select`, for use inside of other expressions.
+    embedded: Option<TokenStream>,
+}
+
+impl Expression {
+    fn new(tokens: TokenStream, binding: Binding) -> Self {
+        Self {
+            tokens,
+            binding,
+            embedded: None,
+        }
+    }
+
+    fn atom(tokens: TokenStream) -> Self {
+        Self::new(tokens, Binding::Atom)
+    }
+
+    /// The tokens inside an expression that binds its operands as tightly as `least`.
+    fn within(self, least: Binding) -> TokenStream {
+        let tokens = self.tokens;
+        match self.embedded {
+            Some(embedded) => embedded,
+            None if self.binding < least => quote!((#tokens)),
+            None => tokens,
+        }
+    }
+}
+
+/// The place from which values are seen.
+#[derive(Clone, Copy)]
+pub(super) struct Scope<'a> {
+    /// The program.
+    pub program: &'a Program,
+    /// The function.
+    pub function: &'a Function,
+    /// Whether state words are read where they are used (in the function's own body) rather than
+    /// under their names (in a stage, which reads them first).
+    pub reads_state: bool,
+}
+
+impl<'a> Scope<'a> {
+    fn node(&self, value: Value) -> &'a Node {
+        self.function.node(value)
+    }
+
+    fn interval(&self, value: Value) -> Interval {
+        self.node(value).interval
+    }
+
+    /// A value as a complete expression: what a `let` binds or a branch yields.
+    pub(super) fn whole(&self, value: Value) -> TokenStream {
+        self.value(value).tokens
+    }
+
+    /// What the `let` of a named value binds.
+    pub(super) fn definition(&self, value: Value) -> TokenStream {
+        self.operation(value).tokens
+    }
+
+    /// A value that a method is called on.
+    pub(super) fn receiver(&self, value: Value) -> TokenStream {
+        self.value(value).within(Binding::Atom)
+    }
+
+    /// The small number that a value is, if it is one.
+    pub(super) fn literal(&self, value: Value) -> Option<i32> {
+        match self.node(value).op {
+            Op::Literal(literal) => Some(literal),
+            _ => None,
+        }
+    }
+
+    fn is_constant(&self, value: Value) -> bool {
+        matches!(self.node(value).op, Op::Literal(_) | Op::Constant(_))
+    }
+
+    /// A value where it is used: its name, or what it stands for.
+    fn value(&self, value: Value) -> Expression {
+        let node = self.node(value);
+        match node.op {
+            Op::Constant(id) => {
+                let name = screaming(&self.program.constants[id.index()].name);
+                Expression::atom(quote!(#name))
+            }
+            Op::Literal(literal) => {
+                let literal = number(i64::from(literal));
+                Expression::atom(quote!(Word(#literal)))
+            }
+            Op::State(id) if self.reads_state => {
+                let word = &self.program.states[id.index()];
+                let field = snake(&word.name);
+                Expression::atom(loaded(word, &quote!(state.#field)))
+            }
+            _ if node.name.is_empty() => self.operation(value),
+            _ => {
+                let name = snake(&node.name);
+                Expression::atom(quote!(#name))
+            }
+        }
+    }
+
+    /// A right operand of an operator of [`Word`], where a small number needs no wrapping.
+    fn right(&self, value: Value, least: Binding) -> TokenStream {
+        match self.literal(value) {
+            Some(literal) => number(i64::from(literal)),
+            None => self.value(value).within(least),
+        }
+    }
+
+    fn operation(&self, value: Value) -> Expression {
+        match self.node(value).op {
+            Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_) | Op::Literal(_) => {
+                self.value(value)
+            }
+            // A join is bound where its stage is called.
+            Op::Join { taken, .. } => self.value(taken),
+            Op::Add(a, b) => self.sum(a, b),
+            Op::AngleAdd(a, b) => self.binary(a, quote!(+), b, Binding::Sum),
+            Op::Sub(a, b) | Op::AngleSub(a, b) => self.binary(a, quote!(-), b, Binding::Sum),
+            Op::Neg(a) => {
+                let a = self.value(a).within(Binding::Atom);
+                Expression::new(quote!(-#a), Binding::Unary)
+            }
+            Op::Abs(a) => {
+                let a = self.receiver(a);
+                Expression::atom(quote!(#a.abs()))
+            }
+            Op::Product(a, b) | Op::MulFloor { a, b, shift: 0 } => self.product(a, b),
+            Op::MulRound {
+                coefficient,
+                signal,
+                shift,
+            } => {
+                let name = if self.rounds_narrow(coefficient, signal, shift) {
+                    quote!(mul_round_narrow)
+                } else {
+                    quote!(mul_round)
+                };
+                self.call(quote!(#name), Some(shift), &[coefficient, signal])
+            }
+            Op::MulFloor { a, b, shift } => {
+                if fits_word(self.products(a, b)) {
+                    let product = self.product(a, b).tokens;
+                    let shift = number(i64::from(shift));
+                    Expression::new(quote!((#product) >> #shift), Binding::Shift)
+                } else {
+                    self.call(quote!(mul_floor), Some(shift), &[a, b])
+                }
+            }
+            Op::MulLimited { a, b, limit } => {
+                if fits_word(self.products(a, b)) {
+                    let product = self.product(a, b).tokens;
+                    let limit = self.right(limit, Binding::Branch);
+                    Expression::atom(quote!((#product).min(#limit)))
+                } else {
+                    self.call(quote!(mul_limited), None, &[a, b, limit])
+                }
+            }
+            Op::ShiftLeft(a, bits) => self.shift(a, quote!(<<), bits),
+            Op::ShiftRight(a, bits) => self.shift(a, quote!(>>), bits),
+            Op::Min(a, b) => self.extreme(a, quote!(min), b),
+            Op::Max(a, b) => self.extreme(a, quote!(max), b),
+            Op::Clamp { x, low, high } => {
+                let x = self.receiver(x);
+                let low = self.right(low, Binding::Branch);
+                let high = self.right(high, Binding::Branch);
+                Expression::atom(quote!(#x.clamp(#low, #high)))
+            }
+            Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            } => {
+                let narrow = self.interval(numerator).high << shift <= i64::from(u32::MAX);
+                let name = if narrow {
+                    quote!(divide_narrow)
+                } else {
+                    quote!(divide)
+                };
+                self.call(name, Some(shift), &[numerator, denominator, limit])
+            }
+            Op::TurnOver(a) => self.call(quote!(turn_over), None, &[a]),
+            Op::AngleIndex { angle, segments } => {
+                self.call(quote!(angle_index), Some(segments), &[angle])
+            }
+            Op::AngleFraction { angle, segments } => {
+                self.call(quote!(angle_fraction), Some(segments), &[angle])
+            }
+            Op::Lookup { table, index } => {
+                let table = screaming(&self.program.tables[table.index()].name);
+                let index = self.value(index).within(Binding::Branch);
+                Expression::atom(quote!(lookup(&#table, #index)))
+            }
+            Op::Compare(how, a, b) => self.comparison(how, a, b),
+            Op::And(a, b) => self.logic(a, quote!(&&), b, Binding::And),
+            Op::Or(a, b) => self.logic(a, quote!(||), b, Binding::Or),
+            Op::Not(a) => self.negation(a),
+            Op::Select {
+                condition,
+                then,
+                otherwise,
+            } => self.select(condition, then, otherwise),
+        }
+    }
+
+    /// Left-associative operator of words.
+    fn binary(&self, a: Value, operator: TokenStream, b: Value, binding: Binding) -> Expression {
+        // Shifts under sums get parentheses from their binding; what stands right binds tighter.
+        let a = self.value(a).within(binding);
+        let b = self.right(
+            b,
+            if binding == Binding::Sum {
+                Binding::Product
+            } else {
+                Binding::Unary
+            },
+        );
+        Expression::new(quote!(#a #operator #b), binding)
+    }
+
+    fn sum(&self, a: Value, b: Value) -> Expression {
+        match self.literal(b) {
+            Some(literal) if literal < 0 => {
+                let a = self.value(a).within(Binding::Sum);
+                let literal = number(-i64::from(literal));
+                Expression::new(quote!(#a - #literal), Binding::Sum)
+            }
+            _ if self.literal(a).is_some() => self.binary(b, quote!(+), a, Binding::Sum),
+            _ => self.binary(a, quote!(+), b, Binding::Sum),
+        }
+    }
+
+    fn product(&self, a: Value, b: Value) -> Expression {
+        let (a, b) = if self.literal(a).is_some() {
+            (b, a)
+        } else {
+            (a, b)
+        };
+        self.binary(a, quote!(*), b, Binding::Product)
+    }
+
+    fn shift(&self, a: Value, operator: TokenStream, bits: u32) -> Expression {
+        if bits == 0 {
+            return self.value(a);
+        }
+        let a = self.value(a).within(Binding::Unary);
+        let bits = number(i64::from(bits));
+        Expression::new(quote!(#a #operator #bits), Binding::Shift)
+    }
+
+    fn extreme(&self, a: Value, method: TokenStream, b: Value) -> Expression {
+        let (a, b) = if self.is_constant(a) { (b, a) } else { (a, b) };
+        let a = self.receiver(a);
+        let b = self.right(b, Binding::Branch);
+        Expression::atom(quote!(#a.#method(#b)))
+    }
+
+    fn call(&self, name: TokenStream, parameter: Option<u32>, arguments: &[Value]) -> Expression {
+        let arguments = arguments
+            .iter()
+            .map(|&argument| self.value(argument).within(Binding::Branch));
+        let parameter = parameter.map(|parameter| {
+            let parameter = number(i64::from(parameter));
+            quote!(::<#parameter>)
+        });
+        Expression::atom(quote!(#name #parameter (#(#arguments),*)))
+    }
+
+    /// The signal stands left, what it is compared with right.
+    fn comparison(&self, how: Comparison, a: Value, b: Value) -> Expression {
+        let turned = self.is_constant(a) && !self.is_constant(b);
+        let (left, right) = if turned { (b, a) } else { (a, b) };
+        let operator = match (how, turned) {
+            (Comparison::Equal, _) => quote!(==),
+            (Comparison::NotEqual, _) => quote!(!=),
+            (Comparison::Less, false) => quote!(<),
+            (Comparison::Less, true) => quote!(>),
+            (Comparison::LessEqual, false) => quote!(<=),
+            (Comparison::LessEqual, true) => quote!(>=),
+        };
+        let left = self.value(left).within(Binding::Sum);
+        let right = self.right(right, Binding::Sum);
+        Expression::new(quote!(#left #operator #right), Binding::Compare)
+    }
+
+    fn logic(&self, a: Value, operator: TokenStream, b: Value, binding: Binding) -> Expression {
+        let a = self.value(a).within(binding);
+        let b = self.value(b).within(binding);
+        Expression::new(quote!(#a #operator #b), binding)
+    }
+
+    /// The opposite comparison rather than `!` before a comparison.
+    fn negation(&self, a: Value) -> Expression {
+        let node = self.node(a);
+        match node.op {
+            Op::Compare(how, a, b) if node.name.is_empty() => match how {
+                Comparison::Less => self.comparison(Comparison::LessEqual, b, a),
+                Comparison::LessEqual => self.comparison(Comparison::Less, b, a),
+                Comparison::Equal => self.comparison(Comparison::NotEqual, a, b),
+                Comparison::NotEqual => self.comparison(Comparison::Equal, a, b),
+            },
+            Op::Not(inner) if node.name.is_empty() => self.value(inner),
+            _ => {
+                let a = self.value(a).within(Binding::Unary);
+                Expression::new(quote!(!#a), Binding::Unary)
+            }
+        }
+    }
+
+    fn select(&self, condition: Value, then: Value, otherwise: Value) -> Expression {
+        if self.literal(then) == Some(1) && self.literal(otherwise) == Some(0) {
+            return self.call(quote!(Word::from), None, &[condition]);
+        }
+        let embedded = self
+            .call(quote!(select), None, &[condition, then, otherwise])
+            .tokens;
+        let condition = self.value(condition).within(Binding::Branch);
+        let then = self.whole(then);
+        let rest = self.value(otherwise);
+        let chains = rest.binding == Binding::Branch;
+        let otherwise = rest.tokens;
+        let otherwise = if chains {
+            otherwise
+        } else {
+            quote!({ #otherwise })
+        };
+        Expression {
+            tokens: quote!(if #condition { #then } else #otherwise),
+            binding: Binding::Branch,
+            embedded: Some(embedded),
+        }
+    }
+
+    /// Every product of the two.
+    fn products(&self, a: Value, b: Value) -> Interval {
+        let (a, b) = (self.interval(a), self.interval(b));
+        let all = [
+            a.low * b.low,
+            a.low * b.high,
+            a.high * b.low,
+            a.high * b.high,
+        ];
+        Interval::new(
+            all.into_iter().fold(i64::MAX, i64::min),
+            all.into_iter().fold(i64::MIN, i64::max),
+        )
+    }
+
+    fn rounds_narrow(&self, a: Value, b: Value, shift: u32) -> bool {
+        let products = self.products(a, b);
+        shift <= 30
+            && fits_word(products)
+            && fits_word(Interval::point(products.high + (1 << (shift - 1))))
+    }
+}
+
+fn fits_word(interval: Interval) -> bool {
+    Interval::WORD.contains(interval)
+}

@@ -1,0 +1,182 @@
+//! Signals that belong together: the phases of one quantity, or a numbered row of words.
+//!
+//! `i_a, i_b, i_c` travel between stages as one array, so that signatures stay short and say what
+//! they mean. Grouping looks at names and kinds alone; it is the same on both sides of a call.
+
+use super::names::snake;
+use crate::ir::Kind;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// What a signature may hold at most (clippy's `too_many_arguments`).
+pub(super) const ARGUMENTS: usize = 7;
+
+/// A named word or flag.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Signal {
+    /// Name.
+    pub name: String,
+    /// Word or flag.
+    pub kind: Kind,
+}
+
+/// One argument or result: a single signal, or an array of signals of one kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Group {
+    /// Positions in the list that was grouped.
+    pub members: Vec<usize>,
+    /// Word or flag.
+    pub kind: Kind,
+}
+
+/// Groups the signals: related ones together, each group where its first member stands.
+pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
+    let mut groups: Vec<(String, Group)> = vec![];
+    for (position, signal) in signals.iter().enumerate() {
+        let family = family(&signal.name);
+        match groups
+            .iter_mut()
+            .find(|(known, group)| *known == family && group.kind == signal.kind)
+        {
+            Some((_, group)) => group.members.push(position),
+            None => groups.push((
+                family,
+                Group {
+                    members: vec![position],
+                    kind: signal.kind,
+                },
+            )),
+        }
+    }
+    for (_, group) in &mut groups {
+        group
+            .members
+            .sort_by(|&left, &right| signals[left].name.cmp(&signals[right].name));
+    }
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Joins groups of one kind into one array each until at most `limit` groups are left: first the
+/// single signals, then the arrays.
+pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
+    for singles in [true, false] {
+        for kind in [Kind::Word, Kind::Flag] {
+            if groups.len() > limit {
+                let fits =
+                    |group: &Group| group.kind == kind && (!singles || group.members.len() == 1);
+                let members: Vec<usize> = groups
+                    .iter()
+                    .filter(|group| fits(group))
+                    .flat_map(|group| group.members.clone())
+                    .collect();
+                if let Some(first) = groups.iter().position(fits) {
+                    groups[first].members = members;
+                    let mut position = 0;
+                    groups.retain(|group| {
+                        position += 1;
+                        position - 1 <= first || !fits(group)
+                    });
+                }
+            }
+        }
+    }
+    groups
+}
+
+impl Group {
+    /// `[i_a, i_b]`, or `sector`: as a pattern or as an expression.
+    pub(super) fn names(&self, signals: &[Signal]) -> TokenStream {
+        self.of(|member| {
+            let name = snake(&signals[member].name);
+            quote!(#name)
+        })
+    }
+
+    /// The same shape with `each` in place of the names.
+    pub(super) fn of(&self, each: impl FnMut(usize) -> TokenStream) -> TokenStream {
+        let each: Vec<TokenStream> = self.members.iter().copied().map(each).collect();
+        match each.as_slice() {
+            [single] => single.clone(),
+            many => quote!([#(#many),*]),
+        }
+    }
+
+    /// `[Word; 2]`, or `Word`.
+    pub(super) fn rust_type(&self) -> TokenStream {
+        let kind = rust_type(self.kind);
+        match self.members.len() {
+            1 => kind,
+            count => quote!([#kind; #count]),
+        }
+    }
+}
+
+/// `Word` or `bool`.
+pub(super) fn rust_type(kind: Kind) -> TokenStream {
+    match kind {
+        Kind::Word => quote!(Word),
+        Kind::Flag => quote!(bool),
+    }
+}
+
+/// The name without its phase (`v_a_now` and `v_b_now` are one family) or without its number (`t1`
+/// to `t6`).
+fn family(name: &str) -> String {
+    let mut phase = false;
+    let parts: Vec<&str> = name
+        .split('_')
+        .map(|part| {
+            let is_phase = !phase && matches!(part, "a" | "b" | "c");
+            phase |= is_phase;
+            if is_phase { "*" } else { part }
+        })
+        .collect();
+    if phase {
+        return parts.join("_");
+    }
+    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    if stem.len() < name.len() {
+        format!("{stem}#")
+    } else {
+        name.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Signal, bundle, group};
+    use crate::ir::Kind;
+
+    fn words(names: &[&str]) -> Vec<Signal> {
+        names
+            .iter()
+            .map(|&name| Signal {
+                name: name.to_owned(),
+                kind: Kind::Word,
+            })
+            .collect()
+    }
+
+    fn shapes(names: &[&str], limit: usize) -> Vec<Vec<usize>> {
+        bundle(group(&words(names)), limit)
+            .into_iter()
+            .map(|group| group.members)
+            .collect()
+    }
+
+    #[test]
+    fn phases_and_numbered_words_travel_together() {
+        let names = ["j", "i_a", "v_a_now", "i_b", "t2", "v_b_now", "t1", "theta"];
+        assert_eq!(
+            shapes(&names, 7),
+            [vec![0], vec![1, 3], vec![2, 5], vec![6, 4], vec![7]]
+        );
+    }
+
+    #[test]
+    fn long_lists_bundle_their_single_words_first() {
+        let names = ["j", "i_a", "i_b", "k", "l"];
+        assert_eq!(shapes(&names, 3), [vec![0, 3, 4], vec![1, 2]]);
+        assert_eq!(shapes(&names, 1), [vec![0, 3, 4, 1, 2]]);
+    }
+}

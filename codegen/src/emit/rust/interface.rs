@@ -1,0 +1,427 @@
+//! The emitted types: the drive, its two halves, its state, and the trait that all drives share.
+
+use super::function::{Emitted, state_word};
+use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type, stored};
+use crate::interface::{Interface, PublicConstant, PublicValue, Rounding};
+use crate::ir::{Program, Word};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+
+/// What the types are emitted from.
+pub(super) struct Types<'a> {
+    pub program: &'a Program,
+    pub interface: &'a Interface,
+    /// The type's name, with the span that the user gave it.
+    pub name: &'a Ident,
+}
+
+impl Types<'_> {
+    /// The drive: set-point and state together.
+    pub(super) fn drive(&self, attributes: &TokenStream) -> TokenStream {
+        let name = self.name;
+        let docs = docs(&self.interface.doc);
+        let constants = self.interface.constants.iter().map(public_constant);
+        let (arguments, names) = self.step_arguments();
+        let initial = self.program.params.iter().map(|word| {
+            let initial = number(i64::from(word.initial));
+            quote!(Word(#initial))
+        });
+        quote! {
+            #docs
+            #attributes
+            #[derive(Debug)]
+            pub struct #name {
+                set_point: SetPoint,
+                state: State,
+            }
+
+            impl #name {
+                #(#constants)*
+            }
+
+            impl #name {
+                /// A drive at rest: zero set-point, initial state.
+                pub const fn new() -> Self {
+                    Self {
+                        set_point: SetPoint { words: DoubleBuffer::new([#(#initial),*]) },
+                        state: State::INITIAL,
+                    }
+                }
+
+                /// The two halves: an interrupt owns the control loop, the main program the
+                /// set-point.
+                pub fn split(&mut self) -> (&SetPoint, ControlLoop<'_>) {
+                    (&self.set_point, ControlLoop { set_point: &self.set_point, state: &mut self.state })
+                }
+
+                /// The set-point, for the main program.
+                pub fn set_point(&self) -> &SetPoint {
+                    &self.set_point
+                }
+
+                /// Runs one control period; see [`ControlLoop::step`].
+                #[inline]
+                pub fn step(&mut self, #(#arguments),*) -> Legs {
+                    self.split().1.step(#(#names),*)
+                }
+            }
+
+            impl Default for #name {
+                fn default() -> Self {
+                    Self::new()
+                }
+            }
+        }
+    }
+
+    /// The half that the main program writes.
+    pub(super) fn set_point(&self, setters: &[Emitted]) -> TokenStream {
+        let methods = setters.iter().map(|setter| &setter.main);
+        let count = self.program.params.len();
+        let words = self.program.params.iter().enumerate().map(|(index, word)| {
+            doc(&format!(
+                "{index}. `{}`: {} In `{}`.",
+                word.name, word.doc, word.interval
+            ))
+        });
+        quote! {
+            /// The set-point of the drive, replaced as a whole between two control periods.
+            ///
+            /// One writer; the control loop may interrupt it at any place.
+            #[derive(Debug)]
+            pub struct SetPoint {
+                #(#words)*
+                words: DoubleBuffer<#count>,
+            }
+
+            impl SetPoint {
+                #(#methods)*
+            }
+        }
+    }
+
+    /// The half that the control interrupt owns.
+    pub(super) fn control_loop(&self) -> TokenStream {
+        let (arguments, names) = self.step_arguments();
+        let step_docs = self.step_docs();
+        quote! {
+            /// The stepping half of the drive.
+            #[derive(Debug)]
+            pub struct ControlLoop<'drive> {
+                set_point: &'drive SetPoint,
+                state: &'drive mut State,
+            }
+
+            impl ControlLoop<'_> {
+                #step_docs
+                #[inline]
+                pub fn step(&mut self, #(#arguments),*) -> Legs {
+                    step(self.state, self.set_point.words.read(), #(#names.into()),*)
+                }
+
+                /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
+                pub fn reset(&mut self) {
+                    self.state.reset();
+                }
+
+                /// Starts current-offset calibration: all legs off, the motor at rest. Ignored
+                /// when tripped.
+                pub fn calibrate(&mut self) {
+                    self.state.calibrate();
+                }
+
+                /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped.
+                pub fn precharge(&mut self) {
+                    self.state.precharge();
+                }
+
+                /// Why the drive is tripped, or [`Fault::None`].
+                pub fn fault(&self) -> Fault {
+                    self.state.fault()
+                }
+
+                /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+                pub fn is_running(&self) -> bool {
+                    self.state.is_running()
+                }
+            }
+        }
+    }
+
+    /// The words that outlive a control period.
+    pub(super) fn state(&self) -> TokenStream {
+        let words = &self.program.states;
+        let fields = words.iter().map(|word| {
+            let (name, kind) = (snake(&word.name), storage_type(word));
+            let doc = doc(&format!("{} In `{}`.", word.doc, word.interval));
+            quote!(#doc #name: #kind)
+        });
+        let initial = words.iter().map(|word| {
+            let name = snake(&word.name);
+            let value = number(i64::from(word.initial));
+            if word.storage_bits == 16 {
+                quote!(#name: #value)
+            } else {
+                quote!(#name: Word(#value))
+            }
+        });
+        let kept = ["offset_a", "offset_b"]
+            .into_iter()
+            .filter(|name| self.word(name).is_some())
+            .map(snake);
+        let mode = self.word("mode").map_or(quote!(mode::RUN), state_word);
+        let fault = self.word("fault").map_or(quote!(Word(0)), state_word);
+        let set_mode = |mode: &TokenStream| self.assign("mode", mode);
+        let calibrate = [
+            set_mode(&quote!(mode::CALIBRATE)),
+            self.assign("countdown", &quote!(CALIBRATION_SAMPLES)),
+            self.assign("sum_a", &quote!(Word(0))),
+            self.assign("sum_b", &quote!(Word(0))),
+        ];
+        let precharge = [
+            set_mode(&quote!(mode::PRECHARGE)),
+            self.assign("countdown", &quote!(PRECHARGE_PERIODS)),
+        ];
+        let samples = number(i64::from(self.interface.calibration_samples));
+        let periods = number(i64::from(self.interface.precharge_periods));
+        quote! {
+            /// Samples of the current-offset calibration.
+            const CALIBRATION_SAMPLES: Word = Word(#samples);
+            /// Control periods of bootstrap pre-charge.
+            const PRECHARGE_PERIODS: Word = Word(#periods);
+
+            /// What outlives a control period.
+            #[derive(Debug)]
+            struct State {
+                #(#fields),*
+            }
+
+            impl State {
+                const INITIAL: Self = Self { #(#initial),* };
+
+                fn reset(&mut self) {
+                    *self = Self { #(#kept: self.#kept,)* ..Self::INITIAL };
+                }
+
+                fn calibrate(&mut self) {
+                    if self.mode() != mode::TRIPPED {
+                        #(#calibrate)*
+                    }
+                }
+
+                fn precharge(&mut self) {
+                    if self.mode() != mode::TRIPPED && PRECHARGE_PERIODS != 0 {
+                        #(#precharge)*
+                    }
+                }
+
+                fn mode(&self) -> Word {
+                    #mode
+                }
+
+                fn fault(&self) -> Fault {
+                    Fault::from_word(#fault)
+                }
+
+                fn is_running(&self) -> bool {
+                    self.mode() == mode::RUN
+                }
+            }
+        }
+    }
+
+    /// The trait that all drives share.
+    pub(super) fn drive_trait(&self) -> TokenStream {
+        let name = self.name;
+        let name_text = name.to_string();
+        let spec = raw_text(&self.interface.spec_toml);
+        let formats = self.interface.formats.iter().map(|entry| {
+            let name = &entry.name;
+            let storage_bits = number(i64::from(entry.storage_bits));
+            let frac_bits = number(i64::from(entry.frac_bits));
+            let rounding = match entry.rounding {
+                Rounding::Floor => quote!(Rounding::Floor),
+                Rounding::RoundHalfUp => quote!(Rounding::RoundHalfUp),
+            };
+            quote!(Format::new(#name, #storage_bits, #frac_bits, #rounding))
+        });
+        let words = &self.program.states;
+        let state_names = words.iter().map(|word| &word.name);
+        let reads = words.iter().enumerate().map(|(index, word)| {
+            let index = Literal::usize_unsuffixed(index);
+            let field = snake(&word.name);
+            let value = if word.storage_bits == 16 {
+                quote!(i32::from(self.state.#field))
+            } else {
+                quote!(self.state.#field.0)
+            };
+            quote!(#index => #value)
+        });
+        let writes = words.iter().enumerate().map(|(index, word)| {
+            let index = Literal::usize_unsuffixed(index);
+            let field = snake(&word.name);
+            let value = stored(word, &quote!(Word(value)));
+            quote!(#index => self.state.#field = #value)
+        });
+        let sample = self.program.step.inputs.iter().map(|input| {
+            let name = snake(&input.name);
+            quote!(sample.#name)
+        });
+        let set_bus = if self.interface.measured_bus {
+            quote! {
+                fn set_bus(&self, counts: u16) {
+                    self.set_point.set_bus(counts);
+                }
+            }
+        } else {
+            quote!(
+                fn set_bus(&self, _counts: u16) {}
+            )
+        };
+        quote! {
+            impl Drive for #name {
+                const NAME: &'static str = #name_text;
+                const SPEC: &'static str = #spec;
+                const FORMATS: &'static [Format] = &[#(#formats),*];
+                const STATE_NAMES: &'static [&'static str] = &[#(#state_names),*];
+
+                fn new() -> Self {
+                    Self::new()
+                }
+
+                #[inline]
+                fn step(&mut self, sample: &Sample) -> Legs {
+                    self.step(#(#sample),*)
+                }
+
+                fn set_current(&self, current: I16F16) {
+                    self.set_point.set_current(current);
+                }
+
+                fn set_torque(&self, torque: I16F16) {
+                    self.set_point.set_torque(torque);
+                }
+
+                #set_bus
+
+                fn reset(&mut self) {
+                    self.state.reset();
+                }
+
+                fn calibrate(&mut self) {
+                    self.state.calibrate();
+                }
+
+                fn precharge(&mut self) {
+                    self.state.precharge();
+                }
+
+                fn fault(&self) -> Fault {
+                    self.state.fault()
+                }
+
+                fn is_running(&self) -> bool {
+                    self.state.is_running()
+                }
+
+                fn state_word(&self, index: usize) -> i32 {
+                    match index {
+                        #(#reads,)*
+                        _ => 0,
+                    }
+                }
+
+                fn set_state_word(&mut self, index: usize, value: i32) {
+                    match index {
+                        #(#writes,)*
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+
+    fn word(&self, name: &str) -> Option<&Word> {
+        self.program.states.iter().find(|word| word.name == name)
+    }
+
+    fn assign(&self, name: &str, value: &TokenStream) -> TokenStream {
+        self.word(name).map_or_else(TokenStream::new, |word| {
+            let field = snake(name);
+            let value = stored(word, value);
+            quote!(self.#field = #value;)
+        })
+    }
+
+    /// Arguments of the public `step` with their hardware types, and their names.
+    fn step_arguments(&self) -> (Vec<TokenStream>, Vec<Ident>) {
+        let inputs = &self.program.step.inputs;
+        let arguments = inputs.iter().map(|input| {
+            let name = snake(&input.name);
+            let kind = if input.name == "hall" {
+                quote!(u8)
+            } else {
+                quote!(u16)
+            };
+            quote!(#name: #kind)
+        });
+        (
+            arguments.collect(),
+            inputs.iter().map(|input| snake(&input.name)).collect(),
+        )
+    }
+
+    fn step_docs(&self) -> TokenStream {
+        let mut lines = vec![
+            "Runs one control period: takes this period's measurements, returns the command that takes effect at its end.".to_owned(),
+            String::new(),
+        ];
+        lines.extend(
+            self.program
+                .step
+                .inputs
+                .iter()
+                .map(|input| format!("- `{}`: {}", input.name, input.doc)),
+        );
+        docs(&lines)
+    }
+}
+
+fn public_constant(constant: &PublicConstant) -> TokenStream {
+    let name = screaming(&constant.name);
+    let doc = docs(&constant.doc);
+    let (kind, value) = match &constant.value {
+        PublicValue::Integer { rust_type, value } => {
+            let kind = Ident::new(rust_type, Span::call_site());
+            (quote!(#kind), number(*value))
+        }
+        PublicValue::Fixed { bits, frac_bits } => {
+            let kind = fixed_type(*frac_bits);
+            let bits = number(i64::from(*bits));
+            (quote!(#kind), quote!(#kind::from_bits(#bits)))
+        }
+        PublicValue::Vectors { bits, frac_bits } => {
+            let kind = fixed_type(*frac_bits);
+            let count = bits.len();
+            let vectors = bits.iter().map(|vector| {
+                let [alpha, beta] = vector.map(|bits| number(i64::from(bits)));
+                quote!([#kind::from_bits(#alpha), #kind::from_bits(#beta)])
+            });
+            (quote!([[#kind; 2]; #count]), quote!([#(#vectors),*]))
+        }
+        PublicValue::Integers { rust_type, values } => {
+            let kind = Ident::new(rust_type, Span::call_site());
+            let count = values.len();
+            let values = values.iter().map(|&value| number(value));
+            (quote!([#kind; #count]), quote!([#(#values),*]))
+        }
+        PublicValue::Text(text) => (quote!(&'static str), quote!(#text)),
+    };
+    quote!(#doc pub const #name: #kind = #value;)
+}
+
+/// The `fixed` type of 32 bits with so many fraction bits.
+pub(super) fn fixed_type(frac_bits: u32) -> Ident {
+    let integer_bits = 32_u32.saturating_sub(frac_bits);
+    Ident::new(&format!("I{integer_bits}F{frac_bits}"), Span::call_site())
+}

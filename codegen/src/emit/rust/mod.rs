@@ -1,0 +1,193 @@
+//! The Rust emitter: from a verified graph to a module that reads as if written by hand.
+//!
+//! [`plan`] says what each stage takes and yields, [`stage`] makes a function of it, [`function`]
+//! strings the calls together, [`expression`] writes operators, [`interface`] the types around them.
+//! The same graph gives the same tokens, whoever asks; nothing here can fail.
+
+mod expression;
+mod function;
+mod groups;
+mod interface;
+mod names;
+mod plan;
+mod stage;
+
+pub use names::module_name;
+
+use crate::interface::{Interface, PublicValue};
+use crate::ir::{Program, Table, VerifiedGraph};
+use function::{emit_setter, emit_step};
+use interface::Types;
+use names::{HELPERS, docs, identifiers, inner_docs, number, screaming};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+use std::collections::BTreeSet;
+
+/// How the emitted type appears to the code around it.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// The type's name; its span is where the compiler points in messages about the type.
+    pub name: Ident,
+    /// `pub`, `pub(crate)` or nothing.
+    pub visibility: TokenStream,
+    /// Attributes of the whole: `#[cfg(…)]`. They stand on the module and on its re-export.
+    pub attributes: TokenStream,
+    /// Attributes of the type: further documentation.
+    pub type_attributes: TokenStream,
+}
+
+impl Surface {
+    /// A public type without attributes.
+    pub fn public(name: &str) -> Self {
+        Self {
+            name: Ident::new(name, Span::call_site()),
+            visibility: quote!(pub),
+            attributes: TokenStream::new(),
+            type_attributes: TokenStream::new(),
+        }
+    }
+}
+
+/// The module of one drive, and the re-export of its type.
+pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface) -> TokenStream {
+    let program = graph.program();
+    let step = emit_step(program);
+    let setters: Vec<_> = program
+        .setters
+        .iter()
+        .map(|setter| emit_setter(program, setter))
+        .collect();
+    let types = Types {
+        program,
+        interface,
+        name: &surface.name,
+    };
+    let drive = types.drive(&surface.type_attributes);
+    let set_point = types.set_point(&setters);
+    let control_loop = types.control_loop();
+    let (step_main, step_stages) = (&step.main, &step.stages);
+    let setter_stages = setters.iter().map(|setter| &setter.stages);
+    let state = types.state();
+    let drive_trait = types.drive_trait();
+    let body = quote! {
+        #drive
+        #set_point
+        #control_loop
+        #step_main
+        #step_stages
+        #(#setter_stages)*
+        #state
+        #drive_trait
+    };
+    let names = identifiers(&body);
+    let constants = constants(program, &names);
+    let imports = imports(&names, interface);
+    let header = inner_docs(&interface.header);
+    let Surface {
+        name,
+        visibility,
+        attributes,
+        ..
+    } = surface;
+    let module = Ident::new(&module_name(&name.to_string()), Span::call_site());
+    quote! {
+        #attributes
+        #visibility use #module::#name;
+
+        #attributes
+        #visibility mod #module {
+            #header
+            #imports
+            #constants
+            #body
+        }
+    }
+}
+
+/// Emitted tokens as formatted text.
+pub fn format_rust(tokens: &TokenStream) -> String {
+    match syn::parse2(tokens.clone()) {
+        Ok(file) => prettyplease::unparse(&file),
+        // Cannot happen for what this module emits; the tokens are still the code.
+        Err(_) => tokens.to_string(),
+    }
+}
+
+/// The constants and tables that the body names.
+fn constants(program: &Program, names: &BTreeSet<String>) -> TokenStream {
+    let named = |name: &str| names.contains(&name.to_uppercase());
+    let constants = program
+        .constants
+        .iter()
+        .filter(|constant| named(&constant.name))
+        .map(|constant| {
+            let (name, doc) = (screaming(&constant.name), docs(&constant.doc));
+            let raw = number(i64::from(constant.raw));
+            quote!(#doc const #name: Word = Word(#raw);)
+        });
+    let tables = program
+        .tables
+        .iter()
+        .filter(|table| named(&table.name))
+        .map(emit_table);
+    quote!(#(#constants)* #(#tables)*)
+}
+
+/// A table in the smallest elements that hold it.
+fn emit_table(table: &Table) -> TokenStream {
+    let (name, doc) = (screaming(&table.name), docs(&table.doc));
+    let element = match table.interval().bits() {
+        ..=8 => quote!(i8),
+        9..=16 => quote!(i16),
+        _ => quote!(i32),
+    };
+    let count = table.values.len();
+    let values = table.values.iter().map(|&value| number(i64::from(value)));
+    quote!(#doc static #name: [#element; #count] = [#(#values),*];)
+}
+
+fn imports(names: &BTreeSet<String>, interface: &Interface) -> TokenStream {
+    let helpers = HELPERS
+        .iter()
+        .filter(|&&helper| names.contains(helper))
+        .map(|helper| Ident::new(helper, Span::call_site()));
+    let mut fixed: BTreeSet<String> = interface
+        .constants
+        .iter()
+        .filter_map(|constant| match constant.value {
+            PublicValue::Fixed { frac_bits, .. } | PublicValue::Vectors { frac_bits, .. } => {
+                Some(interface::fixed_type(frac_bits).to_string())
+            }
+            _ => None,
+        })
+        .collect();
+    fixed.insert("I16F16".to_owned());
+    let fixed: Vec<Ident> = fixed
+        .iter()
+        .map(|name| Ident::new(name, Span::call_site()))
+        .collect();
+    let fixed = match fixed.as_slice() {
+        [single] => quote!(#single),
+        many => quote!({ #(#many),* }),
+    };
+    let shared = [
+        "DoubleBuffer",
+        "Drive",
+        "Fault",
+        "Format",
+        "LegState",
+        "Legs",
+        "Rounding",
+        "Sample",
+        "mode",
+    ];
+    let shared = shared
+        .into_iter()
+        .filter(|name| names.contains(*name))
+        .map(|name| Ident::new(name, Span::call_site()));
+    quote! {
+        use ::hexagen::arith::{Word, #(#helpers),*};
+        use ::hexagen::fixed::types::#fixed;
+        use ::hexagen::{#(#shared),*};
+    }
+}

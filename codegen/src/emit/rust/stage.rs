@@ -1,0 +1,338 @@
+//! One stage as one function, and its call.
+
+use super::expression::Scope;
+use super::groups::{ARGUMENTS, Group, Signal, bundle, group, rust_type};
+use super::names::{camel, docs, loaded, number, snake, stored};
+use super::plan::{Outcome, StagePlan, signal};
+use crate::ir::{Function, Kind, Op, Program, StateId, Value, Word};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+/// More results than this travel in a structure with named fields.
+const RESULTS: usize = 5;
+
+/// The function of a stage.
+pub(super) struct StageFunction<'a> {
+    program: &'a Program,
+    function: &'a Function,
+    plan: StagePlan<'a>,
+    name: Ident,
+    arguments: Vec<Group>,
+    argument_signals: Vec<Signal>,
+    results: Results,
+}
+
+/// How a stage hands its results over.
+struct Results {
+    signals: Vec<Signal>,
+    groups: Vec<Group>,
+    /// Name of the structure that holds them, if they are many.
+    structure: Option<Ident>,
+}
+
+impl Results {
+    fn new(stage: &str, outcomes: &[Outcome]) -> Self {
+        let signals: Vec<Signal> = outcomes
+            .iter()
+            .map(|outcome| outcome.signal.clone())
+            .collect();
+        let groups = group(&signals);
+        let structure = (groups.len() > RESULTS)
+            .then(|| Ident::new(&format!("{}Results", camel(stage)), Span::call_site()));
+        Self {
+            signals,
+            groups,
+            structure,
+        }
+    }
+
+    fn rust_type(&self) -> TokenStream {
+        let types: Vec<TokenStream> = self.groups.iter().map(Group::rust_type).collect();
+        match (&self.structure, types.as_slice()) {
+            (Some(name), _) => quote!(#name),
+            (None, [single]) => single.clone(),
+            (None, many) => quote!((#(#many),*)),
+        }
+    }
+
+    /// The pattern that binds all results by name.
+    fn pattern(&self) -> TokenStream {
+        if let Some(structure) = &self.structure {
+            let fields = self.signals.iter().map(|signal| snake(&signal.name));
+            return quote!(#structure { #(#fields),* });
+        }
+        self.shaped(|member| {
+            let name = snake(&self.signals[member].name);
+            quote!(#name)
+        })
+    }
+
+    /// The results built from one expression each.
+    fn built(&self, mut of: impl FnMut(usize) -> TokenStream) -> TokenStream {
+        let Some(structure) = &self.structure else {
+            return self.shaped(of);
+        };
+        let fields = self.signals.iter().enumerate().map(|(member, signal)| {
+            let field = snake(&signal.name);
+            let value = of(member);
+            if value.to_string() == field.to_string() {
+                quote!(#field)
+            } else {
+                quote!(#field: #value)
+            }
+        });
+        quote!(#structure { #(#fields),* })
+    }
+
+    fn shaped(&self, mut of: impl FnMut(usize) -> TokenStream) -> TokenStream {
+        let parts: Vec<TokenStream> = self.groups.iter().map(|group| group.of(&mut of)).collect();
+        match parts.as_slice() {
+            [single] => single.clone(),
+            many => quote!((#(#many),*)),
+        }
+    }
+
+    fn definition(&self, stage: &Ident) -> TokenStream {
+        let Some(structure) = &self.structure else {
+            return TokenStream::new();
+        };
+        let fields = self.signals.iter().map(|signal| {
+            let (name, kind) = (snake(&signal.name), rust_type(signal.kind));
+            quote!(#name: #kind)
+        });
+        let line = format!("What [`{stage}`] yields.");
+        let doc = docs(&[line]);
+        quote! {
+            #doc
+            struct #structure { #(#fields),* }
+        }
+    }
+}
+
+impl<'a> StageFunction<'a> {
+    /// The function `name` for a planned stage.
+    pub(super) fn new(
+        program: &'a Program,
+        function: &'a Function,
+        plan: StagePlan<'a>,
+        name: &str,
+    ) -> Self {
+        let argument_signals: Vec<Signal> = plan
+            .arguments
+            .iter()
+            .map(|&value| signal(function, value))
+            .collect();
+        let state = usize::from(!plan.reads.is_empty() || !plan.stores.is_empty());
+        let arguments = bundle(group(&argument_signals), ARGUMENTS - state);
+        let results = Results::new(name, &plan.outcomes);
+        Self {
+            program,
+            function,
+            plan,
+            name: snake(name),
+            arguments,
+            argument_signals,
+            results,
+        }
+    }
+
+    fn scope(&self, reads_state: bool) -> Scope<'a> {
+        Scope {
+            program: self.program,
+            function: self.function,
+            reads_state,
+        }
+    }
+
+    fn word(&self, state: StateId) -> &'a Word {
+        &self.program.states[state.index()]
+    }
+
+    /// Whether the stage itself stores the state word.
+    pub(super) fn stores(&self, state: StateId) -> bool {
+        self.plan.stores.iter().any(|&(stored, _)| stored == state)
+    }
+
+    /// Whether the stage computes or stores anything; one of leaves alone does not.
+    fn has_body(&self) -> bool {
+        !self.plan.body.is_empty() || !self.plan.stores.is_empty()
+    }
+
+    /// The statement that runs the stage.
+    pub(super) fn call(&self) -> TokenStream {
+        let scope = self.scope(true);
+        let mut arguments: Vec<TokenStream> = vec![];
+        if !self.plan.reads.is_empty() || !self.plan.stores.is_empty() {
+            arguments.push(quote!(state));
+        }
+        arguments.extend(
+            self.arguments
+                .iter()
+                .map(|group| group.names(&self.argument_signals)),
+        );
+        let name = &self.name;
+        let call = quote!(#name(#(#arguments),*));
+        let Some(guard) = &self.plan.stage.guard else {
+            let pattern = self.results.pattern();
+            return if self.has_body() {
+                quote!(let #pattern = #call;)
+            } else {
+                TokenStream::new()
+            };
+        };
+        let condition = scope.whole(guard.condition);
+        let taken = if self.has_body() {
+            call
+        } else {
+            self.results
+                .built(|member| scope.whole(self.plan.outcomes[member].value))
+        };
+        if self.plan.outcomes.is_empty() {
+            return quote!(if #condition { #taken; });
+        }
+        let pattern = self.results.pattern();
+        let otherwise = self.results.built(|member| {
+            let outcome = &self.plan.outcomes[member];
+            scope.whole(outcome.otherwise.unwrap_or(outcome.value))
+        });
+        quote!(let #pattern = if #condition { #taken } else { #otherwise };)
+    }
+
+    /// The `let`s of the stage.
+    pub(super) fn statements(&self) -> Vec<TokenStream> {
+        let scope = self.scope(false);
+        let reads = self.plan.reads.iter().map(|&state| {
+            let word = self.word(state);
+            let name = snake(&word.name);
+            let value = loaded(word, &quote!(state.#name));
+            quote!(let #name = #value;)
+        });
+        let named = self
+            .plan
+            .body
+            .iter()
+            .filter(|&&value| !self.function.node(value).name.is_empty());
+        let computed = named.map(|&value| {
+            let name = snake(&self.function.node(value).name);
+            let definition = scope.definition(value);
+            quote!(let #name = #definition;)
+        });
+        reads.chain(computed).collect()
+    }
+
+    /// The function, and the structure of its results where there is one.
+    pub(super) fn definition(&self) -> TokenStream {
+        if !self.has_body() {
+            return TokenStream::new();
+        }
+        let mut statements = self.statements();
+        let scope = self.scope(false);
+        for &(state, value) in &self.plan.stores {
+            let word = self.word(state);
+            let field = snake(&word.name);
+            let value = match scope.literal(value) {
+                Some(literal) if word.storage_bits == 16 => number(i64::from(literal)),
+                _ => stored(word, &scope.receiver(value)),
+            };
+            statements.push(quote!(state.#field = #value;));
+        }
+        let (result, tail) = self.result(&mut statements);
+        let parameters = self.parameters();
+        let (name, doc) = (&self.name, self.doc());
+        let placement = match &self.plan.stage.guard {
+            Some(guard) if guard.rare => quote!(#[cold] #[inline(never)]),
+            _ => quote!(#[inline]),
+        };
+        let structure = self.results.definition(name);
+        quote! {
+            #structure
+            #doc
+            #placement
+            fn #name(#(#parameters),*) #result {
+                #(#statements)*
+                #tail
+            }
+        }
+    }
+
+    fn parameters(&self) -> Vec<TokenStream> {
+        let mut parameters = vec![];
+        if !self.plan.stores.is_empty() {
+            parameters.push(quote!(state: &mut State));
+        } else if !self.plan.reads.is_empty() {
+            parameters.push(quote!(state: &State));
+        }
+        parameters.extend(self.arguments.iter().map(|group| {
+            let names = group.names(&self.argument_signals);
+            let kind = group.rust_type();
+            quote!(#names: #kind)
+        }));
+        parameters
+    }
+
+    /// The return type, and the expression at the function's end; a single result is not bound to
+    /// its name first.
+    fn result(&self, statements: &mut Vec<TokenStream>) -> (TokenStream, TokenStream) {
+        let scope = self.scope(false);
+        if self.plan.outcomes.is_empty() {
+            return (TokenStream::new(), TokenStream::new());
+        }
+        let kind = self.results.rust_type();
+        let last = self
+            .plan
+            .body
+            .iter()
+            .rev()
+            .find(|&&value| !self.function.node(value).name.is_empty());
+        let tail = match (self.plan.outcomes.as_slice(), last) {
+            ([single], Some(&last)) if single.value == last && self.plan.stores.is_empty() => {
+                statements.pop();
+                scope.definition(last)
+            }
+            _ => self
+                .results
+                .built(|member| scope.whole(self.plan.outcomes[member].value)),
+        };
+        (quote!(-> #kind), tail)
+    }
+
+    /// The stage's documentation, and the proven ranges of its results.
+    fn doc(&self) -> TokenStream {
+        let mut lines = self.plan.stage.doc.clone();
+        let mut ranges: Vec<(String, String)> = vec![];
+        for group in &self.results.groups {
+            for &member in &group.members {
+                let outcome = &self.plan.outcomes[member];
+                let node = self.function.node(outcome.value);
+                if outcome.signal.kind == Kind::Word && !matches!(node.op, Op::Literal(_)) {
+                    let name = format!("`{}`", snake(&outcome.signal.name));
+                    let range = node.interval.to_string();
+                    match ranges.iter_mut().find(|(_, known)| *known == range) {
+                        Some((names, _)) => *names = format!("{names}, {name}"),
+                        None => ranges.push((name, range)),
+                    }
+                }
+            }
+        }
+        if !ranges.is_empty() {
+            let ranges: Vec<String> = ranges
+                .into_iter()
+                .map(|(names, range)| format!("{names} in `{range}`"))
+                .collect();
+            if !lines.is_empty() {
+                lines.push(String::new());
+            }
+            lines.push(format!("Proven: {}.", ranges.join("; ")));
+        }
+        docs(&lines)
+    }
+}
+
+/// The value of an output by name.
+pub(super) fn output(function: &Function, name: &str) -> Option<Value> {
+    function
+        .outputs
+        .iter()
+        .find(|(known, _)| known == name)
+        .map(|&(_, value)| value)
+}
