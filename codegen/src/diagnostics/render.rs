@@ -62,8 +62,7 @@ impl Diagnostic {
                     ));
                 }
                 place => {
-                    message.push_str("\n");
-                    message.push_str(&format!("{place}: {}", note.message));
+                    message = format!("{message}\n{place}: {}", note.message);
                 }
             }
         }

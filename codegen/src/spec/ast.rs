@@ -5,7 +5,7 @@
 //! the checks report it together with everything else.
 
 use super::units::Unit;
-use crate::diagnostics::{Diagnostic, Location};
+use crate::diagnostics::{Diagnostic, Location, catalogue};
 use std::fmt;
 
 /// A specification as written.
@@ -142,6 +142,25 @@ impl SpecAst {
             controller: Section::default(),
             source: Vec::new(),
             malformed: Vec::new(),
+        }
+    }
+
+    /// Notes a section that does not exist; the one that was probably meant is not missing then.
+    pub(super) fn unknown_section(&mut self, at: &Location, name: &str, known: &[&str]) {
+        self.malformed
+            .push(catalogue::unknown_section(at, name, known));
+        if let Some(meant) = catalogue::nearest(name, known) {
+            self.excuse(meant);
+        }
+    }
+
+    /// Takes it that the section is there but unreadable.
+    pub(super) fn excuse(&mut self, name: &str) {
+        match name {
+            "motor" => self.motor.incomplete = true,
+            "inverter" => self.inverter.incomplete = true,
+            "controller" => self.controller.incomplete = true,
+            _ => {}
         }
     }
 

@@ -192,7 +192,7 @@ impl Entry {
             return Err(catalogue::syntax(
                 &location(head),
                 &format!(
-                    "`{name}` has no value; write `{name}: {}`",
+                    "`{name}` has no value; write for example `{name}: {}`",
                     schema::example(&name.to_string())
                 ),
             ));
@@ -245,11 +245,9 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
         ("controller", tokens) => read_controller(input, at, tokens)?,
         ("motor" | "inverter", _) => return Err(expected_section(value, &name)),
         _ => {
-            return Err(catalogue::unknown_section(
-                &at,
-                &name,
-                &["motor", "inverter", "controller"],
-            ));
+            input
+                .ast
+                .unknown_section(&at, &name, &["motor", "inverter", "controller"]);
         }
     }
     Ok(())

@@ -1,4 +1,9 @@
-//! Specification: syntax tree, units and checks.
+//! Specification: two front ends, one syntax tree, units, checks, and the checked types.
+//!
+//! Macro tokens, TOML files and command-line variants become a [`SpecAst`]; [`check`] turns it into
+//! a [`Spec`] in SI units with every default filled in, or into all errors at once.
+//!
+#![doc = include_str!("reference.md")]
 
 pub mod ast;
 pub(crate) mod check;
@@ -8,6 +13,8 @@ mod macro_syntax;
 mod model;
 mod normalised;
 pub(crate) mod schema;
+#[cfg(test)]
+mod tests;
 mod toml_syntax;
 pub mod units;
 mod value;

@@ -182,7 +182,7 @@ mod tests {
                 timer_period: 1800,
                 dead_time: 0.0,
                 adc_bits: 12,
-                adc_gain: 0.01953125,
+                adc_gain: 0.019_531_25,
                 adc_offset: 2048,
                 trip_current: 38.0,
                 max_current: 20.0,

@@ -31,8 +31,12 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
     for (name, item) in document.iter() {
         let at = file.key(document.key(name), item);
         let Some(table) = item.as_table_like() else {
-            ast.malformed
-                .push(catalogue::unknown_section(&at, name, &SECTIONS));
+            if SECTIONS.contains(&name) {
+                ast.malformed.push(catalogue::not_a_section(&at, name));
+                ast.excuse(name);
+            } else {
+                ast.unknown_section(&at, name, &SECTIONS);
+            }
             continue;
         };
         match name {
@@ -45,9 +49,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
                     .iter()
                     .filter_map(|(key, item)| Some((key.to_owned(), item.as_str()?.to_owned()))),
             ),
-            _ => ast
-                .malformed
-                .push(catalogue::unknown_section(&at, name, &SECTIONS)),
+            _ => ast.unknown_section(&at, name, &SECTIONS),
         }
     }
     // The drive's name is written beside the motor's data but is no datum of it.
@@ -115,7 +117,8 @@ impl File<'_> {
                 }
             };
             let Some(table) = item.as_table_like() else {
-                ast.malformed.push(not_a_table(&at, name));
+                let path = format!("assumed.{name}");
+                ast.malformed.push(catalogue::not_a_section(&at, &path));
                 continue;
             };
             section.location.get_or_insert(at);
@@ -138,16 +141,18 @@ impl File<'_> {
         item: &Item,
         name_location: Location,
     ) -> Result<Field, Diagnostic> {
-        let table = item
-            .as_table_like()
-            .ok_or_else(|| not_a_table(&name_location, name))?;
-        let value = table
-            .get("value")
-            .ok_or_else(|| not_a_table(&name_location, name))?;
+        let table = item.as_table_like();
+        let value = table.and_then(|table| table.get("value"));
         let reason = table
-            .get("reason")
-            .and_then(Item::as_str)
-            .ok_or_else(|| not_a_table(&name_location, name))?;
+            .and_then(|table| table.get("reason"))
+            .and_then(Item::as_str);
+        let (Some(value), Some(reason)) = (value, reason) else {
+            return Err(catalogue::assumption(
+                &name_location,
+                name,
+                schema::example(name),
+            ));
+        };
         let location = self.span(value.span());
         Ok(Field {
             name: name.to_owned(),
@@ -209,11 +214,6 @@ impl File<'_> {
         }
         None
     }
-}
-
-fn not_a_table(at: &Location, name: &str) -> Diagnostic {
-    let example = "{ value = \"20 A\", reason = \"not in the data sheet\" }";
-    catalogue::malformed_value(at, name, "assumption", example)
 }
 
 fn read_value(field: &str, item: &Item, at: &Location) -> Value {

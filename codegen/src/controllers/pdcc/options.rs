@@ -211,7 +211,7 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
     // A time that is a whole number of periods but for its rounding is that number.
     let whole = (periods - 1e-6).ceil();
     if !(1.0..=255.0).contains(&whole) {
-        errors.push(catalogue::out_of_range(
+        errors.push(catalogue::out_of_limits(
             &given.part.location,
             "commutation_timeout",
             &given.part.given,

@@ -15,14 +15,16 @@ pub fn controller_unavailable(
     } else {
         "is unknown"
     };
-    let suggestion = did_you_mean(given, available)
-        .filter(|_| !planned)
-        .unwrap_or_default();
+    let suggestion = if planned {
+        String::new()
+    } else {
+        did_you_mean(given, available)
+    };
     Diagnostic::new(
         Code::ControllerUnavailable,
         at,
         format!(
-            "`controller`: `{given}` {what}{suggestion}; choose {}",
+            "`controller`: `{given}` {what}; choose {}{suggestion}",
             list(available, "or")
         ),
     )

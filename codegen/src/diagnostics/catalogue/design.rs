@@ -50,7 +50,10 @@ pub fn resistance_outside_stable_range(
 
 /// Whole percent, rounded down so that the advice holds.
 fn narrowest(low: f64, high: f64) -> f64 {
-    ((1.0 - low).min(high - 1.0) * 100.0).floor().max(0.0) / 100.0
+    ((1.0 - low).min(high - 1.0) * 100.0 + 1e-6)
+        .floor()
+        .max(0.0)
+        / 100.0
 }
 
 /// The loop is unstable even with the motor exactly as stated; `radius`: largest pole's magnitude.
@@ -115,4 +118,47 @@ pub fn internal(at: &Location, what: &str) -> Diagnostic {
             "the generator broke its own invariant: {what}; this is a bug of hexagen, please report it with the specification"
         ),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_of_the_later_stages() {
+        let at = Location::File {
+            file: "m.toml".into(),
+            line: 3,
+            column: 5,
+        };
+        let cases = [
+            (
+                inductance_outside_stable_range(&at, "30 %", 0.83, 1.257),
+                "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but with `emf: estimated` the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf: model`, add an `emf_filter` below 1, or narrow the tolerance to 17 %",
+            ),
+            (
+                resistance_outside_stable_range(&at, "30 % (default)", 0.1, 1.2),
+                "m.toml:3:5: error[HX0502]: `resistance_tolerance`: 30 % (default), but the loop is stable only while the true resistance is 10 % to 120 % of the stated one; choose `emf: model`, shorten the control period, or narrow the tolerance to 20 %",
+            ),
+            (
+                unstable_loop(&at, "emf_filter", "0.001", 1.25),
+                "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose another value or `emf: model`",
+            ),
+            (
+                word_too_narrow(&at, "voltage `u_a`", 19, 16),
+                "m.toml:3:5: error[HX0504]: `word`: 16 bits, but voltage `u_a` needs 19 bits; choose `word: 32`, or lower `adc_bits`",
+            ),
+            (
+                coefficient_out_of_range(&at, "k_di", 0.0042, 16, 0.02, 0.001),
+                "m.toml:3:5: error[HX0505]: `word`: 16 bits hold the coefficient `k_di` = 0.0042 with an error of 2 %, but at most 0.1 % is allowed; choose `word: 32`, or change the control period",
+            ),
+            (
+                internal(&at, "node 7 has no interval"),
+                "m.toml:3:5: error[HX0901]: the generator broke its own invariant: node 7 has no interval; this is a bug of hexagen, please report it with the specification",
+            ),
+        ];
+        for (error, text) in cases {
+            assert_eq!(error.to_string(), text);
+        }
+    }
 }

@@ -256,21 +256,31 @@ pub fn timer_period(
                 significant(counts),
                 engineering(f_pwm, "Hz"),
                 significant(whole),
-                exact(clock / (2.0 * whole), "Hz"),
-                exact(2.0 * f_pwm * whole, "Hz"),
+                exact(clock / (2.0 * whole)),
+                exact(2.0 * f_pwm * whole),
             ),
         ),
         &[period],
     )
 }
 
-/// Enough digits that the advice can be followed literally.
-fn exact(value: f64, unit: &str) -> String {
-    let text = format!("{value:.3}");
-    format!(
-        "{} {unit}",
+/// Nine digits, so that the advice can be followed literally.
+fn exact(frequency: f64) -> String {
+    let (scale, unit) = match frequency {
+        f if f >= 1e9 => (1e9, "GHz"),
+        f if f >= 1e6 => (1e6, "MHz"),
+        f if f >= 1e3 => (1e3, "kHz"),
+        _ => (1.0, "Hz"),
+    };
+    let scaled = frequency / scale;
+    let digits = 8 - scaled.log10().floor().clamp(0.0, 8.0) as usize;
+    let text = format!("{scaled:.digits$}");
+    let text = if digits > 0 {
         text.trim_end_matches('0').trim_end_matches('.')
-    )
+    } else {
+        &text
+    };
+    format!("{text} {unit}")
 }
 
 /// The Hall capture timer's ticks per control period are no whole number from 2 to 65535.
@@ -292,7 +302,7 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
                 clock.given,
                 significant(ticks),
                 engineering(t_s, "s"),
-                exact(whole / t_s, "Hz"),
+                exact(whole / t_s),
             ),
         ),
         &[period],
@@ -324,18 +334,18 @@ pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -
     )
 }
 
-/// Two speeds in the wrong order: `low` must lie below `high`.
-pub fn speed_order(low: &Part, high: &Part) -> Diagnostic {
+/// A speed on the wrong side of another one; `relation`: what it should be, `below` or `at least`.
+pub fn speed_order(speed: &Part, relation: &str, other: &Part) -> Diagnostic {
     with_parts(
         Diagnostic::new(
             Code::SpeedOrder,
-            &low.location,
+            &speed.location,
             format!(
-                "`{}`: {} is not below `{}` {}; lower the one or raise the other",
-                low.field, low.given, high.field, high.given
+                "`{}`: {} is not {relation} `{}` {}; change one of the two",
+                speed.field, speed.given, other.field, other.given
             ),
         ),
-        &[high],
+        &[other],
     )
 }
 

@@ -9,21 +9,43 @@ pub fn syntax(at: &Location, what: &str) -> Diagnostic {
 
 /// A section that does not exist.
 pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
-    let suggestion = did_you_mean(name, known).unwrap_or_default();
     Diagnostic::new(
         Code::UnknownSection,
         at,
         format!(
-            "unknown section `{name}`{suggestion}; there are {}",
-            list(known, "and")
+            "unknown section `{name}`; there are {}{}",
+            list(known, "and"),
+            did_you_mean(name, known)
+        ),
+    )
+}
+
+/// A section's name with a value instead of fields.
+pub fn not_a_section(at: &Location, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::Syntax,
+        at,
+        format!("`{name}` is a section; write `[{name}]` and its fields below"),
+    )
+}
+
+/// An assumed value without value or reason.
+pub fn assumption(at: &Location, field: &str, example: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MalformedValue,
+        at,
+        format!(
+            "`{field}`: an assumption needs a value and a reason; write it like `{{ value = \"{example}\", reason = \"not in the data sheet\" }}`"
         ),
     )
 }
 
 /// A field that does not exist in its section.
 pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -> Diagnostic {
-    let advice = did_you_mean(name, known)
-        .unwrap_or_else(|| format!("; `{section}` takes {}", list(known, "and")));
+    let mut advice = did_you_mean(name, known);
+    if advice.is_empty() {
+        advice = format!("; it takes {}", list(known, "and"));
+    }
     Diagnostic::new(
         Code::UnknownField,
         at,
@@ -152,17 +174,17 @@ pub fn invalid_name(at: &Location, name: &str) -> Diagnostic {
     )
 }
 
-/// ``; did you mean `x`?`` for the closest known word, if one is close.
-pub(crate) fn did_you_mean(word: &str, known: &[&str]) -> Option<String> {
+/// ``; did you mean `x`?`` for the closest known word, or nothing.
+pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
+    nearest(word, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
+}
+
+/// The closest known word, if one is close.
+pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
-        .map(|candidate| {
-            (
-                strsim::normalized_damerau_levenshtein(word, candidate),
-                candidate,
-            )
-        })
+        .map(|near| (strsim::normalized_damerau_levenshtein(word, near), *near))
         .filter(|(similarity, _)| *similarity >= 0.5)
         .max_by(|left, right| left.0.total_cmp(&right.0))
-        .map(|(_, candidate)| format!("; did you mean `{candidate}`?"))
+        .map(|(_, near)| near)
 }

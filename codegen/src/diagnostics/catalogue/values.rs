@@ -101,13 +101,13 @@ pub fn wrong_basis(
 
 /// A word that the field does not take.
 pub fn unknown_word(at: &Location, field: &str, given: &str, known: &[&str]) -> Diagnostic {
-    let suggestion = did_you_mean(given, known).unwrap_or_default();
     Diagnostic::new(
         Code::UnknownWord,
         at,
         format!(
-            "`{field}`: unknown word `{given}`{suggestion}; it takes {}",
-            list(known, "or")
+            "`{field}`: unknown word `{given}`; it takes {}{}",
+            list(known, "or"),
+            did_you_mean(given, known)
         ),
     )
 }
@@ -151,6 +151,15 @@ pub fn out_of_range(at: &Location, field: &str, given: &str, low: &str, high: &s
         Code::OutOfRange,
         at,
         format!("`{field}`: {given} lies outside {low} to {high}; check the number and its unit"),
+    )
+}
+
+/// A plain number outside its possible limits.
+pub fn out_of_limits(at: &Location, field: &str, given: &str, low: &str, high: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        at,
+        format!("`{field}`: {given} lies outside {low} to {high}; give a value within"),
     )
 }
 

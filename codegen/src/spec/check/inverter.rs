@@ -319,7 +319,7 @@ fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut
     if count > 65535 {
         let part = reader.part("precharge", || engineering(time, "s"));
         let longest = engineering(65535.0 * t_s, "s");
-        errors.push(catalogue::out_of_range(
+        errors.push(catalogue::out_of_limits(
             &part.location,
             "precharge",
             &part.given,

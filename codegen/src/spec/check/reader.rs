@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
         errors: &mut Collector,
         elsewhere: impl Fn(&Field, &mut Collector) -> bool,
     ) {
-        if self.section.location.is_none() {
+        if self.section.location.is_none() && !self.section.incomplete {
             errors.push(catalogue::missing_section(&self.at, self.name));
         }
         let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
@@ -130,6 +130,16 @@ impl<'a> Reader<'a> {
         self.section.location.is_some()
             && !self.section.incomplete
             && self.section.field(name).is_none()
+            && !self.is_misspelt(name)
+    }
+
+    /// Whether an unknown field was probably meant to be this one: it is reported by itself.
+    fn is_misspelt(&self, name: &str) -> bool {
+        let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
+        self.section.fields.iter().any(|field| {
+            !known.contains(&field.name.as_str())
+                && catalogue::nearest(&field.name, &known) == Some(name)
+        })
     }
 
     /// The field of this name, if it was written.
@@ -222,7 +232,7 @@ impl<'a> Reader<'a> {
             ));
             return None;
         }
-        self.within(
+        within(
             errors,
             &given,
             [low, high],
@@ -237,8 +247,7 @@ impl<'a> Reader<'a> {
     /// A quantity without basis words.
     pub fn plain_quantity(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
         let given = self.quantity(errors, name)?;
-        self.refuse_basis(errors, &given, "remove the word")
-            .then_some(given)
+        refuse_basis(errors, &given, "remove the word").then_some(given)
     }
 
     /// A time or a number of control periods (bare or with its unit), not yet limited.
@@ -255,23 +264,7 @@ impl<'a> Reader<'a> {
             ));
             return None;
         }
-        self.refuse_basis(errors, &given, "remove the word")
-            .then_some(given)
-    }
-
-    /// Reports basis words where none can be; returns whether there are none.
-    pub fn refuse_basis(&self, errors: &mut Collector, given: &Given, remedy: &str) -> bool {
-        if let Some(basis) = given.basis.first() {
-            let (at, text) = (&given.part.location, &given.part.given);
-            errors.push(catalogue::wrong_basis(
-                at,
-                given.part.field,
-                text,
-                basis.word(),
-                remedy,
-            ));
-        }
-        given.basis.is_empty()
+        refuse_basis(errors, &given, "remove the word").then_some(given)
     }
 
     /// A number without unit, within its limits.
@@ -280,8 +273,8 @@ impl<'a> Reader<'a> {
         let Kind::Plain { low, high } = kind else {
             return None;
         };
-        (self.refuse_unit(errors, &given)
-            && self.within(
+        (refuse_unit(errors, &given)
+            && within(
                 errors,
                 &given,
                 [low, high],
@@ -296,7 +289,7 @@ impl<'a> Reader<'a> {
         let Kind::Integer { low, high } = kind else {
             return None;
         };
-        if !self.refuse_unit(errors, &given) {
+        if !refuse_unit(errors, &given) {
             return None;
         }
         if given.si.fract() != 0.0 {
@@ -315,50 +308,8 @@ impl<'a> Reader<'a> {
             return None;
         }
         let limits = [f64::from(low), f64::from(high)];
-        self.within(errors, &given, limits, [low.to_string(), high.to_string()])
+        within(errors, &given, limits, [low.to_string(), high.to_string()])
             .then_some(given.si as u32)
-    }
-
-    fn refuse_unit(&self, errors: &mut Collector, given: &Given) -> bool {
-        let plain = given.dimension.is_none() && given.basis.is_empty();
-        if !plain {
-            let (at, text) = (&given.part.location, &given.part.given);
-            let digits = &given.number.digits;
-            errors.push(catalogue::unwanted_unit(at, given.part.field, text, digits));
-        }
-        plain
-    }
-
-    fn within(
-        &self,
-        errors: &mut Collector,
-        given: &Given,
-        [low, high]: [f64; 2],
-        [low_text, high_text]: [String; 2],
-    ) -> bool {
-        // A decimal limit and the same decimal value may differ in the last bit.
-        let slack = 1e-9;
-        let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
-        if given.si < 0.0 || (given.si == 0.0 && low > 0.0) {
-            // Limits that are only set to refuse zero are no help.
-            let bounded = high < f64::MAX;
-            let error = if low > 0.0 && bounded {
-                catalogue::not_positive(at, name, text, &low_text, &high_text)
-            } else if bounded {
-                catalogue::out_of_range(at, name, text, &low_text, &high_text)
-            } else {
-                catalogue::not_above_zero(at, name, text, schema::example(name))
-            };
-            errors.push(error);
-            return false;
-        }
-        let inside = given.si >= low * (1.0 - slack) && given.si <= high * (1.0 + slack);
-        if !inside {
-            errors.push(catalogue::out_of_range(
-                at, name, text, &low_text, &high_text,
-            ));
-        }
-        inside
     }
 
     /// One of some words.
@@ -422,6 +373,67 @@ impl<'a> Reader<'a> {
             _ => None,
         }
     }
+}
+
+/// Reports basis words where none can be; returns whether there are none.
+fn refuse_basis(errors: &mut Collector, given: &Given, remedy: &str) -> bool {
+    if let Some(basis) = given.basis.first() {
+        let (at, text) = (&given.part.location, &given.part.given);
+        errors.push(catalogue::wrong_basis(
+            at,
+            given.part.field,
+            text,
+            basis.word(),
+            remedy,
+        ));
+    }
+    given.basis.is_empty()
+}
+
+/// Reports unit and basis on a plain number; returns whether there are none.
+fn refuse_unit(errors: &mut Collector, given: &Given) -> bool {
+    let plain = given.dimension.is_none() && given.basis.is_empty();
+    if !plain {
+        let (at, text) = (&given.part.location, &given.part.given);
+        let digits = &given.number.digits;
+        errors.push(catalogue::unwanted_unit(at, given.part.field, text, digits));
+    }
+    plain
+}
+
+/// Reports a value outside its limits; returns whether it is inside.
+fn within(
+    errors: &mut Collector,
+    given: &Given,
+    [low, high]: [f64; 2],
+    [low_text, high_text]: [String; 2],
+) -> bool {
+    // A decimal limit and the same decimal value may differ in the last bit.
+    let slack = 1e-9;
+    let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
+    if given.si < 0.0 || (given.si == 0.0 && low > 0.0) {
+        // Limits that are only set to refuse zero are no help.
+        let bounded = high < f64::MAX;
+        let error = if low > 0.0 && bounded {
+            catalogue::not_positive(at, name, text, &low_text, &high_text)
+        } else if bounded {
+            catalogue::out_of_range(at, name, text, &low_text, &high_text)
+        } else {
+            catalogue::not_above_zero(at, name, text, schema::example(name))
+        };
+        errors.push(error);
+        return false;
+    }
+    let inside = given.si >= low * (1.0 - slack) && given.si <= high * (1.0 + slack);
+    if !inside {
+        // Without a unit there is no slip of the unit.
+        let error = match given.dimension {
+            Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
+            None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
+        };
+        errors.push(error);
+    }
+    inside
 }
 
 /// A limit as it is shown: in the unit that users of the field think in.

@@ -86,11 +86,15 @@ pub(super) fn check_speeds(
 ) -> Option<()> {
     let rated = motor.rated_speed.as_ref()?;
     if minimum >= rated.si {
-        errors.push(catalogue::speed_order(minimum_part, &rated.part));
+        errors.push(catalogue::speed_order(minimum_part, "below", &rated.part));
         return None;
     }
     if maximum < rated.si * (1.0 - 1e-9) {
-        errors.push(catalogue::speed_order(&rated.part, maximum_part));
+        errors.push(catalogue::speed_order(
+            maximum_part,
+            "at least",
+            &rated.part,
+        ));
         return None;
     }
     let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
