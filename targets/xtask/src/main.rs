@@ -1,2 +1,46 @@
-//! The one tool.
-fn main() {}
+//! `cargo xtask`: the one tool that sets up, builds, runs and compares.
+//!
+//! `cargo xtask test` is what continuous integration runs: every check of a push, in an order that fails
+//! early. `cargo xtask nightly` adds the long ones. Every step is a plain cargo command that is printed
+//! before it runs, so that it can be repeated by hand.
+
+mod steps;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "xtask", about = "Sets up, builds, runs and compares; `cargo xtask test` is the check of every push")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Format, lints, documentation and all tests
+    Test,
+    /// `test`, then bit-for-bit verification of every library motor over many steps
+    Nightly {
+        /// Steps per motor and controller
+        #[arg(long, default_value_t = 100_000_000)]
+        steps: u64,
+    },
+    /// Refreshes every recorded expectation (snapshots, compiler messages); read the diff afterwards
+    Accept,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Test => steps::run(&steps::checks()),
+        Command::Nightly { steps } => steps::run(&steps::checks()).and_then(|()| steps::run(&steps::long_checks(steps))),
+        Command::Accept => steps::run(&steps::refresh()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}

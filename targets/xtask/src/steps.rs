@@ -1,0 +1,83 @@
+//! The steps of each task: cargo commands with what they need.
+
+use std::env;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+/// One cargo command.
+pub struct Step {
+    name: &'static str,
+    arguments: Vec<String>,
+    environment: Vec<(&'static str, &'static str)>,
+    /// A cargo subcommand that must be installed, and how to get it.
+    needs: Option<(&'static str, &'static str)>,
+}
+
+fn step(name: &'static str, arguments: &[&str]) -> Step {
+    let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
+    Step { name, arguments, environment: vec![], needs: None }
+}
+
+/// All checks of a push.
+pub fn checks() -> Vec<Step> {
+    vec![
+        Step {
+            needs: Some(("fmt", "rustup component add rustfmt")),
+            ..step("format", &["fmt", "--all", "--check"])
+        },
+        Step {
+            needs: Some(("clippy", "rustup component add clippy")),
+            ..step("lints", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])
+        },
+        Step {
+            environment: vec![("RUSTDOCFLAGS", "-D warnings")],
+            ..step("documentation", &["doc", "--workspace", "--no-deps", "--document-private-items"])
+        },
+        step("tests", &["test", "--workspace", "--no-fail-fast"]),
+    ]
+}
+
+/// What is too long for a push.
+pub fn long_checks(steps: u64) -> Vec<Step> {
+    let steps = steps.to_string();
+    vec![step("verification", &["run", "--release", "--", "verify", "--controller", "all", "--steps", &steps])]
+}
+
+/// Rewrites recorded expectations.
+pub fn refresh() -> Vec<Step> {
+    vec![Step {
+        environment: vec![("INSTA_UPDATE", "always"), ("TRYBUILD", "overwrite")],
+        ..step("refresh", &["test", "--workspace", "--no-fail-fast"])
+    }]
+}
+
+/// Runs the steps in order; stops at the first that fails.
+///
+/// # Errors
+/// The name of the failing step, or what is missing and how to get it.
+pub fn run(steps: &[Step]) -> Result<(), String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    for step in steps {
+        if let Some((subcommand, remedy)) = step.needs {
+            let known = Command::new(&cargo).args([subcommand, "--version"]).output();
+            if !known.is_ok_and(|output| output.status.success()) {
+                return Err(format!("`cargo {subcommand}` is missing; install it: {remedy}"));
+            }
+        }
+        println!("== {}: cargo {}", step.name, step.arguments.join(" "));
+        let begin = Instant::now();
+        let status = Command::new(&cargo)
+            .args(&step.arguments)
+            .envs(step.environment.iter().copied())
+            .current_dir(root)
+            .status()
+            .map_err(|error| format!("cannot run cargo: {error}"))?;
+        println!("== {}: {} after {} s", step.name, if status.success() { "passed" } else { "FAILED" }, begin.elapsed().as_secs());
+        if !status.success() {
+            return Err(format!("step `{}` failed", step.name));
+        }
+    }
+    Ok(())
+}
