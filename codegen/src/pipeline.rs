@@ -23,8 +23,10 @@ pub struct Generated {
 pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let ControllerSpec::Pdcc(options) = &spec.controller;
     let design = pdcc::PdccDesign::new(spec, options);
-    let scaled = choose_scale(&spec.inverter, options.word, |scale| pdcc::lower(spec, options, &design, scale))
-        .map_err(|why| Diagnostics::from(unscalable(&why, options.word, origins)))?;
+    let scaled = choose_scale(&spec.inverter, options.word, |scale| {
+        pdcc::lower(spec, options, &design, scale)
+    })
+    .map_err(|why| Diagnostics::from(unscalable(&why, options.word, origins)))?;
     let mut errors = Collector::new();
     let rounded = design.rounded(&scaled);
     let stable = check_stability(spec, options, &rounded, origins, &mut errors);
@@ -36,7 +38,9 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
 fn unscalable(why: &Unscalable, word: u32, origins: &Origins) -> Diagnostic {
     let at = origins.at("controller.word");
     match why {
-        Unscalable::TooNarrow { signal, bits } => catalogue::word_too_narrow(at, signal, *bits, word),
+        Unscalable::TooNarrow { signal, bits } => {
+            catalogue::word_too_narrow(at, signal, *bits, word)
+        }
         Unscalable::Broken(violations) => {
             let list: Vec<String> = violations.iter().map(ToString::to_string).collect();
             catalogue::internal(at, &list.join("; "))
@@ -57,9 +61,18 @@ fn check_stability(
         resistance: design.stable_resistance(spec, options),
     };
     if radius >= 1.0 {
-        let path = if options.emf_filter < 1.0 { "controller.emf_filter" } else { "controller.discretisation" };
+        let path = if options.emf_filter < 1.0 {
+            "controller.emf_filter"
+        } else {
+            "controller.discretisation"
+        };
         let given = origins.given(path, "the setting");
-        errors.push(catalogue::unstable_loop(origins.at(path), path.trim_start_matches("controller."), &given, radius));
+        errors.push(catalogue::unstable_loop(
+            origins.at(path),
+            path.trim_start_matches("controller."),
+            &given,
+            radius,
+        ));
         return stable;
     }
     let leaves = |tolerance: f64, (low, high): (f64, f64)| {
@@ -69,13 +82,29 @@ fn check_stability(
     let motor = &spec.motor;
     if leaves(motor.inductance_tolerance, stable.inductance) {
         let path = "motor.inductance_tolerance";
-        let given = origins.given(path, &crate::diagnostics::percent(motor.inductance_tolerance));
-        errors.push(catalogue::inductance_outside_stable_range(origins.at(path), &given, stable.inductance.0, stable.inductance.1));
+        let given = origins.given(
+            path,
+            &crate::diagnostics::percent(motor.inductance_tolerance),
+        );
+        errors.push(catalogue::inductance_outside_stable_range(
+            origins.at(path),
+            &given,
+            stable.inductance.0,
+            stable.inductance.1,
+        ));
     }
     if leaves(motor.resistance_tolerance, stable.resistance) {
         let path = "motor.resistance_tolerance";
-        let given = origins.given(path, &crate::diagnostics::percent(motor.resistance_tolerance));
-        errors.push(catalogue::resistance_outside_stable_range(origins.at(path), &given, stable.resistance.0, stable.resistance.1));
+        let given = origins.given(
+            path,
+            &crate::diagnostics::percent(motor.resistance_tolerance),
+        );
+        errors.push(catalogue::resistance_outside_stable_range(
+            origins.at(path),
+            &given,
+            stable.resistance.0,
+            stable.resistance.1,
+        ));
     }
     stable
 }
@@ -116,13 +145,21 @@ kind = "pdcc"
                 for emf in ["emf=estimated", "emf=model", "emf=estimated,emf_filter=0.7"] {
                     for reference in ["quasi_square", "proportional"] {
                         for advance in ["0", "1.5"] {
-                            for rest in ["delay=1,word=32", "delay=0,word=32", "delay=1,word=16", "delay=1,hall_capture=timer"] {
+                            for rest in [
+                                "delay=1,word=32",
+                                "delay=0,word=32",
+                                "delay=1,word=16",
+                                "delay=1,hall_capture=timer",
+                            ] {
                                 let variant = format!(
                                     "pdcc:modulation={modulation},saturation={saturation},{emf},reference={reference},advance={advance},{rest}"
                                 );
-                                let mut ast = parse_toml(MOTOR, "motor.toml").expect("the motor parses");
+                                let mut ast =
+                                    parse_toml(MOTOR, "motor.toml").expect("the motor parses");
                                 apply_variant(&mut ast, &variant).expect("the variant parses");
-                                let Ok((spec, origins)) = check(&ast) else { continue };
+                                let Ok((spec, origins)) = check(&ast) else {
+                                    continue;
+                                };
                                 match generate(&spec, &origins) {
                                     Ok(_) => generated += 1,
                                     Err(errors) => panic!("{variant}: {errors}"),

@@ -52,33 +52,71 @@ const FINEST_VOLTAGE: u32 = 20;
 ///
 /// # Errors
 /// [`Unscalable`] where even one fraction bit of a timer count, or none of an ADC count, does not fit.
-pub fn choose_scale(inverter: &InverterSpec, word: u32, lower: impl Fn(Scale) -> Lowered) -> Result<Scaled, Unscalable> {
+pub fn choose_scale(
+    inverter: &InverterSpec,
+    word: u32,
+    lower: impl Fn(Scale) -> Lowered,
+) -> Result<Scaled, Unscalable> {
     // i_c = -(i_a + i_b) and differences of two currents need one bit more than a current; with 16-bit
     // words currents themselves must fit the word as factors.
     let spare = if word == 16 { 15 } else { 30 };
     let Some(current_bits) = u32::checked_sub(spare, inverter.adc_bits) else {
-        return Err(Unscalable::TooNarrow { signal: "phase currents".to_owned(), bits: inverter.adc_bits + 1 });
+        return Err(Unscalable::TooNarrow {
+            signal: "phase currents".to_owned(),
+            bits: inverter.adc_bits + 1,
+        });
     };
     let ampere_per_count = inverter.adc_gain.abs();
     let volt_per_count = inverter.v_bus / f64::from(inverter.timer_period);
     let finest = if word == 16 { 12 } else { FINEST_VOLTAGE };
-    let mut coarsest_failure = Unscalable::TooNarrow { signal: "voltages".to_owned(), bits: 33 };
+    let mut coarsest_failure = Unscalable::TooNarrow {
+        signal: "voltages".to_owned(),
+        bits: 33,
+    };
     for voltage_bits in (1..=finest).rev() {
-        let scale = Scale { word, current_bits, voltage_bits, ampere_per_count, volt_per_count };
-        let Lowered { program, formats, misfits } = lower(scale);
+        let scale = Scale {
+            word,
+            current_bits,
+            voltage_bits,
+            ampere_per_count,
+            volt_per_count,
+        };
+        let Lowered {
+            program,
+            formats,
+            misfits,
+        } = lower(scale);
         if let Some(signal) = misfits.into_iter().next() {
-            coarsest_failure = Unscalable::TooNarrow { signal: format!("coefficient `{signal}`"), bits: word + 1 };
+            coarsest_failure = Unscalable::TooNarrow {
+                signal: format!("coefficient `{signal}`"),
+                bits: word + 1,
+            };
             continue;
         }
         match verify(program) {
-            Ok(graph) => match (word == 16).then(|| wide_product(graph.program())).flatten() {
-                None => return Ok(Scaled { graph, formats, scale }),
+            Ok(graph) => match (word == 16)
+                .then(|| wide_product(graph.program()))
+                .flatten()
+            {
+                None => {
+                    return Ok(Scaled {
+                        graph,
+                        formats,
+                        scale,
+                    });
+                }
                 Some((signal, bits)) => coarsest_failure = Unscalable::TooNarrow { signal, bits },
             },
-            Err(violations) => match violations.iter().find_map(|violation| Some((violation, violation.escaped?))) {
+            Err(violations) => match violations
+                .iter()
+                .find_map(|violation| Some((violation, violation.escaped?)))
+            {
                 Some((violation, interval)) => {
                     let signal = violation.place.rsplit(": ").next().unwrap_or_default();
-                    coarsest_failure = Unscalable::TooNarrow { signal: format!("`{signal}`"), bits: interval.bits() };
+                    coarsest_failure = Unscalable::TooNarrow {
+                        signal: format!("`{signal}`"),
+                        bits: interval.bits(),
+                    };
                 }
                 None => return Err(Unscalable::Broken(violations)),
             },
@@ -90,15 +128,30 @@ pub fn choose_scale(inverter: &InverterSpec, word: u32, lower: impl Fn(Scale) ->
 /// A product of the step's normal path with a 16-bit coefficient that does not fit 32 bits.
 fn wide_product(program: &Program) -> Option<(String, u32)> {
     let step: &Function = &program.step;
-    let normal = step.stages.iter().filter(|stage| stage.guard.as_ref().is_none_or(|guard| !guard.rare));
-    normal.flat_map(|stage| stage.first..stage.end).find_map(|index| {
-        let Op::MulRound { coefficient, signal, shift } = step.nodes[index].op else { return None };
-        let Op::Constant(id) = step.node(coefficient).op else { return None };
-        let constant = &program.constants[id.index()];
-        let product = i64::from(constant.raw).abs() * step.node(signal).interval.magnitude() + (1 << (shift - 1));
-        let bits = 65 - product.leading_zeros();
-        // Angles keep 64-bit products whatever the word; their coefficients are marked by their size.
-        let sixteen = i64::from(constant.raw).abs() < 1 << 15;
-        (sixteen && bits > 32).then(|| (format!("the product with `{}`", constant.name), bits))
-    })
+    let normal = step
+        .stages
+        .iter()
+        .filter(|stage| stage.guard.as_ref().is_none_or(|guard| !guard.rare));
+    normal
+        .flat_map(|stage| stage.first..stage.end)
+        .find_map(|index| {
+            let Op::MulRound {
+                coefficient,
+                signal,
+                shift,
+            } = step.nodes[index].op
+            else {
+                return None;
+            };
+            let Op::Constant(id) = step.node(coefficient).op else {
+                return None;
+            };
+            let constant = &program.constants[id.index()];
+            let product = i64::from(constant.raw).abs() * step.node(signal).interval.magnitude()
+                + (1 << (shift - 1));
+            let bits = 65 - product.leading_zeros();
+            // Angles keep 64-bit products whatever the word; their coefficients are marked by their size.
+            let sixteen = i64::from(constant.raw).abs() < 1 << 15;
+            (sixteen && bits > 32).then(|| (format!("the product with `{}`", constant.name), bits))
+        })
 }

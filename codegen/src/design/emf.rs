@@ -22,8 +22,16 @@ fn phase_integral(shape: EmfShape, theta: f64) -> f64 {
             };
             let area = 2.0 * rise(FRAC_PI_2);
             let turned = theta.rem_euclid(TAU);
-            let (half, sign) = if turned < PI { (turned, 1.0) } else { (turned - PI, -1.0) };
-            let risen = if half <= FRAC_PI_2 { rise(half) } else { area - rise(PI - half) };
+            let (half, sign) = if turned < PI {
+                (turned, 1.0)
+            } else {
+                (turned - PI, -1.0)
+            };
+            let risen = if half <= FRAC_PI_2 {
+                rise(half)
+            } else {
+                area - rise(PI - half)
+            };
             sign * (risen - area / 2.0)
         }
     }
@@ -45,7 +53,12 @@ pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
 
 /// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
 pub fn squared_length(shape: EmfShape, theta: f64) -> f64 {
-    [0.0, THIRD, 2.0 * THIRD].iter().map(|shift| zero_sum_shape(shape, theta - shift).powi(2)).sum::<f64>() * 2.0 / 3.0
+    [0.0, THIRD, 2.0 * THIRD]
+        .iter()
+        .map(|shift| zero_sum_shape(shape, theta - shift).powi(2))
+        .sum::<f64>()
+        * 2.0
+        / 3.0
 }
 
 /// Phase-a current per ampere of set-point that is parallel to the EMF and makes constant torque:
@@ -84,7 +97,11 @@ impl Parabolas {
             .map(|segment| {
                 let left = f64::from(segment) * width;
                 let [y0, y1, y2] = [0.0, 0.5, 1.0].map(|t| function(left + t * width));
-                let [c0, c1, c2] = [y0, -3.0 * y0 + 4.0 * y1 - y2, 2.0 * y0 - 4.0 * y1 + 2.0 * y2];
+                let [c0, c1, c2] = [
+                    y0,
+                    -3.0 * y0 + 4.0 * y1 - y2,
+                    2.0 * y0 - 4.0 * y1 + 2.0 * y2,
+                ];
                 for probe in 0..=PROBES {
                     let t = f64::from(probe) / f64::from(PROBES);
                     error = error.max((c0 + t * (c1 + t * c2) - function(left + t * width)).abs());
@@ -92,12 +109,18 @@ impl Parabolas {
                 [c0, c1, c2]
             })
             .collect();
-        Self { coefficients, error }
+        Self {
+            coefficients,
+            error,
+        }
     }
 
     /// Largest magnitude of any coefficient.
     pub fn magnitude(&self) -> f64 {
-        self.coefficients.iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()))
+        self.coefficients
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, c| most.max(c.abs()))
     }
 }
 
@@ -107,7 +130,9 @@ mod tests {
 
     const SHAPES: [EmfShape; 3] = [
         EmfShape::Sinusoidal,
-        EmfShape::Trapezoidal { flat_top_deg: 120.0 },
+        EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        },
         EmfShape::Trapezoidal { flat_top_deg: 97.0 },
     ];
 
@@ -117,8 +142,13 @@ mod tests {
             let mut mean = 0.0;
             for step in 0..720 {
                 let theta = f64::from(step) * TAU / 720.0 + 0.001;
-                let slope = (zero_sum_integral(shape, theta + 1e-5) - zero_sum_integral(shape, theta - 1e-5)) / 2e-5;
-                assert!((slope - zero_sum_shape(shape, theta)).abs() < 1e-4, "{shape:?} at {theta}");
+                let slope = (zero_sum_integral(shape, theta + 1e-5)
+                    - zero_sum_integral(shape, theta - 1e-5))
+                    / 2e-5;
+                assert!(
+                    (slope - zero_sum_shape(shape, theta)).abs() < 1e-4,
+                    "{shape:?} at {theta}"
+                );
                 mean += zero_sum_integral(shape, theta) / 720.0;
             }
             assert!(mean.abs() < 1e-5, "{shape:?}: mean {mean}");
@@ -127,7 +157,9 @@ mod tests {
 
     #[test]
     fn a_trapezoid_has_the_corners_of_table_1() {
-        let shape = EmfShape::Trapezoidal { flat_top_deg: 120.0 };
+        let shape = EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        };
         // Entry of S3 (90 degrees): (4/3, 0) E; entry of S2 (30 degrees): (2/3, -2/sqrt3) E.
         assert!((zero_sum_shape(shape, PI / 2.0) - 4.0 / 3.0).abs() < 1e-12);
         assert!((zero_sum_shape(shape, PI / 6.0) - 2.0 / 3.0).abs() < 1e-12);
@@ -136,7 +168,9 @@ mod tests {
 
     #[test]
     fn the_flux_of_a_trapezoid_is_exact_in_twelve_parabolas() {
-        let shape = EmfShape::Trapezoidal { flat_top_deg: 120.0 };
+        let shape = EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        };
         let fit = Parabolas::fit(|theta| zero_sum_integral(shape, theta), 1e-9);
         assert_eq!(fit.coefficients.len(), 12);
         assert!(fit.error < 1e-12);

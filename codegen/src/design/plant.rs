@@ -26,9 +26,15 @@ impl DiscretePlant {
             Discretisation::Exact => {
                 // exp_m1 keeps the digits of 1 - a when R Ts/L is small.
                 let lost = -(-decay).exp_m1();
-                Self { pole: 1.0 - lost, gain: lost / resistance }
+                Self {
+                    pole: 1.0 - lost,
+                    gain: lost / resistance,
+                }
             }
-            Discretisation::Euler => Self { pole: 1.0 - decay, gain: t_s / inductance },
+            Discretisation::Euler => Self {
+                pole: 1.0 - decay,
+                gain: t_s / inductance,
+            },
         }
     }
 

@@ -7,13 +7,34 @@ use std::f64::consts::PI;
 pub type LegSigns = [i32; 3];
 
 /// V1 to V6: legs --+ +-+ +-- ++- -+- -++.
-pub const THREE_PHASE: [LegSigns; 6] = [[-1, -1, 1], [1, -1, 1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, 1, 1]];
+pub const THREE_PHASE: [LegSigns; 6] = [
+    [-1, -1, 1],
+    [1, -1, 1],
+    [1, -1, -1],
+    [1, 1, -1],
+    [-1, 1, -1],
+    [-1, 1, 1],
+];
 
 /// V12 to V61: legs 0-+ +-0 +0- 0+- -+0 -0+.
-pub const TWO_PHASE: [LegSigns; 6] = [[0, -1, 1], [1, -1, 0], [1, 0, -1], [0, 1, -1], [-1, 1, 0], [-1, 0, 1]];
+pub const TWO_PHASE: [LegSigns; 6] = [
+    [0, -1, 1],
+    [1, -1, 0],
+    [1, 0, -1],
+    [0, 1, -1],
+    [-1, 1, 0],
+    [-1, 0, 1],
+];
 
 /// Sign of the conducting pair's currents in S1 to S6, phases a, b, c.
-pub const SECTOR_CURRENT: [LegSigns; 6] = [[0, -1, 1], [1, -1, 0], [1, 0, -1], [0, 1, -1], [-1, 1, 0], [-1, 0, 1]];
+pub const SECTOR_CURRENT: [LegSigns; 6] = [
+    [0, -1, 1],
+    [1, -1, 0],
+    [1, 0, -1],
+    [0, 1, -1],
+    [-1, 1, 0],
+    [-1, 0, 1],
+];
 
 /// Phase that is off in S1 to S6 (0 = a).
 pub const OFF_PHASE: [i32; 6] = [0, 2, 1, 0, 2, 1];
@@ -37,7 +58,10 @@ pub fn leg_vector(legs: LegSigns, v_bus: f64) -> Vector2<f64> {
 pub fn svm_coefficients(n: u32, v_bus: f64) -> [Vector2<f64>; 2] {
     let scale = 3.0_f64.sqrt() / v_bus;
     let (start, end) = (f64::from(n) * PI / 3.0, f64::from(n + 1) * PI / 3.0);
-    [scale * Vector2::new(end.sin(), -end.cos()), scale * Vector2::new(-start.sin(), start.cos())]
+    [
+        scale * Vector2::new(end.sin(), -end.cos()),
+        scale * Vector2::new(-start.sin(), start.cos()),
+    ]
 }
 
 #[cfg(test)]
@@ -53,7 +77,9 @@ mod tests {
             let expected = 60.0 * k as f64;
             assert!((three.norm() - 32.0).abs() < 1e-12);
             assert!((two.norm() - 48.0 / 3.0_f64.sqrt()).abs() < 1e-12);
-            let near = |angle: f64, target: f64| ((angle - target + 180.0).rem_euclid(360.0) - 180.0).abs() < 1e-9;
+            let near = |angle: f64, target: f64| {
+                ((angle - target + 180.0).rem_euclid(360.0) - 180.0).abs() < 1e-9
+            };
             assert!(near(degrees(three), 240.0 + expected));
             assert!(near(degrees(two), 270.0 + expected));
         }
@@ -67,7 +93,13 @@ mod tests {
             let v = Vector2::new(angle.cos(), angle.sin()) * 20.0;
             let n = (angle.rem_euclid(2.0 * PI) / (PI / 3.0)) as u32;
             let [t_a, t_b] = svm_coefficients(n, v_bus).map(|c| c.dot(&v));
-            let edge = |k: u32| 2.0 * v_bus / 3.0 * Vector2::new((f64::from(k) * PI / 3.0).cos(), (f64::from(k) * PI / 3.0).sin());
+            let edge = |k: u32| {
+                2.0 * v_bus / 3.0
+                    * Vector2::new(
+                        (f64::from(k) * PI / 3.0).cos(),
+                        (f64::from(k) * PI / 3.0).sin(),
+                    )
+            };
             let rebuilt = t_a * edge(n) + t_b * edge(n + 1);
             assert!((rebuilt - v).norm() < 1e-9 && t_a >= 0.0 && t_b >= 0.0 && t_a + t_b <= 1.0);
         }

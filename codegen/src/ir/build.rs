@@ -5,8 +5,8 @@
 //! and try the next.
 
 use super::graph::{
-    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId, Program, Stage,
-    StateId, Table, TableId, Value, Word,
+    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId, Program,
+    Stage, StateId, Table, TableId, Value, Word,
 };
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
@@ -29,17 +29,29 @@ impl Program {
 
     /// Adds a named constant, or finds the one of the same name and value.
     pub fn constant(&mut self, name: &str, raw: i32, doc: &[String]) -> ConstantId {
-        if let Some(known) = self.constants.iter().position(|known| known.name == name && known.raw == raw) {
+        if let Some(known) = self
+            .constants
+            .iter()
+            .position(|known| known.name == name && known.raw == raw)
+        {
             return ConstantId(known as u32);
         }
-        self.constants.push(Constant { name: name.to_owned(), raw, doc: doc.to_vec() });
+        self.constants.push(Constant {
+            name: name.to_owned(),
+            raw,
+            doc: doc.to_vec(),
+        });
         ConstantId(self.constants.len() as u32 - 1)
     }
 
     /// Adds a table; entries are padded with zeros to a power of two.
     pub fn table(&mut self, name: &str, mut values: Vec<i32>, doc: &[String]) -> TableId {
         values.resize(values.len().next_power_of_two(), 0);
-        self.tables.push(Table { name: name.to_owned(), values, doc: doc.to_vec() });
+        self.tables.push(Table {
+            name: name.to_owned(),
+            values,
+            doc: doc.to_vec(),
+        });
         TableId(self.tables.len() as u32 - 1)
     }
 
@@ -51,14 +63,23 @@ impl Program {
 
     /// Adds a set-point word.
     pub fn param(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> ParamId {
-        self.params.push(Word { storage_bits: 32, ..word(name, initial, interval, doc) });
+        self.params.push(Word {
+            storage_bits: 32,
+            ..word(name, initial, interval, doc)
+        });
         ParamId(self.params.len() as u32 - 1)
     }
 }
 
 fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
     let storage_bits = if interval.bits() <= 16 { 16 } else { 32 };
-    Word { name: name.to_owned(), initial, interval, storage_bits, doc: doc.to_owned() }
+    Word {
+        name: name.to_owned(),
+        initial,
+        interval,
+        storage_bits,
+        doc: doc.to_owned(),
+    }
 }
 
 impl Function {
@@ -88,7 +109,10 @@ pub struct FunctionBuilder<'p> {
 impl<'p> FunctionBuilder<'p> {
     /// Starts a function.
     pub fn new(program: &'p mut Program, name: &str, doc: &[&str]) -> Self {
-        Self { program, function: Function::new(name, doc) }
+        Self {
+            program,
+            function: Function::new(name, doc),
+        }
     }
 
     /// The function, complete.
@@ -101,14 +125,24 @@ impl<'p> FunctionBuilder<'p> {
         self.close();
         let first = self.function.nodes.len();
         let doc = doc.iter().map(|&line| line.to_owned()).collect();
-        self.function.stages.push(Stage { name: name.to_owned(), doc, first, end: first, guard: None });
+        self.function.stages.push(Stage {
+            name: name.to_owned(),
+            doc,
+            first,
+            end: first,
+            guard: None,
+        });
     }
 
     /// Opens a stage that runs only where `condition` holds; close it with [`Self::join`].
     pub fn guarded_stage(&mut self, name: &str, condition: Value, rare: bool, doc: &[&str]) {
         self.stage(name, doc);
         let last = self.function.stages.len() - 1;
-        self.function.stages[last].guard = Some(Guard { condition, joins: vec![], rare });
+        self.function.stages[last].guard = Some(Guard {
+            condition,
+            joins: vec![],
+            rare,
+        });
     }
 
     /// Closes the guarded stage: per result its name, the value from inside, and the value that holds
@@ -122,8 +156,10 @@ impl<'p> FunctionBuilder<'p> {
     pub fn join_all(&mut self, results: &[(&str, Value, Value)]) -> Vec<Value> {
         let last = self.function.stages.len() - 1;
         self.function.stages[last].end = self.function.nodes.len();
-        let joins: Vec<Value> =
-            results.iter().map(|&(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise })).collect();
+        let joins: Vec<Value> = results
+            .iter()
+            .map(|&(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise }))
+            .collect();
         if let Some(guard) = &mut self.function.stages[last].guard {
             guard.joins.clone_from(&joins);
         }
@@ -133,7 +169,10 @@ impl<'p> FunctionBuilder<'p> {
     fn close(&mut self) {
         let end = self.function.nodes.len();
         if let Some(stage) = self.function.stages.last_mut()
-            && stage.guard.as_ref().is_none_or(|guard| guard.joins.is_empty())
+            && stage
+                .guard
+                .as_ref()
+                .is_none_or(|guard| guard.joins.is_empty())
         {
             stage.end = end;
         }
@@ -170,14 +209,22 @@ impl<'p> FunctionBuilder<'p> {
 
     fn push(&mut self, name: &str, op: Op) -> Value {
         let kind = op.kind(|value| self.function.node(value).kind);
-        let operands: Vec<Interval> = op.operands().iter().map(|&value| self.interval(value)).collect();
+        let operands: Vec<Interval> = op
+            .operands()
+            .iter()
+            .map(|&value| self.interval(value))
+            .collect();
         let interval = match op {
             Op::Input(n) => self.function.inputs[n as usize].interval,
             Op::Param(id) => self.program.params[id.index()].interval,
             Op::State(id) => self.program.states[id.index()].interval,
             Op::Constant(id) => Interval::point(i64::from(self.program.constants[id.index()].raw)),
             Op::Join { taken, otherwise } => {
-                let guard = self.function.stages.last().and_then(|stage| stage.guard.as_ref());
+                let guard = self
+                    .function
+                    .stages
+                    .last()
+                    .and_then(|stage| stage.guard.as_ref());
                 let outside = match guard {
                     Some(guard) => self.function.interval_where_not(guard.condition, otherwise),
                     None => self.interval(otherwise),
@@ -188,14 +235,26 @@ impl<'p> FunctionBuilder<'p> {
                 .interval(&operands, |id| self.program.tables[id.index()].interval())
                 .unwrap_or(Interval::symmetric(CLIP)),
         };
-        let interval = Interval::new(interval.low.clamp(-CLIP, CLIP), interval.high.clamp(-CLIP, CLIP));
-        self.function.nodes.push(Node { op, kind, interval, name: name.to_owned() });
+        let interval = Interval::new(
+            interval.low.clamp(-CLIP, CLIP),
+            interval.high.clamp(-CLIP, CLIP),
+        );
+        self.function.nodes.push(Node {
+            op,
+            kind,
+            interval,
+            name: name.to_owned(),
+        });
         Value(self.function.nodes.len() as u32 - 1)
     }
 
     /// Adds an input word and reads it.
     pub fn input(&mut self, name: &str, interval: Interval, doc: &str) -> Value {
-        self.function.inputs.push(Input { name: name.to_owned(), interval, doc: doc.to_owned() });
+        self.function.inputs.push(Input {
+            name: name.to_owned(),
+            interval,
+            doc: doc.to_owned(),
+        });
         self.push(name, Op::Input(self.function.inputs.len() as u32 - 1))
     }
 
@@ -218,7 +277,11 @@ impl<'p> FunctionBuilder<'p> {
     }
 
     fn find(&self, op: Op) -> Option<Value> {
-        self.function.nodes.iter().position(|node| node.op == op).map(|index| Value(index as u32))
+        self.function
+            .nodes
+            .iter()
+            .position(|node| node.op == op)
+            .map(|index| Value(index as u32))
     }
 
     /// Reads a named constant.
@@ -240,7 +303,14 @@ impl<'p> FunctionBuilder<'p> {
     pub fn mul(&mut self, coefficient: Value, signal: Value, shift: u32) -> Value {
         match shift {
             0 => self.push("", Op::Product(coefficient, signal)),
-            _ => self.push("", Op::MulRound { coefficient, signal, shift }),
+            _ => self.push(
+                "",
+                Op::MulRound {
+                    coefficient,
+                    signal,
+                    shift,
+                },
+            ),
         }
     }
 
@@ -270,8 +340,22 @@ impl<'p> FunctionBuilder<'p> {
     }
 
     /// min(floor(numerator 2^shift / denominator), limit)
-    pub fn divide(&mut self, numerator: Value, shift: u32, denominator: Value, limit: Value) -> Value {
-        self.push("", Op::Divide { numerator, shift, denominator, limit })
+    pub fn divide(
+        &mut self,
+        numerator: Value,
+        shift: u32,
+        denominator: Value,
+        limit: Value,
+    ) -> Value {
+        self.push(
+            "",
+            Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            },
+        )
     }
 
     /// floor((2^32 - 1) / a)
@@ -296,7 +380,14 @@ impl<'p> FunctionBuilder<'p> {
 
     /// `then` where the flag holds, else `otherwise`.
     pub fn select(&mut self, condition: Value, then: Value, otherwise: Value) -> Value {
-        self.push("", Op::Select { condition, then, otherwise })
+        self.push(
+            "",
+            Op::Select {
+                condition,
+                then,
+                otherwise,
+            },
+        )
     }
 }
 

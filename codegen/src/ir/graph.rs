@@ -66,7 +66,10 @@ pub struct Interval {
 
 impl Interval {
     /// The interval of all 32-bit words.
-    pub const WORD: Self = Self { low: i32::MIN as i64, high: i32::MAX as i64 };
+    pub const WORD: Self = Self {
+        low: i32::MIN as i64,
+        high: i32::MAX as i64,
+    };
     /// False and true.
     pub const FLAG: Self = Self { low: 0, high: 1 };
 
@@ -77,12 +80,18 @@ impl Interval {
 
     /// `-bound..=bound`.
     pub fn symmetric(bound: i64) -> Self {
-        Self { low: -bound, high: bound }
+        Self {
+            low: -bound,
+            high: bound,
+        }
     }
 
     /// One value.
     pub fn point(value: i64) -> Self {
-        Self { low: value, high: value }
+        Self {
+            low: value,
+            high: value,
+        }
     }
 
     /// Whether every value of `inner` lies in `self`.
@@ -92,7 +101,10 @@ impl Interval {
 
     /// The smallest interval that holds both.
     pub fn union(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
     }
 
     /// Largest magnitude.
@@ -102,13 +114,27 @@ impl Interval {
 
     /// Bits of the smallest two's complement word that holds the interval.
     pub fn bits(self) -> u32 {
-        let of = |x: i64| 65 - if x < 0 { x.leading_ones() } else { x.leading_zeros() };
+        let of = |x: i64| {
+            65 - if x < 0 {
+                x.leading_ones()
+            } else {
+                x.leading_zeros()
+            }
+        };
         of(self.low).max(of(self.high))
     }
 
     fn corners(self, other: Self, f: impl Fn(i64, i64) -> i64) -> Self {
-        let all = [f(self.low, other.low), f(self.low, other.high), f(self.high, other.low), f(self.high, other.high)];
-        Self { low: all.into_iter().fold(i64::MAX, i64::min), high: all.into_iter().fold(i64::MIN, i64::max) }
+        let all = [
+            f(self.low, other.low),
+            f(self.low, other.high),
+            f(self.high, other.low),
+            f(self.high, other.high),
+        ];
+        Self {
+            low: all.into_iter().fold(i64::MAX, i64::min),
+            high: all.into_iter().fold(i64::MIN, i64::max),
+        }
     }
 }
 
@@ -277,7 +303,11 @@ impl Op {
     /// The operands, in order.
     pub fn operands(&self) -> Vec<Value> {
         match *self {
-            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) | Self::Literal(_) => vec![],
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Literal(_) => vec![],
             Self::Neg(a)
             | Self::Abs(a)
             | Self::ShiftLeft(a, _)
@@ -290,7 +320,11 @@ impl Op {
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Product(a, b)
-            | Self::MulRound { coefficient: a, signal: b, .. }
+            | Self::MulRound {
+                coefficient: a,
+                signal: b,
+                ..
+            }
             | Self::MulFloor { a, b, .. }
             | Self::Min(a, b)
             | Self::Max(a, b)
@@ -299,18 +333,38 @@ impl Op {
             | Self::Compare(_, a, b)
             | Self::And(a, b)
             | Self::Or(a, b)
-            | Self::Join { taken: a, otherwise: b } => vec![a, b],
+            | Self::Join {
+                taken: a,
+                otherwise: b,
+            } => vec![a, b],
             Self::MulLimited { a, b, limit: c }
-            | Self::Divide { numerator: a, denominator: b, limit: c, .. }
-            | Self::Clamp { x: a, low: b, high: c }
-            | Self::Select { condition: a, then: b, otherwise: c } => vec![a, b, c],
+            | Self::Divide {
+                numerator: a,
+                denominator: b,
+                limit: c,
+                ..
+            }
+            | Self::Clamp {
+                x: a,
+                low: b,
+                high: c,
+            }
+            | Self::Select {
+                condition: a,
+                then: b,
+                otherwise: c,
+            } => vec![a, b, c],
         }
     }
 
     /// Replaces every operand.
     pub(crate) fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
         match self {
-            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) | Self::Literal(_) => {}
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Literal(_) => {}
             Self::Neg(a)
             | Self::Abs(a)
             | Self::ShiftLeft(a, _)
@@ -323,7 +377,11 @@ impl Op {
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Product(a, b)
-            | Self::MulRound { coefficient: a, signal: b, .. }
+            | Self::MulRound {
+                coefficient: a,
+                signal: b,
+                ..
+            }
             | Self::MulFloor { a, b, .. }
             | Self::Min(a, b)
             | Self::Max(a, b)
@@ -332,14 +390,30 @@ impl Op {
             | Self::Compare(_, a, b)
             | Self::And(a, b)
             | Self::Or(a, b)
-            | Self::Join { taken: a, otherwise: b } => {
+            | Self::Join {
+                taken: a,
+                otherwise: b,
+            } => {
                 *a = f(*a);
                 *b = f(*b);
             }
             Self::MulLimited { a, b, limit: c }
-            | Self::Divide { numerator: a, denominator: b, limit: c, .. }
-            | Self::Clamp { x: a, low: b, high: c }
-            | Self::Select { condition: a, then: b, otherwise: c } => {
+            | Self::Divide {
+                numerator: a,
+                denominator: b,
+                limit: c,
+                ..
+            }
+            | Self::Clamp {
+                x: a,
+                low: b,
+                high: c,
+            }
+            | Self::Select {
+                condition: a,
+                then: b,
+                otherwise: c,
+            } => {
                 *a = f(*a);
                 *b = f(*b);
                 *c = f(*c);
@@ -375,14 +449,20 @@ impl Op {
         let unsigned = |a: i64| a.rem_euclid(turn);
         let wrap = |a: i64| i64::from(a.rem_euclid(turn) as u32 as i32);
         Some(match *self {
-            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) | Self::Join { .. } => return None,
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Join { .. } => return None,
             Self::Literal(value) => i64::from(value),
             Self::Add(..) => x[0] + x[1],
             Self::Sub(..) => x[0] - x[1],
             Self::Neg(_) => -x[0],
             Self::Abs(_) => x[0].abs(),
             Self::Product(..) => x[0] * x[1],
-            Self::MulRound { shift, .. } => ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64,
+            Self::MulRound { shift, .. } => {
+                ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64
+            }
             Self::MulFloor { shift, .. } => ((i128::from(x[0]) * i128::from(x[1])) >> shift) as i64,
             Self::MulLimited { .. } => {
                 if x[0] < 0 || x[1] < 0 {
@@ -410,7 +490,9 @@ impl Op {
             Self::AngleAdd(..) => wrap(x[0] + x[1]),
             Self::AngleSub(..) => wrap(x[0] - x[1]),
             Self::AngleIndex { segments, .. } => (unsigned(x[0]) * i64::from(segments)) >> 32,
-            Self::AngleFraction { segments, .. } => unsigned(unsigned(x[0]) * i64::from(segments)) >> 1,
+            Self::AngleFraction { segments, .. } => {
+                unsigned(unsigned(x[0]) * i64::from(segments)) >> 1
+            }
             Self::Lookup { table: id, .. } => table(id, x[0]),
             Self::Compare(how, ..) => i64::from(how.holds(x[0], x[1])),
             Self::And(..) => x[0] & x[1],
@@ -422,7 +504,11 @@ impl Op {
 
     /// An interval that holds every result for operands in the intervals `x`; exact but for
     /// correlations between operands. `None` where the operator's domain may be left.
-    pub fn interval(&self, x: &[Interval], table: impl Fn(TableId) -> Interval) -> Option<Interval> {
+    pub fn interval(
+        &self,
+        x: &[Interval],
+        table: impl Fn(TableId) -> Interval,
+    ) -> Option<Interval> {
         let exact = |p: i64, q: i64| self.apply(&[p, q, 0], |_, _| 0).unwrap_or(0);
         Some(match *self {
             Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) => return None,
@@ -437,14 +523,21 @@ impl Op {
             | Self::Max(..) => x[0].corners(x[1], exact),
             Self::Neg(_) => Interval::new(-x[0].high, -x[0].low),
             Self::Abs(_) => {
-                let least = if x[0].low <= 0 && x[0].high >= 0 { 0 } else { x[0].low.abs().min(x[0].high.abs()) };
+                let least = if x[0].low <= 0 && x[0].high >= 0 {
+                    0
+                } else {
+                    x[0].low.abs().min(x[0].high.abs())
+                };
                 Interval::new(least, x[0].magnitude())
             }
             Self::MulLimited { .. } => {
                 if x[0].low < 0 || x[1].low < 0 {
                     return None;
                 }
-                Interval::new((x[0].low * x[1].low).min(x[2].low), (x[0].high * x[1].high).min(x[2].high))
+                Interval::new(
+                    (x[0].low * x[1].low).min(x[2].low),
+                    (x[0].high * x[1].high).min(x[2].high),
+                )
             }
             Self::ShiftLeft(_, n) => Interval::new(x[0].low << n, x[0].high << n),
             Self::ShiftRight(_, n) => Interval::new(x[0].low >> n, x[0].high >> n),
@@ -456,7 +549,10 @@ impl Op {
                 if x[0].low < 0 || x[1].low < 1 {
                     return None;
                 }
-                let quotient = Interval::new((x[0].low << shift) / x[1].high, (x[0].high << shift) / x[1].low);
+                let quotient = Interval::new(
+                    (x[0].low << shift) / x[1].high,
+                    (x[0].high << shift) / x[1].low,
+                );
                 Interval::new(quotient.low.min(x[2].low), quotient.high.min(x[2].high))
             }
             Self::TurnOver(_) => {
@@ -606,7 +702,9 @@ impl Function {
     /// and max + min, which is minus the middle one, by 1/3 limit.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
-        let Some((limit, legs, high, low)) = self.spread_condition(condition) else { return own };
+        let Some((limit, legs, high, low)) = self.spread_condition(condition) else {
+            return own;
+        };
         let limit = self.node(limit).interval.high.max(0);
         let bound = if legs.contains(&value) {
             limit * 2 / 3
@@ -620,13 +718,27 @@ impl Function {
 
     /// Matches `limit < max(a, b, c) - min(a, b, c)` with c = -(a + b): limit, legs, max, min.
     fn spread_condition(&self, condition: Value) -> Option<(Value, [Value; 3], Value, Value)> {
-        let Op::Compare(Comparison::Less, limit, spread) = self.node(condition).op else { return None };
-        let Op::Sub(high, low) = self.node(spread).op else { return None };
-        let Op::Max(high_pair, c) = self.node(high).op else { return None };
-        let Op::Max(a, b) = self.node(high_pair).op else { return None };
-        let Op::Min(low_pair, low_c) = self.node(low).op else { return None };
-        let Op::Neg(sum) = self.node(c).op else { return None };
-        let same = self.node(low_pair).op == Op::Min(a, b) && low_c == c && self.node(sum).op == Op::Add(a, b);
+        let Op::Compare(Comparison::Less, limit, spread) = self.node(condition).op else {
+            return None;
+        };
+        let Op::Sub(high, low) = self.node(spread).op else {
+            return None;
+        };
+        let Op::Max(high_pair, c) = self.node(high).op else {
+            return None;
+        };
+        let Op::Max(a, b) = self.node(high_pair).op else {
+            return None;
+        };
+        let Op::Min(low_pair, low_c) = self.node(low).op else {
+            return None;
+        };
+        let Op::Neg(sum) = self.node(c).op else {
+            return None;
+        };
+        let same = self.node(low_pair).op == Op::Min(a, b)
+            && low_c == c
+            && self.node(sum).op == Op::Add(a, b);
         same.then_some((limit, [a, b, c], high, low))
     }
 

@@ -70,7 +70,10 @@ impl<'g> Machine<'g> {
         self.values.resize(function.nodes.len(), 0);
         let mut node = 0;
         for stage in &function.stages {
-            let runs = stage.guard.as_ref().is_none_or(|guard| self.values[guard.condition.index()] == 1);
+            let runs = stage
+                .guard
+                .as_ref()
+                .is_none_or(|guard| self.values[guard.condition.index()] == 1);
             if runs {
                 for index in stage.first..stage.end {
                     self.evaluate(function, index, inputs)?;
@@ -79,7 +82,8 @@ impl<'g> Machine<'g> {
             node = stage.end;
             for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
                 if let Op::Join { taken, otherwise } = function.node(*join).op {
-                    self.values[join.index()] = self.values[if runs { taken } else { otherwise }.index()];
+                    self.values[join.index()] =
+                        self.values[if runs { taken } else { otherwise }.index()];
                 }
                 node += 1;
             }
@@ -92,10 +96,19 @@ impl<'g> Machine<'g> {
         for &(param, value) in &function.next_params {
             self.params[param.index()] = word(value, &self.values);
         }
-        Ok(function.outputs.iter().map(|&(_, value)| word(value, &self.values)).collect())
+        Ok(function
+            .outputs
+            .iter()
+            .map(|&(_, value)| word(value, &self.values))
+            .collect())
     }
 
-    fn evaluate(&mut self, function: &Function, index: usize, inputs: &[i32]) -> Result<(), Escape> {
+    fn evaluate(
+        &mut self,
+        function: &Function,
+        index: usize,
+        inputs: &[i32],
+    ) -> Result<(), Escape> {
         let node = &function.nodes[index];
         let mut operands = [0_i64; 3];
         for (slot, operand) in operands.iter_mut().zip(node.op.operands()) {
@@ -117,8 +130,15 @@ impl<'g> Machine<'g> {
                 Ok(())
             }
             value => {
-                let name = if node.name.is_empty() { format!("%{index}") } else { node.name.clone() };
-                Err(Escape { place: format!("{}: {name}", function.name), value })
+                let name = if node.name.is_empty() {
+                    format!("%{index}")
+                } else {
+                    node.name.clone()
+                };
+                Err(Escape {
+                    place: format!("{}: {name}", function.name),
+                    value,
+                })
             }
         }
     }

@@ -56,7 +56,11 @@ impl Function {
         let live = self.live();
         let position = renumbered(&live);
         let moved = |value: Value| Value(position[value.index()]);
-        let before = |index: usize| position.get(index).map_or(live.iter().filter(|&&x| x).count(), |&p| p as usize);
+        let before = |index: usize| {
+            position
+                .get(index)
+                .map_or(live.iter().filter(|&&x| x).count(), |&p| p as usize)
+        };
         for stage in &mut self.stages {
             stage.first = before(stage.first);
             stage.end = before(stage.end);
@@ -75,16 +79,26 @@ impl Function {
         for node in &mut self.nodes {
             node.op.map_operands(moved);
         }
-        self.outputs.iter_mut().for_each(|(_, value)| *value = moved(*value));
-        self.next_state.iter_mut().for_each(|(_, value)| *value = moved(*value));
-        self.next_params.iter_mut().for_each(|(_, value)| *value = moved(*value));
+        self.outputs
+            .iter_mut()
+            .for_each(|(_, value)| *value = moved(*value));
+        self.next_state
+            .iter_mut()
+            .for_each(|(_, value)| *value = moved(*value));
+        self.next_params
+            .iter_mut()
+            .for_each(|(_, value)| *value = moved(*value));
     }
 
     /// Which nodes some result needs; a join needs its stage's guard.
     fn live(&self) -> Vec<bool> {
         let mut live = vec![false; self.nodes.len()];
         let results = self.outputs.iter().map(|&(_, value)| value);
-        let words = self.next_state.iter().map(|&(_, value)| value).chain(self.next_params.iter().map(|&(_, value)| value));
+        let words = self
+            .next_state
+            .iter()
+            .map(|&(_, value)| value)
+            .chain(self.next_params.iter().map(|&(_, value)| value));
         let mut wanted: Vec<Value> = results.chain(words).collect();
         while let Some(value) = wanted.pop() {
             if std::mem::replace(&mut live[value.index()], true) {
@@ -92,7 +106,11 @@ impl Function {
             }
             wanted.extend(self.node(value).op.operands());
             let guards = self.stages.iter().filter_map(|stage| stage.guard.as_ref());
-            wanted.extend(guards.filter(|guard| guard.joins.contains(&value)).map(|guard| guard.condition));
+            wanted.extend(
+                guards
+                    .filter(|guard| guard.joins.contains(&value))
+                    .map(|guard| guard.condition),
+            );
         }
         live
     }

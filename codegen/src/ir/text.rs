@@ -11,13 +11,27 @@ impl fmt::Display for Program {
             writeln!(f, "const {} = {}", constant.name, constant.raw)?;
         }
         for table in &self.tables {
-            writeln!(f, "table {}[{}] = {:?}", table.name, table.values.len(), table.values)?;
+            writeln!(
+                f,
+                "table {}[{}] = {:?}",
+                table.name,
+                table.values.len(),
+                table.values
+            )?;
         }
         for word in &self.params {
-            writeln!(f, "param {}: i{} in {} = {}", word.name, word.storage_bits, word.interval, word.initial)?;
+            writeln!(
+                f,
+                "param {}: i{} in {} = {}",
+                word.name, word.storage_bits, word.interval, word.initial
+            )?;
         }
         for word in &self.states {
-            writeln!(f, "state {}: i{} in {} = {}", word.name, word.storage_bits, word.interval, word.initial)?;
+            writeln!(
+                f,
+                "state {}: i{} in {} = {}",
+                word.name, word.storage_bits, word.interval, word.initial
+            )?;
         }
         for function in self.functions() {
             writeln!(f)?;
@@ -29,15 +43,23 @@ impl fmt::Display for Program {
 
 impl Program {
     fn write_function(&self, f: &mut fmt::Formatter<'_>, function: &Function) -> fmt::Result {
-        let inputs: Vec<String> =
-            function.inputs.iter().map(|input| format!("{} in {}", input.name, input.interval)).collect();
+        let inputs: Vec<String> = function
+            .inputs
+            .iter()
+            .map(|input| format!("{} in {}", input.name, input.interval))
+            .collect();
         writeln!(f, "fn {}({})", function.name, inputs.join(", "))?;
         for stage in &function.stages {
             match &stage.guard {
                 None => writeln!(f, "  {}:", stage.name)?,
                 Some(guard) => {
                     let rare = if guard.rare { "rarely " } else { "" };
-                    writeln!(f, "  {} ({rare}if {}):", stage.name, name(function, guard.condition))?;
+                    writeln!(
+                        f,
+                        "  {} ({rare}if {}):",
+                        stage.name,
+                        name(function, guard.condition)
+                    )?;
                 }
             }
             for index in stage.first..stage.end {
@@ -51,15 +73,30 @@ impl Program {
             writeln!(f, "  output {output} = {}", name(function, *value))?;
         }
         for (state, value) in &function.next_state {
-            writeln!(f, "  state {} = {}", self.states[state.index()].name, name(function, *value))?;
+            writeln!(
+                f,
+                "  state {} = {}",
+                self.states[state.index()].name,
+                name(function, *value)
+            )?;
         }
         for (param, value) in &function.next_params {
-            writeln!(f, "  param {} = {}", self.params[param.index()].name, name(function, *value))?;
+            writeln!(
+                f,
+                "  param {} = {}",
+                self.params[param.index()].name,
+                name(function, *value)
+            )?;
         }
         Ok(())
     }
 
-    fn write_node(&self, f: &mut fmt::Formatter<'_>, function: &Function, value: Value) -> fmt::Result {
+    fn write_node(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        function: &Function,
+        value: Value,
+    ) -> fmt::Result {
         let node = function.node(value);
         if matches!(node.op, Op::Constant(_) | Op::Literal(_)) && node.name.is_empty() {
             return Ok(());
@@ -68,7 +105,12 @@ impl Program {
             Kind::Flag => "flag".to_owned(),
             Kind::Word => node.interval.to_string(),
         };
-        writeln!(f, "    {} = {}  ; {range}", name(function, value), self.expression(function, node.op))
+        writeln!(
+            f,
+            "    {} = {}  ; {range}",
+            name(function, value),
+            self.expression(function, node.op)
+        )
     }
 
     fn expression(&self, function: &Function, op: Op) -> String {
@@ -88,7 +130,11 @@ impl Program {
             Op::Neg(a) => format!("-{}", of(a)),
             Op::Abs(a) => format!("abs {}", of(a)),
             Op::Product(a, b) => format!("{} * {}", of(a), of(b)),
-            Op::MulRound { coefficient, signal, shift } => {
+            Op::MulRound {
+                coefficient,
+                signal,
+                shift,
+            } => {
                 format!("round({} * {} >> {shift})", of(coefficient), of(signal))
             }
             Op::MulFloor { a, b, shift } => format!("floor({} * {} >> {shift})", of(a), of(b)),
@@ -98,15 +144,27 @@ impl Program {
             Op::Min(a, b) => format!("min({}, {})", of(a), of(b)),
             Op::Max(a, b) => format!("max({}, {})", of(a), of(b)),
             Op::Clamp { x, low, high } => format!("clamp({}, {}, {})", of(x), of(low), of(high)),
-            Op::Divide { numerator, shift, denominator, limit } => {
-                format!("min(({} << {shift}) / {}, {})", of(numerator), of(denominator), of(limit))
+            Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            } => {
+                format!(
+                    "min(({} << {shift}) / {}, {})",
+                    of(numerator),
+                    of(denominator),
+                    of(limit)
+                )
             }
             Op::TurnOver(a) => format!("turn / {}", of(a)),
             Op::AngleAdd(a, b) => format!("angle {} + {}", of(a), of(b)),
             Op::AngleSub(a, b) => format!("angle {} - {}", of(a), of(b)),
             Op::AngleIndex { angle, segments } => format!("segment({}, {segments})", of(angle)),
             Op::AngleFraction { angle, segments } => format!("fraction({}, {segments})", of(angle)),
-            Op::Lookup { table, index } => format!("{}[{}]", self.tables[table.index()].name, of(index)),
+            Op::Lookup { table, index } => {
+                format!("{}[{}]", self.tables[table.index()].name, of(index))
+            }
             Op::Compare(how, a, b) => {
                 let sign = match how {
                     Comparison::Less => "<",
@@ -119,7 +177,11 @@ impl Program {
             Op::And(a, b) => format!("{} and {}", of(a), of(b)),
             Op::Or(a, b) => format!("{} or {}", of(a), of(b)),
             Op::Not(a) => format!("not {}", of(a)),
-            Op::Select { condition, then, otherwise } => {
+            Op::Select {
+                condition,
+                then,
+                otherwise,
+            } => {
                 format!("{} if {} else {}", of(then), of(condition), of(otherwise))
             }
             Op::Join { taken, otherwise } => format!("join({}, {})", of(taken), of(otherwise)),

@@ -67,21 +67,38 @@ pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
         check_word(word, &mut violations);
     }
     for function in program.functions() {
-        FunctionCheck { program: &program, function, violations: &mut violations }.run();
+        FunctionCheck {
+            program: &program,
+            function,
+            violations: &mut violations,
+        }
+        .run();
     }
-    let set: Vec<usize> = program.step.next_state.iter().map(|(state, _)| state.index()).collect();
+    let set: Vec<usize> = program
+        .step
+        .next_state
+        .iter()
+        .map(|(state, _)| state.index())
+        .collect();
     for (index, word) in program.states.iter().enumerate() {
         if set.iter().filter(|&&state| state == index).count() != 1 {
             violations.add(&word.name, "state word is not set exactly once");
         }
     }
-    if violations.0.is_empty() { Ok(VerifiedGraph(program)) } else { Err(violations.0) }
+    if violations.0.is_empty() {
+        Ok(VerifiedGraph(program))
+    } else {
+        Err(violations.0)
+    }
 }
 
 fn check_word(word: &Word, violations: &mut Violations) {
     let initial = Interval::point(i64::from(word.initial));
     if !word.interval.contains(initial) {
-        violations.add(&word.name, &format!("initial value {} outside {}", word.initial, word.interval));
+        violations.add(
+            &word.name,
+            &format!("initial value {} outside {}", word.initial, word.interval),
+        );
     }
     if word.interval.bits() > word.storage_bits || ![16, 32].contains(&word.storage_bits) {
         violations.escape(&word.name, word.interval, word.storage_bits);
@@ -92,12 +109,23 @@ struct Violations(Vec<Violation>);
 
 impl Violations {
     fn add(&mut self, place: &str, what: &str) {
-        self.0.push(Violation { place: place.to_owned(), what: what.to_owned(), escaped: None });
+        self.0.push(Violation {
+            place: place.to_owned(),
+            what: what.to_owned(),
+            escaped: None,
+        });
     }
 
     fn escape(&mut self, place: &str, interval: Interval, bits: u32) {
-        let what = format!("interval {interval} needs {} bits, the word has {bits}", interval.bits());
-        self.0.push(Violation { place: place.to_owned(), what, escaped: Some(interval) });
+        let what = format!(
+            "interval {interval} needs {} bits, the word has {bits}",
+            interval.bits()
+        );
+        self.0.push(Violation {
+            place: place.to_owned(),
+            what,
+            escaped: Some(interval),
+        });
     }
 }
 
@@ -125,7 +153,12 @@ impl FunctionCheck<'_> {
     }
 
     fn place(&self, value: usize) -> String {
-        match self.function.nodes.get(value).map(|node| node.name.as_str()) {
+        match self
+            .function
+            .nodes
+            .get(value)
+            .map(|node| node.name.as_str())
+        {
             None | Some("") => format!("{}: %{value}", self.function.name),
             Some(name) => format!("{}: {name}", self.function.name),
         }
@@ -136,14 +169,22 @@ impl FunctionCheck<'_> {
         let outputs = function.outputs.iter().map(|&(_, value)| value);
         let states = function.next_state.iter().map(|&(_, value)| value);
         let params = function.next_params.iter().map(|&(_, value)| value);
-        let guards = function.stages.iter().filter_map(|stage| stage.guard.as_ref().map(|guard| guard.condition));
+        let guards = function
+            .stages
+            .iter()
+            .filter_map(|stage| stage.guard.as_ref().map(|guard| guard.condition));
         outputs.chain(states).chain(params).chain(guards).collect()
     }
 
     fn check_order(&mut self) {
         let function = self.function;
         for (index, node) in function.nodes.iter().enumerate() {
-            if node.op.operands().iter().any(|operand| operand.index() >= index) {
+            if node
+                .op
+                .operands()
+                .iter()
+                .any(|operand| operand.index() >= index)
+            {
                 self.fail(index, "operand defined later");
             }
             let known = match node.op {
@@ -158,7 +199,11 @@ impl FunctionCheck<'_> {
                 self.fail(index, "names a word, constant or table that does not exist");
             }
         }
-        if self.roots().iter().any(|root| root.index() >= function.nodes.len()) {
+        if self
+            .roots()
+            .iter()
+            .any(|root| root.index() >= function.nodes.len())
+        {
             self.violations.add(&function.name, "result is not defined");
         }
     }
@@ -179,7 +224,8 @@ impl FunctionCheck<'_> {
         let mut next = 0;
         for stage in &function.stages {
             if stage.first != next || stage.end < stage.first {
-                self.violations.add(&stage.name, "stages do not follow one another");
+                self.violations
+                    .add(&stage.name, "stages do not follow one another");
             }
             next = stage.end;
             for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
@@ -187,7 +233,8 @@ impl FunctionCheck<'_> {
                 next += 1;
                 let from_inside = match function.node(*join).op {
                     Op::Join { taken, otherwise } => {
-                        (stage.first..stage.end).contains(&taken.index()) && otherwise.index() < stage.first
+                        (stage.first..stage.end).contains(&taken.index())
+                            && otherwise.index() < stage.first
                             || taken.index() < stage.first && otherwise.index() < stage.first
                     }
                     _ => false,
@@ -199,28 +246,40 @@ impl FunctionCheck<'_> {
             if let Some(guard) = &stage.guard
                 && guard.condition.index() >= stage.first
             {
-                self.violations.add(&stage.name, "guard is defined after the stage begins");
+                self.violations
+                    .add(&stage.name, "guard is defined after the stage begins");
             }
         }
         if next != function.nodes.len() {
-            self.violations.add(&function.name, "stages do not cover all nodes");
+            self.violations
+                .add(&function.name, "stages do not cover all nodes");
         }
         let stage_of = self.stage_of_nodes();
-        let guarded = |node: usize| stage_of[node].filter(|&stage| function.stages[stage].guard.is_some());
+        let guarded =
+            |node: usize| stage_of[node].filter(|&stage| function.stages[stage].guard.is_some());
         for (index, node) in function.nodes.iter().enumerate() {
             for operand in node.op.operands() {
                 let inside = guarded(operand.index());
                 let own_join = inside.is_some_and(|stage| {
-                    function.stages[stage].guard.as_ref().is_some_and(|guard| guard.joins.contains(&Value(index as u32)))
+                    function.stages[stage]
+                        .guard
+                        .as_ref()
+                        .is_some_and(|guard| guard.joins.contains(&Value(index as u32)))
                 });
                 if inside.is_some() && stage_of[index] != inside && !own_join {
-                    self.fail(operand.index(), "leaves its guarded stage other than by a join");
+                    self.fail(
+                        operand.index(),
+                        "leaves its guarded stage other than by a join",
+                    );
                 }
             }
         }
         for root in self.roots() {
             if guarded(root.index()).is_some() {
-                self.fail(root.index(), "leaves its guarded stage other than by a join");
+                self.fail(
+                    root.index(),
+                    "leaves its guarded stage other than by a join",
+                );
             }
         }
     }
@@ -228,16 +287,33 @@ impl FunctionCheck<'_> {
     fn check_nodes(&mut self) {
         let function = self.function;
         let guard_of = |index: usize| {
-            let guards = function.stages.iter().filter_map(|stage| stage.guard.as_ref());
-            guards.filter(|guard| guard.joins.contains(&Value(index as u32))).map(|guard| guard.condition).next()
+            let guards = function
+                .stages
+                .iter()
+                .filter_map(|stage| stage.guard.as_ref());
+            guards
+                .filter(|guard| guard.joins.contains(&Value(index as u32)))
+                .map(|guard| guard.condition)
+                .next()
         };
         for (index, node) in function.nodes.iter().enumerate() {
-            let kinds: Vec<Kind> = node.op.operands().iter().map(|&operand| function.node(operand).kind).collect();
-            if node.kind != node.op.kind(|value| function.node(value).kind) || kinds != node.op.operand_kinds(node.kind) {
+            let kinds: Vec<Kind> = node
+                .op
+                .operands()
+                .iter()
+                .map(|&operand| function.node(operand).kind)
+                .collect();
+            if node.kind != node.op.kind(|value| function.node(value).kind)
+                || kinds != node.op.operand_kinds(node.kind)
+            {
                 self.fail(index, "operand kinds do not fit the operator");
             }
-            let operands: Vec<Interval> =
-                node.op.operands().iter().map(|&operand| function.node(operand).interval).collect();
+            let operands: Vec<Interval> = node
+                .op
+                .operands()
+                .iter()
+                .map(|&operand| function.node(operand).interval)
+                .collect();
             if !in_domain(&node.op, &operands) {
                 self.fail(index, "operands may leave the operator's domain");
                 continue;
@@ -246,17 +322,26 @@ impl FunctionCheck<'_> {
                 Op::Input(n) => Some(function.inputs[n as usize].interval),
                 Op::Param(id) => Some(self.program.params[id.index()].interval),
                 Op::State(id) => Some(self.program.states[id.index()].interval),
-                Op::Constant(id) => Some(Interval::point(i64::from(self.program.constants[id.index()].raw))),
-                Op::Join { otherwise, .. } => {
-                    guard_of(index).map(|guard| operands[0].union(function.interval_where_not(guard, otherwise)))
-                }
-                op => op.interval(&operands, |table| self.program.tables[table.index()].interval()),
+                Op::Constant(id) => Some(Interval::point(i64::from(
+                    self.program.constants[id.index()].raw,
+                ))),
+                Op::Join { otherwise, .. } => guard_of(index)
+                    .map(|guard| operands[0].union(function.interval_where_not(guard, otherwise))),
+                op => op.interval(&operands, |table| {
+                    self.program.tables[table.index()].interval()
+                }),
             };
             if !Interval::WORD.contains(node.interval) {
                 let place = self.place(index);
                 self.violations.escape(&place, node.interval, 32);
             } else if derived != Some(node.interval) {
-                self.fail(index, &format!("interval {} does not follow from the operands", node.interval));
+                self.fail(
+                    index,
+                    &format!(
+                        "interval {} does not follow from the operands",
+                        node.interval
+                    ),
+                );
             }
         }
     }
@@ -268,7 +353,11 @@ impl FunctionCheck<'_> {
         let mut uses: Vec<Vec<Option<usize>>> = vec![vec![]; function.nodes.len()];
         for (index, node) in function.nodes.iter().enumerate() {
             for operand in node.op.operands() {
-                uses[operand.index()].push(if matches!(node.op, Op::Join { .. }) { None } else { stage_of[index] });
+                uses[operand.index()].push(if matches!(node.op, Op::Join { .. }) {
+                    None
+                } else {
+                    stage_of[index]
+                });
             }
             if !node.name.is_empty() && !names.insert(node.name.as_str()) {
                 self.fail(index, "named twice");
@@ -282,19 +371,35 @@ impl FunctionCheck<'_> {
             if uses[index].is_empty() {
                 self.fail(index, "is never used");
             } else if node.name.is_empty() && !free && uses[index] != [stage_of[index]] {
-                self.fail(index, "is used more than once or outside its stage and has no name");
+                self.fail(
+                    index,
+                    "is used more than once or outside its stage and has no name",
+                );
             }
         }
     }
 
     fn check_results(&mut self) {
         let function = self.function;
-        let states = function.next_state.iter().map(|&(id, value)| (&self.program.states[id.index()], value));
-        let params = function.next_params.iter().map(|&(id, value)| (&self.program.params[id.index()], value));
+        let states = function
+            .next_state
+            .iter()
+            .map(|&(id, value)| (&self.program.states[id.index()], value));
+        let params = function
+            .next_params
+            .iter()
+            .map(|&(id, value)| (&self.program.params[id.index()], value));
         let wrong: Vec<String> = states
             .chain(params)
             .filter(|(word, value)| !word.interval.contains(function.node(*value).interval))
-            .map(|(word, value)| format!("{}: set to {}, holds {}", word.name, function.node(value).interval, word.interval))
+            .map(|(word, value)| {
+                format!(
+                    "{}: set to {}, holds {}",
+                    word.name,
+                    function.node(value).interval,
+                    word.interval
+                )
+            })
             .collect();
         for what in wrong {
             self.violations.add(&function.name, &what);
@@ -309,10 +414,15 @@ fn in_domain(op: &Op, x: &[Interval]) -> bool {
         Op::MulFloor { shift, .. } => shift <= 62,
         Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
         Op::Divide { shift, .. } => shift <= 31,
-        Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => (1..=1 << 16).contains(&segments),
+        Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => {
+            (1..=1 << 16).contains(&segments)
+        }
         Op::Clamp { .. } => x[1].high <= x[2].low,
         _ => true,
     };
-    let leaf = matches!(op, Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_));
+    let leaf = matches!(
+        op,
+        Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_)
+    );
     formed && (leaf || op.interval(x, |_| Interval::point(0)).is_some())
 }

@@ -1,9 +1,9 @@
 //! Functions of the rotor angle: flux tables behind the modelled EMF, and the proportional reference
 //! (semantics, steps 6 and 8 and the section on tables).
 
-use super::rotor::Rotor;
 use super::Lowering;
-use crate::design::emf::{proportional_current, zero_sum_integral, Parabolas};
+use super::rotor::Rotor;
+use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
 use crate::interface::Rounding;
 use crate::ir::{Interval, TableId, Value};
 
@@ -27,7 +27,13 @@ pub struct FluxModel {
 }
 
 impl Lowering<'_> {
-    fn periodic_table(&mut self, name: &'static str, fit: &Parabolas, frac_bits: u32, doc: &str) -> PeriodicTable {
+    fn periodic_table(
+        &mut self,
+        name: &'static str,
+        fit: &Parabolas,
+        frac_bits: u32,
+        doc: &str,
+    ) -> PeriodicTable {
         let scale = f64::from(frac_bits).exp2();
         let segments = fit.coefficients.len() as u32;
         let coefficients = [0, 1, 2].map(|power| {
@@ -44,8 +50,17 @@ impl Lowering<'_> {
             "flux" => "flux_segments",
             _ => "shape_segments",
         };
-        self.format(count, 32, segments as i32, Rounding::Floor, "segments of a turn in the table (a count, not bits)");
-        PeriodicTable { coefficients, segments }
+        self.format(
+            count,
+            32,
+            segments as i32,
+            Rounding::Floor,
+            "segments of a turn in the table (a count, not bits)",
+        );
+        PeriodicTable {
+            coefficients,
+            segments,
+        }
     }
 
     fn evaluate(&mut self, name: &str, table: PeriodicTable, angle: Value) -> Value {
@@ -64,7 +79,11 @@ impl Lowering<'_> {
     }
 
     fn lagging(&mut self, name: &str, theta: Value) -> Value {
-        let third = self.number("third_turn", THIRD_TURN, "A third of a turn: phase b lags phase a by it.");
+        let third = self.number(
+            "third_turn",
+            THIRD_TURN,
+            "A third of a turn: phase b lags phase a by it.",
+        );
         let lagged = self.b.angle_sub(theta, third);
         self.b.name(name, lagged)
     }
@@ -84,10 +103,19 @@ impl Lowering<'_> {
     pub fn flux_model(&mut self) -> FluxModel {
         let (motor, inverter) = (&self.spec.motor, &self.spec.inverter);
         let shape = motor.emf_shape;
-        let volts = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / self.scale.volt_per_count;
+        let volts = motor.emf_constant
+            / (f64::from(motor.pole_pairs) * inverter.t_s)
+            / self.scale.volt_per_count;
         let unit = Parabolas::fit(|theta| zero_sum_integral(shape, theta), 1e-5);
-        let coefficients = unit.coefficients.iter().map(|c| c.map(|x| x * volts)).collect();
-        let fit = Parabolas { coefficients, error: unit.error * volts };
+        let coefficients = unit
+            .coefficients
+            .iter()
+            .map(|c| c.map(|x| x * volts))
+            .collect();
+        let fit = Parabolas {
+            coefficients,
+            error: unit.error * volts,
+        };
         // Two values and a slope must fit one word together: 2^29 for each.
         let frac_bits = (29.0 - fit.magnitude().log2()).floor().clamp(0.0, 28.0) as u32;
         let doc = "Flux linkage of phase a over the period, in timer counts of bus voltage, over the electrical angle";
@@ -96,7 +124,13 @@ impl Lowering<'_> {
     }
 
     /// Mean EMF over the target period as the difference of flux linkage at its ends; phases a and b.
-    pub fn model_emf(&mut self, flux: FluxModel, rotor: &Rotor, delay: u32, e_limit: f64) -> [Value; 2] {
+    pub fn model_emf(
+        &mut self,
+        flux: FluxModel,
+        rotor: &Rotor,
+        delay: u32,
+        e_limit: f64,
+    ) -> [Value; 2] {
         let bits = self.scale.voltage_bits;
         if flux.frac_bits < bits {
             self.misfits.push("flux".to_owned());
@@ -114,21 +148,38 @@ impl Lowering<'_> {
         let starts = [start, self.lagging("theta_start_b", start)];
         let ends = [end, self.lagging("theta_end_b", end)];
         [0, 1].map(|x| {
-            let at_start = self.evaluate(["flux_start_a", "flux_start_b"][x], flux.table, starts[x]);
+            let at_start =
+                self.evaluate(["flux_start_a", "flux_start_b"][x], flux.table, starts[x]);
             let at_end = self.evaluate(["flux_end_a", "flux_end_b"][x], flux.table, ends[x]);
             let change = self.b.sub(at_end, at_start);
-            let volts = if flux.frac_bits > bits { self.b.shift_right(change, flux.frac_bits - bits) } else { change };
-            let doc = "Largest EMF that is believed: one and a half times that of the greatest speed.";
-            let (low, high) = (self.number("e_min", -limit, doc), self.number("e_max", limit, doc));
+            let volts = if flux.frac_bits > bits {
+                self.b.shift_right(change, flux.frac_bits - bits)
+            } else {
+                change
+            };
+            let doc =
+                "Largest EMF that is believed: one and a half times that of the greatest speed.";
+            let (low, high) = (
+                self.number("e_min", -limit, doc),
+                self.number("e_max", limit, doc),
+            );
             let e = self.b.clamp(volts, low, high);
             self.b.name(["e_a", "e_b"][x], e)
         })
     }
 
     /// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and b.
-    pub fn proportional_reference(&mut self, rotor: &Rotor, set_point: Value, delay: u32) -> [Value; 2] {
+    pub fn proportional_reference(
+        &mut self,
+        rotor: &Rotor,
+        set_point: Value,
+        delay: u32,
+    ) -> [Value; 2] {
         let motor = &self.spec.motor;
-        let (shape, ratio) = (motor.emf_shape, self.spec.torque_constant() / motor.emf_constant);
+        let (shape, ratio) = (
+            motor.emf_shape,
+            self.spec.torque_constant() / motor.emf_constant,
+        );
         let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
         let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
         let table = self.periodic_table("shape", &fit, SHAPE_BITS, doc);
@@ -149,9 +200,15 @@ impl Lowering<'_> {
     pub fn quasi_square_reference(&mut self, sector: Value, set_point: Value) -> [Value; 2] {
         let corner = |phase: usize| {
             let signs = crate::design::vectors::SECTOR_CURRENT;
-            std::iter::once(0).chain(signs.iter().map(|legs| legs[phase])).collect::<Vec<i32>>()
+            std::iter::once(0)
+                .chain(signs.iter().map(|legs| legs[phase]))
+                .collect::<Vec<i32>>()
         };
-        let doc = |phase: &str| [format!("Sign of the phase-{phase} reference in sectors 1 to 6: the conducting pair carries (+I, -I).")];
+        let doc = |phase: &str| {
+            [format!(
+                "Sign of the phase-{phase} reference in sectors 1 to 6: the conducting pair carries (+I, -I)."
+            )]
+        };
         let tables = [
             self.b.program.table("corner_a", corner(0), &doc("a")),
             self.b.program.table("corner_b", corner(1), &doc("b")),

@@ -36,8 +36,18 @@ const BLEND_BITS: u32 = 15;
 
 impl Lowering<'_> {
     /// Limits the voltage `u` (phases a, b) to the hexagon; `e` is the EMF (phases a, b).
-    pub fn limit_voltage(&mut self, rule: LimitRule, u: [Value; 2], e: [Value; 2], bus: Bus, third: Coefficient) -> Limited {
-        self.b.stage("find_saturation", &["Largest less smallest phase voltage: more than the bus means saturation."]);
+    pub fn limit_voltage(
+        &mut self,
+        rule: LimitRule,
+        u: [Value; 2],
+        e: [Value; 2],
+        bus: Bus,
+        third: Coefficient,
+    ) -> Limited {
+        self.b.stage(
+            "find_saturation",
+            &["Largest less smallest phase voltage: more than the bus means saturation."],
+        );
         let u_c = self.third_phase("u_c_unsat", u[0], u[1]);
         let [high, low] = self.extremes(["u_max", "u_min"], [u[0], u[1], u_c]);
         let spread = self.b.sub(high, low);
@@ -50,8 +60,19 @@ impl Lowering<'_> {
         let free = Limited { u, u_c, middle };
         let limited = match rule {
             LimitRule::KeepAngle => {
-                self.b.guarded_stage("limit_keep_angle", saturated, true, &["Scales the voltage to the edge of the hexagon; its angle stays."]);
-                self.format("scale", 32, SCALE_BITS as i32, Rounding::Floor, "bus over spread, at most 1");
+                self.b.guarded_stage(
+                    "limit_keep_angle",
+                    saturated,
+                    true,
+                    &["Scales the voltage to the edge of the hexagon; its angle stays."],
+                );
+                self.format(
+                    "scale",
+                    32,
+                    SCALE_BITS as i32,
+                    Rounding::Floor,
+                    "bus over spread, at most 1",
+                );
                 let one = self.b.literal(1 << SCALE_BITS);
                 let divisor = self.at_least_one(spread);
                 let scale = self.b.divide(bus.volts, SCALE_BITS, divisor, one);
@@ -89,7 +110,10 @@ impl Lowering<'_> {
         let names = ["u_a_limited", "u_b_limited"];
         let inside = [0, 1].map(|x| self.b.name(names[x], limited[x]));
         let inside_c = self.third_phase("u_c_limited", inside[0], inside[1]);
-        let [high, low] = self.extremes(["limited_max", "limited_min"], [inside[0], inside[1], inside_c]);
+        let [high, low] = self.extremes(
+            ["limited_max", "limited_min"],
+            [inside[0], inside[1], inside_c],
+        );
         let sum = self.b.add(high, low);
         let inside_middle = self.b.shift_right(sum, 1);
         self.b.name("limited_middle", inside_middle);
@@ -99,7 +123,11 @@ impl Lowering<'_> {
             ("u_c", inside_c, u_c),
             ("middle", inside_middle, middle),
         ]);
-        Limited { u: [u_a, u_b], u_c, middle }
+        Limited {
+            u: [u_a, u_b],
+            u_c,
+            middle,
+        }
     }
 
     fn at_least_one(&mut self, value: Value) -> Value {
@@ -134,7 +162,13 @@ impl Lowering<'_> {
         self.b.min(low, bus)
     }
 
-    fn torque_priority(&mut self, free: Limited, e: [Value; 2], bus: Bus, third: Coefficient) -> [Value; 2] {
+    fn torque_priority(
+        &mut self,
+        free: Limited,
+        e: [Value; 2],
+        bus: Bus,
+        third: Coefficient,
+    ) -> [Value; 2] {
         let near = self.nearest(free, bus, third);
         let near = [0, 1].map(|x| self.b.name(["u_a_near", "u_b_near"][x], near[x]));
         let near_c = self.third_phase("u_c_near", near[0], near[1]);
@@ -142,7 +176,10 @@ impl Lowering<'_> {
         // d, x, y: the phase of the largest EMF and the next two.
         let e_c = self.third_phase("e_c", e[0], e[1]);
         let size = [e[0], e[1], e_c].map(|phase| self.b.abs(phase));
-        let size = [0, 1, 2].map(|x| self.b.name(["e_a_size", "e_b_size", "e_c_size"][x], size[x]));
+        let size = [0, 1, 2].map(|x| {
+            self.b
+                .name(["e_a_size", "e_b_size", "e_c_size"][x], size[x])
+        });
         let over_b = self.b.compare(Comparison::LessEqual, size[1], size[0]);
         let over_c = self.b.compare(Comparison::LessEqual, size[2], size[0]);
         let d_is_a = self.b.and(over_b, over_c);
@@ -176,8 +213,14 @@ impl Lowering<'_> {
             let difference = self.b.sub(d, x);
             self.b.name(name, difference)
         };
-        let line = [differences(u_d, u_x, "line_x"), differences(u_d, u_y, "line_y")];
-        let near_line = [differences(n_d, n_x, "near_line_x"), differences(n_d, n_y, "near_line_y")];
+        let line = [
+            differences(u_d, u_x, "line_x"),
+            differences(u_d, u_y, "line_y"),
+        ];
+        let near_line = [
+            differences(n_d, n_x, "near_line_x"),
+            differences(n_d, n_y, "near_line_y"),
+        ];
         let flip = |lowering: &mut Self, flag: Value, value: Value| {
             let turned = lowering.b.neg(value);
             lowering.b.select(flag, value, turned)
@@ -278,12 +321,24 @@ impl Lowering<'_> {
 
     /// The least shift at which the sum of two products fits a word with room for one more bit.
     fn product_shift(&mut self, forces: [Value; 2], lines: [Value; 2]) -> u32 {
-        let bits = |values: [Value; 2]| values.map(|value| self.b.interval(value).bits()).into_iter().max().unwrap_or(32);
+        let bits = |values: [Value; 2]| {
+            values
+                .map(|value| self.b.interval(value).bits())
+                .into_iter()
+                .max()
+                .unwrap_or(32)
+        };
         let shift = (bits(forces) + bits(lines)).saturating_sub(31);
         if shift > 31 {
             self.misfits.push("emf_product".to_owned());
         }
-        self.format("emf_product", 32, shift as i32, Rounding::Floor, "products of EMF and voltage in torque priority");
+        self.format(
+            "emf_product",
+            32,
+            shift as i32,
+            Rounding::Floor,
+            "products of EMF and voltage in torque priority",
+        );
         shift
     }
 }

@@ -69,11 +69,19 @@ impl Lowering<'_> {
         let [a, b] = [0, 1].map(|x| {
             let offset = self.b.state(offsets[x]);
             let scaled = self.b.shift_left(counts[x], shift);
-            let current = if inverted { self.b.sub(offset, scaled) } else { self.b.sub(scaled, offset) };
+            let current = if inverted {
+                self.b.sub(offset, scaled)
+            } else {
+                self.b.sub(scaled, offset)
+            };
             self.b.name(names[x], current)
         });
         let c = self.third_phase("i_c", a, b);
-        Currents { counts, out_of_range, phases: [a, b, c] }
+        Currents {
+            counts,
+            out_of_range,
+            phases: [a, b, c],
+        }
     }
 
     /// Sector and edge.
@@ -82,12 +90,18 @@ impl Lowering<'_> {
             "read_hall",
             &["Sector from the Hall code; an invalid code (000, 111) keeps the last sector and trips the drive."],
         );
-        let hall = self.b.input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
+        let hall = self
+            .b
+            .input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
         let mut sectors = vec![0; 8];
         for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
             sectors[usize::from(code & 7)] = sector;
         }
-        let decode = self.b.program.table("hall_sector", sectors, &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()]);
+        let decode = self.b.program.table(
+            "hall_sector",
+            sectors,
+            &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],
+        );
         let code = self.b.lookup(decode, hall);
         self.b.name("hall_code_sector", code);
         let sector_prev = self.b.state(sector_prev);
@@ -100,6 +114,11 @@ impl Lowering<'_> {
         let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
         let edge = self.b.and(changed, known);
         self.b.name("edge", edge);
-        Hall { code, sector, sector_prev, edge }
+        Hall {
+            code,
+            sector,
+            sector_prev,
+            edge,
+        }
     }
 }

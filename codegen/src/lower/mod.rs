@@ -81,19 +81,50 @@ impl<'p> Lowering<'p> {
     /// Starts the step of `program`.
     pub fn new(program: &'p mut Program, spec: &'p Spec, scale: Scale) -> Self {
         let b = FunctionBuilder::new(program, "step", &["One control period."]);
-        let mut lowering = Self { b, spec, scale, formats: vec![], misfits: vec![] };
+        let mut lowering = Self {
+            b,
+            spec,
+            scale,
+            formats: vec![],
+            misfits: vec![],
+        };
         let ampere = engineering(scale.ampere_per_count, "A");
         let volt = engineering(scale.volt_per_count, "V");
         let word = scale.word;
-        lowering.format("current", word, scale.current_bits as i32, Rounding::Floor, &format!("currents, base one ADC count of {ampere}"));
-        lowering.format("voltage", word, scale.voltage_bits as i32, Rounding::RoundHalfUp, &format!("voltages, base one timer count of {volt} (nominal bus)"));
+        lowering.format(
+            "current",
+            word,
+            scale.current_bits as i32,
+            Rounding::Floor,
+            &format!("currents, base one ADC count of {ampere}"),
+        );
+        lowering.format(
+            "voltage",
+            word,
+            scale.voltage_bits as i32,
+            Rounding::RoundHalfUp,
+            &format!("voltages, base one timer count of {volt} (nominal bus)"),
+        );
         lowering
     }
 
     /// Notes a format, once.
-    pub fn format(&mut self, name: &str, storage_bits: u32, frac_bits: i32, rounding: Rounding, meaning: &str) {
+    pub fn format(
+        &mut self,
+        name: &str,
+        storage_bits: u32,
+        frac_bits: i32,
+        rounding: Rounding,
+        meaning: &str,
+    ) {
         if self.formats.iter().all(|known| known.name != name) {
-            self.formats.push(FormatEntry { name: name.to_owned(), storage_bits, frac_bits, rounding, meaning: meaning.to_owned() });
+            self.formats.push(FormatEntry {
+                name: name.to_owned(),
+                storage_bits,
+                frac_bits,
+                rounding,
+                meaning: meaning.to_owned(),
+            });
         }
     }
 
@@ -116,7 +147,9 @@ impl<'p> Lowering<'p> {
     pub fn bus_interval(&self) -> Interval {
         match self.spec.inverter.bus {
             BusSource::Fixed => Interval::point(self.nominal_bus()),
-            BusSource::Measured { min, max, .. } => Interval::new(self.volts_word(min), self.volts_word(max)),
+            BusSource::Measured { min, max, .. } => {
+                Interval::new(self.volts_word(min), self.volts_word(max))
+            }
         }
     }
 

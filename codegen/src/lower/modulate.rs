@@ -44,7 +44,11 @@ impl Lowering<'_> {
         let voltage = [limited.u[0], limited.u[1], limited.u_c];
         let compares = [0, 1, 2].map(|x| {
             let centred = self.b.sub(voltage[x], limited.middle);
-            self.compare_centred(["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x], centred, bus)
+            self.compare_centred(
+                ["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x],
+                centred,
+                bus,
+            )
         });
         let legs = [0; 3].map(|pulsed| self.b.literal(pulsed));
         Command { compares, legs }
@@ -54,7 +58,11 @@ impl Lowering<'_> {
         let bits = self.scale.voltage_bits;
         let scaled = self.to_nominal(centred, bus);
         let half = i64::from(self.spec.inverter.timer_period) << (bits - 1);
-        let offset = self.number("half_period", half + (1 << (bits - 1)), "Half the timer period, and half a count to round.");
+        let offset = self.number(
+            "half_period",
+            half + (1 << (bits - 1)),
+            "Half the timer period, and half a count to round.",
+        );
         let lifted = self.b.add(scaled, offset);
         self.to_counts(name, lifted)
     }
@@ -70,7 +78,11 @@ impl Lowering<'_> {
     fn to_counts(&mut self, name: &str, lifted: Value) -> Value {
         let counts = self.b.shift_right(lifted, self.scale.voltage_bits);
         let zero = self.zero();
-        let top = self.number("timer_period", i64::from(self.spec.inverter.timer_period), "Compare value of 100 % duty.");
+        let top = self.number(
+            "timer_period",
+            i64::from(self.spec.inverter.timer_period),
+            "Compare value of 100 % duty.",
+        );
         let compare = self.b.clamp(counts, zero, top);
         self.b.name(name, compare)
     }
@@ -78,9 +90,24 @@ impl Lowering<'_> {
     /// Declares the words of pair modulation.
     pub fn pair_words(&mut self, timeout: u32) -> PairModulation {
         PairModulation {
-            sector_prev: self.state("sector_eff_prev", 0, Interval::new(0, 6), "Sector in force at the last sample; 0 before the first."),
-            commutating: self.state("commutating", 0, Interval::new(0, 1), "1 while the outgoing phase still carries current."),
-            age: self.state("commutation_age", 0, Interval::new(0, i64::from(timeout)), "Periods since the commutation began."),
+            sector_prev: self.state(
+                "sector_eff_prev",
+                0,
+                Interval::new(0, 6),
+                "Sector in force at the last sample; 0 before the first.",
+            ),
+            commutating: self.state(
+                "commutating",
+                0,
+                Interval::new(0, 1),
+                "1 while the outgoing phase still carries current.",
+            ),
+            age: self.state(
+                "commutation_age",
+                0,
+                Interval::new(0, i64::from(timeout)),
+                "Periods since the commutation began.",
+            ),
         }
     }
 
@@ -94,7 +121,11 @@ impl Lowering<'_> {
         timeout: u32,
     ) -> [Value; 3] {
         let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
-        let phases = self.b.program.table("off_phase", table(OFF_PHASE), &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()]);
+        let phases = self.b.program.table(
+            "off_phase",
+            table(OFF_PHASE),
+            &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()],
+        );
         let signs = self.b.program.table(
             "outgoing_sign",
             table(OUTGOING_SIGN),
@@ -125,7 +156,11 @@ impl Lowering<'_> {
         let sign = self.b.select(braking, back, turned);
         let outgoing = self.b.mul(sign, outgoing, 0);
         let threshold = self.ampere_word(threshold);
-        let limit = self.number("i_comm", threshold, "Outgoing current at which a commutation ends, words of current.");
+        let limit = self.number(
+            "i_comm",
+            threshold,
+            "Outgoing current at which a commutation ends, words of current.",
+        );
         let decayed = self.b.compare(Comparison::LessEqual, outgoing, limit);
         let age = self.b.state(words.age);
         let doc = "Periods after which a commutation is taken as ended.";
@@ -169,7 +204,10 @@ impl Lowering<'_> {
         limited: Limited,
         bus: Bus,
     ) -> (Command, Applied) {
-        self.b.stage("modulate_three", &["Three centred pulses, for commutation."]);
+        self.b.stage(
+            "modulate_three",
+            &["Three centred pulses, for commutation."],
+        );
         let voltage = [limited.u[0], limited.u[1], limited.u_c];
         let half_bus = self.b.shift_right(bus.volts, 1);
         let lift = self.b.sub(half_bus, limited.middle);
@@ -177,11 +215,21 @@ impl Lowering<'_> {
         let mut three = vec![];
         for x in 0..3 {
             let centred = self.b.sub(voltage[x], limited.middle);
-            let compare = self.compare_centred(["compare_a_three", "compare_b_three", "compare_c_three"][x], centred, bus);
+            let compare = self.compare_centred(
+                ["compare_a_three", "compare_b_three", "compare_c_three"][x],
+                centred,
+                bus,
+            );
             let lifted = self.b.add(voltage[x], lift);
             let zero = self.zero();
             let terminal = self.b.clamp(lifted, zero, bus.volts);
-            three.push((compare, self.b.name(["terminal_a_three", "terminal_b_three", "terminal_c_three"][x], terminal)));
+            three.push((
+                compare,
+                self.b.name(
+                    ["terminal_a_three", "terminal_b_three", "terminal_c_three"][x],
+                    terminal,
+                ),
+            ));
         }
         let pairing = self.b.not(commutating);
         self.b.name("pairing", pairing);
@@ -189,9 +237,14 @@ impl Lowering<'_> {
         let outside = self.b.literal(0);
 
         let signs = [0, 1, 2].map(|phase| {
-            let column = std::iter::once(0).chain(SECTOR_CURRENT.iter().map(|legs| legs[phase])).collect();
+            let column = std::iter::once(0)
+                .chain(SECTOR_CURRENT.iter().map(|legs| legs[phase]))
+                .collect();
             let name = ["pair_sign_a", "pair_sign_b", "pair_sign_c"][phase];
-            let doc = format!("Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.", ["a", "b", "c"][phase]);
+            let doc = format!(
+                "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
+                ["a", "b", "c"][phase]
+            );
             self.b.program.table(name, column, &[doc])
         });
         self.b.guarded_stage(
@@ -229,7 +282,8 @@ impl Lowering<'_> {
         let mut results: Vec<(&str, Value, Value)> = vec![];
         for x in 0..3 {
             let is_pulsed = self.b.compare(Comparison::Equal, sign[x], pulsed_sign);
-            self.b.name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed);
+            self.b
+                .name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed);
             let zero = self.zero();
             let own_compare = self.b.select(is_pulsed, compare, zero);
             let zero = self.zero();
@@ -239,12 +293,27 @@ impl Lowering<'_> {
             let (pulsed, low, off) = (self.b.literal(0), self.b.literal(1), self.b.literal(2));
             let driven = self.b.select(is_pulsed, pulsed, low);
             let leg = self.b.select(is_off, off, driven);
-            self.b.name(["compare_a_pair", "compare_b_pair", "compare_c_pair"][x], own_compare);
-            self.b.name(["leg_a_pair", "leg_b_pair", "leg_c_pair"][x], leg);
-            self.b.name(["terminal_a_pair", "terminal_b_pair", "terminal_c_pair"][x], own_terminal);
-            results.push((["compare_a_run", "compare_b_run", "compare_c_run"][x], own_compare, three[x].0));
+            self.b.name(
+                ["compare_a_pair", "compare_b_pair", "compare_c_pair"][x],
+                own_compare,
+            );
+            self.b
+                .name(["leg_a_pair", "leg_b_pair", "leg_c_pair"][x], leg);
+            self.b.name(
+                ["terminal_a_pair", "terminal_b_pair", "terminal_c_pair"][x],
+                own_terminal,
+            );
+            results.push((
+                ["compare_a_run", "compare_b_run", "compare_c_run"][x],
+                own_compare,
+                three[x].0,
+            ));
             results.push((["leg_a_run", "leg_b_run", "leg_c_run"][x], leg, outside));
-            results.push((["terminal_a_run", "terminal_b_run", "terminal_c_run"][x], own_terminal, three[x].1));
+            results.push((
+                ["terminal_a_run", "terminal_b_run", "terminal_c_run"][x],
+                own_terminal,
+                three[x].1,
+            ));
         }
         let off = {
             let zero = self.zero();
@@ -262,8 +331,17 @@ impl Lowering<'_> {
         self.b.name("off_pair", off);
         results.push(("off_run", off, none));
         let joined = self.b.join_all(&results);
-        let command = Command { compares: [joined[0], joined[3], joined[6]], legs: [joined[1], joined[4], joined[7]] };
-        (command, Applied { terminals: [joined[2], joined[5], joined[8]], off: joined[9] })
+        let command = Command {
+            compares: [joined[0], joined[3], joined[6]],
+            legs: [joined[1], joined[4], joined[7]],
+        };
+        (
+            command,
+            Applied {
+                terminals: [joined[2], joined[5], joined[8]],
+                off: joined[9],
+            },
+        )
     }
 
     /// Mean phase voltages a, b (zero-sum) that a command really applies, given the currents at its start
@@ -324,7 +402,10 @@ impl Lowering<'_> {
         let flags = [off_a, off_b, off_c];
         let terminals = [0, 1, 2].map(|x| {
             let terminal = self.b.select(flags[x], off_terminal, applied.terminals[x]);
-            self.b.name(["terminal_a_now", "terminal_b_now", "terminal_c_now"][x], terminal)
+            self.b.name(
+                ["terminal_a_now", "terminal_b_now", "terminal_c_now"][x],
+                terminal,
+            )
         });
         let sum = self.b.add(terminals[0], terminals[1]);
         let sum = self.b.add(sum, terminals[2]);

@@ -18,10 +18,19 @@ impl Lowering<'_> {
     ///
     /// With a 32-bit word a shift of 32 is as good as any larger one: the coefficient's half ulp times a
     /// full-scale signal is a quarter ulp of the product. `physical` says the value in SI units.
-    pub fn coefficient(&mut self, name: &'static str, value: f64, word: u32, doc: &str, physical: &str) -> Coefficient {
+    pub fn coefficient(
+        &mut self,
+        name: &'static str,
+        value: f64,
+        word: u32,
+        doc: &str,
+        physical: &str,
+    ) -> Coefficient {
         let limit = f64::from(word - 1).exp2() - 1.0;
         let rounded = |shift: u32| (value * f64::from(shift).exp2() + 0.5).floor();
-        let shift = (0..=word).rev().find(|&shift| rounded(shift).abs() <= limit);
+        let shift = (0..=word)
+            .rev()
+            .find(|&shift| rounded(shift).abs() <= limit);
         if shift.is_none() {
             self.misfits.push(name.to_owned());
         }
@@ -34,7 +43,13 @@ impl Lowering<'_> {
             format!("{physical}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."),
         ];
         let id = self.b.program.constant(name, raw as i32, &lines);
-        self.format(name, word, shift as i32, Rounding::RoundHalfUp, &format!("{physical}; product rounded at this shift"));
+        self.format(
+            name,
+            word,
+            shift as i32,
+            Rounding::RoundHalfUp,
+            &format!("{physical}; product rounded at this shift"),
+        );
         Coefficient { id, shift }
     }
 

@@ -1,7 +1,7 @@
 //! Rotor angle and speed from Hall edges (semantics, step 4).
 
-use super::measure::Hall;
 use super::Lowering;
+use super::measure::Hall;
 use crate::interface::Rounding;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::spec::HallCapture;
@@ -46,7 +46,12 @@ struct Turned {
 impl Lowering<'_> {
     /// Declares the direction word alone.
     pub fn direction_word(&mut self) -> StateId {
-        self.state("direction", 1, Interval::new(-1, 1), "Direction of the last Hall edge: 1 forward, -1 backward.")
+        self.state(
+            "direction",
+            1,
+            Interval::new(-1, 1),
+            "Direction of the last Hall edge: 1 forward, -1 backward.",
+        )
     }
 
     /// Declares the rotor tracker's state words.
@@ -56,19 +61,56 @@ impl Lowering<'_> {
         let direction = self.direction_word();
         let age = Interval::new(0, age_max + 1);
         let interval = Interval::new(1, age_max);
-        let age_prev = self.state("age_prev", 0, age, "Ticks since the last Hall edge, at the last sample.");
-        let edges = self.state("edges", 0, Interval::new(0, 2), "Edges seen in this direction: 0, 1, or 2 and more.");
-        let intervals = ["t1", "t2", "t3", "t4", "t5", "t6"]
-            .map(|name| self.state(name, 1, interval, "Ticks between two Hall edges, the latest first."));
-        let rev = self.state("rev", 6, Interval::new(6, 6 * age_max), "Ticks of the last six intervals: one electrical turn.");
+        let age_prev = self.state(
+            "age_prev",
+            0,
+            age,
+            "Ticks since the last Hall edge, at the last sample.",
+        );
+        let edges = self.state(
+            "edges",
+            0,
+            Interval::new(0, 2),
+            "Edges seen in this direction: 0, 1, or 2 and more.",
+        );
+        let intervals = ["t1", "t2", "t3", "t4", "t5", "t6"].map(|name| {
+            self.state(
+                name,
+                1,
+                interval,
+                "Ticks between two Hall edges, the latest first.",
+            )
+        });
+        let rev = self.state(
+            "rev",
+            6,
+            Interval::new(6, 6 * age_max),
+            "Ticks of the last six intervals: one electrical turn.",
+        );
         let omega_max = ((1 << 32) - 1) / rev_min;
-        let omega = self.state("omega", 0, Interval::new(0, omega_max), "Electrical angle per tick, 2^32 a turn; 0 while unknown.");
-        RotorWords { direction, age_prev, edges, intervals, rev, omega }
+        let omega = self.state(
+            "omega",
+            0,
+            Interval::new(0, omega_max),
+            "Electrical angle per tick, 2^32 a turn; 0 while unknown.",
+        );
+        RotorWords {
+            direction,
+            age_prev,
+            edges,
+            intervals,
+            rev,
+            omega,
+        }
     }
 
     /// Adds the comparison of two sectors to the open stage.
     fn turned(&mut self, hall: &Hall, old: Value) -> Turned {
-        let next = self.b.program.table("next_sector", vec![0, 2, 3, 4, 5, 6, 1], &["Sector that follows in forward rotation.".to_owned()]);
+        let next = self.b.program.table(
+            "next_sector",
+            vec![0, 2, 3, 4, 5, 6, 1],
+            &["Sector that follows in forward rotation.".to_owned()],
+        );
         let after = self.b.lookup(next, hall.sector_prev);
         let forward = self.b.compare(Comparison::Equal, after, hall.sector);
         let before = self.b.lookup(next, hall.sector);
@@ -78,7 +120,11 @@ impl Lowering<'_> {
         let plus = self.b.literal(1);
         let direction = self.b.select(forward, plus, otherwise);
         self.b.name("direction_seen", direction);
-        Turned { forward, backward, direction }
+        Turned {
+            forward,
+            backward,
+            direction,
+        }
     }
 
     /// Direction of rotation alone, for controllers that need no angle.
@@ -102,7 +148,13 @@ impl Lowering<'_> {
         let age_max = i64::from(spec.age_max());
         let ticks = i64::from(spec.inverter.hall_capture.ticks_per_period());
         let age_doc = "Ticks of 60 electrical degrees at the least speed that counts as turning.";
-        self.format("omega", 32, 32, Rounding::Floor, "electrical angle, base one turn; speed per tick");
+        self.format(
+            "omega",
+            32,
+            32,
+            Rounding::Floor,
+            "electrical angle, base one turn; speed per tick",
+        );
 
         self.b.stage("age_edge", &["Time since the last Hall edge, in ticks of the edge timer (half periods where edges are sampled)."]);
         let age_prev = self.b.state(words.age_prev);
@@ -122,7 +174,11 @@ impl Lowering<'_> {
                 self.b.select(hall.edge, one, older)
             }
             HallCapture::Timer { .. } => {
-                let ticks = self.b.input("hall_ticks", Interval::new(0, i64::from(u16::MAX)), "Ticks since the last Hall edge.");
+                let ticks = self.b.input(
+                    "hall_ticks",
+                    Interval::new(0, i64::from(u16::MAX)),
+                    "Ticks since the last Hall edge.",
+                );
                 let limit = self.number("age_limit", age_max + 1, "Ages are counted no further.");
                 self.b.min(ticks, limit)
             }
@@ -139,7 +195,11 @@ impl Lowering<'_> {
                 "The first interval in a direction fills all six; a jump or a reversal starts over.",
             ],
         );
-        let Turned { forward, backward, direction } = self.turned(hall, old);
+        let Turned {
+            forward,
+            backward,
+            direction,
+        } = self.turned(hall, old);
         self.b.name("to_next", forward);
         self.b.name("to_previous", backward);
         let step_ok = self.b.or(forward, backward);
@@ -166,15 +226,28 @@ impl Lowering<'_> {
         for k in 0..6 {
             let shifted = if k == 0 { interval } else { intervals[k - 1] };
             let moved = self.b.select(again, shifted, intervals[k]);
-            let value = if k == 0 { moved } else { self.b.select(fill, interval, moved) };
-            taken.push(self.b.name(["t1_seen", "t2_seen", "t3_seen", "t4_seen", "t5_seen", "t6_seen"][k], value));
+            let value = if k == 0 {
+                moved
+            } else {
+                self.b.select(fill, interval, moved)
+            };
+            taken.push(self.b.name(
+                [
+                    "t1_seen", "t2_seen", "t3_seen", "t4_seen", "t5_seen", "t6_seen",
+                ][k],
+                value,
+            ));
         }
         let mut sum = taken[0];
         for &term in &taken[1..] {
             sum = self.b.add(sum, term);
         }
         self.b.name("rev_seen", sum);
-        let least = self.number("rev_min", i64::from(spec.rev_min()), "Ticks of an electrical turn at the greatest speed.");
+        let least = self.number(
+            "rev_min",
+            i64::from(spec.rev_min()),
+            "Ticks of an electrical turn at the greatest speed.",
+        );
         let turn = self.b.max(sum, least);
         let rate = self.b.turn_over(turn);
         let zero = self.zero();
@@ -182,7 +255,9 @@ impl Lowering<'_> {
         let known = self.b.compare(Comparison::Equal, counted, two);
         let rate = self.b.select(known, rate, zero);
         self.b.name("omega_seen", rate);
-        let names = ["t1_next", "t2_next", "t3_next", "t4_next", "t5_next", "t6_next"];
+        let names = [
+            "t1_next", "t2_next", "t3_next", "t4_next", "t5_next", "t6_next",
+        ];
         let mut results = vec![
             ("direction_next", direction, old),
             ("edges_now", counted, edges),
@@ -201,7 +276,12 @@ impl Lowering<'_> {
         self.interpolate(words, hall, [direction, edges, rev, omega, age])
     }
 
-    fn interpolate(&mut self, words: RotorWords, hall: &Hall, [direction, edges, rev, omega, age]: [Value; 5]) -> Rotor {
+    fn interpolate(
+        &mut self,
+        words: RotorWords,
+        hall: &Hall,
+        [direction, edges, rev, omega, age]: [Value; 5],
+    ) -> Rotor {
         let spec = self.spec;
         let age_max = i64::from(spec.age_max());
         let ticks = i64::from(spec.inverter.hall_capture.ticks_per_period());
@@ -220,7 +300,11 @@ impl Lowering<'_> {
         let known = self.b.compare(Comparison::Equal, edges, two);
         self.b.name("speed_known", known);
         let missing = self.b.and(known, late);
-        let limit = self.number("age_max", age_max, "Ticks of 60 electrical degrees at the least speed that counts as turning.");
+        let limit = self.number(
+            "age_max",
+            age_max,
+            "Ticks of 60 electrical degrees at the least speed that counts as turning.",
+        );
         let slow = self.b.compare(Comparison::Less, limit, age);
         let lost = self.b.or(slow, missing);
         self.b.name("lost", lost);
@@ -250,36 +334,70 @@ impl Lowering<'_> {
             .map(|sector| {
                 // ceil((60 (sector - 1) - 30) / 360 2^32) in exact integers, as a wrapped word.
                 let numerator = (2 * (sector - 1) - 1) * (1_i64 << 32);
-                let angle = if sector == 0 { 0 } else { -(-numerator).div_euclid(12) };
+                let angle = if sector == 0 {
+                    0
+                } else {
+                    -(-numerator).div_euclid(12)
+                };
                 angle as u32 as i32
             })
             .collect();
-        let table = self.b.program.table("sector_start", starts, &["Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned()]);
+        let table = self.b.program.table(
+            "sector_start",
+            starts,
+            &["Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned()],
+        );
         let start = self.b.lookup(table, hall.sector);
         let theta = self.b.angle_add(start, inside);
         self.b.name("theta", theta);
         let period = self.number("ticks", ticks, "Ticks per control period.");
-        let limit = self.number("turn_max", SIXTH / 2, "Largest angle per period that is believed: 30 degrees.");
+        let limit = self.number(
+            "turn_max",
+            SIXTH / 2,
+            "Largest angle per period that is believed: 30 degrees.",
+        );
         let turn = self.b.mul_limited(omega, period, limit);
         self.b.name("turn", turn);
         let back = self.b.neg(turn);
         let step_angle = self.b.select(forward, turn, back);
         self.b.name("step_angle", step_angle);
-        Rotor { direction, theta, step_angle, tracking }
+        Rotor {
+            direction,
+            theta,
+            step_angle,
+            tracking,
+        }
     }
 
     /// The sector in force `advance` periods ahead (semantics, end of step 4).
     pub fn advanced_sector(&mut self, advance: f64, hall: &Hall, rotor: &Rotor) -> Value {
-        self.b.stage("advance_sector", &["The sector that the rotor will be in when the command takes effect."]);
+        self.b.stage(
+            "advance_sector",
+            &["The sector that the rotor will be in when the command takes effect."],
+        );
         let coefficient = {
             // The shift is fixed: 16 fraction bits hold any advance from 0 to 2.
             let raw = (advance * 65536.0 + 0.5).floor() as i64;
-            self.format("k_advance", 32, 16, Rounding::RoundHalfUp, "periods of phase advance");
-            self.number("k_advance", raw, &format!("Phase advance of {advance} periods, 16 fraction bits."))
+            self.format(
+                "k_advance",
+                32,
+                16,
+                Rounding::RoundHalfUp,
+                "periods of phase advance",
+            );
+            self.number(
+                "k_advance",
+                raw,
+                &format!("Phase advance of {advance} periods, 16 fraction bits."),
+            )
         };
         let ahead = self.b.mul(coefficient, rotor.step_angle, 16);
         let theta = self.b.angle_add(rotor.theta, ahead);
-        let origin = self.number("sector_origin", SECTOR_ORIGIN, "30 degrees: sector 1 begins at -30 degrees.");
+        let origin = self.number(
+            "sector_origin",
+            SECTOR_ORIGIN,
+            "30 degrees: sector 1 begins at -30 degrees.",
+        );
         let turned = self.b.angle_add(theta, origin);
         let index = self.b.angle_index(turned, 6);
         let one = self.b.literal(1);

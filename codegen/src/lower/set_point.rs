@@ -21,17 +21,33 @@ impl SetPointWords {
     /// Declares the words; `stiffness` is K in V/A.
     pub fn new(program: &mut Program, spec: &Spec, scale: Scale, stiffness: f64) -> Self {
         let most = (spec.inverter.max_current * stiffness * scale.voltage()).ceil() as i64 + 1;
-        let j = program.param("j", 0, Interval::symmetric(most), "Set-point as the voltage K i_ref, words of voltage.");
+        let j = program.param(
+            "j",
+            0,
+            Interval::symmetric(most),
+            "Set-point as the voltage K i_ref, words of voltage.",
+        );
         let bus = match spec.inverter.bus {
             BusSource::Fixed => None,
             BusSource::Measured { min, max, .. } => {
                 let nominal = i64::from(spec.inverter.timer_period) << scale.voltage_bits;
                 let word = |volts: f64| (volts * scale.voltage() + 0.5).floor() as i64;
                 let (low, high) = (word(min), word(max));
-                let ratio = |volts: i64| (i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1));
+                let ratio =
+                    |volts: i64| (i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1));
                 let ratios = Interval::new(ratio(high) as i64, ratio(low) as i64);
-                let volts = program.param("v_bus", nominal as i32, Interval::new(low, high), "Bus voltage, words of voltage.");
-                let ratio = program.param("ratio", 1 << RATIO_BITS, ratios, "Nominal over measured bus voltage.");
+                let volts = program.param(
+                    "v_bus",
+                    nominal as i32,
+                    Interval::new(low, high),
+                    "Bus voltage, words of voltage.",
+                );
+                let ratio = program.param(
+                    "ratio",
+                    1 << RATIO_BITS,
+                    ratios,
+                    "Nominal over measured bus voltage.",
+                );
                 Some([volts, ratio])
             }
         };
@@ -44,14 +60,27 @@ impl Lowering<'_> {
     pub fn read_bus(&mut self, words: SetPointWords) -> Bus {
         match words.bus {
             None => {
-                let volts = self.number("v_bus", self.nominal_bus(), "Bus voltage, words of voltage: the timer period.");
+                let volts = self.number(
+                    "v_bus",
+                    self.nominal_bus(),
+                    "Bus voltage, words of voltage: the timer period.",
+                );
                 Bus { volts, ratio: None }
             }
             Some([volts, ratio]) => {
-                self.format("ratio", 32, RATIO_BITS as i32, Rounding::Floor, "nominal over measured bus voltage");
+                self.format(
+                    "ratio",
+                    32,
+                    RATIO_BITS as i32,
+                    Rounding::Floor,
+                    "nominal over measured bus voltage",
+                );
                 let volts = self.b.param(volts);
                 let ratio = self.b.param(ratio);
-                Bus { volts, ratio: Some((ratio, RATIO_BITS)) }
+                Bus {
+                    volts,
+                    ratio: Some((ratio, RATIO_BITS)),
+                }
             }
         }
     }
@@ -80,14 +109,47 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
     );
     let most = spec.inverter.max_current;
     let limits = [
-        ("i_max_bits", (most * 65536.0).floor(), "Largest set-point", engineering(most, "A")),
-        ("t_max_bits", (most * k_t * 65536.0).floor(), "Largest torque set-point", engineering(most * k_t, "Nm")),
+        (
+            "i_max_bits",
+            (most * 65536.0).floor(),
+            "Largest set-point",
+            engineering(most, "A"),
+        ),
+        (
+            "t_max_bits",
+            (most * k_t * 65536.0).floor(),
+            "Largest torque set-point",
+            engineering(most * k_t, "Nm"),
+        ),
     ];
     let mut functions = vec![
-        set_j(lowering, "set_current", words.j, k_set, &limits[0], "Current set-point, bits of a number with 16 fraction bits, ampere."),
-        set_j(lowering, "set_torque", words.j, k_torque, &limits[1], "Torque set-point, bits of a number with 16 fraction bits, Nm."),
+        set_j(
+            lowering,
+            "set_current",
+            words.j,
+            k_set,
+            &limits[0],
+            "Current set-point, bits of a number with 16 fraction bits, ampere.",
+        ),
+        set_j(
+            lowering,
+            "set_torque",
+            words.j,
+            k_torque,
+            &limits[1],
+            "Torque set-point, bits of a number with 16 fraction bits, Nm.",
+        ),
     ];
-    if let (Some(params), BusSource::Measured { gain, adc_bits, min, max }) = (words.bus, spec.inverter.bus) {
+    if let (
+        Some(params),
+        BusSource::Measured {
+            gain,
+            adc_bits,
+            min,
+            max,
+        },
+    ) = (words.bus, spec.inverter.bus)
+    {
         functions.push(set_bus(lowering, params, gain, adc_bits, [min, max]));
     }
     functions
@@ -103,12 +165,25 @@ fn set_j(
 ) -> Function {
     let bits = bits.clamp(0.0, f64::from(i32::MAX)) as i32;
     let range = lowering.b.program.params[j.index()].interval;
-    let mut b = FunctionBuilder::new(lowering.b.program, name, &["Sets the set-point; saturates at the largest of the specification."]);
-    b.stage(name, &["Clamps the set-point and turns it into the voltage K i_ref."]);
+    let mut b = FunctionBuilder::new(
+        lowering.b.program,
+        name,
+        &["Sets the set-point; saturates at the largest of the specification."],
+    );
+    b.stage(
+        name,
+        &["Clamps the set-point and turns it into the voltage K i_ref."],
+    );
     let input = b.input("bits", Interval::WORD, input_doc);
     let high_doc = [format!("{meaning}: {physical}, 16 fraction bits.")];
     let high = b.program.constant(limit, bits, &high_doc);
-    let low = b.program.constant(&limit.replace("max", "min"), -bits, &[format!("{meaning}, negative: -{physical}, 16 fraction bits.")]);
+    let low = b.program.constant(
+        &limit.replace("max", "min"),
+        -bits,
+        &[format!(
+            "{meaning}, negative: -{physical}, 16 fraction bits."
+        )],
+    );
     let (low, high) = (b.constant(low), b.constant(high));
     let clamped = b.clamp(input, low, high);
     let factor = b.constant(coefficient.id);
@@ -119,7 +194,13 @@ fn set_j(
     b.finish()
 }
 
-fn set_bus(lowering: &mut Lowering<'_>, [volts, ratio]: [ParamId; 2], gain: f64, adc_bits: u32, [min, max]: [f64; 2]) -> Function {
+fn set_bus(
+    lowering: &mut Lowering<'_>,
+    [volts, ratio]: [ParamId; 2],
+    gain: f64,
+    adc_bits: u32,
+    [min, max]: [f64; 2],
+) -> Function {
     let nominal = lowering.nominal_bus();
     let limits = [lowering.volts_word(min), lowering.volts_word(max)];
     let ratio_max = lowering.b.program.params[ratio.index()].interval.high;
@@ -130,10 +211,25 @@ fn set_bus(lowering: &mut Lowering<'_>, [volts, ratio]: [ParamId; 2], gain: f64,
         "Bus-voltage ADC count to words of voltage.",
         &format!("{} per count", engineering(gain, "V")),
     );
-    let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &["Tells the bus voltage; the only division of the set-point path is here."]);
-    b.stage("set_bus", &["Bus voltage from its ADC count, and the ratio that scales voltages to timer counts."]);
-    let counts = b.input("counts", Interval::new(0, i64::from(u16::MAX)), "Bus voltage, ADC count.");
-    let top = b.program.constant("bus_adc_max", ((1_u32 << adc_bits) - 1) as i32, &["Largest count of the bus-voltage converter.".to_owned()]);
+    let mut b = FunctionBuilder::new(
+        lowering.b.program,
+        "set_bus",
+        &["Tells the bus voltage; the only division of the set-point path is here."],
+    );
+    b.stage(
+        "set_bus",
+        &["Bus voltage from its ADC count, and the ratio that scales voltages to timer counts."],
+    );
+    let counts = b.input(
+        "counts",
+        Interval::new(0, i64::from(u16::MAX)),
+        "Bus voltage, ADC count.",
+    );
+    let top = b.program.constant(
+        "bus_adc_max",
+        ((1_u32 << adc_bits) - 1) as i32,
+        &["Largest count of the bus-voltage converter.".to_owned()],
+    );
     let top = b.constant(top);
     let counts = b.min(counts, top);
     let factor = b.constant(k_bus.id);
@@ -141,14 +237,28 @@ fn set_bus(lowering: &mut Lowering<'_>, [volts, ratio]: [ParamId; 2], gain: f64,
     let names = ["v_bus_min", "v_bus_max"];
     let [low, high] = [0, 1].map(|k| {
         let meaning = ["Least", "Greatest"][k];
-        let id = b.program.constant(names[k], limits[k] as i32, &[format!("{meaning} bus voltage that is taken, words of voltage.")]);
+        let id = b.program.constant(
+            names[k],
+            limits[k] as i32,
+            &[format!(
+                "{meaning} bus voltage that is taken, words of voltage."
+            )],
+        );
         b.constant(id)
     });
     let clamped = b.clamp(measured, low, high);
     b.name("v_bus_new", clamped);
-    let nominal = b.program.constant("v_bus_nominal", nominal as i32, &["Nominal bus voltage, words of voltage: the timer period.".to_owned()]);
+    let nominal = b.program.constant(
+        "v_bus_nominal",
+        nominal as i32,
+        &["Nominal bus voltage, words of voltage: the timer period.".to_owned()],
+    );
     let nominal = b.constant(nominal);
-    let most = b.program.constant("ratio_max", ratio_max as i32, &["Nominal over least bus voltage.".to_owned()]);
+    let most = b.program.constant(
+        "ratio_max",
+        ratio_max as i32,
+        &["Nominal over least bus voltage.".to_owned()],
+    );
     let most = b.constant(most);
     let quotient = b.divide(nominal, RATIO_BITS, clamped, most);
     b.name("ratio_new", quotient);

@@ -1,8 +1,8 @@
 //! Faults, start-up sequence and the safe command (semantics, steps 3 and 12).
 
+use super::Lowering;
 use super::measure::{Currents, Hall};
 use super::modulate::Command;
-use super::Lowering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 
 /// Operating modes as the state word `mode` holds them.
@@ -55,13 +55,23 @@ impl Lowering<'_> {
     }
 
     /// Detects faults and advances the start-up sequence; returns the mode of this period's command.
-    pub fn supervise(&mut self, words: SupervisorWords, currents: &Currents, hall: &Hall, set_point: Value) -> Value {
+    pub fn supervise(
+        &mut self,
+        words: SupervisorWords,
+        currents: &Currents,
+        hall: &Hall,
+        set_point: Value,
+    ) -> Value {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
         let trip = self.ampere_word(self.spec.inverter.trip_current);
         let [a, b, c] = currents.phases.map(|current| self.b.abs(current));
         let pair = self.b.max(a, b);
         let peak = self.b.max(pair, c);
-        let limit = self.number("i_trip", trip, "Trip level of the phase currents, words of current.");
+        let limit = self.number(
+            "i_trip",
+            trip,
+            "Trip level of the phase currents, words of current.",
+        );
         let over_current = self.b.compare(Comparison::Less, limit, peak);
         self.b.name("over_current", over_current);
         let zero = self.zero();
@@ -82,7 +92,13 @@ impl Lowering<'_> {
         let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
         self.b.name("sequencing", sequencing);
         let sequenced = self.sequence(words, currents, mode, sequencing);
-        self.latch(words, currents.out_of_range, [over_current, no_hall], any, [sequenced, fault])
+        self.latch(
+            words,
+            currents.out_of_range,
+            [over_current, no_hall],
+            any,
+            [sequenced, fault],
+        )
     }
 
     fn stalled(&mut self, stall_count: StateId, hall: &Hall, set_point: Value) -> Value {
@@ -105,7 +121,13 @@ impl Lowering<'_> {
     }
 
     /// Calibration and pre-charge; returns the mode behind them.
-    fn sequence(&mut self, words: SupervisorWords, currents: &Currents, mode: Value, running: Value) -> Value {
+    fn sequence(
+        &mut self,
+        words: SupervisorWords,
+        currents: &Currents,
+        mode: Value,
+        running: Value,
+    ) -> Value {
         let inverter = self.spec.inverter.clone();
         let countdown = self.b.state(words.countdown);
         let sums = words.sums.map(|sum| self.b.state(sum));
@@ -138,12 +160,20 @@ impl Lowering<'_> {
         for x in 0..2 {
             let sum = self.b.add(sums[x], currents.counts[x]);
             // The countdown ends the sum before this limit; it is here for the proof.
-            let limit = self.number("calibration_sum_max", top, "Sum of calibration samples that are all at the ADC's largest count.");
+            let limit = self.number(
+                "calibration_sum_max",
+                top,
+                "Sum of calibration samples that are all at the ADC's largest count.",
+            );
             let sum = self.b.min(sum, limit);
             let sum = self.b.select(calibrating, sum, sums[x]);
             self.b.name(["sum_a_now", "sum_b_now"][x], sum);
             let (bits, log2) = (self.scale.current_bits, inverter.calibration_log2);
-            let mean = if bits >= log2 { self.b.shift_left(sum, bits - log2) } else { self.b.shift_right(sum, log2 - bits) };
+            let mean = if bits >= log2 {
+                self.b.shift_left(sum, bits - log2)
+            } else {
+                self.b.shift_right(sum, log2 - bits)
+            };
             let offset = self.b.select(calibrated, mean, offsets[x]);
             self.b.name(["offset_a_now", "offset_b_now"][x], offset);
             new_sums.push(sum);
@@ -155,11 +185,19 @@ impl Lowering<'_> {
         let charged = self.b.and(precharging, done);
         let run = self.b.literal(Mode::Run as i32);
         let uncalibrated = self.b.select(charged, run, mode);
-        let after = if inverter.precharge_periods > 0 { Mode::Precharge } else { Mode::Run };
+        let after = if inverter.precharge_periods > 0 {
+            Mode::Precharge
+        } else {
+            Mode::Run
+        };
         let after = self.b.literal(after as i32);
         let next_mode = self.b.select(calibrated, after, uncalibrated);
         self.b.name("mode_advanced", next_mode);
-        let periods = self.number("precharge_periods", i64::from(inverter.precharge_periods), "Periods of bootstrap pre-charge.");
+        let periods = self.number(
+            "precharge_periods",
+            i64::from(inverter.precharge_periods),
+            "Periods of bootstrap pre-charge.",
+        );
         let timed = self.b.or(calibrating, precharging);
         let running_down = self.b.select(timed, left, countdown);
         let next_countdown = self.b.select(calibrated, periods, running_down);
@@ -188,7 +226,12 @@ impl Lowering<'_> {
         faulty: Value,
         [mode, fault]: [Value; 2],
     ) -> Value {
-        self.b.guarded_stage("latch_fault", faulty, true, &["Trips the drive and keeps the first cause until reset."]);
+        self.b.guarded_stage(
+            "latch_fault",
+            faulty,
+            true,
+            &["Trips the drive and keeps the first cause until reset."],
+        );
         let (hall, stall) = (self.b.literal(3), self.b.literal(4));
         let mut cause = self.b.select(no_hall, hall, stall);
         let code = self.b.literal(2);
@@ -202,14 +245,21 @@ impl Lowering<'_> {
         let latched = self.b.select(already, fault, cause);
         self.b.name("fault_latched", latched);
         let tripped = self.b.literal(Mode::Tripped as i32);
-        let [mode, fault] = self.b.join([("mode_next", tripped, mode), ("fault_next", latched, fault)]);
+        let [mode, fault] = self
+            .b
+            .join([("mode_next", tripped, mode), ("fault_next", latched, fault)]);
         self.b.set_state(words.mode, mode);
         self.b.set_state(words.fault, fault);
         mode
     }
 
     /// The command and the words that are remembered, replaced by the safe ones where the mode is not run.
-    pub fn hold_unless_running(&mut self, mode: Value, command: &Command, remembered: &[(StateId, &str, Value)]) {
+    pub fn hold_unless_running(
+        &mut self,
+        mode: Value,
+        command: &Command,
+        remembered: &[(StateId, &str, Value)],
+    ) {
         self.b.stage("check_mode", &["Whether the drive may run."]);
         let zero = self.zero();
         let resting = self.b.compare(Comparison::NotEqual, mode, zero);
@@ -226,7 +276,10 @@ impl Lowering<'_> {
         let leg = self.b.select(precharging, low, off);
         self.b.name("leg_resting", leg);
         let mut results: Vec<(&str, Value, Value)> = vec![];
-        for (name, value) in ["compare_a", "compare_b", "compare_c"].into_iter().zip(command.compares) {
+        for (name, value) in ["compare_a", "compare_b", "compare_c"]
+            .into_iter()
+            .zip(command.compares)
+        {
             let zero = self.zero();
             results.push((name, zero, value));
         }

@@ -29,7 +29,12 @@ impl PdccDesign {
     /// Designs the law for a checked specification.
     pub fn new(spec: &Spec, options: &PdccSpec) -> Self {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
-        let plant = DiscretePlant::new(options.discretisation, motor.resistance, motor.inductance, inverter.t_s);
+        let plant = DiscretePlant::new(
+            options.discretisation,
+            motor.resistance,
+            motor.inductance,
+            inverter.t_s,
+        );
         let k_di = plant.stiffness();
         let hold = plant.pole.powi(if options.delay == 1 { 2 } else { 1 });
         let adc_span = f64::from((1_u32 << inverter.adc_bits) - 1) * inverter.adc_gain.abs();
@@ -49,10 +54,17 @@ impl PdccDesign {
     pub fn rounded(&self, scaled: &Scaled) -> Self {
         let volt_per_ampere = scaled.scale.current() / scaled.scale.voltage();
         let held = |name: &str, unit: f64, exact: f64| {
-            let constant = scaled.graph.program().constants.iter().find(|constant| constant.name == name);
+            let constant = scaled
+                .graph
+                .program()
+                .constants
+                .iter()
+                .find(|constant| constant.name == name);
             let format = scaled.formats.iter().find(|format| format.name == name);
             match (constant, format) {
-                (Some(constant), Some(format)) => f64::from(constant.raw) / f64::from(format.frac_bits).exp2() * unit,
+                (Some(constant), Some(format)) => {
+                    f64::from(constant.raw) / f64::from(format.frac_bits).exp2() * unit
+                }
                 _ => exact,
             }
         };
@@ -67,7 +79,13 @@ impl PdccDesign {
 
     /// Spectral radius of the current loop on a plant with `resistance_ratio` and `inductance_ratio`
     /// times the model's R and L (per axis; EMF as a disturbance).
-    pub fn spectral_radius(&self, spec: &Spec, options: &PdccSpec, resistance_ratio: f64, inductance_ratio: f64) -> f64 {
+    pub fn spectral_radius(
+        &self,
+        spec: &Spec,
+        options: &PdccSpec,
+        resistance_ratio: f64,
+        inductance_ratio: f64,
+    ) -> f64 {
         // The plant is physical whatever the model's discretisation: its own discretisation is exact.
         let real = DiscretePlant::new(
             crate::design::Discretisation::Exact,
@@ -78,10 +96,18 @@ impl PdccDesign {
         let step = |x: &DVector<f64>| self.loop_step(options, real, x);
         let order = 5;
         let columns: Vec<DVector<f64>> = (0..order)
-            .map(|axis| step(&DVector::from_fn(order, |row, _| f64::from(u8::from(row == axis)))))
+            .map(|axis| {
+                step(&DVector::from_fn(order, |row, _| {
+                    f64::from(u8::from(row == axis))
+                }))
+            })
             .collect();
         let matrix = DMatrix::from_columns(&columns);
-        matrix.complex_eigenvalues().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
+        matrix
+            .complex_eigenvalues()
+            .iter()
+            .map(|pole| pole.norm())
+            .fold(0.0, f64::max)
     }
 
     /// One period of the loop without EMF and reference; state i, i_prev, v_now, v_prev, e_prev.

@@ -4,9 +4,10 @@ use super::design::PdccDesign;
 use super::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
 use crate::diagnostics::engineering;
 use crate::ir::{Interval, Program, StateId, Value};
-use crate::lower::set_point::{setters, SetPointWords};
+use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{
-    Applied, Bus, Coefficient, Currents, LimitRule, Lowering, PairModulation, RotorWords, Scale, SupervisorWords,
+    Applied, Bus, Coefficient, Currents, LimitRule, Lowering, PairModulation, RotorWords, Scale,
+    SupervisorWords,
 };
 use crate::scaling::Lowered;
 use crate::spec::Spec;
@@ -30,12 +31,27 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &PdccDesign, scale: Scale)
     let set_point = SetPointWords::new(&mut program, spec, scale, design.k_di);
     let mut lowering = Lowering::new(&mut program, spec, scale);
     let setters = setters(&mut lowering, set_point, design.k_di);
-    Step { lowering: &mut lowering, options, design, set_point }.build();
-    let Lowering { b, formats, misfits, .. } = lowering;
+    Step {
+        lowering: &mut lowering,
+        options,
+        design,
+        set_point,
+    }
+    .build();
+    let Lowering {
+        b,
+        formats,
+        misfits,
+        ..
+    } = lowering;
     let step = b.finish();
     program.step = step;
     program.setters = setters;
-    Lowered { program: program.pruned(), formats, misfits }
+    Lowered {
+        program: program.pruned(),
+        formats,
+        misfits,
+    }
 }
 
 struct Step<'l, 'p> {
@@ -67,18 +83,28 @@ impl Step<'_, '_> {
             (None, None) => None,
         };
         let sector = match &rotor {
-            Some(rotor) if options.advance > 0.0 => l.advanced_sector(options.advance, &hall, rotor),
+            Some(rotor) if options.advance > 0.0 => {
+                l.advanced_sector(options.advance, &hall, rotor)
+            }
             _ => hall.sector,
         };
         let commutation = match (words.pair, direction) {
             (Some(pair), Some(direction)) => {
                 let inputs = [sector, direction, set_point];
-                Some(l.commutation(pair, inputs, &currents, options.commutation_threshold, options.commutation_timeout))
+                Some(l.commutation(
+                    pair,
+                    inputs,
+                    &currents,
+                    options.commutation_threshold,
+                    options.commutation_timeout,
+                ))
             }
             _ => None,
         };
         let reference = match (&rotor, options.reference) {
-            (Some(rotor), Reference::Proportional) => l.proportional_reference(rotor, set_point, options.delay),
+            (Some(rotor), Reference::Proportional) => {
+                l.proportional_reference(rotor, set_point, options.delay)
+            }
             _ => l.quasi_square_reference(sector, set_point),
         };
         let third = self.third();
@@ -87,7 +113,8 @@ impl Step<'_, '_> {
         let e = match (&rotor, options.emf) {
             (Some(rotor), EmfSource::Model) => {
                 let flux = self.lowering.flux_model();
-                self.lowering.model_emf(flux, rotor, options.delay, self.design.e_limit)
+                self.lowering
+                    .model_emf(flux, rotor, options.delay, self.design.e_limit)
             }
             _ => self.estimate_emf(&words, &currents),
         };
@@ -114,15 +141,18 @@ impl Step<'_, '_> {
                 command
             }
             Some([flag, word, age]) => {
-                let (command, applied) = self.lowering.modulate_pair([sector, flag], u, limited, bus);
+                let (command, applied) =
+                    self.lowering.modulate_pair([sector, flag], u, limited, bus);
                 if let Some(pair) = words.pair {
                     self.lowering.b.set_state(pair.sector_prev, sector);
                     remembered.push((pair.commutating, "commutating_next", word));
                     remembered.push((pair.age, "commutation_age_next", age));
                 }
                 if let Some((terminals, off)) = words.t_cmd {
-                    for ((state, name), value) in
-                        terminals.into_iter().zip(["t_a_cmd_next", "t_b_cmd_next", "t_c_cmd_next"]).zip(applied.terminals)
+                    for ((state, name), value) in terminals
+                        .into_iter()
+                        .zip(["t_a_cmd_next", "t_b_cmd_next", "t_c_cmd_next"])
+                        .zip(applied.terminals)
                     {
                         remembered.push((state, name, value));
                     }
@@ -131,9 +161,15 @@ impl Step<'_, '_> {
                 if let Some(v_prev) = words.v_prev {
                     let volts = match now {
                         Some(now) => now,
-                        None => {
-                            self.lowering.applied_voltage(["v_a_applied", "v_b_applied"], applied, &currents, e, bus, third, options.commutation_threshold)
-                        }
+                        None => self.lowering.applied_voltage(
+                            ["v_a_applied", "v_b_applied"],
+                            applied,
+                            &currents,
+                            e,
+                            bus,
+                            third,
+                            options.commutation_threshold,
+                        ),
                     };
                     remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
                     remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
@@ -155,7 +191,8 @@ impl Step<'_, '_> {
 
     fn third(&mut self) -> Coefficient {
         let word = self.options.word;
-        self.lowering.coefficient("k_third", 1.0 / 3.0, word, "Mean of three legs.", "1/3")
+        self.lowering
+            .coefficient("k_third", 1.0 / 3.0, word, "Mean of three legs.", "1/3")
     }
 
     /// Largest zero-sum phase EMF that an estimate can reach, words of voltage: the applied voltage, the
@@ -169,7 +206,8 @@ impl Step<'_, '_> {
         let di_max = self.di_max();
         let volts_per_word = scale.voltage() / scale.current();
         let change = (design.k_di * volts_per_word * di_max as f64).ceil() as i64;
-        let drop = (design.k_r * volts_per_word * self.lowering.current_span() as f64).ceil() as i64;
+        let drop =
+            (design.k_r * volts_per_word * self.lowering.current_span() as f64).ceil() as i64;
         self.lowering.bus_interval().high + change + drop + 4
     }
 
@@ -180,8 +218,9 @@ impl Step<'_, '_> {
     fn declare(&mut self) -> Words {
         let options = *self.options;
         let pair = options.modulation == Modulation::Pair;
-        let needs_rotor =
-            options.emf == EmfSource::Model || options.advance > 0.0 || options.reference == Reference::Proportional;
+        let needs_rotor = options.emf == EmfSource::Model
+            || options.advance > 0.0
+            || options.reference == Reference::Proportional;
         let estimated = options.emf == EmfSource::Estimated;
         let e_bound = self.e_bound();
         let l = &mut *self.lowering;
@@ -192,35 +231,108 @@ impl Step<'_, '_> {
         let rotor = needs_rotor.then(|| l.rotor_words());
         let direction = (pair && !needs_rotor).then(|| l.direction_word());
         let pair_words = pair.then(|| l.pair_words(options.commutation_timeout));
-        let i_prev = estimated
-            .then(|| ["i_a_prev", "i_b_prev"].map(|name| l.state(name, 0, current, "Current of the last sample, words of current.")));
+        let i_prev = estimated.then(|| {
+            ["i_a_prev", "i_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    current,
+                    "Current of the last sample, words of current.",
+                )
+            })
+        });
         let v_cmd = (options.delay == 1 && !pair).then(|| {
-            ["v_a_cmd", "v_b_cmd"].map(|name| l.state(name, 0, volts, "Limited voltage of the last step, applied during this period."))
+            ["v_a_cmd", "v_b_cmd"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    volts,
+                    "Limited voltage of the last step, applied during this period.",
+                )
+            })
         });
         let t_cmd = (options.delay == 1 && pair).then(|| {
-            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"]
-                .map(|name| l.state(name, 0, Interval::new(0, bus), "Terminal voltage of the last step's command; of an off leg 0."));
-            (terminals, l.state("off_cmd", 0, Interval::new(0, 3), "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none."))
+            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    Interval::new(0, bus),
+                    "Terminal voltage of the last step's command; of an off leg 0.",
+                )
+            });
+            (
+                terminals,
+                l.state(
+                    "off_cmd",
+                    0,
+                    Interval::new(0, 3),
+                    "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.",
+                ),
+            )
         });
-        let v_prev = estimated
-            .then(|| ["v_a_prev", "v_b_prev"].map(|name| l.state(name, 0, volts, "Voltage applied during the period that just ended.")));
-        let remembers_e = (pair && (options.delay == 1 || estimated)) || (estimated && options.emf_filter < 1.0);
-        let e_prev = remembers_e
-            .then(|| ["e_a_prev", "e_b_prev"].map(|name| l.state(name, 0, Interval::symmetric(e_bound), "EMF of the last step.")));
-        Words { supervisor, direction, rotor, pair: pair_words, i_prev, v_cmd, t_cmd, v_prev, e_prev }
+        let v_prev = estimated.then(|| {
+            ["v_a_prev", "v_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    volts,
+                    "Voltage applied during the period that just ended.",
+                )
+            })
+        });
+        let remembers_e =
+            (pair && (options.delay == 1 || estimated)) || (estimated && options.emf_filter < 1.0);
+        let e_prev = remembers_e.then(|| {
+            ["e_a_prev", "e_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    Interval::symmetric(e_bound),
+                    "EMF of the last step.",
+                )
+            })
+        });
+        Words {
+            supervisor,
+            direction,
+            rotor,
+            pair: pair_words,
+            i_prev,
+            v_cmd,
+            t_cmd,
+            v_prev,
+            e_prev,
+        }
     }
 
     /// The voltage that the inverter applies in the period that begins now (delay 1).
-    fn applied_now(&mut self, words: &Words, currents: &Currents, bus: Bus, third: Coefficient) -> Option<[Value; 2]> {
+    fn applied_now(
+        &mut self,
+        words: &Words,
+        currents: &Currents,
+        bus: Bus,
+        third: Coefficient,
+    ) -> Option<[Value; 2]> {
         let l = &mut *self.lowering;
         if let Some(v_cmd) = words.v_cmd {
             return Some(v_cmd.map(|word| l.b.state(word)));
         }
         let (terminals, off) = words.t_cmd?;
         let e_prev = words.e_prev?;
-        let applied = Applied { terminals: terminals.map(|word| l.b.state(word)), off: l.b.state(off) };
+        let applied = Applied {
+            terminals: terminals.map(|word| l.b.state(word)),
+            off: l.b.state(off),
+        };
         let e = e_prev.map(|word| l.b.state(word));
-        Some(l.applied_voltage(["v_a_now", "v_b_now"], applied, currents, e, bus, third, self.options.commutation_threshold))
+        Some(l.applied_voltage(
+            ["v_a_now", "v_b_now"],
+            applied,
+            currents,
+            e,
+            bus,
+            third,
+            self.options.commutation_threshold,
+        ))
     }
 
     fn estimate_emf(&mut self, words: &Words, currents: &Currents) -> [Value; 2] {
@@ -230,10 +342,28 @@ impl Step<'_, '_> {
         let l = &mut *self.lowering;
         let per_word = l.scale.voltage() / l.scale.current();
         let physical = engineering(design.k_di, "V/A");
-        let k_di = l.coefficient("k_di", design.k_di * per_word, options.word, "K = 1/b: voltage over one period per change of current.", &format!("K = {physical}"));
-        let k_r = l.coefficient("k_r", design.k_r * per_word, options.word, "(1 - a)/b = R: resistive drop.", &format!("R = {}", engineering(design.k_r, "ohm")));
+        let k_di = l.coefficient(
+            "k_di",
+            design.k_di * per_word,
+            options.word,
+            "K = 1/b: voltage over one period per change of current.",
+            &format!("K = {physical}"),
+        );
+        let k_r = l.coefficient(
+            "k_r",
+            design.k_r * per_word,
+            options.word,
+            "(1 - a)/b = R: resistive drop.",
+            &format!("R = {}", engineering(design.k_r, "ohm")),
+        );
         let filter = (options.emf_filter < 1.0).then(|| {
-            l.coefficient("k_filter", options.emf_filter, options.word, "Weight of the new estimate in the EMF filter.", &format!("{}", options.emf_filter))
+            l.coefficient(
+                "k_filter",
+                options.emf_filter,
+                options.word,
+                "Weight of the new estimate in the EMF filter.",
+                &format!("{}", options.emf_filter),
+            )
         });
         l.b.stage(
             "estimate_emf",
@@ -243,12 +373,17 @@ impl Step<'_, '_> {
                 "v is the voltage really applied; a change of current larger than the bus can cause is not believed.",
             ],
         );
-        let (Some(i_prev), Some(v_prev)) = (words.i_prev, words.v_prev) else { return [currents.phases[0], currents.phases[1]] };
+        let (Some(i_prev), Some(v_prev)) = (words.i_prev, words.v_prev) else {
+            return [currents.phases[0], currents.phases[1]];
+        };
         [0, 1].map(|x| {
             let previous = l.b.state(i_prev[x]);
             let change = l.b.sub(currents.phases[x], previous);
             let doc = "Largest change of current in one period that is believed, words of current.";
-            let (low, high) = (l.number("di_min", -di_max, doc), l.number("di_max", di_max, doc));
+            let (low, high) = (
+                l.number("di_min", -di_max, doc),
+                l.number("di_max", di_max, doc),
+            );
             let change = l.b.clamp(change, low, high);
             l.b.name(["di_a", "di_b"][x], change);
             let applied = l.b.state(v_prev[x]);
@@ -266,7 +401,10 @@ impl Step<'_, '_> {
                     let filtered = l.b.add(old, part);
                     // A weighted mean never leaves the interval of its parts; the clamp is for the proof.
                     let doc = "Largest EMF that an estimate can reach, words of voltage.";
-                    let (low, high) = (l.number("e_min", -e_bound, doc), l.number("e_max", e_bound, doc));
+                    let (low, high) = (
+                        l.number("e_min", -e_bound, doc),
+                        l.number("e_max", e_bound, doc),
+                    );
                     let held = l.b.clamp(filtered, low, high);
                     l.b.name(names[x], held)
                 }
@@ -275,7 +413,13 @@ impl Step<'_, '_> {
         })
     }
 
-    fn deadbeat(&mut self, reference: [Value; 2], currents: &Currents, now: Option<[Value; 2]>, e: [Value; 2]) -> [Value; 2] {
+    fn deadbeat(
+        &mut self,
+        reference: [Value; 2],
+        currents: &Currents,
+        now: Option<[Value; 2]>,
+        e: [Value; 2],
+    ) -> [Value; 2] {
         let (options, design) = (*self.options, self.design.clone());
         let l = &mut *self.lowering;
         let per_word = l.scale.voltage() / l.scale.current();
@@ -288,7 +432,13 @@ impl Step<'_, '_> {
             &format!("{power} = {}", engineering(design.k_hold, "V/A")),
         );
         let k_decay = (options.delay == 1).then(|| {
-            l.coefficient("k_decay", design.k_decay, options.word, "Share of current lost in one period.", &format!("1 - a = {:.6}", design.k_decay))
+            l.coefficient(
+                "k_decay",
+                design.k_decay,
+                options.word,
+                "Share of current lost in one period.",
+                &format!("1 - a = {:.6}", design.k_decay),
+            )
         });
         let doc: &[&str] = if options.delay == 1 {
             &[
