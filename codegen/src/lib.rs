@@ -1,11 +1,38 @@
 //! hexagen-codegen: from a motor's data sheet to a verified fixed-point current controller.
+//!
+//! # Architecture
+//!
+//! ```text
+//! macro tokens ─┐
+//!               ├─ parse ─> SpecAst ─ check ─> Spec              (spec: spans end here)
+//! TOML, variant ┘             ║ barrier 1: every error of the specification at once
+//!   design ─> gains, vectors, EMF tables, stable range          (design, controllers/*/design: f64, SI)
+//!   scale  ─> formats: the finest that provably fit             (scaling, lower: real numbers end here)
+//!   lower  ─> Program: SSA over 32-bit words, in stages          (lower, controllers/*/lower, ir)
+//!   verify ─> VerifiedGraph                                      (ir::verify: intervals, stages, words)
+//!                             ║ barrier 2: every error of design and scaling at once
+//!   emit   ─> Rust │ data sheet │ IR text                        (emit: cannot fail)
+//! ```
+//!
+//! Each stage imports earlier stages and [`diagnostics`] only. Emitters see a
+//! [`ir::VerifiedGraph`] and an [`interface::Interface`], never a specification. Scaling is a search:
+//! lowering computes the interval of every value, so the finest scale whose program passes the
+//! verifier is the scale. Adding a controller adds a folder under [`controllers`] (options, design,
+//! lowering, interface) and a variant of [`controllers::ControllerSpec`]; blocks that controllers
+//! share (measurement, supervision, rotor angle, limits, modulation) live in [`lower`].
 
+mod builder;
 pub mod controllers;
 pub mod design;
 pub mod diagnostics;
+pub mod emit;
+mod expand;
 pub mod interface;
 pub mod ir;
 pub mod lower;
 pub mod pipeline;
 pub mod scaling;
 pub mod spec;
+
+pub use builder::{BuildError, Builder, Written};
+pub use expand::{expand_controller, expand_verify};
