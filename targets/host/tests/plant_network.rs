@@ -68,6 +68,24 @@ fn current_rises_as_an_exponential() {
 }
 
 #[test]
+fn emf_ramp_on_a_lossless_winding_integrates_to_a_parabola() {
+    let mut params = motor();
+    params.resistance = [0.0; 3];
+    let omega_m = 100.0;
+    let start = -20.0_f64.to_radians();
+    let mut plant = Plant::new(params, start, omega_m).unwrap();
+    for period in 1..=30 {
+        plant.run_period(&Legs::LOW, &mut ());
+        // e_a ramps through zero while e_b = -E and e_c = +E: a sees two thirds of its own EMF.
+        let angle = start + 4.0 * omega_m * f64::from(period) * T_S;
+        let slope = 0.0824 * omega_m * 6.0 / PI;
+        let want =
+            -(2.0 / 3.0) * slope * (angle * angle - start * start) / 2.0 / (4.0 * omega_m * L);
+        assert_close(plant.truth().currents[0], want, 1e-11);
+    }
+}
+
+#[test]
 fn three_unequal_phases_settle_where_ohm_says() {
     let mut params = motor();
     params.k_phase = [0.0; 3];
@@ -179,6 +197,17 @@ fn leg_without_current_floats_at_its_emf_above_the_star_point() {
             );
         }
     }
+    // Coasting without current, the terminals show the EMF; means over a period included.
+    let mut coasting = Plant::new(motor(), theta, omega_m).unwrap();
+    coasting.run_period(&Legs::OFF, &mut ());
+    let v = coasting.truth().mean_voltages;
+    let middle = theta + 4.0 * omega_m * T_S / 2.0;
+    assert_close(v[0] - v[1], 2.0 * e, 1e-9);
+    assert_close(
+        v[0] - v[2],
+        e - e * (1.0 - (middle - PI / 6.0) * 6.0 / PI),
+        1e-9,
+    );
     let floats = tape
         .0
         .iter()
@@ -278,11 +307,21 @@ fn dead_time_costs_the_volt_seconds_that_the_current_decides() {
     assert_close(v[2], V / 2.0 + lost, 1e-9);
 }
 
+/// Mechanical angle that the shaft has turned, in radians.
+#[derive(Default)]
+struct Turned(f64);
+
+impl Observer for Turned {
+    fn segment(&mut self, segment: &Segment) {
+        self.0 += segment.omega_m * segment.duration;
+    }
+}
+
 fn energy_of(params: PlantParams, omega_m: f64, limit: f64) {
     let mechanics = params.mechanics;
     let mut plant = Plant::new(params, 0.1, omega_m).unwrap();
     let mut meter = EnergyMeter::new(&plant);
-    let mut motion_work = 0.0;
+    let mut turned = Turned::default();
     for period in 0..1000_u32 {
         let truth = plant.truth();
         // Six-step pair PWM with the third leg off, now and then all three, to visit all events.
@@ -294,11 +333,7 @@ fn energy_of(params: PlantParams, omega_m: f64, limit: f64) {
         if period % 11 == 0 {
             command = [Some(duty), Some(700), Some(900)];
         }
-        plant.run_period(&legs(command), &mut meter);
-        if let Some(m) = mechanics {
-            let mean = 0.5 * (truth.omega_m + plant.truth().omega_m);
-            motion_work += T_S * mean * (m.opposing_torque + m.viscous * mean - m.external_torque);
-        }
+        plant.run_period(&legs(command), &mut (&mut meter, &mut turned));
     }
     let account = meter.balance(&plant);
     assert!(account.relative_error() < limit, "{account:?}");
@@ -309,7 +344,8 @@ fn energy_of(params: PlantParams, omega_m: f64, limit: f64) {
     if let Some(m) = mechanics {
         let end = plant.truth().omega_m;
         let kinetic = 0.5 * m.inertia * (end * end - omega_m * omega_m);
-        assert_close((kinetic + motion_work) / account.shaft, 1.0, 1e-4);
+        let work = (m.opposing_torque - m.external_torque) * turned.0;
+        assert_close((kinetic + work) / account.shaft, 1.0, 1e-6);
         assert!(
             (end / omega_m - 1.0).abs() > 0.01,
             "the speed should move: {omega_m} to {end}"
@@ -334,7 +370,7 @@ fn energy_is_accounted_for() {
         inertia: 4e-4,
         opposing_torque: 0.3,
         external_torque: -0.1,
-        viscous: 1e-3,
+        viscous: 0.0,
     });
     energy_of(crooked, 80.0, 1e-4);
 }
@@ -370,6 +406,22 @@ fn free_shaft_coasts_to_rest_and_yields_to_external_torque() {
         plant.run_period(&Legs::OFF, &mut ());
     }
     assert_close(plant.truth().omega_m, 0.3 / inertia * 2e-3, 1e-9);
+    let viscous = Mechanics {
+        inertia,
+        opposing_torque: 0.0,
+        external_torque: 0.0,
+        viscous: 0.1,
+    };
+    let params = PlantParams {
+        mechanics: Some(viscous),
+        ..motor()
+    };
+    let mut plant = Plant::new(params, 0.0, 50.0).unwrap();
+    for _ in 0..40 {
+        plant.run_period(&Legs::OFF, &mut ());
+    }
+    // One time constant J/B of 2 ms.
+    assert_close(plant.truth().omega_m, 50.0 / 1.0_f64.exp(), 1e-5);
 }
 
 #[test]

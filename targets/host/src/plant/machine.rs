@@ -10,6 +10,10 @@ use hexagen::{Legs, Sample};
 /// Steps per period at least, when the speed is free: it is constant within a step.
 const MECHANICAL_STEPS: f64 = 20.0;
 
+/// Segments in a period beyond which events are no longer resolved finer than a thousandth of
+/// it: a period always ends. No known circuit comes near.
+const MAX_SEGMENTS: u32 = 1000;
+
 /// The plant's true state at a sampling instant, for ideal controllers and for records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
@@ -149,6 +153,7 @@ impl Plant {
         let mut volt_seconds = [0.0; 3];
         let mut impulse = 0.0;
         let mut torque: Series = [0.0; TERMS];
+        let mut segments = 0;
         let mut t = 0.0;
         self.gates.begin(command, self.params.timer_period, t_s);
         while t < t_s {
@@ -159,6 +164,10 @@ impl Plant {
             let zero_leg = self
                 .network
                 .solve(gates, &mut self.currents, &mut self.segment);
+            segments += 1;
+            if segments > MAX_SEGMENTS {
+                self.segment.duration = self.segment.duration.max(planned.min(1e-3 * t_s));
+            }
             let h = self.segment.duration;
             observer.segment(&self.segment);
 
@@ -229,9 +238,11 @@ impl Plant {
 
 /// Mechanical speed after `h` seconds with the given impulse (N m s) of the motor's torque.
 fn speed_after(mechanics: &Mechanics, omega_m: f64, impulse: f64, h: f64) -> f64 {
-    let driving = impulse + (mechanics.external_torque - mechanics.viscous * omega_m) * h;
+    // Trapezoidal rule for the viscous part: second order, stable for any step.
+    let decay = 0.5 * mechanics.viscous * h / mechanics.inertia;
+    let driving = (impulse + mechanics.external_torque * h) / mechanics.inertia;
+    let free = (omega_m * (1.0 - decay) + driving) / (1.0 + decay);
     let friction = mechanics.opposing_torque * h;
-    let free = omega_m + driving / mechanics.inertia;
     // Dry friction takes speed away in the direction of motion, but never reverses it.
     let slowed = free.abs() - friction / mechanics.inertia;
     if slowed > 0.0 {

@@ -10,8 +10,9 @@ use super::roots::first_crossing;
 use super::segment::{Segment, Series, TERMS, Terminal};
 use super::{PlantParams, emf};
 
-/// Currents of legs that are off below this count as zero, in amperes.
-const NO_CURRENT: f64 = 1e-9;
+/// Current of a leg that is off which counts as zero, as a fraction of V Ts / L: above rounding,
+/// below anything that matters.
+const NO_CURRENT: f64 = 1e-12;
 
 /// Largest R h / L or omega h of one Taylor step: its last term is then below 1e-16.
 const MAX_EXPONENT: f64 = 0.25;
@@ -25,6 +26,7 @@ pub(super) struct Network {
     /// Tolerance of terminal voltages against the rails; events use twice of it, so that a leg
     /// that reached a rail does conduct.
     tolerance: f64,
+    no_current: f64,
     rate: f64,
     /// 1/k, as the series' recursion needs it.
     reciprocal: Series,
@@ -33,12 +35,14 @@ pub(super) struct Network {
 impl Network {
     pub(super) fn new(params: &PlantParams) -> Self {
         let rates = (0..3).map(|x| params.resistance[x] / params.inductance[x]);
+        let inductance = params.inductance.into_iter().fold(0.0, f64::max);
         Self {
             resistance: params.resistance,
             conductance: params.inductance.map(f64::recip),
             v_bus: params.v_bus,
             drop: params.diode_drop,
             tolerance: 1e-11 * params.v_bus,
+            no_current: NO_CURRENT * params.v_bus * params.t_s / inductance,
             rate: rates.fold(0.0, f64::max),
             reciprocal: std::array::from_fn(|k| if k == 0 { 0.0 } else { 1.0 / k as f64 }),
         }
@@ -72,7 +76,7 @@ impl Network {
         segment: &mut Segment,
     ) -> Option<usize> {
         for (current, gate) in currents.iter_mut().zip(gates) {
-            if gate == Gate::Off && current.abs() < NO_CURRENT {
+            if gate == Gate::Off && current.abs() < self.no_current {
                 *current = 0.0;
             }
         }
