@@ -15,3 +15,4 @@ pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
 pub use double_buffer::DoubleBuffer;
 pub use drive::Drive;
 pub use fixed;
+pub use hexagen_macros::{controller, verify};

@@ -1,1 +1,33 @@
-//! The procedural macros of hexagen: forwarding only.
+//! The procedural macros of hexagen; each forwards to `hexagen-codegen`.
+
+use proc_macro::TokenStream;
+use std::env;
+use std::path::PathBuf;
+
+/// Emits the current controller of one motor: a `no_std` type with `new()`, `step()`, set-point and
+/// reset, everything precomputed.
+///
+/// ```ignore
+/// hexagen::controller! {
+///     /// Rear hub drive.
+///     pub HubDrive {
+///         motor: "motors/hub.toml",
+///         inverter: { bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, adc_range: 40 A },
+///         controller: pdcc { emf: model, advance: 2 },
+///     }
+/// }
+/// ```
+///
+/// Fields and units: the documentation of `hexagen_codegen::spec`.
+#[proc_macro]
+pub fn controller(tokens: TokenStream) -> TokenStream {
+    let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
+    hexagen_codegen::expand_controller(tokens.into(), &root).into()
+}
+
+/// Tests the crate's own drives bit for bit against the reference model: `hexagen::verify!(HubDrive);`
+/// makes a `#[test]` per drive named. Needs `hexagen-reference` among the crate's dev-dependencies.
+#[proc_macro]
+pub fn verify(tokens: TokenStream) -> TokenStream {
+    hexagen_codegen::expand_verify(tokens.into()).into()
+}

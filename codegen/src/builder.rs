@@ -1,0 +1,294 @@
+//! The build script's way through the pipeline: motor files in, one Rust file per motor out.
+//!
+//! The same core as the macro's and the same tokens; the file is formatted for readers.
+
+use crate::diagnostics::Diagnostics;
+use crate::emit::rust::{Surface, emit_rust, format_rust};
+use crate::pipeline::{Generated, generate};
+use crate::spec::{SpecAst, apply_variant, check, parse_toml};
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+
+/// Generates controllers in a build script.
+///
+/// ```no_run
+/// # fn main() -> Result<(), hexagen_codegen::BuildError> {
+/// hexagen_codegen::Builder::new()
+///     .motor("motors/hub.toml")
+///     .controller("pdcc:emf=model,advance=2")
+///     .name("HubDrive")
+///     .generate()?;
+/// # Ok(())
+/// # }
+/// ```
+///
+/// and in the crate: `include!(concat!(env!("OUT_DIR"), "/hub.rs"));`
+///
+/// A motor without a controller takes the one of its file. With several controllers, each is a
+/// type of the same Rust file.
+#[derive(Clone, Debug, Default)]
+pub struct Builder {
+    root: PathBuf,
+    out_dir: Option<PathBuf>,
+    motors: Vec<Motor>,
+    folders: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+struct Motor {
+    path: String,
+    drives: Vec<Wanted>,
+}
+
+/// One controller of a motor.
+#[derive(Clone, Debug, Default)]
+struct Wanted {
+    variant: Option<String>,
+    name: Option<String>,
+}
+
+/// One Rust file that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The motor file as it was given.
+    pub motor: String,
+    /// The Rust file.
+    pub file: PathBuf,
+    /// Names of the types in it, in the order of the controllers.
+    pub types: Vec<String>,
+}
+
+/// Why nothing, or not everything, was generated.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// Errors in specifications, of all motors; each with file, line and column.
+    #[error("{}", list(.0))]
+    Specification(Vec<Diagnostics>),
+    /// A file or folder could not be read or written.
+    #[error("{path}: {error}")]
+    Io {
+        /// As it was given.
+        path: String,
+        /// What the system said.
+        error: io::Error,
+    },
+    /// Neither [`Builder::out_dir`] nor the environment's `OUT_DIR` says where to write.
+    #[error("OUT_DIR is not set: call this in a build script, or say `.out_dir(…)`")]
+    NoOutDir,
+    /// Two controllers of one motor have the same type name.
+    #[error("{motor}: two controllers are named {name}; tell them apart with `.name(…)`")]
+    SameName {
+        /// The motor file.
+        motor: String,
+        /// The name.
+        name: String,
+    },
+    /// A type name is no Rust type name.
+    #[error("{motor}: `{name}` is no name for a Rust type; give one with `.name(…)`")]
+    BadName {
+        /// The motor file.
+        motor: String,
+        /// The name.
+        name: String,
+    },
+}
+
+fn list(errors: &[Diagnostics]) -> String {
+    let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    lines.join("\n")
+}
+
+impl Builder {
+    /// A builder that finds motor files relative to the crate whose build script runs.
+    pub fn new() -> Self {
+        Self { root: env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default(), ..Self::default() }
+    }
+
+    /// The folder that motor files are relative to, in place of the crate's.
+    #[must_use]
+    pub fn root(mut self, root: impl Into<PathBuf>) -> Self {
+        self.root = root.into();
+        self
+    }
+
+    /// Where the Rust files go, in place of `OUT_DIR`.
+    #[must_use]
+    pub fn out_dir(mut self, out_dir: impl Into<PathBuf>) -> Self {
+        self.out_dir = Some(out_dir.into());
+        self
+    }
+
+    /// Adds a motor file; [`Self::controller`] and [`Self::name`] after it belong to it.
+    #[must_use]
+    pub fn motor(mut self, path: impl Into<String>) -> Self {
+        self.motors.push(Motor { path: path.into(), drives: vec![] });
+        self
+    }
+
+    /// Adds every `*.toml` of a folder, in the order of their names, each with its own controller.
+    #[must_use]
+    pub fn motors(mut self, folder: impl Into<String>) -> Self {
+        self.folders.push(folder.into());
+        self
+    }
+
+    /// Adds a controller of the last motor: `pdcc:emf=model,advance=2`.
+    #[must_use]
+    pub fn controller(mut self, variant: impl Into<String>) -> Self {
+        if let Some(motor) = self.motors.last_mut() {
+            motor.drives.push(Wanted { variant: Some(variant.into()), name: None });
+        }
+        self
+    }
+
+    /// Names the type of the last controller, or of the last motor's own one. By default the motor
+    /// gives the name, and the variant what follows it: `HubPdccEmfModelAdvance2`.
+    #[must_use]
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        if let Some(motor) = self.motors.last_mut() {
+            if motor.drives.is_empty() {
+                motor.drives.push(Wanted::default());
+            }
+            if let Some(wanted) = motor.drives.last_mut() {
+                wanted.name = Some(name.into());
+            }
+        }
+        self
+    }
+
+    /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Tells
+    /// cargo which files to watch.
+    ///
+    /// # Errors
+    /// All errors of all specifications together, before anything is written; else the first file
+    /// that cannot be read or written.
+    pub fn generate(self) -> Result<Vec<Written>, BuildError> {
+        let out_dir = self.out_dir.clone().or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
+        let out_dir = out_dir.ok_or(BuildError::NoOutDir)?;
+        let (mut sources, mut errors) = (vec![], vec![]);
+        for motor in self.all_motors()? {
+            match source_of(&self.root, &motor) {
+                Ok(source) => sources.push((motor.path, source)),
+                Err(BuildError::Specification(more)) => errors.extend(more),
+                Err(other) => return Err(other),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(BuildError::Specification(errors));
+        }
+        sources.into_iter().map(|(motor, source)| source.write(&out_dir, motor)).collect()
+    }
+
+    fn all_motors(&self) -> Result<Vec<Motor>, BuildError> {
+        let mut motors = self.motors.clone();
+        for folder in &self.folders {
+            println!("cargo:rerun-if-changed={folder}");
+            let unreadable = |error| BuildError::Io { path: folder.clone(), error };
+            let mut names = vec![];
+            for entry in fs::read_dir(self.root.join(folder)).map_err(unreadable)? {
+                let name = entry.map_err(unreadable)?.file_name();
+                let name = name.to_string_lossy();
+                if Path::new(name.as_ref()).extension().is_some_and(|extension| extension == "toml") {
+                    names.push(format!("{folder}/{name}"));
+                }
+            }
+            names.sort_unstable();
+            motors.extend(names.into_iter().map(|path| Motor { path, drives: vec![] }));
+        }
+        Ok(motors)
+    }
+}
+
+/// The Rust file of one motor.
+struct Source {
+    text: String,
+    types: Vec<String>,
+}
+
+fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
+    println!("cargo:rerun-if-changed={}", motor.path);
+    let text = fs::read_to_string(root.join(&motor.path))
+        .map_err(|error| BuildError::Io { path: motor.path.clone(), error })?;
+    let ast = parse_toml(&text, &motor.path).map_err(|errors| BuildError::Specification(vec![errors]))?;
+    let own = [Wanted::default()];
+    let drives = if motor.drives.is_empty() { &own[..] } else { &motor.drives };
+    let mut source = Source { text: String::new(), types: vec![] };
+    let mut errors = vec![];
+    for wanted in drives {
+        match generate_wanted(&ast, wanted) {
+            Ok(generated) => source.add(&generated, &motor.path)?,
+            Err(more) => errors.push(more),
+        }
+    }
+    if errors.is_empty() { Ok(source) } else { Err(BuildError::Specification(errors)) }
+}
+
+fn generate_wanted(ast: &SpecAst, wanted: &Wanted) -> Result<Generated, Diagnostics> {
+    let mut ast = ast.clone();
+    if let Some(variant) = &wanted.variant {
+        apply_variant(&mut ast, variant)?;
+        ast.name.text.push_str(&variant_name(variant));
+    }
+    if let Some(name) = &wanted.name {
+        ast.name.text.clone_from(name);
+    }
+    let (spec, origins) = check(&ast)?;
+    generate(&spec, &origins)
+}
+
+impl Source {
+    fn add(&mut self, generated: &Generated, motor: &str) -> Result<(), BuildError> {
+        let name = generated.interface.type_name.clone();
+        if syn::parse_str::<syn::Ident>(&name).is_err() {
+            return Err(BuildError::BadName { motor: motor.to_owned(), name });
+        }
+        if self.types.contains(&name) {
+            return Err(BuildError::SameName { motor: motor.to_owned(), name });
+        }
+        let tokens = emit_rust(&generated.graph, &generated.interface, &Surface::public(&name));
+        if !self.text.is_empty() {
+            self.text.push('\n');
+        }
+        self.text.push_str(&format_rust(&tokens));
+        self.types.push(name);
+        Ok(())
+    }
+
+    /// Writes beside the file and renames, so that no reader sees half of it.
+    fn write(self, out_dir: &Path, motor: String) -> Result<Written, BuildError> {
+        let stem = Path::new(&motor).file_stem().unwrap_or_default();
+        let file = out_dir.join(stem).with_extension("rs");
+        let beside = file.with_extension(format!("rs.{}", std::process::id()));
+        let failed = |error| BuildError::Io { path: file.display().to_string(), error };
+        fs::write(&beside, &self.text).map_err(failed)?;
+        fs::rename(&beside, &file).map_err(failed)?;
+        Ok(Written { motor, file, types: self.types })
+    }
+}
+
+/// `PdccEmfModelAdvance1p5` of `pdcc:emf=model,advance=1.5`.
+fn variant_name(variant: &str) -> String {
+    let mut name = String::new();
+    let mut begins = true;
+    for letter in variant.chars() {
+        match letter {
+            '.' => name.push('p'),
+            letter if letter.is_ascii_alphanumeric() && begins => name.push(letter.to_ascii_uppercase()),
+            letter if letter.is_ascii_alphanumeric() => name.push(letter),
+            _ => {}
+        }
+        begins = !letter.is_ascii_alphanumeric() && letter != '.';
+    }
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::variant_name;
+
+    #[test]
+    fn variants_name_types() {
+        assert_eq!(variant_name("pdcc:emf=model,advance=1.5"), "PdccEmfModelAdvance1p5");
+        assert_eq!(variant_name("fcs-mpc"), "FcsMpc");
+    }
+}
