@@ -1,0 +1,196 @@
+//! What a report shows, as plain data. Units stand in names or comments; speeds are mechanical.
+//!
+//! The caller fills a [`ReportData`] from the checked specification, measured runs and emitted
+//! texts. The page derives nothing from them but plots, harmonics and differences; what is left
+//! empty leaves its part of the page out.
+
+use super::expected::Expected;
+use crate::closed_loop::{Merits, SpeedLimit, Trace};
+use hexagen_codegen::controllers::pdcc::StableRange;
+use hexagen_codegen::interface::FormatEntry;
+use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+
+/// Everything on one page.
+#[derive(Clone, Debug)]
+pub struct ReportData {
+    /// Program and version: "hexagen 0.1.0".
+    pub generator: String,
+    /// Name of the motor's type, `UpperCamelCase`; also names the file.
+    pub name: String,
+    /// The motor.
+    pub motor: MotorSpec,
+    /// Inverter, timer and sensors.
+    pub inverter: InverterSpec,
+    /// Where the motor's data come from, one paragraph.
+    pub source: Option<String>,
+    /// Demanded torque in newton metres.
+    pub torque: f64,
+    /// Amplitude in amperes of the quasi-square reference that gives this torque.
+    pub current: f64,
+    /// Speeds in rpm of the table's columns and of the plots, ascending.
+    pub speeds_rpm: Vec<f64>,
+    /// What the bit-for-bit check found.
+    pub verification: Option<Verification>,
+    /// The variants in the table's order.
+    pub variants: Vec<Variant>,
+    /// Marks along the speed axis of the torque-speed plot (the paper's claims, the bound).
+    pub marks: Vec<SpeedMark>,
+    /// Paragraphs below the result table: known differences and their reasons.
+    pub notes: Vec<String>,
+}
+
+/// Result of the bit-for-bit check of emitted against bit-true code.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verification {
+    /// Which code ran: "compiled" or "interpreted".
+    pub engine: String,
+    /// Steps compared, all variants together.
+    pub steps: u64,
+    /// Steps that differed in any output or state bit.
+    pub mismatches: u64,
+}
+
+/// One controller variant: its runs, records, formats and texts.
+#[derive(Clone, Debug, Default)]
+pub struct Variant {
+    /// What readers call it, short enough for a legend: "PDCC three_phase, nearest".
+    pub label: String,
+    /// The variant text that selects it: "pdcc:saturation=nearest,emf=model".
+    pub variant: String,
+    /// Runs that were measured: one row each in the result table, best known first.
+    pub runs: Vec<Run>,
+    /// Records of the first run, one per speed of [`ReportData::speeds_rpm`]; empty for a variant
+    /// that is not plotted.
+    pub records: Vec<Record>,
+    /// Torque-speed curve of the first run: rpm and mean torque in newton metres, ascending.
+    pub torque_speed: Vec<(f64, f64)>,
+    /// Largest and typical distance of the fixed-point signals from the ideal ones.
+    pub signal_errors: Vec<SignalError>,
+    /// Range of the true parameters in which the loop is stable.
+    pub stability: Option<Stability>,
+    /// Formats and emitted texts, where they are to be shown.
+    pub generated: Option<GeneratedTexts>,
+}
+
+/// Which model of the controller ran.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// The emitted integer code.
+    Fixed,
+    /// The bit-true reference.
+    BitTrue,
+    /// The ideal floating-point reference.
+    Ideal,
+}
+
+/// How Hall edges reached the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Capture {
+    /// Seen at sampling instants.
+    Sampled,
+    /// Captured by a timer.
+    Timer,
+}
+
+/// One row of the result table.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Model of the controller.
+    pub model: Model,
+    /// Hall capture.
+    pub capture: Capture,
+    /// Merits at each speed of [`ReportData::speeds_rpm`], in that order.
+    pub points: Vec<RunPoint>,
+    /// Constant-torque speed limit, where it was searched.
+    pub limit: Option<SpeedLimit>,
+    /// What the design document expects of this run.
+    pub expected: Option<Expected>,
+}
+
+/// Merits at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunPoint {
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// What was measured.
+    pub merits: Merits,
+}
+
+/// The record of a measured window, whole electrical periods.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// The record.
+    pub trace: Trace,
+}
+
+/// Distance of a fixed-point signal from the ideal model's, from the same state and samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalError {
+    /// Signal as named in the format table.
+    pub signal: String,
+    /// Unit of the two numbers: "A", "V", "counts".
+    pub unit: String,
+    /// Largest magnitude.
+    pub largest: f64,
+    /// Root of the mean square.
+    pub rms: f64,
+    /// Proven bound, once known.
+    pub bound: Option<f64>,
+}
+
+/// Stable range as computed from the closed-loop poles, and what simulation says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stability {
+    /// True over stated resistance and inductance; 0.1 and 10 are the ends of the search.
+    pub range: StableRange,
+    /// Simulated runs with one parameter off.
+    pub checks: Vec<StabilityCheck>,
+}
+
+/// A simulated run whose plant differs from the controller's model in one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StabilityCheck {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its true over its stated value.
+    pub factor: f64,
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// RMS torque ripple in percent of the mean.
+    pub ripple_rms_pct: f64,
+    /// Whether the run counts as stable.
+    pub stable: bool,
+}
+
+/// A motor parameter that the controller's model contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Phase inductance.
+    Inductance,
+    /// Phase resistance.
+    Resistance,
+}
+
+/// A mark on the speed axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedMark {
+    /// Text beside it, a few words: "PI-PWM (paper)".
+    pub label: String,
+    /// Position in percent of rated speed.
+    pub percent: f64,
+}
+
+/// Formats and texts of one emitted controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeneratedTexts {
+    /// Format of every signal and coefficient.
+    pub formats: Vec<FormatEntry>,
+    /// The emitted Rust module.
+    pub rust: String,
+    /// The data sheet.
+    pub data_sheet: String,
+    /// The normalised specification, TOML.
+    pub spec_toml: String,
+}

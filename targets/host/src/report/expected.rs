@@ -1,0 +1,226 @@
+//! Expected figures of a run, and when a measured figure counts as met.
+//!
+//! Tolerances: mean torque within 1 %, ripple within 15 % of its value or 0.5 points, speed limit
+//! within 2 points of rated speed.
+
+use crate::closed_loop::{Merits, SpeedLimit};
+
+/// A figure that is expected to lie in a band; one value is a band of no width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Band {
+    /// Distance of a measured figure from the band, 0 inside.
+    fn distance(self, measured: f64) -> f64 {
+        (self.low - measured).max(measured - self.high).max(0.0)
+    }
+
+    /// Whether a figure is within a distance of the band; NaN never is.
+    fn holds(self, measured: f64, tolerance: f64) -> bool {
+        // The hair's breadth keeps a figure on the limit from failing by its last bit.
+        self.distance(measured) <= tolerance + 1e-9 && !measured.is_nan()
+    }
+}
+
+impl From<f64> for Band {
+    fn from(value: f64) -> Self {
+        Self {
+            low: value,
+            high: value,
+        }
+    }
+}
+
+impl From<(f64, f64)> for Band {
+    fn from((low, high): (f64, f64)) -> Self {
+        Self { low, high }
+    }
+}
+
+/// Figures expected at one speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExpectedPoint {
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// Mean torque in newton metres.
+    pub mean_torque_nm: Option<Band>,
+    /// Peak-to-peak ripple in percent of the mean.
+    pub ripple_pp_pct: Option<Band>,
+    /// RMS ripple in percent of the mean.
+    pub ripple_rms_pct: Option<Band>,
+}
+
+/// Figures expected of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Expected {
+    /// At each speed that has any.
+    pub points: Vec<ExpectedPoint>,
+    /// Constant-torque speed limit in percent of rated speed.
+    pub limit_pct: Option<Band>,
+}
+
+/// A measured figure beside the expected one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// What was measured; `None` where there is no such figure.
+    pub measured: Option<f64>,
+    /// What was expected; `None` where nothing was.
+    pub expected: Option<Band>,
+    /// Whether the two agree within the tolerance; true where nothing was expected.
+    pub met: bool,
+}
+
+impl Judged {
+    fn new(measured: Option<f64>, expected: Option<Band>, tolerance: impl Fn(Band) -> f64) -> Self {
+        let met =
+            expected.is_none_or(|band| measured.is_some_and(|x| band.holds(x, tolerance(band))));
+        Self {
+            measured,
+            expected,
+            met,
+        }
+    }
+}
+
+/// Mean torque against what is expected.
+pub fn judge_mean(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+    let band = expected.and_then(|point| point.mean_torque_nm);
+    Judged::new(Some(merits.mean_torque_nm), band, |band| {
+        0.01 * band.high.abs()
+    })
+}
+
+/// Peak-to-peak ripple against what is expected.
+pub fn judge_pp(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+    let band = expected.and_then(|point| point.ripple_pp_pct);
+    Judged::new(Some(merits.ripple_pp_pct), band, ripple_tolerance)
+}
+
+/// RMS ripple against what is expected.
+pub fn judge_rms(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+    let band = expected.and_then(|point| point.ripple_rms_pct);
+    Judged::new(Some(merits.ripple_rms_pct), band, ripple_tolerance)
+}
+
+/// Speed limit in percent of rated speed against what is expected.
+pub fn judge_limit(limit: Option<&SpeedLimit>, expected: Option<&Expected>) -> Judged {
+    let measured = limit.and_then(|limit| limit.limit_pct);
+    Judged::new(measured, expected.and_then(|e| e.limit_pct), |_| 2.0)
+}
+
+fn ripple_tolerance(band: Band) -> f64 {
+    (0.15 * band.high).max(0.5)
+}
+
+impl Expected {
+    /// What is expected at a speed in rpm.
+    pub fn at(&self, rpm: f64) -> Option<&ExpectedPoint> {
+        self.points.iter().find(|point| point.rpm == rpm)
+    }
+}
+
+/// One row of the design document's table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignRow {
+    /// Short name.
+    pub label: &'static str,
+    /// The variant that the row is about; Hall capture by timer.
+    pub variant: &'static str,
+    /// Figures with Hall edges captured by a timer.
+    pub timer: Expected,
+    /// Figures with Hall edges seen at sampling instants, where the document gives any.
+    pub sampled: Option<Expected>,
+}
+
+/// The deadbeat rows of DESIGN.md section 4: the 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
+pub fn design_table() -> Vec<DesignRow> {
+    vec![
+        DesignRow {
+            label: "three_phase, nearest, model EMF",
+            variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=nearest,emf=model,hall_capture=timer",
+            timer: expected([point(3.30, 2.3, 0.2), point(3.25, 12.7, 3.4)], 87.0),
+            sampled: None,
+        },
+        DesignRow {
+            label: "pair, keep_angle, model EMF",
+            variant: "pdcc:discretisation=euler,modulation=pair,saturation=keep_angle,emf=model,hall_capture=timer",
+            timer: expected([point(3.29, 10.0, 1.2), point(3.19, 28.0, 7.5)], 73.0),
+            sampled: None,
+        },
+        DesignRow {
+            label: "three_phase, torque_priority, advance 2, model EMF",
+            variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=torque_priority,advance=2,emf=model,hall_capture=timer",
+            timer: expected(
+                [point(3.30, 1.8, 0.07), point(3.30, 1.8, 0.29)],
+                (106.0, 109.0),
+            ),
+            sampled: Some(Expected {
+                points: vec![ExpectedPoint {
+                    rpm: 1500.0,
+                    ripple_pp_pct: Some((2.8, 3.7).into()),
+                    ..ExpectedPoint::default()
+                }],
+                limit_pct: None,
+            }),
+        },
+        DesignRow {
+            label: "three_phase, torque_priority, advance 2, estimated EMF",
+            variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated,hall_capture=timer",
+            timer: Expected {
+                points: vec![at(1500.0, Some(3.30), Some(6.9), None)],
+                limit_pct: Some(105.0.into()),
+            },
+            sampled: None,
+        },
+        DesignRow {
+            label: "pair, torque_priority, advance 1.5, model EMF",
+            variant: "pdcc:discretisation=euler,modulation=pair,saturation=torque_priority,advance=1.5,emf=model,hall_capture=timer",
+            timer: expected([point(3.30, 9.3, 0.4), point(3.30, 4.9, 0.5)], 108.0),
+            sampled: None,
+        },
+        DesignRow {
+            label: "three_phase, nearest, proportional, model EMF",
+            variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=nearest,reference=proportional,emf=model,hall_capture=timer",
+            timer: expected([point(3.30, 0.13, 0.01), point(3.30, 0.5, 0.06)], 117.0),
+            sampled: Some(Expected {
+                points: vec![ExpectedPoint {
+                    rpm: 1500.0,
+                    ripple_pp_pct: Some((1.2, 2.1).into()),
+                    ..ExpectedPoint::default()
+                }],
+                limit_pct: None,
+            }),
+        },
+    ]
+}
+
+fn point(mean: f64, pp: f64, rms: f64) -> ExpectedPoint {
+    at(0.0, Some(mean), Some(pp), Some(rms))
+}
+
+fn at(rpm: f64, mean: Option<f64>, pp: Option<f64>, rms: Option<f64>) -> ExpectedPoint {
+    ExpectedPoint {
+        rpm,
+        mean_torque_nm: mean.map(Band::from),
+        ripple_pp_pct: pp.map(Band::from),
+        ripple_rms_pct: rms.map(Band::from),
+    }
+}
+
+/// Figures at 400 and 1500 rpm and the limit.
+fn expected(points: [ExpectedPoint; 2], limit: impl Into<Band>) -> Expected {
+    let speeds = [400.0, 1500.0];
+    Expected {
+        points: points
+            .into_iter()
+            .zip(speeds)
+            .map(|(point, rpm)| ExpectedPoint { rpm, ..point })
+            .collect(),
+        limit_pct: Some(limit.into()),
+    }
+}
