@@ -27,6 +27,16 @@ pub fn pow2(exponent: i32) -> f64 {
     f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
 }
 
+/// The whole number nearest to `y`, |y| < 2^51, not half way between two.
+#[inline]
+fn nearest(y: f64) -> f64 {
+    debug_assert!(
+        y.abs() < 2_251_799_813_685_248.0,
+        "{y} is too large to round"
+    );
+    (y + MAGIC) - MAGIC
+}
+
 /// The greatest whole number not above `y`, |y| < 2^51.
 #[inline]
 pub fn floor(y: f64) -> f64 {
@@ -35,21 +45,29 @@ pub fn floor(y: f64) -> f64 {
         "{y} is too large for floor"
     );
     let nearest = (y + MAGIC) - MAGIC;
-    if nearest > y { nearest - 1.0 } else { nearest }
+    // A mask, because a branch would be mispredicted every other time.
+    let above = u64::from(nearest > y).wrapping_neg();
+    nearest - f64::from_bits(1f64.to_bits() & above)
 }
 
-/// floor(x/2): the arithmetic shift by one.
+/// floor(x weight) for a whole x and a weight 2^-n, n >= 0: with n fraction bits, subtracting half
+/// less half an ulp turns "downwards" into "to the nearest" without ties.
+#[inline]
+pub fn floor_weighted(x: f64, weight: f64) -> f64 {
+    debug_whole(x);
+    nearest(x * weight + (0.5 * weight - 0.5))
+}
+
+/// floor(x/2): the arithmetic shift by one, |x| < 2^50.
 #[inline]
 pub fn halve(x: f64) -> f64 {
-    debug_whole(x);
-    floor(x * 0.5)
+    floor_weighted(x, 0.5)
 }
 
-/// floor(x/2^n), |x| < 2^51.
+/// floor(x/2^n), |x| < 2^50.
 #[inline]
 pub fn floor_shift(x: f64, n: u32) -> f64 {
-    debug_whole(x);
-    floor(x * pow2(-(n as i32)))
+    floor_weighted(x, pow2(-(n as i32)))
 }
 
 /// R(x) = floor(x + 1/2): how a real constant becomes a word.
@@ -57,11 +75,11 @@ pub fn round_half_up(x: f64) -> f64 {
     (x + 0.5).floor()
 }
 
-/// x modulo 2^32, from 0 up; |x| < 2^51.
+/// x modulo 2^32, from 0 up; |x| < 2^50.
 #[inline]
 pub fn wrap32(x: f64) -> f64 {
     debug_whole(x);
-    x - floor(x * (1.0 / TWO_32)) * TWO_32
+    x - floor_weighted(x, 1.0 / TWO_32) * TWO_32
 }
 
 /// The two's complement word of a whole x, |x| < 2^31.
@@ -118,6 +136,8 @@ pub struct Coefficient {
     low: f64,
     /// 2^(16-s).
     low_weight: f64,
+    /// Half an ulp of the sum that is rounded: breaks ties upwards.
+    nudge: f64,
 }
 
 impl Coefficient {
@@ -130,19 +150,23 @@ impl Coefficient {
             "coefficient {raw}, shift {s}"
         );
         if s > 16 {
-            let high = floor(raw * (1.0 / TWO_16));
+            let high = floor_weighted(raw, 1.0 / TWO_16);
             let low_weight = pow2(16 - s as i32);
             Self {
                 high: high * low_weight,
                 low: (raw - high * TWO_16) * (1.0 / TWO_16),
                 low_weight,
+                nudge: 0.5 * low_weight,
             }
         } else {
             // The product is as short as its shifted result plus 16 bits.
+            let weight = pow2(-(s as i32));
+            let nudge = if s == 0 { 0.0 } else { 0.5 * weight };
             Self {
-                high: raw * pow2(-(s as i32)),
+                high: raw * weight,
                 low: 0.0,
                 low_weight: 0.0,
+                nudge,
             }
         }
     }
@@ -152,7 +176,9 @@ impl Coefficient {
     pub fn mul(&self, x: f64) -> f64 {
         debug_whole(x);
         debug_assert!(x.abs() <= 2.0 * TWO_32, "{x} is no word");
-        floor(self.high * x + (floor(self.low * x) * self.low_weight + 0.5))
+        // floor(Cl x/2^16), a sum with 16 fraction bits.
+        let tail = nearest(self.low * x + (0.5 / TWO_16 - 0.5));
+        nearest(self.high * x + (tail * self.low_weight + self.nudge))
     }
 }
 
@@ -160,19 +186,17 @@ impl Coefficient {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shift {
     bits: u32,
-    /// 2^-s.
+    /// 2^-s, or 2^(16-s) where the product is split.
     weight: f64,
-    /// 2^(16-s).
-    low_weight: f64,
 }
 
 impl Shift {
     /// A shift by `bits` <= 62.
     pub fn new(bits: u32) -> Self {
+        let kept = if bits > 16 { bits - 16 } else { bits };
         Self {
             bits,
-            weight: pow2(-(bits as i32)),
-            low_weight: pow2(16 - bits as i32),
+            weight: pow2(-(kept as i32)),
         }
     }
 
@@ -182,9 +206,9 @@ impl Shift {
         self.bits
     }
 
-    /// floor(x y/2^s + bias), bias a multiple of 1/2 (0 for s = 0).
+    /// x y/2^s with the bits below the weight cut off.
     #[inline]
-    fn product(&self, x: f64, y: f64, bias: f64) -> f64 {
+    fn product(&self, x: f64, y: f64) -> f64 {
         debug_whole(x);
         debug_whole(y);
         debug_assert!(
@@ -192,26 +216,31 @@ impl Shift {
             "{x} times {y}"
         );
         if self.bits > 16 {
-            let high = floor(x * (1.0 / TWO_16));
+            let high = floor_weighted(x, 1.0 / TWO_16);
             let low = x - high * TWO_16;
-            let tail = floor(low * y * (1.0 / TWO_16));
-            floor(high * y * self.low_weight + (tail * self.low_weight + bias))
+            (high * y + floor_weighted(low * y, 1.0 / TWO_16)) * self.weight
         } else {
             debug_whole(x * y);
-            floor(x * y * self.weight + bias)
+            x * y * self.weight
         }
     }
 
     /// floor(x y/2^s) for words x, y.
     #[inline]
     pub fn floor_product(&self, x: f64, y: f64) -> f64 {
-        self.product(x, y, 0.0)
+        nearest(self.product(x, y) + (0.5 * self.weight - 0.5))
     }
 
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
     #[inline]
     pub fn round_product(&self, x: f64, y: f64) -> f64 {
-        self.product(x, y, 0.5)
+        // Half an ulp breaks ties upwards; without fraction bits there are none.
+        let nudge = if self.bits == 0 {
+            0.0
+        } else {
+            0.5 * self.weight
+        };
+        nearest(self.product(x, y) + nudge)
     }
 }
 

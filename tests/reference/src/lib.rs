@@ -12,6 +12,7 @@ pub mod exact;
 mod formats;
 pub mod pdcc;
 mod spec;
+pub mod verify;
 
 pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;

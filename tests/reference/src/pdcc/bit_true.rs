@@ -16,7 +16,7 @@ use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation};
 use super::trace::{PhysicalState, Reach, Trace};
-use crate::exact::{Coefficient, div_floor, floor, halve, pow2, to_u16};
+use crate::exact::{Coefficient, div_floor, floor, floor_weighted, halve, pow2, to_u16};
 use crate::{EmfSource, Error, FormatTable, Modulation, Pdcc, Reference, Spec};
 use constants::Constants;
 use hexagen::{Fault, LegState, Legs, Sample};
@@ -40,6 +40,17 @@ pub struct BitTrue {
     to_duty: Coefficient,
     state: State,
     last: Signals,
+}
+
+/// Which way a step went, for coverage counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// Where the deadbeat voltage lay.
+    pub reach: Reach,
+    /// A commutation is under way (pair modulation).
+    pub commutating: bool,
+    /// Angle per period, angle words (2^32 per turn), signed; 0 while the angle is not timed.
+    pub step_angle: f64,
 }
 
 /// Words of the last step, for [`BitTrue::trace`].
@@ -152,6 +163,21 @@ impl BitTrue {
     /// What the drive is doing.
     pub fn mode(&self) -> Mode {
         self.state.supervisor.mode
+    }
+
+    /// Current offsets, ADC counts.
+    pub fn offset_counts(&self) -> [f64; 2] {
+        self.state.offset.map(|word| word / self.k.count)
+    }
+
+    /// Which way the last step went.
+    #[inline]
+    pub fn course(&self) -> Course {
+        Course {
+            reach: self.last.reach,
+            commutating: self.last.commutating,
+            step_angle: self.last.step_angle,
+        }
     }
 
     /// Signals of the last step in physical units.
@@ -323,7 +349,7 @@ impl BitTrue {
                 let start = k.flux.both(theta_start);
                 let end = k.flux.both(theta_start + angle.step);
                 [0, 1].map(|x| {
-                    floor((end[x] - start[x]) * k.flux_to_voltage).clamp(-k.e_max, k.e_max)
+                    floor_weighted(end[x] - start[x], k.flux_to_voltage).clamp(-k.e_max, k.e_max)
                 })
             }
         };

@@ -15,7 +15,7 @@ pub fn voltage(
     e: [f64; 2],
 ) -> [f64; 2] {
     let mut t = *terminal;
-    if let Some(leg) = off.checked_sub(1) {
+    if let Some(leg) = off.checked_sub(1).filter(|leg| *leg < 3) {
         let e = [e[0], e[1], -(e[0] + e[1])];
         let driven = halve(t[0] + t[1] + t[2] - t[leg]);
         let floating = driven + e[leg] + halve(e[leg]);

@@ -63,48 +63,148 @@ impl Parts {
     }
 }
 
-/// Where a state word is kept.
-enum Slot<'a> {
-    Mode(&'a mut Mode),
-    Fault(&'a mut Fault),
-    Word(&'a mut f64),
-    /// An index and the greatest that it may be.
-    Index(&'a mut usize, usize),
-    Edges(&'a mut u8),
-    Flag(&'a mut bool),
+/// A value that is kept as a state word.
+trait WordValue {
+    fn to_word(&self) -> i32;
+    fn set_word(&mut self, word: i32);
 }
 
-impl Slot<'_> {
+impl WordValue for f64 {
     #[inline]
-    fn get(&self) -> i32 {
-        match self {
-            Self::Mode(mode) => **mode as i32,
-            Self::Fault(fault) => **fault as i32,
-            Self::Word(word) => to_i32(**word),
-            Self::Index(index, _) => **index as i32,
-            Self::Edges(edges) => i32::from(**edges),
-            Self::Flag(flag) => i32::from(**flag),
-        }
+    fn to_word(&self) -> i32 {
+        to_i32(*self)
     }
 
-    fn set(&mut self, word: i32) {
-        match self {
-            Self::Mode(mode) => **mode = Mode::from_word(word),
-            Self::Fault(fault) => **fault = fault_from_word(word),
-            Self::Word(place) => **place = f64::from(word),
-            Self::Index(index, greatest) => {
-                **index = usize::try_from(word).unwrap_or(0).min(*greatest);
-            }
-            Self::Edges(edges) => **edges = word.clamp(0, 2) as u8,
-            Self::Flag(flag) => **flag = word != 0,
-        }
+    fn set_word(&mut self, word: i32) {
+        *self = f64::from(word);
     }
+}
+
+/// A sector, or a leg by its number from 1.
+impl WordValue for usize {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        *self as i32
+    }
+
+    fn set_word(&mut self, word: i32) {
+        *self = usize::try_from(word).unwrap_or(0).min(6);
+    }
+}
+
+/// The number of edges seen.
+impl WordValue for u8 {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        i32::from(*self)
+    }
+
+    fn set_word(&mut self, word: i32) {
+        *self = word.clamp(0, 2) as u8;
+    }
+}
+
+impl WordValue for bool {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        i32::from(*self)
+    }
+
+    fn set_word(&mut self, word: i32) {
+        *self = word != 0;
+    }
+}
+
+impl WordValue for Mode {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        *self as i32
+    }
+
+    fn set_word(&mut self, word: i32) {
+        *self = Self::from_word(word);
+    }
+}
+
+impl WordValue for Fault {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        *self as i32
+    }
+
+    fn set_word(&mut self, word: i32) {
+        *self = fault_from_word(word);
+    }
+}
+
+/// Calls `$show!(name, place)` for every word of a variant, in the order of the semantics' list.
+macro_rules! for_each_word {
+    ($state:expr, $parts:expr, $show:ident) => {
+        $show!("mode", $state.supervisor.mode);
+        $show!("fault", $state.supervisor.fault);
+        $show!("countdown", $state.supervisor.countdown);
+        $show!("sum_a", $state.supervisor.sum[0]);
+        $show!("sum_b", $state.supervisor.sum[1]);
+        $show!("offset_a", $state.offset[0]);
+        $show!("offset_b", $state.offset[1]);
+        $show!("sector_prev", $state.sector_prev);
+        if $parts.has(Part::Stall) {
+            $show!("stall_count", $state.supervisor.stall_count);
+        }
+        if $parts.has(Part::Direction) {
+            $show!("direction", $state.timing.direction);
+        }
+        if $parts.has(Part::Rotor) {
+            $show!("age_prev", $state.timing.age_prev);
+            $show!("edges", $state.timing.edges);
+            $show!("t1", $state.timing.intervals[0]);
+            $show!("t2", $state.timing.intervals[1]);
+            $show!("t3", $state.timing.intervals[2]);
+            $show!("t4", $state.timing.intervals[3]);
+            $show!("t5", $state.timing.intervals[4]);
+            $show!("t6", $state.timing.intervals[5]);
+            $show!("rev", $state.timing.rev);
+            $show!("omega", $state.omega);
+        }
+        if $parts.has(Part::Pair) {
+            $show!("sector_eff_prev", $state.sector_eff_prev);
+            $show!("commutating", $state.commutating);
+            $show!("commutation_age", $state.commutation_age);
+        }
+        if $parts.has(Part::Estimated) {
+            $show!("i_a_prev", $state.i_prev[0]);
+            $show!("i_b_prev", $state.i_prev[1]);
+        }
+        if $parts.has(Part::VoltageCommand) {
+            $show!("v_a_cmd", $state.v_cmd[0]);
+            $show!("v_b_cmd", $state.v_cmd[1]);
+        }
+        if $parts.has(Part::TerminalCommand) {
+            $show!("t_a_cmd", $state.t_cmd[0]);
+            $show!("t_b_cmd", $state.t_cmd[1]);
+            $show!("t_c_cmd", $state.t_cmd[2]);
+            $show!("off_cmd", $state.off_cmd);
+        }
+        if $parts.has(Part::Estimated) {
+            $show!("v_a_prev", $state.v_prev[0]);
+            $show!("v_b_prev", $state.v_prev[1]);
+        }
+        if $parts.has(Part::EmfMemory) {
+            $show!("e_a_prev", $state.e_prev[0]);
+            $show!("e_b_prev", $state.e_prev[1]);
+        }
+    };
 }
 
 /// Names of the words.
 pub fn names(parts: Parts) -> Vec<&'static str> {
     let mut names = Vec::new();
-    State::default().visit(parts, |name, _| names.push(name));
+    macro_rules! name {
+        ($name:literal, $place:expr) => {
+            names.push($name)
+        };
+    }
+    for_each_word!(State, parts, name);
     names
 }
 
@@ -136,85 +236,31 @@ impl State {
         self.commutation_age = 0.0;
     }
 
-    /// Shows every word of the variant, in the order of the semantics' list.
-    #[inline]
-    fn visit(&mut self, parts: Parts, mut show: impl FnMut(&'static str, Slot)) {
-        show("mode", Slot::Mode(&mut self.supervisor.mode));
-        show("fault", Slot::Fault(&mut self.supervisor.fault));
-        show("countdown", Slot::Word(&mut self.supervisor.countdown));
-        show("sum_a", Slot::Word(&mut self.supervisor.sum[0]));
-        show("sum_b", Slot::Word(&mut self.supervisor.sum[1]));
-        show("offset_a", Slot::Word(&mut self.offset[0]));
-        show("offset_b", Slot::Word(&mut self.offset[1]));
-        show("sector_prev", Slot::Index(&mut self.sector_prev, 6));
-        if parts.has(Part::Stall) {
-            show("stall_count", Slot::Word(&mut self.supervisor.stall_count));
-        }
-        if parts.has(Part::Direction) {
-            show("direction", Slot::Word(&mut self.timing.direction));
-        }
-        if parts.has(Part::Rotor) {
-            show("age_prev", Slot::Word(&mut self.timing.age_prev));
-            show("edges", Slot::Edges(&mut self.timing.edges));
-            for (name, interval) in ["t1", "t2", "t3", "t4", "t5", "t6"]
-                .into_iter()
-                .zip(&mut self.timing.intervals)
-            {
-                show(name, Slot::Word(interval));
-            }
-            show("rev", Slot::Word(&mut self.timing.rev));
-            show("omega", Slot::Word(&mut self.omega));
-        }
-        if parts.has(Part::Pair) {
-            show("sector_eff_prev", Slot::Index(&mut self.sector_eff_prev, 6));
-            show("commutating", Slot::Flag(&mut self.commutating));
-            show("commutation_age", Slot::Word(&mut self.commutation_age));
-        }
-        if parts.has(Part::Estimated) {
-            show("i_a_prev", Slot::Word(&mut self.i_prev[0]));
-            show("i_b_prev", Slot::Word(&mut self.i_prev[1]));
-        }
-        if parts.has(Part::VoltageCommand) {
-            show("v_a_cmd", Slot::Word(&mut self.v_cmd[0]));
-            show("v_b_cmd", Slot::Word(&mut self.v_cmd[1]));
-        }
-        if parts.has(Part::TerminalCommand) {
-            show("t_a_cmd", Slot::Word(&mut self.t_cmd[0]));
-            show("t_b_cmd", Slot::Word(&mut self.t_cmd[1]));
-            show("t_c_cmd", Slot::Word(&mut self.t_cmd[2]));
-            show("off_cmd", Slot::Index(&mut self.off_cmd, 3));
-        }
-        if parts.has(Part::Estimated) {
-            show("v_a_prev", Slot::Word(&mut self.v_prev[0]));
-            show("v_b_prev", Slot::Word(&mut self.v_prev[1]));
-        }
-        if parts.has(Part::EmfMemory) {
-            show("e_a_prev", Slot::Word(&mut self.e_prev[0]));
-            show("e_b_prev", Slot::Word(&mut self.e_prev[1]));
-        }
-    }
-
     /// Writes the words in order.
     #[inline]
     pub fn write(&self, parts: Parts, words: &mut [i32]) {
         let mut places = words.iter_mut();
-        // A copy, because the one list of words lends them for writing.
-        let mut state = *self;
-        state.visit(parts, |_, slot| {
-            if let Some(place) = places.next() {
-                *place = slot.get();
-            }
-        });
+        macro_rules! put {
+            ($name:literal, $place:expr) => {
+                if let Some(word) = places.next() {
+                    *word = $place.to_word();
+                }
+            };
+        }
+        for_each_word!(self, parts, put);
     }
 
     /// Reads the words in order; words that are missing leave their part of the state as it is.
     pub fn read(&mut self, parts: Parts, words: &[i32]) {
         let mut words = words.iter();
-        self.visit(parts, |_, mut slot| {
-            if let Some(word) = words.next() {
-                slot.set(*word);
-            }
-        });
+        macro_rules! take {
+            ($name:literal, $place:expr) => {
+                if let Some(word) = words.next() {
+                    $place.set_word(*word);
+                }
+            };
+        }
+        for_each_word!(self, parts, take);
     }
 
     /// The state in physical units.

@@ -11,7 +11,7 @@ mod sector;
 mod supervision;
 mod trace;
 
-pub use bit_true::BitTrue;
+pub use bit_true::{BitTrue, Course};
 pub use ideal::{Duties, Ideal};
 pub use supervision::Mode;
 pub use trace::{PhysicalState, Reach, Trace};

@@ -1,9 +1,9 @@
 //! Model A in closed loop meets the rows of DESIGN section 4 for the 660 W motor (`three_phase`).
 
-mod support;
+mod plant;
 
 use hexagen_reference::pdcc::Ideal;
-use support::{Merits, merits, spec_660w};
+use plant::{Merits, merits, spec_660w};
 
 const RATED_RPM: f64 = 2000.0;
 /// 20 A times 0.1648 Nm/A.

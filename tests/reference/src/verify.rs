@@ -1,0 +1,228 @@
+//! The bit-for-bit test: a drive and its bit-true model get the same inputs, and every output and
+//! every state word must be equal after every step.
+//!
+//! Three kinds of input take turns: arbitrary words, a crude motor in closed loop, and corner
+//! values. A seed fixes the whole run.
+
+mod mismatch;
+mod report;
+mod stimulus;
+mod subject;
+mod toy_motor;
+
+pub use mismatch::{Difference, Mismatch, VerifyError};
+pub use report::Report;
+pub use stimulus::{Action, Context, Stimulus, Stream};
+pub use subject::{Compiled, Subject};
+
+use crate::pdcc::{BitTrue, Mode};
+use crate::{FormatTable, Spec};
+use hexagen::{Drive, Fault, Format, Legs, Sample};
+
+/// Steps that [`assert_bit_true`] runs.
+pub const DEFAULT_STEPS: u64 = 500_000;
+
+/// Steps after which drive and model start afresh.
+const SESSION: u64 = 1 << 16;
+
+/// Compares a compiled drive with its bit-true model over `steps` steps.
+///
+/// # Errors
+/// When they differ, or when no model can be built from the drive's specification and formats.
+pub fn verify<D: Drive>(steps: u64, seed: u64) -> Result<Report, VerifyError> {
+    verify_subject(
+        D::SPEC,
+        D::FORMATS,
+        D::STATE_NAMES,
+        || Compiled(D::new()),
+        steps,
+        seed,
+    )
+}
+
+/// Runs the bit-for-bit test of a compiled drive and panics with a table of what differs.
+///
+/// # Panics
+/// When drive and model differ, or when no model can be built.
+pub fn assert_bit_true<D: Drive>() {
+    if let Err(error) = verify::<D>(DEFAULT_STEPS, 1) {
+        panic!("{} is not bit-true: {error}", D::NAME);
+    }
+}
+
+/// As [`verify`], for anything that computes a drive's steps: `new` makes a subject at rest,
+/// `spec`, `formats` and `names` are what [`Drive`]'s constants of these names hold.
+///
+/// # Errors
+/// As [`verify`].
+pub fn verify_subject<S: Subject>(
+    spec: &str,
+    formats: &[Format],
+    names: &[&str],
+    new: impl Fn() -> S,
+    steps: u64,
+    seed: u64,
+) -> Result<Report, VerifyError> {
+    let spec = Spec::from_toml(spec)?;
+    let fresh = BitTrue::new(&spec, &FormatTable::new(formats))?;
+    let expected = fresh.state_names();
+    if expected != names {
+        return Err(VerifyError::StateNames {
+            expected: expected.join(" "),
+            found: names.join(" "),
+        });
+    }
+    let mut stimulus = Stimulus::new(&spec, seed)?;
+    let mut report = Report::default();
+    let mut pair = Pair::new(&fresh, new());
+    while report.steps < steps {
+        if report.steps % SESSION == 0 {
+            pair = Pair::new(&fresh, new());
+            stimulus.restart();
+        }
+        let context = Context {
+            offset: pair.model.offset_counts(),
+            tripped: pair.model.mode() == Mode::Tripped,
+        };
+        let (action, sample) = stimulus.next(&context);
+        if let Some(action) = action {
+            pair.apply(action);
+            report.actions += 1;
+        }
+        match pair.step(sample) {
+            Ok(legs) => stimulus.respond(&legs),
+            Err(differences) => {
+                return Err(VerifyError::Mismatch(Box::new(Mismatch {
+                    step: report.steps,
+                    seed,
+                    stream: stimulus.stream(),
+                    action,
+                    sample,
+                    differences,
+                })));
+            }
+        }
+        report.count(&pair.model);
+    }
+    Ok(report)
+}
+
+/// A subject and its model in lockstep.
+struct Pair<S> {
+    subject: S,
+    model: BitTrue,
+    found: Vec<i32>,
+    expected: Vec<i32>,
+    before: Vec<i32>,
+    remembered: Option<Vec<i32>>,
+}
+
+impl<S: Subject> Pair<S> {
+    fn new(model: &BitTrue, subject: S) -> Self {
+        let words = vec![0; model.state_names().len()];
+        let mut pair = Self {
+            subject,
+            model: model.clone(),
+            found: words.clone(),
+            expected: words.clone(),
+            before: words,
+            remembered: None,
+        };
+        pair.model.state_words(&mut pair.expected);
+        pair
+    }
+
+    fn apply(&mut self, action: Action) {
+        match action {
+            Action::SetCurrent(bits) => {
+                self.subject.set_current(bits);
+                self.model.set_current(bits);
+            }
+            Action::SetTorque(bits) => {
+                self.subject.set_torque(bits);
+                self.model.set_torque(bits);
+            }
+            Action::SetBus(counts) => {
+                self.subject.set_bus(counts);
+                self.model.set_bus(counts);
+            }
+            Action::Reset => {
+                self.subject.reset();
+                self.model.reset();
+            }
+            Action::Calibrate => {
+                self.subject.calibrate();
+                self.model.calibrate();
+            }
+            Action::Precharge => {
+                self.subject.precharge();
+                self.model.precharge();
+            }
+            Action::Remember => self.remembered = Some(self.expected.clone()),
+            Action::Recall => {
+                if let Some(words) = &self.remembered {
+                    self.subject.set_state_words(words);
+                    self.model.set_state_words(words);
+                }
+            }
+        }
+        // What the action did to the state is compared as part of the step.
+        self.model.state_words(&mut self.expected);
+    }
+
+    /// One step of both; the differences if there are any.
+    #[inline]
+    fn step(&mut self, sample: Sample) -> Result<Legs, Vec<Difference>> {
+        std::mem::swap(&mut self.before, &mut self.expected);
+        let found = self.subject.step(&sample);
+        let expected = self.model.step(&sample);
+        self.subject.state_words(&mut self.found);
+        self.model.state_words(&mut self.expected);
+        if found == expected
+            && self.found == self.expected
+            && self.subject.fault() == self.model.fault()
+        {
+            Ok(expected)
+        } else {
+            Err(self.differences(&found, &expected))
+        }
+    }
+
+    #[cold]
+    fn differences(&self, found: &Legs, expected: &Legs) -> Vec<Difference> {
+        let mut differences = Vec::new();
+        let mut note = |name: &str, before: Option<i32>, found: i32, expected: i32| {
+            differences.push(Difference {
+                name: name.to_owned(),
+                before,
+                found,
+                expected,
+            });
+        };
+        for (phase, name) in ["a", "b", "c"].into_iter().enumerate() {
+            let compare = [found, expected].map(|legs| i32::from(legs.compare[phase]));
+            note(&format!("compare_{name}"), None, compare[0], compare[1]);
+            let state = [found, expected].map(|legs| legs.state[phase] as i32);
+            note(&format!("state_{name}"), None, state[0], state[1]);
+        }
+        note(
+            "fault()",
+            None,
+            word_of(self.subject.fault()),
+            word_of(self.model.fault()),
+        );
+        for (index, name) in self.model.state_names().into_iter().enumerate() {
+            note(
+                name,
+                Some(self.before[index]),
+                self.found[index],
+                self.expected[index],
+            );
+        }
+        differences
+    }
+}
+
+fn word_of(fault: Fault) -> i32 {
+    fault as i32
+}

@@ -1,0 +1,89 @@
+//! What a bit-for-bit test has covered.
+
+use crate::pdcc::{BitTrue, Mode, Reach};
+use std::fmt;
+
+/// How many steps of a passed test went which way, counted in the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// All steps.
+    pub steps: u64,
+    /// Steps in control.
+    pub running: u64,
+    /// Steps with offset calibration under way.
+    pub calibrating: u64,
+    /// Steps with bootstrap pre-charge under way.
+    pub precharging: u64,
+    /// Steps tripped.
+    pub tripped: u64,
+    /// Steps in control and limited to the hexagon.
+    pub limited: u64,
+    /// Of these, steps past the reach along the EMF (torque priority).
+    pub past_reach: u64,
+    /// Steps in control with a commutation under way (pair modulation).
+    pub commutating: u64,
+    /// Steps in control with an interpolated rotor angle.
+    pub timed: u64,
+    /// Of these, steps with the rotor turning backward.
+    pub backward: u64,
+    /// Calls between the steps: set-points, reset, calibration, pre-charge, state jumps.
+    pub actions: u64,
+}
+
+impl Report {
+    /// Counts the step that the model has just made.
+    #[inline]
+    pub(super) fn count(&mut self, model: &BitTrue) {
+        self.steps += 1;
+        match model.mode() {
+            Mode::Run => {
+                let seen = model.course();
+                self.running += 1;
+                self.limited += u64::from(seen.reach != Reach::Inside);
+                self.past_reach += u64::from(seen.reach == Reach::PastReach);
+                self.commutating += u64::from(seen.commutating);
+                self.timed += u64::from(seen.step_angle != 0.0);
+                self.backward += u64::from(seen.step_angle < 0.0);
+            }
+            Mode::Calibrate => self.calibrating += 1,
+            Mode::Precharge => self.precharging += 1,
+            Mode::Tripped => self.tripped += 1,
+        }
+    }
+
+    /// Adds another run's counts.
+    pub fn add(&mut self, other: &Self) {
+        self.steps += other.steps;
+        self.running += other.running;
+        self.calibrating += other.calibrating;
+        self.precharging += other.precharging;
+        self.tripped += other.tripped;
+        self.limited += other.limited;
+        self.past_reach += other.past_reach;
+        self.commutating += other.commutating;
+        self.timed += other.timed;
+        self.backward += other.backward;
+        self.actions += other.actions;
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = |count: u64| 100.0 * count as f64 / self.steps.max(1) as f64;
+        write!(
+            f,
+            "{} steps: {:.1} % in control ({:.1} % limited, {:.1} % past reach, {:.1} % commutating, {:.1} % with angle), \
+             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % tripped; {} calls",
+            self.steps,
+            share(self.running),
+            share(self.limited),
+            share(self.past_reach),
+            share(self.commutating),
+            share(self.timed),
+            share(self.calibrating),
+            share(self.precharging),
+            share(self.tripped),
+            self.actions
+        )
+    }
+}

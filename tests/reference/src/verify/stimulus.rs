@@ -1,0 +1,330 @@
+//! Input streams of the bit-for-bit test, deterministic by seed.
+//!
+//! Streams take turns in blocks; calls (set-points, reset, start-up, jumps to an earlier state)
+//! are strewn in between. A tripped drive is reset soon, so that most steps are in control.
+
+use super::toy_motor::ToyMotor;
+use crate::{Bus, BusSense, Error, Spec};
+use fastrand::Rng;
+use hexagen::{Legs, Sample};
+
+/// Steps after which another stream may take over.
+const BLOCK: u32 = 1024;
+
+/// Kind of input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stream {
+    /// Words of any value, most of them within the trip level.
+    Arbitrary,
+    /// A motor in closed loop.
+    Motor,
+    /// Ends of ranges and their neighbours.
+    Corners,
+}
+
+/// A call between two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Current set-point, bits of an `I16F16` in ampere.
+    SetCurrent(i32),
+    /// Torque set-point, bits of an `I16F16` in newton metres.
+    SetTorque(i32),
+    /// Bus voltage, ADC counts.
+    SetBus(u16),
+    /// Reset.
+    Reset,
+    /// Offset calibration.
+    Calibrate,
+    /// Bootstrap pre-charge.
+    Precharge,
+    /// Keep a copy of the state words.
+    Remember,
+    /// Set the state words to the copy.
+    Recall,
+}
+
+/// What the stimulus must know of the drive before the next step.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// Current offsets, ADC counts.
+    pub offset: [f64; 2],
+    /// The drive is tripped.
+    pub tripped: bool,
+}
+
+/// Generator of samples and calls.
+#[derive(Clone, Debug)]
+pub struct Stimulus {
+    random: Rng,
+    stream: Stream,
+    left: u32,
+    motor: ToyMotor,
+    delay: u32,
+    pending: Legs,
+    sector: usize,
+    /// Ticks since the last Hall edge.
+    age: u32,
+    codes: [u8; 6],
+    ticks: u32,
+    age_max: u32,
+    adc_max: i32,
+    gain: f64,
+    trip_counts: i32,
+    i_max_bits: f64,
+    t_max_bits: f64,
+    startup_steps: u32,
+    bus: Option<BusSense>,
+}
+
+impl Stimulus {
+    /// Streams for a drive of the given specification.
+    ///
+    /// # Errors
+    /// When the specification is inconsistent.
+    pub fn new(spec: &Spec, seed: u64) -> Result<Self, Error> {
+        let inverter = &spec.inverter;
+        Ok(Self {
+            random: Rng::with_seed(seed),
+            stream: Stream::Motor,
+            left: BLOCK,
+            motor: ToyMotor::new(spec)?,
+            delay: spec.pdcc().delay,
+            pending: Legs::OFF,
+            sector: 0,
+            age: 0,
+            codes: spec.motor.hall_codes,
+            ticks: inverter.ticks,
+            age_max: inverter.age_max,
+            adc_max: (1 << inverter.adc_bits) - 1,
+            gain: inverter.adc_gain,
+            trip_counts: (inverter.trip_current / inverter.adc_gain.abs()) as i32,
+            i_max_bits: inverter.max_current * 65_536.0,
+            t_max_bits: inverter.max_current * spec.motor.torque_constant * 65_536.0,
+            startup_steps: (1 << inverter.calibration_log2) + inverter.precharge_periods,
+            bus: if inverter.bus == Bus::Measured {
+                inverter.bus_sense()?
+            } else {
+                None
+            },
+        })
+    }
+
+    /// The kind of input that the last sample belongs to.
+    pub fn stream(&self) -> Stream {
+        self.stream
+    }
+
+    /// Lets the motor stand still without current, as for a new drive.
+    pub fn restart(&mut self) {
+        self.motor.i = [0.0; 2];
+        self.pending = Legs::OFF;
+    }
+
+    /// The next call, if any, and the next sample.
+    #[inline]
+    pub fn next(&mut self, context: &Context) -> (Option<Action>, Sample) {
+        self.left -= 1;
+        if self.left == 0 {
+            self.left = BLOCK;
+            self.stream = match self.random.u8(..8) {
+                0 | 1 => Stream::Arbitrary,
+                2 => Stream::Corners,
+                _ => Stream::Motor,
+            };
+            self.motor.i = [0.0; 2];
+        }
+        let dice = self.random.u32(..);
+        let action = if context.tripped && dice.is_multiple_of(2) {
+            Some(Action::Reset)
+        } else if dice >> 25 == 0 {
+            self.action()
+        } else {
+            None
+        };
+        let sample = match self.stream {
+            Stream::Arbitrary => self.arbitrary(context),
+            Stream::Motor => self.motor(context),
+            Stream::Corners => self.corners(context),
+        };
+        (action, sample)
+    }
+
+    /// Takes the drive's answer to the last sample.
+    #[inline]
+    pub fn respond(&mut self, legs: &Legs) {
+        if self.stream == Stream::Motor {
+            let applied = if self.delay == 1 { self.pending } else { *legs };
+            self.motor.advance(&applied);
+        }
+        self.pending = *legs;
+    }
+
+    fn action(&mut self) -> Option<Action> {
+        match self.random.u8(..32) {
+            0..=11 => Some(Action::SetCurrent(self.set_point(self.i_max_bits))),
+            12..=19 => Some(Action::SetTorque(self.set_point(self.t_max_bits))),
+            20 => Some(Action::Reset),
+            21 => Some(Action::Remember),
+            22 => Some(Action::Recall),
+            23 => {
+                // Rare enough that start-up takes a small share of the steps.
+                let rare = self.random.u32(..self.startup_steps.max(1)) == 0;
+                match (rare, self.random.bool()) {
+                    (true, true) => Some(Action::Calibrate),
+                    (true, false) => Some(Action::Precharge),
+                    (false, _) => None,
+                }
+            }
+            24..=27 => self.bus_action(),
+            _ => {
+                let share = self.random.f64() * 2.0 - 1.0;
+                self.motor.set_speed(if self.random.u8(..4) == 0 {
+                    0.0
+                } else {
+                    1.3 * share
+                });
+                None
+            }
+        }
+    }
+
+    fn set_point(&mut self, max: f64) -> i32 {
+        let share = self.random.f64() * 2.0 - 1.0;
+        match self.random.u8(..16) {
+            0 => self.random.i32(..),
+            1 => [0, 1, -1, i32::MAX, i32::MIN, max as i32, -max as i32][self.random.usize(..7)],
+            2..=5 => (share * max / 16.0) as i32,
+            6..=9 => (max.copysign(share)) as i32,
+            _ => (share * max) as i32,
+        }
+    }
+
+    fn bus_action(&mut self) -> Option<Action> {
+        let bus = self.bus?;
+        if self.random.u8(..8) == 0 {
+            return Some(Action::SetBus(self.random.u16(..)));
+        }
+        let volts = bus.min + self.random.f64() * (bus.max - bus.min);
+        self.motor.v_bus = volts;
+        Some(Action::SetBus((volts / bus.gain) as u16))
+    }
+
+    /// Hall code and ticks of a rotor that goes anywhere.
+    fn wandering_hall(&mut self) -> (u8, u16) {
+        let dice = self.random.u32(..);
+        self.age = self.age.saturating_add(self.ticks).min(65_535);
+        let before = self.sector;
+        match dice & 0xff {
+            0..=47 => self.sector = (self.sector + 1) % 6,
+            48..=95 => self.sector = (self.sector + 5) % 6,
+            96..=99 => self.sector = (dice >> 16) as usize % 6,
+            _ => {}
+        }
+        if self.sector != before {
+            self.age = (dice >> 8) % (self.ticks + 1);
+        }
+        let ticks = match dice >> 24 {
+            0..=3 => self.random.u16(..),
+            4 => self.age_max as u16,
+            5 => self.age_max as u16 + 1,
+            6 => 0,
+            7 => u16::MAX,
+            _ => self.age as u16,
+        };
+        // Upper bits of the code are ignored by the drive.
+        let code = match (dice >> 8) & 0x1ff {
+            0 => 0,
+            1 => 7,
+            2 => self.random.u8(..),
+            _ => self.codes[self.sector],
+        };
+        (code, ticks)
+    }
+
+    fn adc(&self, count: i32) -> u16 {
+        count.clamp(0, self.adc_max) as u16
+    }
+
+    fn arbitrary(&mut self, context: &Context) -> Sample {
+        let (hall, hall_ticks) = self.wandering_hall();
+        let dice = self.random.u32(..);
+        let (adc_a, adc_b) = match dice & 0x7f {
+            0 => (self.random.u16(..), self.random.u16(..)),
+            1 => (
+                self.random.i32(0..=self.adc_max) as u16,
+                self.random.i32(0..=self.adc_max) as u16,
+            ),
+            _ => {
+                // All three currents within the trip level.
+                let trip = self.trip_counts;
+                let a = self.random.i32(-trip..=trip);
+                let b = self.random.i32((-trip).max(-trip - a)..=trip.min(trip - a));
+                (
+                    self.adc(context.offset[0] as i32 + a),
+                    self.adc(context.offset[1] as i32 + b),
+                )
+            }
+        };
+        Sample {
+            adc_a,
+            adc_b,
+            hall,
+            hall_ticks,
+        }
+    }
+
+    fn motor(&mut self, context: &Context) -> Sample {
+        let dice = self.random.u32(..);
+        // Placement jitter of about a degree makes edges come and go at low speed.
+        let jitter = f64::from(dice >> 20) * (1.0 / 4096.0) - 0.5;
+        let sector = self.motor.sector(jitter * (1.0 / 180.0));
+        self.age = self.age.saturating_add(self.ticks).min(65_535);
+        if sector != self.sector {
+            self.age = (((dice >> 4) & 0xff) * self.ticks) >> 8;
+        }
+        self.sector = sector;
+        let noise = [(dice & 3) as i32 - 1, ((dice >> 2) & 3) as i32 - 1];
+        let count = |phase: usize| {
+            let counts = context.offset[phase] + self.motor.i[phase] / self.gain;
+            self.adc(counts as i32 + noise[phase])
+        };
+        let hall = if (dice >> 12).is_multiple_of(1 << 14) {
+            0
+        } else {
+            self.codes[sector]
+        };
+        Sample {
+            adc_a: count(0),
+            adc_b: count(1),
+            hall,
+            hall_ticks: self.age as u16,
+        }
+    }
+
+    fn corners(&mut self, context: &Context) -> Sample {
+        let (hall, hall_ticks) = self.wandering_hall();
+        let mut corner = |offset: f64| {
+            let offset = offset as i32;
+            let near = self.random.i32(-1..=1);
+            match self.random.u8(..16) {
+                0 => near,
+                1 => self.adc_max + near,
+                2..=4 => offset + self.trip_counts + near,
+                5..=7 => offset - self.trip_counts + near,
+                8..=9 => offset + self.trip_counts / 2 + near,
+                10..=11 => offset - self.trip_counts / 2 + near,
+                _ => offset + near,
+            }
+        };
+        let counts = context.offset.map(&mut corner);
+        // One past the converter's range is a corner, too.
+        let [adc_a, adc_b] =
+            counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
+        Sample {
+            adc_a,
+            adc_b,
+            hall,
+            hall_ticks,
+        }
+    }
+}

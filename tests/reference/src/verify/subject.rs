@@ -1,0 +1,81 @@
+//! Anything that can be compared with the bit-true model.
+
+use hexagen::fixed::types::I16F16;
+use hexagen::{Drive, Fault, Legs, Sample};
+
+/// A computation of a drive's steps: compiled code, an interpreter, a remote target.
+pub trait Subject {
+    /// Runs one control period.
+    fn step(&mut self, sample: &Sample) -> Legs;
+    /// Sets the current set-point, bits of an `I16F16` in ampere.
+    fn set_current(&mut self, bits: i32);
+    /// Sets the torque set-point, bits of an `I16F16` in newton metres.
+    fn set_torque(&mut self, bits: i32);
+    /// Tells the bus voltage as an ADC count.
+    fn set_bus(&mut self, counts: u16);
+    /// Clears a trip and all control state.
+    fn reset(&mut self);
+    /// Starts current-offset calibration.
+    fn calibrate(&mut self);
+    /// Starts bootstrap pre-charge.
+    fn precharge(&mut self);
+    /// Why the drive is tripped.
+    fn fault(&self) -> Fault;
+    /// Copies the state words, in the order of their names, to `words`.
+    fn state_words(&self, words: &mut [i32]);
+    /// Overwrites the state words.
+    fn set_state_words(&mut self, words: &[i32]);
+}
+
+/// A compiled drive.
+#[derive(Clone, Debug)]
+pub struct Compiled<D>(pub D);
+
+impl<D: Drive> Subject for Compiled<D> {
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        self.0.step(sample)
+    }
+
+    fn set_current(&mut self, bits: i32) {
+        self.0.set_current(I16F16::from_bits(bits));
+    }
+
+    fn set_torque(&mut self, bits: i32) {
+        self.0.set_torque(I16F16::from_bits(bits));
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.0.set_bus(counts);
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    fn calibrate(&mut self) {
+        self.0.calibrate();
+    }
+
+    fn precharge(&mut self) {
+        self.0.precharge();
+    }
+
+    #[inline]
+    fn fault(&self) -> Fault {
+        self.0.fault()
+    }
+
+    #[inline]
+    fn state_words(&self, words: &mut [i32]) {
+        for (index, word) in words.iter_mut().enumerate() {
+            *word = self.0.state_word(index);
+        }
+    }
+
+    fn set_state_words(&mut self, words: &[i32]) {
+        for (index, word) in words.iter().enumerate() {
+            self.0.set_state_word(index, *word);
+        }
+    }
+}

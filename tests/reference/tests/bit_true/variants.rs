@@ -1,0 +1,209 @@
+//! Every PDCC variant on two very different motors, with formats of about 30 bits.
+
+use hexagen::{Format, Rounding};
+use hexagen_reference::{DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec};
+
+/// One choice of every option.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    pub name: String,
+    /// The normalised text.
+    pub toml: String,
+    pub spec: Spec,
+    pub formats: &'static [Format],
+}
+
+const MOTORS: [(&str, &str); 2] = [
+    (
+        "660 W",
+        r#"
+[motor]
+pole_pairs = 4
+resistance = 0.135
+inductance = 0.00022
+emf_constant = 0.0824
+emf_shape = "trapezoidal"
+flat_top_deg = 120.0
+torque_constant = 0.1648
+hall_codes = [1, 5, 4, 6, 2, 3]
+[inverter]
+v_bus = 48.0
+t_s = 5e-5
+timer_period = 1800
+adc_bits = 12
+adc_gain = 0.01953125
+adc_offset = 2048
+trip_current = 38.0
+max_current = 20.0
+omega_max = 314.0
+precharge_periods = 20
+stall_periods = 0
+calibration_log2 = 8
+"#,
+    ),
+    (
+        "servo",
+        r#"
+[motor]
+pole_pairs = 3
+resistance = 4.58
+inductance = 0.0373
+emf_constant = 0.55
+emf_shape = "sinusoidal"
+torque_constant = 0.9
+hall_codes = [3, 1, 5, 4, 6, 2]
+[inverter]
+v_bus = 300.0
+t_s = 1e-4
+timer_period = 4000
+adc_bits = 14
+adc_gain = -0.0008
+adc_offset = 8000
+trip_current = 5.5004
+max_current = 3.7
+omega_max = 420.0
+precharge_periods = 0
+stall_periods = 2000
+calibration_log2 = 5
+"#,
+    ),
+];
+
+/// All variants of both motors.
+pub fn all() -> Vec<Variant> {
+    let mut variants = Vec::new();
+    for (motor, text) in MOTORS {
+        for index in 0..1152 {
+            let mut left = index;
+            let mut pick = |count: usize| {
+                let picked = left % count;
+                left /= count;
+                picked
+            };
+            let modulation = ["three_phase", "pair"][pick(2)];
+            let saturation = ["keep_angle", "nearest", "torque_priority"][pick(3)];
+            let (emf, filter) = [("estimated", 1.0), ("estimated", 0.4), ("model", 1.0)][pick(3)];
+            let reference = ["quasi_square", "proportional"][pick(2)];
+            let advance = [0.0, 1.5][pick(2)];
+            let delay = [1, 0][pick(2)];
+            let discretisation = ["exact", "euler"][pick(2)];
+            let capture = ["sampled", "timer"][pick(2)];
+            let bus = ["fixed", "measured"][pick(2)];
+            assert_eq!(left, 0);
+            let ticks = if capture == "timer" { 50 } else { 2 };
+            // 60 degrees in 200 periods at the least speed, a turn in 20 at the greatest.
+            let (age_max, rev_min) = (200 * ticks, 20 * ticks);
+            let sense = if bus == "measured" {
+                "bus_gain = 0.1\nbus_adc_bits = 12\nbus_min = 40.0\nbus_max = 390.0"
+            } else {
+                ""
+            };
+            let toml = format!(
+                r#"
+name = "Variant"
+{text}
+bus = "{bus}"
+{sense}
+hall_capture = "{capture}"
+ticks = {ticks}
+age_max = {age_max}
+rev_min = {rev_min}
+[controller]
+kind = "pdcc"
+modulation = "{modulation}"
+saturation = "{saturation}"
+emf = "{emf}"
+emf_filter = {filter:?}
+reference = "{reference}"
+advance = {advance:?}
+delay = {delay}
+discretisation = "{discretisation}"
+word = 32
+commutation_threshold = 0.1
+commutation_timeout = 8
+"#
+            );
+            let spec = Spec::from_toml(&toml).expect("a valid specification");
+            let name = format!(
+                "{motor}: {modulation} {saturation} {emf} {filter} {reference} advance {advance} delay {delay} \
+                 {discretisation} {capture} {bus}"
+            );
+            variants.push(Variant {
+                formats: formats(&spec),
+                spec,
+                toml,
+                name,
+            });
+        }
+    }
+    variants
+}
+
+/// Formats with as many bits as the plant's ranges allow.
+pub fn formats(spec: &Spec) -> &'static [Format] {
+    let (motor, inverter, pdcc) = (&spec.motor, &spec.inverter, spec.pdcc());
+    let g = inverter.adc_gain.abs();
+    let w = inverter.v_bus / f64::from(inverter.timer_period);
+    let DiscretePhase { a, b } = DiscretePhase::new(spec);
+    let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
+    // Currents reach twice the converter's range (phase c), voltages what deadbeat asks for them.
+    let f_i = 29 - (2.0 * adc_max).log2().ceil() as i32;
+    let volts = 4.0 * (adc_max * g / b + 2.0 * inverter.v_bus_max().expect("a bus"));
+    let f_v = 29 - (volts / w).log2().ceil() as i32;
+    let scale = 2f64.powi(f_v);
+    let ohm = g / w * 2f64.powi(f_v - f_i);
+    let shift = |value: f64| (30 - value.log2().ceil() as i32).clamp(0, 62);
+    let e_max = 2.0 * motor.emf_constant * inverter.omega_max / w * scale;
+    let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w * 1.6;
+    let peak = 1.6 * motor.torque_constant / motor.emf_constant;
+    let entries = [
+        ("current", f_i),
+        ("voltage", f_v),
+        ("k_di", shift(ohm / b)),
+        ("k_r", shift(ohm * motor.resistance)),
+        ("k_hold", shift(ohm * a / b)),
+        ("k_decay", shift(b * motor.resistance)),
+        ("k_filter", shift(pdcc.emf_filter)),
+        ("k_third", shift(1.0 / 3.0)),
+        ("k_set", shift(scale / (b * w) / 65_536.0)),
+        (
+            "k_torque",
+            shift(scale / (b * w) / motor.torque_constant / 65_536.0),
+        ),
+        ("k_advance", shift(pdcc.advance.max(1.0))),
+        ("k_bus", shift(0.1 / w * scale)),
+        ("ratio", 24),
+        ("scale", 30),
+        ("shape", shift(peak)),
+        ("flux", shift(linkage)),
+        ("emf_product", (e_max.log2().ceil() as i32).max(0)),
+        ("flux_segments", 48),
+        ("shape_segments", 48),
+    ];
+    let formats: Vec<Format> = entries
+        .into_iter()
+        .map(|(name, frac_bits)| Format {
+            name,
+            storage_bits: 32,
+            frac_bits: i8::try_from(frac_bits).expect("fraction bits"),
+            rounding: Rounding::RoundHalfUp,
+        })
+        .collect();
+    Vec::leak(formats)
+}
+
+/// The table of a variant's formats.
+pub fn table(variant: &Variant) -> FormatTable {
+    FormatTable::new(variant.formats)
+}
+
+/// Whether the variant pulses only the conducting pair.
+pub fn is_pair(variant: &Variant) -> bool {
+    variant.spec.pdcc().modulation == Modulation::Pair
+}
+
+/// Whether the variant interpolates the rotor's angle.
+pub fn has_rotor(variant: &Variant) -> bool {
+    let pdcc = variant.spec.pdcc();
+    pdcc.emf == EmfSource::Model || pdcc.advance > 0.0 || pdcc.reference == Reference::Proportional
+}

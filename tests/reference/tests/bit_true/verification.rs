@@ -1,0 +1,152 @@
+//! The bit-for-bit test passes for the model itself, covers what it claims, and sees one bit.
+
+use crate::variants::{self, Variant};
+use hexagen::{Fault, Legs, Sample};
+use hexagen_reference::FormatTable;
+use hexagen_reference::pdcc::BitTrue;
+use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
+
+/// The model in the place of a drive, with an optional fault.
+struct Mirror {
+    model: BitTrue,
+    /// Flip the lowest bit of this state word (as seen from outside).
+    flip: Option<usize>,
+}
+
+impl Subject for Mirror {
+    fn step(&mut self, sample: &Sample) -> Legs {
+        self.model.step(sample)
+    }
+    fn set_current(&mut self, bits: i32) {
+        self.model.set_current(bits);
+    }
+    fn set_torque(&mut self, bits: i32) {
+        self.model.set_torque(bits);
+    }
+    fn set_bus(&mut self, counts: u16) {
+        self.model.set_bus(counts);
+    }
+    fn reset(&mut self) {
+        self.model.reset();
+    }
+    fn calibrate(&mut self) {
+        self.model.calibrate();
+    }
+    fn precharge(&mut self) {
+        self.model.precharge();
+    }
+    fn fault(&self) -> Fault {
+        self.model.fault()
+    }
+    fn state_words(&self, words: &mut [i32]) {
+        self.model.state_words(words);
+        if let Some(word) = self.flip {
+            words[word] ^= 1;
+        }
+    }
+    fn set_state_words(&mut self, words: &[i32]) {
+        self.model.set_state_words(words);
+    }
+}
+
+fn run(
+    variant: &Variant,
+    steps: u64,
+    flip: Option<usize>,
+) -> Result<hexagen_reference::verify::Report, VerifyError> {
+    let fresh = BitTrue::new(&variant.spec, &FormatTable::new(variant.formats))?;
+    let names = fresh.state_names();
+    verify_subject(
+        &variant.toml,
+        variant.formats,
+        &names,
+        || Mirror {
+            model: fresh.clone(),
+            flip,
+        },
+        steps,
+        11,
+    )
+}
+
+#[test]
+fn covers_every_path() {
+    for variant in variants::all().into_iter().step_by(11) {
+        let report =
+            run(&variant, 40_000, None).unwrap_or_else(|error| panic!("{}: {error}", variant.name));
+        let at_least = |count: u64, share: f64, what: &str| {
+            assert!(
+                count as f64 >= share * report.steps as f64,
+                "{}: {what}: {report}",
+                variant.name
+            );
+        };
+        at_least(report.running, 0.6, "in control");
+        at_least(report.limited, 0.05, "limited");
+        at_least(report.running - report.limited, 0.1, "not limited");
+        at_least(report.tripped, 0.001, "tripped");
+        if variants::is_pair(&variant) {
+            at_least(report.commutating, 0.02, "commutating");
+            at_least(report.running - report.commutating, 0.1, "not commutating");
+        }
+        if variants::has_rotor(&variant) {
+            at_least(report.timed, 0.05, "with angle");
+            at_least(report.backward, 0.02, "backward");
+        }
+    }
+}
+
+#[test]
+fn sees_one_wrong_bit_and_says_where() {
+    let variant = &variants::all()[0];
+    let names = BitTrue::new(&variant.spec, &variants::table(variant))
+        .expect("a model")
+        .state_names();
+    for (word, name) in names.iter().enumerate() {
+        let Err(VerifyError::Mismatch(mismatch)) = run(variant, 100, Some(word)) else {
+            panic!("a wrong bit in {name} went unseen");
+        };
+        let marked: Vec<_> = mismatch
+            .differences
+            .iter()
+            .filter(|row| row.found != row.expected)
+            .collect();
+        assert_eq!(marked.len(), 1);
+        assert_eq!(marked[0].name, *name);
+        assert!(mismatch.to_string().contains("<--"));
+    }
+}
+
+#[test]
+fn state_words_survive_a_round_trip() {
+    for variant in variants::all().iter().step_by(7) {
+        let mut model = BitTrue::new(&variant.spec, &variants::table(variant)).expect("a model");
+        model.set_current(variant.spec.inverter.max_current as i32 * 32_768);
+        let mut sample = Sample {
+            adc_a: 2060,
+            adc_b: 2050,
+            hall: 1,
+            hall_ticks: 3,
+        };
+        if variant.name.starts_with("servo") {
+            sample = Sample {
+                adc_a: 8100,
+                adc_b: 7950,
+                ..sample
+            };
+        }
+        for step in 0..200 {
+            sample.hall = variant.spec.motor.hall_codes[step / 5 % 6];
+            model.step(&sample);
+        }
+        let mut words = vec![0; model.state_names().len()];
+        model.state_words(&mut words);
+        let mut other = BitTrue::new(&variant.spec, &variants::table(variant)).expect("a model");
+        other.set_current(variant.spec.inverter.max_current as i32 * 32_768);
+        other.set_state_words(&words);
+        for step in 0..50 {
+            sample.hall = variant.spec.motor.hall_codes[step / 3 % 6];
+            assert_eq!(other.step(&sample), model.step(&sample), "{}", variant.name);
+        }
+    }
+}
