@@ -101,7 +101,12 @@ fn list(errors: &[Diagnostics]) -> String {
 impl Builder {
     /// A builder that finds motor files relative to the crate whose build script runs.
     pub fn new() -> Self {
-        Self { root: env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default(), ..Self::default() }
+        Self {
+            root: env::var_os("CARGO_MANIFEST_DIR")
+                .map(PathBuf::from)
+                .unwrap_or_default(),
+            ..Self::default()
+        }
     }
 
     /// The folder that motor files are relative to, in place of the crate's.
@@ -121,7 +126,10 @@ impl Builder {
     /// Adds a motor file; [`Self::controller`] and [`Self::name`] after it belong to it.
     #[must_use]
     pub fn motor(mut self, path: impl Into<String>) -> Self {
-        self.motors.push(Motor { path: path.into(), drives: vec![] });
+        self.motors.push(Motor {
+            path: path.into(),
+            drives: vec![],
+        });
         self
     }
 
@@ -136,7 +144,10 @@ impl Builder {
     #[must_use]
     pub fn controller(mut self, variant: impl Into<String>) -> Self {
         if let Some(motor) = self.motors.last_mut() {
-            motor.drives.push(Wanted { variant: Some(variant.into()), name: None });
+            motor.drives.push(Wanted {
+                variant: Some(variant.into()),
+                name: None,
+            });
         }
         self
     }
@@ -163,7 +174,10 @@ impl Builder {
     /// All errors of all specifications together, before anything is written; else the first file
     /// that cannot be read or written.
     pub fn generate(self) -> Result<Vec<Written>, BuildError> {
-        let out_dir = self.out_dir.clone().or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
+        let out_dir = self
+            .out_dir
+            .clone()
+            .or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
         let out_dir = out_dir.ok_or(BuildError::NoOutDir)?;
         let (mut sources, mut errors) = (vec![], vec![]);
         for motor in self.all_motors()? {
@@ -176,24 +190,36 @@ impl Builder {
         if !errors.is_empty() {
             return Err(BuildError::Specification(errors));
         }
-        sources.into_iter().map(|(motor, source)| source.write(&out_dir, motor)).collect()
+        sources
+            .into_iter()
+            .map(|(motor, source)| source.write(&out_dir, motor))
+            .collect()
     }
 
     fn all_motors(&self) -> Result<Vec<Motor>, BuildError> {
         let mut motors = self.motors.clone();
         for folder in &self.folders {
             println!("cargo:rerun-if-changed={folder}");
-            let unreadable = |error| BuildError::Io { path: folder.clone(), error };
+            let unreadable = |error| BuildError::Io {
+                path: folder.clone(),
+                error,
+            };
             let mut names = vec![];
             for entry in fs::read_dir(self.root.join(folder)).map_err(unreadable)? {
                 let name = entry.map_err(unreadable)?.file_name();
                 let name = name.to_string_lossy();
-                if Path::new(name.as_ref()).extension().is_some_and(|extension| extension == "toml") {
+                if Path::new(name.as_ref())
+                    .extension()
+                    .is_some_and(|extension| extension == "toml")
+                {
                     names.push(format!("{folder}/{name}"));
                 }
             }
             names.sort_unstable();
-            motors.extend(names.into_iter().map(|path| Motor { path, drives: vec![] }));
+            motors.extend(names.into_iter().map(|path| Motor {
+                path,
+                drives: vec![],
+            }));
         }
         Ok(motors)
     }
@@ -207,12 +233,22 @@ struct Source {
 
 fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
     println!("cargo:rerun-if-changed={}", motor.path);
-    let text = fs::read_to_string(root.join(&motor.path))
-        .map_err(|error| BuildError::Io { path: motor.path.clone(), error })?;
-    let ast = parse_toml(&text, &motor.path).map_err(|errors| BuildError::Specification(vec![errors]))?;
+    let text = fs::read_to_string(root.join(&motor.path)).map_err(|error| BuildError::Io {
+        path: motor.path.clone(),
+        error,
+    })?;
+    let ast =
+        parse_toml(&text, &motor.path).map_err(|errors| BuildError::Specification(vec![errors]))?;
     let own = [Wanted::default()];
-    let drives = if motor.drives.is_empty() { &own[..] } else { &motor.drives };
-    let mut source = Source { text: String::new(), types: vec![] };
+    let drives = if motor.drives.is_empty() {
+        &own[..]
+    } else {
+        &motor.drives
+    };
+    let mut source = Source {
+        text: String::new(),
+        types: vec![],
+    };
     let mut errors = vec![];
     for wanted in drives {
         match generate_wanted(&ast, wanted) {
@@ -220,7 +256,11 @@ fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
             Err(more) => errors.push(more),
         }
     }
-    if errors.is_empty() { Ok(source) } else { Err(BuildError::Specification(errors)) }
+    if errors.is_empty() {
+        Ok(source)
+    } else {
+        Err(BuildError::Specification(errors))
+    }
 }
 
 fn generate_wanted(ast: &SpecAst, wanted: &Wanted) -> Result<Generated, Diagnostics> {
@@ -240,12 +280,22 @@ impl Source {
     fn add(&mut self, generated: &Generated, motor: &str) -> Result<(), BuildError> {
         let name = generated.interface.type_name.clone();
         if syn::parse_str::<syn::Ident>(&name).is_err() {
-            return Err(BuildError::BadName { motor: motor.to_owned(), name });
+            return Err(BuildError::BadName {
+                motor: motor.to_owned(),
+                name,
+            });
         }
         if self.types.contains(&name) {
-            return Err(BuildError::SameName { motor: motor.to_owned(), name });
+            return Err(BuildError::SameName {
+                motor: motor.to_owned(),
+                name,
+            });
         }
-        let tokens = emit_rust(&generated.graph, &generated.interface, &Surface::public(&name));
+        let tokens = emit_rust(
+            &generated.graph,
+            &generated.interface,
+            &Surface::public(&name),
+        );
         if !self.text.is_empty() {
             self.text.push('\n');
         }
@@ -259,10 +309,17 @@ impl Source {
         let stem = Path::new(&motor).file_stem().unwrap_or_default();
         let file = out_dir.join(stem).with_extension("rs");
         let beside = file.with_extension(format!("rs.{}", std::process::id()));
-        let failed = |error| BuildError::Io { path: file.display().to_string(), error };
+        let failed = |error| BuildError::Io {
+            path: file.display().to_string(),
+            error,
+        };
         fs::write(&beside, &self.text).map_err(failed)?;
         fs::rename(&beside, &file).map_err(failed)?;
-        Ok(Written { motor, file, types: self.types })
+        Ok(Written {
+            motor,
+            file,
+            types: self.types,
+        })
     }
 }
 
@@ -273,7 +330,9 @@ fn variant_name(variant: &str) -> String {
     for letter in variant.chars() {
         match letter {
             '.' => name.push('p'),
-            letter if letter.is_ascii_alphanumeric() && begins => name.push(letter.to_ascii_uppercase()),
+            letter if letter.is_ascii_alphanumeric() && begins => {
+                name.push(letter.to_ascii_uppercase());
+            }
             letter if letter.is_ascii_alphanumeric() => name.push(letter),
             _ => {}
         }
@@ -288,7 +347,10 @@ mod tests {
 
     #[test]
     fn variants_name_types() {
-        assert_eq!(variant_name("pdcc:emf=model,advance=1.5"), "PdccEmfModelAdvance1p5");
+        assert_eq!(
+            variant_name("pdcc:emf=model,advance=1.5"),
+            "PdccEmfModelAdvance1p5"
+        );
         assert_eq!(variant_name("fcs-mpc"), "FcsMpc");
     }
 }

@@ -30,7 +30,11 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
         }
         Err(errors) => {
             let errors = errors.to_compile_errors(&input.anchor());
-            let tracking = input.motor_file.iter().filter(|file| root.join(file.path.value()).is_file()).map(track);
+            let tracking = input
+                .motor_file
+                .iter()
+                .filter(|file| root.join(file.path.value()).is_file())
+                .map(track);
             let shape = empty_shape(&input.ast, &surface);
             quote!(#errors #shape #(#tracking)*)
         }
@@ -47,7 +51,10 @@ pub fn expand_verify(tokens: TokenStream) -> TokenStream {
     };
     let tests = drives.iter().filter_map(|drive| {
         let name = &drive.path.segments.last()?.ident;
-        let test = Ident::new(&format!("{}_is_bit_true", module_name(&name.to_string())), name.span());
+        let test = Ident::new(
+            &format!("{}_is_bit_true", module_name(&name.to_string())),
+            name.span(),
+        );
         Some(quote! {
             #[test]
             fn #test() {
@@ -65,8 +72,10 @@ fn generate_input(input: &MacroInput, root: &Path) -> Result<Generated, Diagnost
 }
 
 fn surface(input: &MacroInput) -> Surface {
-    let (docs, others): (Vec<_>, Vec<_>) =
-        input.attributes.iter().partition(|attribute| attribute.path().is_ident("doc"));
+    let (docs, others): (Vec<_>, Vec<_>) = input
+        .attributes
+        .iter()
+        .partition(|attribute| attribute.path().is_ident("doc"));
     Surface {
         name: input.name.clone(),
         visibility: input.visibility.to_token_stream(),
@@ -150,8 +159,11 @@ fn empty_program(interface: &Interface) -> Program {
         });
     }
     program.step = step;
-    let setters: &[&str] =
-        if interface.measured_bus { &["set_current", "set_torque", "set_bus"] } else { &["set_current", "set_torque"] };
+    let setters: &[&str] = if interface.measured_bus {
+        &["set_current", "set_torque", "set_bus"]
+    } else {
+        &["set_current", "set_torque"]
+    };
     for name in setters {
         let setter = FunctionBuilder::new(&mut program, name, &["Does nothing."]).finish();
         program.setters.push(setter);

@@ -21,7 +21,9 @@ use std::path::PathBuf;
 /// Fields and units: the documentation of `hexagen_codegen::spec`.
 #[proc_macro]
 pub fn controller(tokens: TokenStream) -> TokenStream {
-    let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
+    let root = env::var_os("CARGO_MANIFEST_DIR")
+        .map(PathBuf::from)
+        .unwrap_or_default();
     hexagen_codegen::expand_controller(tokens.into(), &root).into()
 }
 

@@ -2,10 +2,11 @@
 //!
 //! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
 //! [`verify`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
-//! [`interpret`] runs it, [`text`] prints it. Nothing here knows motors, units or Rust syntax:
+//! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
 //! physical meaning comes along as text for documentation only.
 
 pub mod build;
+pub mod cost;
 pub mod graph;
 pub mod interpret;
 mod prune;
@@ -13,6 +14,7 @@ pub mod text;
 pub mod verify;
 
 pub use build::FunctionBuilder;
+pub use cost::{Cost, PathCost};
 pub use graph::{
     Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId, Program,
     Stage, StateId, Table, TableId, Value, Word,

@@ -143,8 +143,8 @@ impl<'a> Scope<'a> {
             // A join is bound where its stage is called.
             Op::Join { taken, .. } => self.value(taken),
             Op::Add(a, b) => self.sum(a, b),
-            Op::AngleAdd(a, b) => self.binary(a, quote!(+), b, Binding::Sum),
-            Op::Sub(a, b) | Op::AngleSub(a, b) => self.binary(a, quote!(-), b, Binding::Sum),
+            Op::AngleAdd(a, b) => self.binary(a, &quote!(+), b, Binding::Sum),
+            Op::Sub(a, b) | Op::AngleSub(a, b) => self.binary(a, &quote!(-), b, Binding::Sum),
             Op::Neg(a) => {
                 let a = self.value(a).within(Binding::Atom);
                 Expression::new(quote!(-#a), Binding::Unary)
@@ -164,7 +164,7 @@ impl<'a> Scope<'a> {
                 } else {
                     quote!(mul_round)
                 };
-                self.call(quote!(#name), Some(shift), &[coefficient, signal])
+                self.call(&quote!(#name), &[coefficient, signal], Some(shift))
             }
             Op::MulFloor { a, b, shift } => {
                 if fits_word(self.products(a, b)) {
@@ -172,7 +172,7 @@ impl<'a> Scope<'a> {
                     let shift = number(i64::from(shift));
                     Expression::new(quote!((#product) >> #shift), Binding::Shift)
                 } else {
-                    self.call(quote!(mul_floor), Some(shift), &[a, b])
+                    self.call(&quote!(mul_floor), &[a, b], Some(shift))
                 }
             }
             Op::MulLimited { a, b, limit } => {
@@ -181,13 +181,13 @@ impl<'a> Scope<'a> {
                     let limit = self.right(limit, Binding::Branch);
                     Expression::atom(quote!((#product).min(#limit)))
                 } else {
-                    self.call(quote!(mul_limited), None, &[a, b, limit])
+                    self.call(&quote!(mul_limited), &[a, b, limit], None)
                 }
             }
-            Op::ShiftLeft(a, bits) => self.shift(a, quote!(<<), bits),
-            Op::ShiftRight(a, bits) => self.shift(a, quote!(>>), bits),
-            Op::Min(a, b) => self.extreme(a, quote!(min), b),
-            Op::Max(a, b) => self.extreme(a, quote!(max), b),
+            Op::ShiftLeft(a, bits) => self.shift(a, &quote!(<<), bits),
+            Op::ShiftRight(a, bits) => self.shift(a, &quote!(>>), bits),
+            Op::Min(a, b) => self.extreme(a, &quote!(min), b),
+            Op::Max(a, b) => self.extreme(a, &quote!(max), b),
             Op::Clamp { x, low, high } => {
                 let x = self.receiver(x);
                 let low = self.right(low, Binding::Branch);
@@ -206,14 +206,14 @@ impl<'a> Scope<'a> {
                 } else {
                     quote!(divide)
                 };
-                self.call(name, Some(shift), &[numerator, denominator, limit])
+                self.call(&name, &[numerator, denominator, limit], Some(shift))
             }
-            Op::TurnOver(a) => self.call(quote!(turn_over), None, &[a]),
+            Op::TurnOver(a) => self.call(&quote!(turn_over), &[a], None),
             Op::AngleIndex { angle, segments } => {
-                self.call(quote!(angle_index), Some(segments), &[angle])
+                self.call(&quote!(angle_index), &[angle], Some(segments))
             }
             Op::AngleFraction { angle, segments } => {
-                self.call(quote!(angle_fraction), Some(segments), &[angle])
+                self.call(&quote!(angle_fraction), &[angle], Some(segments))
             }
             Op::Lookup { table, index } => {
                 let table = screaming(&self.program.tables[table.index()].name);
@@ -221,8 +221,8 @@ impl<'a> Scope<'a> {
                 Expression::atom(quote!(lookup(&#table, #index)))
             }
             Op::Compare(how, a, b) => self.comparison(how, a, b),
-            Op::And(a, b) => self.logic(a, quote!(&&), b, Binding::And),
-            Op::Or(a, b) => self.logic(a, quote!(||), b, Binding::Or),
+            Op::And(a, b) => self.logic(a, &quote!(&&), b, Binding::And),
+            Op::Or(a, b) => self.logic(a, &quote!(||), b, Binding::Or),
             Op::Not(a) => self.negation(a),
             Op::Select {
                 condition,
@@ -233,7 +233,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Left-associative operator of words.
-    fn binary(&self, a: Value, operator: TokenStream, b: Value, binding: Binding) -> Expression {
+    fn binary(&self, a: Value, operator: &TokenStream, b: Value, binding: Binding) -> Expression {
         // Shifts under sums get parentheses from their binding; what stands right binds tighter.
         let a = self.value(a).within(binding);
         let b = self.right(
@@ -254,8 +254,8 @@ impl<'a> Scope<'a> {
                 let literal = number(-i64::from(literal));
                 Expression::new(quote!(#a - #literal), Binding::Sum)
             }
-            _ if self.literal(a).is_some() => self.binary(b, quote!(+), a, Binding::Sum),
-            _ => self.binary(a, quote!(+), b, Binding::Sum),
+            _ if self.literal(a).is_some() => self.binary(b, &quote!(+), a, Binding::Sum),
+            _ => self.binary(a, &quote!(+), b, Binding::Sum),
         }
     }
 
@@ -265,10 +265,10 @@ impl<'a> Scope<'a> {
         } else {
             (a, b)
         };
-        self.binary(a, quote!(*), b, Binding::Product)
+        self.binary(a, &quote!(*), b, Binding::Product)
     }
 
-    fn shift(&self, a: Value, operator: TokenStream, bits: u32) -> Expression {
+    fn shift(&self, a: Value, operator: &TokenStream, bits: u32) -> Expression {
         if bits == 0 {
             return self.value(a);
         }
@@ -277,22 +277,20 @@ impl<'a> Scope<'a> {
         Expression::new(quote!(#a #operator #bits), Binding::Shift)
     }
 
-    fn extreme(&self, a: Value, method: TokenStream, b: Value) -> Expression {
+    fn extreme(&self, a: Value, method: &TokenStream, b: Value) -> Expression {
         let (a, b) = if self.is_constant(a) { (b, a) } else { (a, b) };
         let a = self.receiver(a);
         let b = self.right(b, Binding::Branch);
         Expression::atom(quote!(#a.#method(#b)))
     }
 
-    fn call(&self, name: TokenStream, parameter: Option<u32>, arguments: &[Value]) -> Expression {
+    /// A call; `parameter` is the shift or the number of segments.
+    fn call(&self, name: &TokenStream, arguments: &[Value], parameter: Option<u32>) -> Expression {
         let arguments = arguments
             .iter()
-            .map(|&argument| self.value(argument).within(Binding::Branch));
-        let parameter = parameter.map(|parameter| {
-            let parameter = number(i64::from(parameter));
-            quote!(::<#parameter>)
-        });
-        Expression::atom(quote!(#name #parameter (#(#arguments),*)))
+            .map(|&argument| self.value(argument).within(Binding::Branch))
+            .chain(parameter.map(|parameter| number(i64::from(parameter))));
+        Expression::atom(quote!(#name(#(#arguments),*)))
     }
 
     /// The signal stands left, what it is compared with right.
@@ -312,7 +310,7 @@ impl<'a> Scope<'a> {
         Expression::new(quote!(#left #operator #right), Binding::Compare)
     }
 
-    fn logic(&self, a: Value, operator: TokenStream, b: Value, binding: Binding) -> Expression {
+    fn logic(&self, a: Value, operator: &TokenStream, b: Value, binding: Binding) -> Expression {
         let a = self.value(a).within(binding);
         let b = self.value(b).within(binding);
         Expression::new(quote!(#a #operator #b), binding)
@@ -338,10 +336,10 @@ impl<'a> Scope<'a> {
 
     fn select(&self, condition: Value, then: Value, otherwise: Value) -> Expression {
         if self.literal(then) == Some(1) && self.literal(otherwise) == Some(0) {
-            return self.call(quote!(Word::from), None, &[condition]);
+            return self.call(&quote!(Word::from), &[condition], None);
         }
         let embedded = self
-            .call(quote!(select), None, &[condition, then, otherwise])
+            .call(&quote!(select), &[condition, then, otherwise], None)
             .tokens;
         let condition = self.value(condition).within(Binding::Branch);
         let then = self.whole(then);

@@ -5,7 +5,7 @@ use super::names::{docs, loaded, number, snake, stored};
 use super::plan::{plan, signal};
 use super::stage::{StageFunction, output};
 use crate::ir::{Function, Op, Program, Value, Word};
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// A function and the functions of its stages.
@@ -35,7 +35,7 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     };
     let keep = keep_state(program, function, &stages);
     let words = param_pattern(program, function);
-    let count = program.params.len();
+    let count = Literal::usize_unsuffixed(program.params.len());
     let inputs = function.inputs.iter().map(|input| {
         let name = snake(&input.name);
         quote!(#name: Word)
@@ -43,13 +43,13 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     let compare =
         ["compare_a", "compare_b", "compare_c"].map(|name| match output(function, name) {
             None => quote!(0),
-            Some(value) => match scope.literal(value) {
-                Some(literal) => number(i64::from(literal)),
-                None => {
+            Some(value) => scope.literal(value).map_or_else(
+                || {
                     let value = scope.receiver(value);
                     quote!(#value.to_u16())
-                }
-            },
+                },
+                |literal| number(i64::from(literal)),
+            ),
         });
     let state = ["leg_a", "leg_b", "leg_c"].map(|name| match output(function, name) {
         None => quote!(LegState::Off),

@@ -5,7 +5,7 @@
 
 use super::names::snake;
 use crate::ir::Kind;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// What a signature may hold at most (clippy's `too_many_arguments`).
@@ -97,6 +97,14 @@ impl Group {
         let each: Vec<TokenStream> = self.members.iter().copied().map(each).collect();
         match each.as_slice() {
             [single] => single.clone(),
+            [first, rest @ ..]
+                if rest
+                    .iter()
+                    .all(|each| each.to_string() == first.to_string()) =>
+            {
+                let count = Literal::usize_unsuffixed(rest.len() + 1);
+                quote!([#first; #count])
+            }
             many => quote!([#(#many),*]),
         }
     }
@@ -106,7 +114,10 @@ impl Group {
         let kind = rust_type(self.kind);
         match self.members.len() {
             1 => kind,
-            count => quote!([#kind; #count]),
+            count => {
+                let count = Literal::usize_unsuffixed(count);
+                quote!([#kind; #count])
+            }
         }
     }
 }

@@ -77,7 +77,7 @@ impl Types<'_> {
     /// The half that the main program writes.
     pub(super) fn set_point(&self, setters: &[Emitted]) -> TokenStream {
         let methods = setters.iter().map(|setter| &setter.main);
-        let count = self.program.params.len();
+        let count = Literal::usize_unsuffixed(self.program.params.len());
         let words = self.program.params.iter().enumerate().map(|(index, word)| {
             doc(&format!(
                 "{index}. `{}`: {} In `{}`.",
@@ -171,24 +171,30 @@ impl Types<'_> {
             .map(snake);
         let mode = self.word("mode").map_or(quote!(mode::RUN), state_word);
         let fault = self.word("fault").map_or(quote!(Word(0)), state_word);
+        let (samples_definition, samples) = self.own_constant(
+            "calibration_samples",
+            self.interface.calibration_samples,
+            "Samples of the current-offset calibration.",
+        );
+        let (periods_definition, periods) = self.own_constant(
+            "precharge_periods",
+            self.interface.precharge_periods,
+            "Control periods of bootstrap pre-charge.",
+        );
         let set_mode = |mode: &TokenStream| self.assign("mode", mode);
         let calibrate = [
             set_mode(&quote!(mode::CALIBRATE)),
-            self.assign("countdown", &quote!(CALIBRATION_SAMPLES)),
+            self.assign("countdown", &samples),
             self.assign("sum_a", &quote!(Word(0))),
             self.assign("sum_b", &quote!(Word(0))),
         ];
         let precharge = [
             set_mode(&quote!(mode::PRECHARGE)),
-            self.assign("countdown", &quote!(PRECHARGE_PERIODS)),
+            self.assign("countdown", &periods),
         ];
-        let samples = number(i64::from(self.interface.calibration_samples));
-        let periods = number(i64::from(self.interface.precharge_periods));
         quote! {
-            /// Samples of the current-offset calibration.
-            const CALIBRATION_SAMPLES: Word = Word(#samples);
-            /// Control periods of bootstrap pre-charge.
-            const PRECHARGE_PERIODS: Word = Word(#periods);
+            #samples_definition
+            #periods_definition
 
             /// What outlives a control period.
             #[derive(Debug)]
@@ -210,7 +216,7 @@ impl Types<'_> {
                 }
 
                 fn precharge(&mut self) {
-                    if self.mode() != mode::TRIPPED && PRECHARGE_PERIODS != 0 {
+                    if self.mode() != mode::TRIPPED && #periods != 0 {
                         #(#precharge)*
                     }
                 }
@@ -345,6 +351,28 @@ impl Types<'_> {
         self.program.states.iter().find(|word| word.name == name)
     }
 
+    /// A constant of the methods: its definition, unless the program has it already, and its use.
+    fn own_constant(&self, name: &str, value: i32, line: &str) -> (TokenStream, TokenStream) {
+        let ident = screaming(name);
+        let raw = number(i64::from(value));
+        let known = self
+            .program
+            .constants
+            .iter()
+            .find(|known| known.name == name);
+        match known.map(|known| known.raw == value) {
+            None => {
+                let doc = doc(line);
+                (
+                    quote!(#doc const #ident: Word = Word(#raw);),
+                    quote!(#ident),
+                )
+            }
+            Some(true) => (TokenStream::new(), quote!(#ident)),
+            Some(false) => (TokenStream::new(), quote!(Word(#raw))),
+        }
+    }
+
     fn assign(&self, name: &str, value: &TokenStream) -> TokenStream {
         self.word(name).map_or_else(TokenStream::new, |word| {
             let field = snake(name);
@@ -402,7 +430,7 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
         }
         PublicValue::Vectors { bits, frac_bits } => {
             let kind = fixed_type(*frac_bits);
-            let count = bits.len();
+            let count = Literal::usize_unsuffixed(bits.len());
             let vectors = bits.iter().map(|vector| {
                 let [alpha, beta] = vector.map(|bits| number(i64::from(bits)));
                 quote!([#kind::from_bits(#alpha), #kind::from_bits(#beta)])
@@ -411,7 +439,7 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
         }
         PublicValue::Integers { rust_type, values } => {
             let kind = Ident::new(rust_type, Span::call_site());
-            let count = values.len();
+            let count = Literal::usize_unsuffixed(values.len());
             let values = values.iter().map(|&value| number(value));
             (quote!([#kind; #count]), quote!([#(#values),*]))
         }

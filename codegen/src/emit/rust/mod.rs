@@ -5,6 +5,7 @@
 //! The same graph gives the same tokens, whoever asks; nothing here can fail.
 
 mod expression;
+mod format;
 mod function;
 mod groups;
 mod interface;
@@ -12,14 +13,15 @@ mod names;
 mod plan;
 mod stage;
 
+pub use format::{format_rust, rustfmt};
 pub use names::module_name;
 
 use crate::interface::{Interface, PublicValue};
-use crate::ir::{Program, Table, VerifiedGraph};
+use crate::ir::{PathCost, Program, Table, VerifiedGraph};
 use function::{emit_setter, emit_step};
 use interface::Types;
 use names::{HELPERS, docs, identifiers, inner_docs, number, screaming};
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
 
@@ -60,6 +62,7 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     let types = Types {
         program,
         interface,
+
         name: &surface.name,
     };
     let drive = types.drive(&surface.type_attributes);
@@ -82,7 +85,7 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     let names = identifiers(&body);
     let constants = constants(program, &names);
     let imports = imports(&names, interface);
-    let header = inner_docs(&interface.header);
+    let header = inner_docs(&header(program, interface));
     let Surface {
         name,
         visibility,
@@ -104,13 +107,18 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     }
 }
 
-/// Emitted tokens as formatted text.
-pub fn format_rust(tokens: &TokenStream) -> String {
-    match syn::parse2(tokens.clone()) {
-        Ok(file) => prettyplease::unparse(&file),
-        // Cannot happen for what this module emits; the tokens are still the code.
-        Err(_) => tokens.to_string(),
+/// The module's documentation: the interface's, and what a step costs.
+fn header(program: &Program, interface: &Interface) -> Vec<String> {
+    let cost = PathCost::of_function(&program.step);
+    let mut lines = interface.header.clone();
+    if cost.worst.total() > 0 {
+        lines.extend([
+            String::new(),
+            format!("Operations of a step, normal path: {}.", cost.normal),
+            format!("Operations of a step, worst case: {}.", cost.worst),
+        ]);
     }
+    lines
 }
 
 /// The constants and tables that the body names.
@@ -141,7 +149,7 @@ fn emit_table(table: &Table) -> TokenStream {
         9..=16 => quote!(i16),
         _ => quote!(i32),
     };
-    let count = table.values.len();
+    let count = Literal::usize_unsuffixed(table.values.len());
     let values = table.values.iter().map(|&value| number(i64::from(value)));
     quote!(#doc static #name: [#element; #count] = [#(#values),*];)
 }
@@ -151,6 +159,12 @@ fn imports(names: &BTreeSet<String>, interface: &Interface) -> TokenStream {
         .iter()
         .filter(|&&helper| names.contains(helper))
         .map(|helper| Ident::new(helper, Span::call_site()));
+    let helpers: Vec<Ident> = helpers.collect();
+    let arith = if helpers.is_empty() {
+        quote!(Word)
+    } else {
+        quote!({Word, #(#helpers),*})
+    };
     let mut fixed: BTreeSet<String> = interface
         .constants
         .iter()
@@ -186,7 +200,7 @@ fn imports(names: &BTreeSet<String>, interface: &Interface) -> TokenStream {
         .filter(|name| names.contains(*name))
         .map(|name| Ident::new(name, Span::call_site()));
     quote! {
-        use ::hexagen::arith::{Word, #(#helpers),*};
+        use ::hexagen::arith::#arith;
         use ::hexagen::fixed::types::#fixed;
         use ::hexagen::{#(#shared),*};
     }

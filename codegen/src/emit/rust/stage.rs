@@ -8,8 +8,10 @@ use crate::ir::{Function, Kind, Op, Program, StateId, Value, Word};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-/// More results than this travel in a structure with named fields.
+/// More results than this travel in a structure with named fields, and so do results whose tuple
+/// would be more complex (in the measure of clippy's `type_complexity`) than readers like.
 const RESULTS: usize = 5;
+const COMPLEXITY: usize = 250;
 
 /// The function of a stage.
 pub(super) struct StageFunction<'a> {
@@ -37,7 +39,11 @@ impl Results {
             .map(|outcome| outcome.signal.clone())
             .collect();
         let groups = group(&signals);
-        let structure = (groups.len() > RESULTS)
+        let complexity: usize = groups
+            .iter()
+            .map(|group| if group.members.len() > 1 { 50 } else { 20 })
+            .sum();
+        let structure = (groups.len() > RESULTS || complexity + 10 > COMPLEXITY)
             .then(|| Ident::new(&format!("{}Results", camel(stage)), Span::call_site()));
         Self {
             signals,
@@ -75,7 +81,7 @@ impl Results {
         let fields = self.signals.iter().enumerate().map(|(member, signal)| {
             let field = snake(&signal.name);
             let value = of(member);
-            if value.to_string() == field.to_string() {
+            if field == value.to_string() {
                 quote!(#field)
             } else {
                 quote!(#field: #value)
