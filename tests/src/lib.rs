@@ -1,1 +1,6 @@
-//! Under construction.
+//! What the cross-crate tests share: the motor library, the options of a drive, and the
+//! interpreter as a subject of the bit-for-bit test.
+
+pub mod interpreter;
+pub mod library;
+pub mod options;

@@ -1,0 +1,265 @@
+//! The IR interpreter as a subject of the bit-for-bit test.
+//!
+//! What the emitted type does outside the step (reset, start-up calls, state access) is done here
+//! as the specification of the step says; the step and the setters run in the interpreter.
+
+use hexagen::{Fault, Format, LegState, Legs, Rounding, Sample};
+use hexagen_codegen::interface;
+use hexagen_codegen::ir::{Machine, Program};
+use hexagen_codegen::pipeline::Generated;
+use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+/// An interpreted drive. A step that fails (a value outside its proven interval) is kept and
+/// answered with all legs off.
+#[derive(Debug)]
+pub struct Interpreted<'g> {
+    machine: Machine<'g>,
+    program: &'g Program,
+    calibration_samples: i32,
+    precharge_periods: i32,
+    words: Words,
+    outputs: [usize; 6],
+    inputs: Vec<Input>,
+    escaped: &'g RefCell<Option<String>>,
+}
+
+/// Places of the state words that calls touch.
+#[derive(Clone, Copy, Debug)]
+struct Words {
+    mode: usize,
+    fault: usize,
+    countdown: usize,
+    sums: [usize; 2],
+    offsets: [usize; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Input {
+    AdcA,
+    AdcB,
+    Hall,
+    HallTicks,
+}
+
+impl<'g> Interpreted<'g> {
+    /// The program at rest; what leaves its interval is told to `escaped`.
+    ///
+    /// # Panics
+    /// When the program is none of a drive: words, inputs or outputs are missing.
+    pub fn new(
+        program: &'g Program,
+        calibration_samples: i32,
+        precharge_periods: i32,
+        escaped: &'g RefCell<Option<String>>,
+    ) -> Self {
+        let place = |name: &str| {
+            let found = program.states.iter().position(|word| word.name == name);
+            found.expect("a state word of every drive")
+        };
+        let output = |name: &str| {
+            let found = program.step.outputs.iter().position(|(known, _)| known == name);
+            found.expect("an output of every drive")
+        };
+        let inputs = program.step.inputs.iter().map(|input| match input.name.as_str() {
+            "adc_a" => Input::AdcA,
+            "adc_b" => Input::AdcB,
+            "hall" => Input::Hall,
+            "hall_ticks" => Input::HallTicks,
+            other => panic!("unknown input {other}"),
+        });
+        Self {
+            machine: Machine::of_program(program),
+            program,
+            calibration_samples,
+            precharge_periods,
+            words: Words {
+                mode: place("mode"),
+                fault: place("fault"),
+                countdown: place("countdown"),
+                sums: [place("sum_a"), place("sum_b")],
+                offsets: [place("offset_a"), place("offset_b")],
+            },
+            outputs: ["compare_a", "compare_b", "compare_c", "leg_a", "leg_b", "leg_c"].map(output),
+            inputs: inputs.collect(),
+            escaped,
+        }
+    }
+
+    fn set(&mut self, setter: &str, word: i32) {
+        if let Err(escape) = self.machine.set(setter, &[word]) {
+            self.note(&escape.place, escape.value);
+        }
+    }
+
+    fn note(&mut self, place: &str, value: Option<i64>) {
+        let mut escaped = self.escaped.borrow_mut();
+        if escaped.is_none() {
+            *escaped = Some(format!("{place} = {value:?}"));
+        }
+    }
+
+    fn is_tripped(&self) -> bool {
+        self.machine.state[self.words.mode] == 3
+    }
+}
+
+impl Subject for Interpreted<'_> {
+    fn step(&mut self, sample: &Sample) -> Legs {
+        let words: Vec<i32> = self
+            .inputs
+            .iter()
+            .map(|input| match input {
+                Input::AdcA => i32::from(sample.adc_a),
+                Input::AdcB => i32::from(sample.adc_b),
+                Input::Hall => i32::from(sample.hall),
+                Input::HallTicks => i32::from(sample.hall_ticks),
+            })
+            .collect();
+        match self.machine.step(&words) {
+            Ok(results) => {
+                let word = |index: usize| results[self.outputs[index]];
+                Legs {
+                    compare: [0, 1, 2].map(|phase| word(phase) as u16),
+                    state: [3, 4, 5].map(|leg| match word(leg) {
+                        0 => LegState::Pulsed,
+                        1 => LegState::Low,
+                        _ => LegState::Off,
+                    }),
+                }
+            }
+            Err(escape) => {
+                self.note(&escape.place, escape.value);
+                Legs::OFF
+            }
+        }
+    }
+
+    fn set_current(&mut self, bits: i32) {
+        self.set("set_current", bits);
+    }
+
+    fn set_torque(&mut self, bits: i32) {
+        self.set("set_torque", bits);
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.set("set_bus", i32::from(counts));
+    }
+
+    fn reset(&mut self) {
+        let offsets = self.words.offsets;
+        for (index, word) in self.program.states.iter().enumerate() {
+            if !offsets.contains(&index) {
+                self.machine.state[index] = word.initial;
+            }
+        }
+    }
+
+    fn calibrate(&mut self) {
+        if !self.is_tripped() {
+            let Words { mode, countdown, sums, .. } = self.words;
+            self.machine.state[mode] = 1;
+            self.machine.state[countdown] = self.calibration_samples;
+            for sum in sums {
+                self.machine.state[sum] = 0;
+            }
+        }
+    }
+
+    fn precharge(&mut self) {
+        if !self.is_tripped() && self.precharge_periods > 0 {
+            let Words { mode, countdown, .. } = self.words;
+            self.machine.state[mode] = 2;
+            self.machine.state[countdown] = self.precharge_periods;
+        }
+    }
+
+    fn fault(&self) -> Fault {
+        match self.machine.state[self.words.fault] {
+            1 => Fault::AdcRange,
+            2 => Fault::OverCurrent,
+            3 => Fault::Hall,
+            4 => Fault::Stall,
+            _ => Fault::None,
+        }
+    }
+
+    fn state_words(&self, words: &mut [i32]) {
+        words.copy_from_slice(&self.machine.state);
+    }
+
+    fn set_state_words(&mut self, words: &[i32]) {
+        self.machine.state.copy_from_slice(words);
+    }
+}
+
+/// The format table in the types of the hardware boundary.
+///
+/// # Panics
+/// When a width or shift is out of the table's range.
+pub fn formats(table: &[interface::FormatEntry]) -> Vec<Format> {
+    let convert = |entry: &interface::FormatEntry| Format {
+        name: interned(&entry.name),
+        storage_bits: u8::try_from(entry.storage_bits).expect("a word length"),
+        frac_bits: i8::try_from(entry.frac_bits).expect("fraction bits"),
+        rounding: match entry.rounding {
+            interface::Rounding::Floor => Rounding::Floor,
+            interface::Rounding::RoundHalfUp => Rounding::RoundHalfUp,
+        },
+    };
+    table.iter().map(convert).collect()
+}
+
+/// Format names are few; each is kept once for the life of the test.
+fn interned(name: &str) -> &'static str {
+    use std::sync::{Mutex, PoisonError};
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name) {
+        return known;
+    }
+    let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
+    names.insert(kept);
+    kept
+}
+
+/// Compares the interpreter with the bit-true model; `program` may be another one than the
+/// generated, to see whether the comparison notices.
+///
+/// # Errors
+/// What differs, or which value left its proven interval.
+pub fn compare(
+    generated: &Generated,
+    program: &Program,
+    steps: u64,
+    seed: u64,
+) -> Result<Report, String> {
+    let interface = &generated.interface;
+    let escaped = RefCell::new(None);
+    let names: Vec<&str> = program.states.iter().map(|word| word.name.as_str()).collect();
+    let result = verify_subject(
+        &interface.spec_toml,
+        &formats(&interface.formats),
+        &names,
+        || {
+            Interpreted::new(
+                program,
+                interface.calibration_samples,
+                interface.precharge_periods,
+                &escaped,
+            )
+        },
+        steps,
+        seed,
+    )
+    .map_err(|error: VerifyError| error.to_string());
+    match (escaped.into_inner(), result) {
+        (Some(place), result) => Err(format!(
+            "left its interval: {place}{}",
+            result.err().map(|error| format!("\n{error}")).unwrap_or_default()
+        )),
+        (None, result) => result,
+    }
+}
