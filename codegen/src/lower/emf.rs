@@ -26,6 +26,15 @@ pub struct FluxModel {
     frac_bits: u32,
 }
 
+/// Mean EMF of phases a and b over two periods.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelledEmf {
+    /// Over the period in which the new command takes effect.
+    pub target: [Value; 2],
+    /// Over the period that begins now.
+    pub present: [Value; 2],
+}
+
 impl Lowering<'_> {
     fn periodic_table(
         &mut self,
@@ -123,39 +132,69 @@ impl Lowering<'_> {
         FluxModel { table, frac_bits }
     }
 
-    /// Mean EMF over the target period as the difference of flux linkage at its ends; phases a and b.
+    /// Mean EMF over the target period and, with delay 1, over the present one, as differences of flux
+    /// linkage at their ends; phases a and b.
     pub fn model_emf(
         &mut self,
         flux: FluxModel,
         rotor: &Rotor,
         delay: u32,
         e_limit: f64,
-    ) -> [Value; 2] {
-        let bits = self.scale.voltage_bits;
-        if flux.frac_bits < bits {
+    ) -> ModelledEmf {
+        if flux.frac_bits < self.scale.voltage_bits {
             self.misfits.push("flux".to_owned());
         }
         self.b.stage(
             "model_emf",
             &[
-                "Mean EMF over the target period: the difference of flux linkage between its end and its start,",
-                "which is exact for any shape and needs no speed factor.",
+                "Mean EMF over the target period (and the present one, for the prediction): the difference of",
+                "flux linkage between end and start, which is exact for any shape and needs no speed factor.",
             ],
         );
         let start = self.ahead("theta_start", rotor, delay);
         let end = self.ahead("theta_end", rotor, delay + 1);
+        let at_start = self.flux_at(["flux_start_a", "flux_start_b"], "theta_start_b", flux, start);
+        let at_end = self.flux_at(["flux_end_a", "flux_end_b"], "theta_end_b", flux, end);
+        let target = self.emf_between(["e_a", "e_b"], flux, at_start, at_end, e_limit);
+        let present = if delay == 0 {
+            target
+        } else {
+            let at_now =
+                self.flux_at(["flux_now_a", "flux_now_b"], "theta_now_b", flux, rotor.theta);
+            self.emf_between(["e_a_now", "e_b_now"], flux, at_now, at_start, e_limit)
+        };
+        ModelledEmf { target, present }
+    }
+
+    fn flux_at(
+        &mut self,
+        names: [&str; 2],
+        lagging: &str,
+        flux: FluxModel,
+        theta: Value,
+    ) -> [Value; 2] {
+        let theta_b = self.lagging(lagging, theta);
+        [
+            self.evaluate(names[0], flux.table, theta),
+            self.evaluate(names[1], flux.table, theta_b),
+        ]
+    }
+
+    fn emf_between(
+        &mut self,
+        names: [&str; 2],
+        flux: FluxModel,
+        starts: [Value; 2],
+        ends: [Value; 2],
+        e_limit: f64,
+    ) -> [Value; 2] {
+        let bits = self.scale.voltage_bits;
         let limit = self.volts_word(e_limit);
-        let starts = [start, self.lagging("theta_start_b", start)];
-        let ends = [end, self.lagging("theta_end_b", end)];
         [0, 1].map(|x| {
-            let at_start =
-                self.evaluate(["flux_start_a", "flux_start_b"][x], flux.table, starts[x]);
-            let at_end = self.evaluate(["flux_end_a", "flux_end_b"][x], flux.table, ends[x]);
-            let change = self.b.sub(at_end, at_start);
-            let volts = if flux.frac_bits > bits {
-                self.b.shift_right(change, flux.frac_bits - bits)
-            } else {
-                change
+            let change = self.b.sub(ends[x], starts[x]);
+            let volts = match flux.frac_bits.checked_sub(bits) {
+                None | Some(0) => change,
+                Some(shift) => self.b.shift_right(change, shift),
             };
             let doc =
                 "Largest EMF that is believed: one and a half times that of the greatest speed.";
@@ -164,7 +203,7 @@ impl Lowering<'_> {
                 self.number("e_max", limit, doc),
             );
             let e = self.b.clamp(volts, low, high);
-            self.b.name(["e_a", "e_b"][x], e)
+            self.b.name(names[x], e)
         })
     }
 

@@ -13,7 +13,7 @@ mod rotor;
 pub mod set_point;
 mod supervise;
 
-pub use emf::FluxModel;
+pub use emf::{FluxModel, ModelledEmf};
 pub use limit::{LimitRule, Limited};
 pub use measure::{Currents, Hall};
 pub use modulate::{Applied, Command, PairModulation};

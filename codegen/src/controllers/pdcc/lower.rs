@@ -110,15 +110,22 @@ impl Step<'_, '_> {
         let third = self.third();
         let bus = self.lowering.read_bus(self.set_point);
         let now = self.applied_now(&words, &currents, bus, third);
-        let e = match (&rotor, options.emf) {
+        let (e, e_now) = match (&rotor, options.emf) {
             (Some(rotor), EmfSource::Model) => {
                 let flux = self.lowering.flux_model();
-                self.lowering
-                    .model_emf(flux, rotor, options.delay, self.design.e_limit)
+                let e_limit = self.design.e_limit;
+                let e = self
+                    .lowering
+                    .model_emf(flux, rotor, options.delay, e_limit);
+                (e.target, e.present)
             }
-            _ => self.estimate_emf(&words, &currents),
+            // An estimate is taken as constant over both periods.
+            _ => {
+                let e = self.estimate_emf(&words, &currents);
+                (e, e)
+            }
         };
-        let u = self.deadbeat(reference, &currents, now, e);
+        let u = self.deadbeat(reference, &currents, now, e, e_now);
         let rule = match options.saturation {
             Saturation::KeepAngle => LimitRule::KeepAngle,
             Saturation::Nearest => LimitRule::Nearest,
@@ -419,6 +426,7 @@ impl Step<'_, '_> {
         currents: &Currents,
         now: Option<[Value; 2]>,
         e: [Value; 2],
+        e_now: [Value; 2],
     ) -> [Value; 2] {
         let (options, design) = (*self.options, self.design.clone());
         let l = &mut *self.lowering;
@@ -443,7 +451,8 @@ impl Step<'_, '_> {
         let doc: &[&str] = if options.delay == 1 {
             &[
                 "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
-                "i_pred = a i + b (v_now - e) of (7) folded in: v = K i_ref - K a^2 i + (1 - a)(v_now - e) + 2 e - v_now.",
+                "i_pred = a i + b (v_now - e_now) of (7) folded in:",
+                "v = K i_ref - K a^2 i + (1 - a)(v_now - e_now) + e + e_now - v_now.",
             ]
         } else {
             &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
@@ -454,11 +463,11 @@ impl Step<'_, '_> {
             let open = l.b.sub(reference[x], held);
             let volts = match (k_decay, now) {
                 (Some(k_decay), Some(now)) => {
-                    let driving = l.b.sub(now[x], e[x]);
+                    let driving = l.b.sub(now[x], e_now[x]);
                     let lost = l.times(k_decay, driving);
                     let open = l.b.add(open, lost);
-                    let twice = l.b.shift_left(e[x], 1);
-                    let open = l.b.add(open, twice);
+                    let open = l.b.add(open, e[x]);
+                    let open = l.b.add(open, e_now[x]);
                     l.b.sub(open, now[x])
                 }
                 _ => l.b.add(open, e[x]),
