@@ -3,8 +3,10 @@
 //! A value with a name is that name; a value without one stands where it is used. Products and
 //! dividends that provably fit 32 bits take the `_narrow` helpers.
 
+use super::groups::Shape;
 use super::names::{loaded, number, screaming, snake};
-use crate::ir::{Comparison, Function, Interval, Node, Op, Program, Value};
+use super::plan::Context;
+use crate::ir::{Comparison, Interval, Node, Op, Value};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -57,10 +59,8 @@ impl Expression {
 /// The place from which values are seen.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
-    /// The program.
-    pub program: &'a Program,
     /// The function.
-    pub function: &'a Function,
+    pub context: &'a Context<'a>,
     /// Whether state words are read where they are used (in the function's own body) rather than
     /// under their names (in a stage, which reads them first).
     pub reads_state: bool,
@@ -68,7 +68,7 @@ pub(super) struct Scope<'a> {
 
 impl<'a> Scope<'a> {
     fn node(&self, value: Value) -> &'a Node {
-        self.function.node(value)
+        self.context.function.node(value)
     }
 
     fn interval(&self, value: Value) -> Interval {
@@ -78,6 +78,26 @@ impl<'a> Scope<'a> {
     /// A value as a complete expression: what a `let` binds or a branch yields.
     pub(super) fn whole(&self, value: Value) -> TokenStream {
         self.value(value).tokens
+    }
+
+    /// A value as a complete expression of the given shape.
+    pub(super) fn shaped(&self, value: Value, shape: Shape) -> TokenStream {
+        self.in_shape(value, shape).tokens
+    }
+
+    fn in_shape(&self, value: Value, shape: Shape) -> Expression {
+        if shape != Shape::Leg || self.context.shape(value) == Shape::Leg {
+            return self.value(value);
+        }
+        Expression::atom(match self.literal(value) {
+            Some(0) => quote!(LegState::Pulsed),
+            Some(1) => quote!(LegState::Low),
+            Some(_) => quote!(LegState::Off),
+            None => {
+                let word = self.whole(value);
+                quote!(LegState::from_word(#word))
+            }
+        })
     }
 
     /// What the `let` of a named value binds.
@@ -107,7 +127,7 @@ impl<'a> Scope<'a> {
         let node = self.node(value);
         match node.op {
             Op::Constant(id) => {
-                let name = screaming(&self.program.constants[id.index()].name);
+                let name = screaming(&self.context.program.constants[id.index()].name);
                 Expression::atom(quote!(#name))
             }
             Op::Literal(literal) => {
@@ -115,7 +135,7 @@ impl<'a> Scope<'a> {
                 Expression::atom(quote!(Word(#literal)))
             }
             Op::State(id) if self.reads_state => {
-                let word = &self.program.states[id.index()];
+                let word = &self.context.program.states[id.index()];
                 let field = snake(&word.name);
                 Expression::atom(loaded(word, &quote!(state.#field)))
             }
@@ -216,7 +236,7 @@ impl<'a> Scope<'a> {
                 self.call(&quote!(angle_fraction), &[angle], Some(segments))
             }
             Op::Lookup { table, index } => {
-                let table = screaming(&self.program.tables[table.index()].name);
+                let table = screaming(&self.context.program.tables[table.index()].name);
                 let index = self.value(index).within(Binding::Branch);
                 Expression::atom(quote!(lookup(&#table, #index)))
             }
@@ -228,7 +248,7 @@ impl<'a> Scope<'a> {
                 condition,
                 then,
                 otherwise,
-            } => self.select(condition, then, otherwise),
+            } => self.select(self.context.shape(value), condition, then, otherwise),
         }
     }
 
@@ -334,16 +354,18 @@ impl<'a> Scope<'a> {
         }
     }
 
-    fn select(&self, condition: Value, then: Value, otherwise: Value) -> Expression {
-        if self.literal(then) == Some(1) && self.literal(otherwise) == Some(0) {
+    fn select(&self, shape: Shape, condition: Value, then: Value, otherwise: Value) -> Expression {
+        if shape == Shape::Word
+            && self.literal(then) == Some(1)
+            && self.literal(otherwise) == Some(0)
+        {
             return self.call(&quote!(Word::from), &[condition], None);
         }
-        let embedded = self
-            .call(&quote!(select), &[condition, then, otherwise], None)
-            .tokens;
         let condition = self.value(condition).within(Binding::Branch);
-        let then = self.whole(then);
-        let rest = self.value(otherwise);
+        let embed = |value: Value| self.in_shape(value, shape).within(Binding::Branch);
+        let (then_embedded, otherwise_embedded) = (embed(then), embed(otherwise));
+        let then = self.shaped(then, shape);
+        let rest = self.in_shape(otherwise, shape);
         let chains = rest.binding == Binding::Branch;
         let otherwise = rest.tokens;
         let otherwise = if chains {
@@ -354,7 +376,7 @@ impl<'a> Scope<'a> {
         Expression {
             tokens: quote!(if #condition { #then } else #otherwise),
             binding: Binding::Branch,
-            embedded: Some(embedded),
+            embedded: Some(quote!(select(#condition, #then_embedded, #otherwise_embedded))),
         }
     }
 

@@ -1,8 +1,9 @@
 //! The step and the setters: stage calls in order, then what they leave behind.
 
 use super::expression::Scope;
+use super::groups::Shape;
 use super::names::{docs, loaded, number, snake, stored};
-use super::plan::{plan, signal};
+use super::plan::Context;
 use super::stage::{StageFunction, output};
 use crate::ir::{Function, Op, Program, Value, Word};
 use proc_macro2::{Literal, TokenStream};
@@ -19,21 +20,22 @@ pub(super) struct Emitted {
 /// The control step: `fn step(state, set-point words, inputs) -> Legs`.
 pub(super) fn emit_step(program: &Program) -> Emitted {
     let function = &program.step;
-    let stages: Vec<StageFunction<'_>> = plan(program, function)
+    let context = Context::new(program, function);
+    let stages: Vec<StageFunction<'_>> = context
+        .plan()
         .into_iter()
         .map(|plan| {
             let name = plan.stage.name.clone();
-            StageFunction::new(program, function, plan, &name)
+            StageFunction::new(&context, plan, &name)
         })
         .collect();
     let calls = stages.iter().map(StageFunction::call);
     // Old state words that go out of the step are read under their names before any is written.
     let scope = Scope {
-        program,
-        function,
+        context: &context,
         reads_state: false,
     };
-    let keep = keep_state(program, function, &stages);
+    let keep = keep_state(&context, &stages);
     let words = param_pattern(program, function);
     let count = Literal::usize_unsuffixed(program.params.len());
     let inputs = function.inputs.iter().map(|input| {
@@ -53,10 +55,7 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
         });
     let state = ["leg_a", "leg_b", "leg_c"].map(|name| match output(function, name) {
         None => quote!(LegState::Off),
-        Some(value) => {
-            let value = scope.whole(value);
-            quote!(LegState::from_word(#value))
-        }
+        Some(value) => scope.shaped(value, Shape::Leg),
     });
     let doc = docs(&function.doc);
     let main = quote! {
@@ -95,15 +94,14 @@ fn param_pattern(program: &Program, function: &Function) -> TokenStream {
 
 /// The new state words, each written once at the end. Old words that go into other words or out of
 /// the step are read before anything is written.
-fn keep_state(program: &Program, function: &Function, stages: &[StageFunction<'_>]) -> TokenStream {
+fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> TokenStream {
+    let (program, function) = (context.program, context.function);
     let outside = Scope {
-        program,
-        function,
+        context,
         reads_state: true,
     };
     let named = Scope {
-        program,
-        function,
+        context,
         reads_state: false,
     };
     let kept: Vec<(&Word, Value)> = function
@@ -123,7 +121,7 @@ fn keep_state(program: &Program, function: &Function, stages: &[StageFunction<'_
     for value in results {
         if is_old(value) && !read.contains(&value) {
             read.push(value);
-            let name = snake(&signal(function, value).name);
+            let name = snake(&function.node(value).name);
             let value = outside.whole(value);
             reads.extend(quote!(let #name = #value;));
         }
@@ -142,13 +140,14 @@ fn keep_state(program: &Program, function: &Function, stages: &[StageFunction<'_
 /// A setter: a method of the set-point. Stages of a setter that has several become functions named
 /// after it.
 pub(super) fn emit_setter(program: &Program, function: &Function) -> Emitted {
-    let plans = plan(program, function);
+    let context = Context::new(program, function);
+    let plans = context.plan();
     let single = matches!(plans.as_slice(), [only] if only.stage.guard.is_none());
     let stages: Vec<StageFunction<'_>> = plans
         .into_iter()
         .map(|plan| {
             let name = format!("{}_{}", function.name, plan.stage.name);
-            StageFunction::new(program, function, plan, &name)
+            StageFunction::new(&context, plan, &name)
         })
         .collect();
     let body: TokenStream = if single {
@@ -157,8 +156,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Emitted {
         stages.iter().map(StageFunction::call).collect()
     };
     let scope = Scope {
-        program,
-        function,
+        context: &context,
         reads_state: true,
     };
     let slots = program.params.iter().enumerate().map(|(index, word)| {

@@ -4,20 +4,30 @@
 //! they mean. Grouping looks at names and kinds alone; it is the same on both sides of a call.
 
 use super::names::snake;
-use crate::ir::Kind;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// What a signature may hold at most (clippy's `too_many_arguments`).
 pub(super) const ARGUMENTS: usize = 7;
 
-/// A named word or flag.
+/// What a value is in emitted code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// `Word`
+    Word,
+    /// `bool`
+    Flag,
+    /// `LegState`: a word that does nothing but leave the step as the state of a leg.
+    Leg,
+}
+
+/// A named value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Signal {
     /// Name.
     pub name: String,
-    /// Word or flag.
-    pub kind: Kind,
+    /// Word, flag or leg state.
+    pub shape: Shape,
 }
 
 /// One argument or result: a single signal, or an array of signals of one kind.
@@ -25,8 +35,8 @@ pub(super) struct Signal {
 pub(super) struct Group {
     /// Positions in the list that was grouped.
     pub members: Vec<usize>,
-    /// Word or flag.
-    pub kind: Kind,
+    /// Word, flag or leg state.
+    pub shape: Shape,
 }
 
 /// Groups the signals: related ones together, each group where its first member stands.
@@ -36,14 +46,14 @@ pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
         let family = family(&signal.name);
         match groups
             .iter_mut()
-            .find(|(known, group)| *known == family && group.kind == signal.kind)
+            .find(|(known, group)| *known == family && group.shape == signal.shape)
         {
             Some((_, group)) => group.members.push(position),
             None => groups.push((
                 family,
                 Group {
                     members: vec![position],
-                    kind: signal.kind,
+                    shape: signal.shape,
                 },
             )),
         }
@@ -60,10 +70,10 @@ pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
 /// single signals, then the arrays.
 pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
-        for kind in [Kind::Word, Kind::Flag] {
+        for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
             if groups.len() > limit {
                 let fits =
-                    |group: &Group| group.kind == kind && (!singles || group.members.len() == 1);
+                    |group: &Group| group.shape == shape && (!singles || group.members.len() == 1);
                 let members: Vec<usize> = groups
                     .iter()
                     .filter(|group| fits(group))
@@ -111,7 +121,7 @@ impl Group {
 
     /// `[Word; 2]`, or `Word`.
     pub(super) fn rust_type(&self) -> TokenStream {
-        let kind = rust_type(self.kind);
+        let kind = rust_type(self.shape);
         match self.members.len() {
             1 => kind,
             count => {
@@ -122,11 +132,12 @@ impl Group {
     }
 }
 
-/// `Word` or `bool`.
-pub(super) fn rust_type(kind: Kind) -> TokenStream {
-    match kind {
-        Kind::Word => quote!(Word),
-        Kind::Flag => quote!(bool),
+/// `Word`, `bool` or `LegState`.
+pub(super) fn rust_type(shape: Shape) -> TokenStream {
+    match shape {
+        Shape::Word => quote!(Word),
+        Shape::Flag => quote!(bool),
+        Shape::Leg => quote!(LegState),
     }
 }
 
@@ -156,14 +167,13 @@ fn family(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{Signal, bundle, group};
-    use crate::ir::Kind;
 
     fn words(names: &[&str]) -> Vec<Signal> {
         names
             .iter()
             .map(|&name| Signal {
                 name: name.to_owned(),
-                kind: Kind::Word,
+                shape: Shape::Word,
             })
             .collect()
     }

@@ -4,8 +4,9 @@
 //! stage and are read where they are used. All else is a result of the stage that computes it if
 //! something outside uses it.
 
-use super::groups::Signal;
-use crate::ir::{Function, Op, Program, Stage, StateId, Value};
+use super::groups::{Shape, Signal};
+use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
+use std::collections::BTreeSet;
 
 /// Who uses a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,8 +15,21 @@ enum User {
     Node(usize),
     /// The new value of a state word.
     NextState(StateId),
-    /// An output, a new set-point word or the guard of a stage.
+    /// The state of a leg.
+    Leg,
+    /// Another output, a new set-point word or the guard of a stage.
     Other,
+}
+
+/// A function and what is known of its values.
+#[derive(Debug)]
+pub(super) struct Context<'a> {
+    /// The program.
+    pub program: &'a Program,
+    /// The function.
+    pub function: &'a Function,
+    users: Vec<Vec<User>>,
+    legs: BTreeSet<Value>,
 }
 
 /// A value that leaves a stage.
@@ -55,22 +69,126 @@ pub(super) fn is_leaf(op: &Op) -> bool {
     )
 }
 
-/// Plans all stages of `function`.
-pub(super) fn plan<'a>(program: &Program, function: &'a Function) -> Vec<StagePlan<'a>> {
-    let users = users(function);
-    function
-        .stages
-        .iter()
-        .map(|stage| plan_stage(program, function, &users, stage))
-        .collect()
-}
+impl<'a> Context<'a> {
+    /// Looks at all values of `function`.
+    pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
+        let users = users(function);
+        let legs = legs(function, &users);
+        Self {
+            program,
+            function,
+            users,
+            legs,
+        }
+    }
 
-/// The name and kind of a value.
-pub(super) fn signal(function: &Function, value: Value) -> Signal {
-    let node = function.node(value);
-    Signal {
-        name: node.name.clone(),
-        kind: node.kind,
+    /// Plans all stages.
+    pub(super) fn plan(&self) -> Vec<StagePlan<'a>> {
+        self.function
+            .stages
+            .iter()
+            .map(|stage| self.plan_stage(stage))
+            .collect()
+    }
+
+    /// What a value is in emitted code.
+    pub(super) fn shape(&self, value: Value) -> Shape {
+        match self.function.node(value).kind {
+            Kind::Flag => Shape::Flag,
+            Kind::Word if self.legs.contains(&value) => Shape::Leg,
+            Kind::Word => Shape::Word,
+        }
+    }
+
+    /// The name and shape of a value.
+    pub(super) fn signal(&self, value: Value) -> Signal {
+        Signal {
+            name: self.function.node(value).name.clone(),
+            shape: self.shape(value),
+        }
+    }
+
+    fn plan_stage(&self, stage: &'a Stage) -> StagePlan<'a> {
+        let function = self.function;
+        let inside = stage.first..stage.end;
+        let body: Vec<Value> = inside
+            .clone()
+            .map(|index| Value(index as u32))
+            .filter(|&value| !is_leaf(&function.node(value).op))
+            .collect();
+        let (mut outcomes, mut stores) = (vec![], vec![]);
+        match &stage.guard {
+            None => {
+                for &value in &body {
+                    let leaves =
+                        |user: &User| !matches!(user, User::Node(index) if inside.contains(index));
+                    if self.users[value.index()].iter().any(leaves) {
+                        outcomes.push(Outcome {
+                            signal: self.signal(value),
+                            value,
+                            otherwise: None,
+                        });
+                    }
+                }
+            }
+            Some(guard) => {
+                for &join in &guard.joins {
+                    let Op::Join { taken, otherwise } = function.node(join).op else {
+                        continue;
+                    };
+                    match self.stored_inside(stage, join, otherwise) {
+                        Some(state) => stores.push((state, taken)),
+                        None => outcomes.push(Outcome {
+                            signal: self.signal(join),
+                            value: taken,
+                            otherwise: Some(otherwise),
+                        }),
+                    }
+                }
+            }
+        }
+        let mut used: Vec<Value> = body
+            .iter()
+            .flat_map(|&value| function.node(value).op.operands())
+            .collect();
+        used.extend(outcomes.iter().map(|outcome| outcome.value));
+        used.extend(stores.iter().map(|&(_, value)| value));
+        used.sort_unstable();
+        used.dedup();
+        let mut reads = vec![];
+        let mut arguments = vec![];
+        for value in used {
+            match function.node(value).op {
+                Op::Constant(_) | Op::Literal(_) => {}
+                Op::State(state) => reads.push(state),
+                Op::Input(_) | Op::Param(_) => arguments.push(value),
+                _ if inside.contains(&value.index()) => {}
+                _ => arguments.push(value),
+            }
+        }
+        reads.sort_by_key(|state| state.index());
+        StagePlan {
+            stage,
+            body,
+            reads,
+            arguments,
+            outcomes,
+            stores,
+        }
+    }
+
+    /// The state word that the guarded stage may store itself in place of `join`: the join is its next
+    /// value and nothing else, it keeps its value where the stage does not run, and nothing reads the
+    /// old value later.
+    fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
+        let Op::State(kept) = self.function.node(otherwise).op else {
+            return None;
+        };
+        let only_next = self.users[join.index()] == [User::NextState(kept)];
+        let joins = stage.guard.as_ref().map_or(0, |guard| guard.joins.len());
+        let behind = stage.end + joins;
+        let read_before = |user: &User| matches!(user, User::Node(index) if *index < behind);
+        (only_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
     }
 }
 
@@ -89,109 +207,35 @@ fn users(function: &Function) -> Vec<Vec<User>> {
         .iter()
         .filter_map(|stage| stage.guard.as_ref())
         .map(|guard| guard.condition);
-    let results = function.outputs.iter().map(|&(_, value)| value);
+    for (name, value) in &function.outputs {
+        let leg = name.starts_with("leg_");
+        users[value.index()].push(if leg { User::Leg } else { User::Other });
+    }
     let params = function.next_params.iter().map(|&(_, value)| value);
-    for value in conditions.chain(results).chain(params) {
+    for value in conditions.chain(params) {
         users[value.index()].push(User::Other);
     }
     users
 }
 
-fn plan_stage<'a>(
-    program: &Program,
-    function: &'a Function,
-    users: &[Vec<User>],
-    stage: &'a Stage,
-) -> StagePlan<'a> {
-    let inside = stage.first..stage.end;
-    let body: Vec<Value> = inside
-        .clone()
-        .map(|index| Value(index as u32))
-        .filter(|&value| !is_leaf(&function.node(value).op))
-        .collect();
-    let (mut outcomes, mut stores) = (vec![], vec![]);
-    match &stage.guard {
-        None => {
-            for &value in &body {
-                let leaves =
-                    |user: &User| !matches!(user, User::Node(index) if inside.contains(index));
-                if users[value.index()].iter().any(leaves) {
-                    outcomes.push(Outcome {
-                        signal: signal(function, value),
-                        value,
-                        otherwise: None,
-                    });
-                }
-            }
-        }
-        Some(guard) => {
-            for &join in &guard.joins {
-                let Op::Join { taken, otherwise } = function.node(join).op else {
-                    continue;
-                };
-                match stored_inside(function, users, stage, join, otherwise) {
-                    Some(state) => stores.push((state, taken)),
-                    None => outcomes.push(Outcome {
-                        signal: signal(function, join),
-                        value: taken,
-                        otherwise: Some(otherwise),
-                    }),
-                }
-            }
+/// The choices that end in leg states and nowhere else: they are made among `LegState`s.
+fn legs(function: &Function, users: &[Vec<User>]) -> BTreeSet<Value> {
+    let mut legs = BTreeSet::new();
+    for (index, node) in function.nodes.iter().enumerate().rev() {
+        let value = Value(index as u32);
+        let is_choice = matches!(node.op, Op::Select { .. } | Op::Join { .. });
+        let is_arm = |user: usize| match function.nodes[user].op {
+            Op::Select { condition, .. } => condition != value,
+            _ => true,
+        };
+        let becomes_leg = |user: &User| match *user {
+            User::Leg => true,
+            User::Node(user) => legs.contains(&Value(user as u32)) && is_arm(user),
+            User::NextState(_) | User::Other => false,
+        };
+        if is_choice && users[index].iter().all(becomes_leg) {
+            legs.insert(value);
         }
     }
-    let mut used: Vec<Value> = body
-        .iter()
-        .flat_map(|&value| function.node(value).op.operands())
-        .collect();
-    used.extend(outcomes.iter().map(|outcome| outcome.value));
-    used.extend(stores.iter().map(|&(_, value)| value));
-    used.sort_unstable();
-    used.dedup();
-    let mut reads = vec![];
-    let mut arguments = vec![];
-    for value in used {
-        match function.node(value).op {
-            Op::Constant(_) | Op::Literal(_) => {}
-            Op::State(state) => reads.push(state),
-            Op::Input(_) | Op::Param(_) => arguments.push(value),
-            _ if inside.contains(&value.index()) => {}
-            _ => arguments.push(value),
-        }
-    }
-    reads.sort_by_key(|state| state.index());
-    debug_assert!(
-        reads
-            .iter()
-            .all(|state| state.index() < program.states.len()),
-        "verified"
-    );
-    StagePlan {
-        stage,
-        body,
-        reads,
-        arguments,
-        outcomes,
-        stores,
-    }
-}
-
-/// The state word that the guarded stage may store itself in place of `join`: the join is its next
-/// value and nothing else, it keeps its value where the stage does not run, and nothing reads the
-/// old value later.
-fn stored_inside(
-    function: &Function,
-    users: &[Vec<User>],
-    stage: &Stage,
-    join: Value,
-    otherwise: Value,
-) -> Option<StateId> {
-    let Op::State(kept) = function.node(otherwise).op else {
-        return None;
-    };
-    let only_next = users[join.index()] == [User::NextState(kept)];
-    let joins = stage.guard.as_ref().map_or(0, |guard| guard.joins.len());
-    let behind = stage.end + joins;
-    let read_before = |user: &User| matches!(user, User::Node(index) if *index < behind);
-    (only_next && users[otherwise.index()].iter().all(read_before)).then_some(kept)
+    legs
 }

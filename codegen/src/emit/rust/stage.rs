@@ -1,10 +1,10 @@
 //! One stage as one function, and its call.
 
 use super::expression::Scope;
-use super::groups::{ARGUMENTS, Group, Signal, bundle, group, rust_type};
+use super::groups::{ARGUMENTS, Group, Shape, Signal, bundle, group, rust_type};
 use super::names::{camel, docs, loaded, number, snake, stored};
-use super::plan::{Outcome, StagePlan, signal};
-use crate::ir::{Function, Kind, Op, Program, StateId, Value, Word};
+use super::plan::{Context, Outcome, StagePlan};
+use crate::ir::{Function, Op, StateId, Value, Word};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
@@ -15,8 +15,7 @@ const COMPLEXITY: usize = 250;
 
 /// The function of a stage.
 pub(super) struct StageFunction<'a> {
-    program: &'a Program,
-    function: &'a Function,
+    context: &'a Context<'a>,
     plan: StagePlan<'a>,
     name: Ident,
     arguments: Vec<Group>,
@@ -103,7 +102,7 @@ impl Results {
             return TokenStream::new();
         };
         let fields = self.signals.iter().map(|signal| {
-            let (name, kind) = (snake(&signal.name), rust_type(signal.kind));
+            let (name, kind) = (snake(&signal.name), rust_type(signal.shape));
             quote!(#name: #kind)
         });
         let line = format!("What [`{stage}`] yields.");
@@ -117,23 +116,17 @@ impl Results {
 
 impl<'a> StageFunction<'a> {
     /// The function `name` for a planned stage.
-    pub(super) fn new(
-        program: &'a Program,
-        function: &'a Function,
-        plan: StagePlan<'a>,
-        name: &str,
-    ) -> Self {
+    pub(super) fn new(context: &'a Context<'a>, plan: StagePlan<'a>, name: &str) -> Self {
         let argument_signals: Vec<Signal> = plan
             .arguments
             .iter()
-            .map(|&value| signal(function, value))
+            .map(|&value| context.signal(value))
             .collect();
         let state = usize::from(!plan.reads.is_empty() || !plan.stores.is_empty());
         let arguments = bundle(group(&argument_signals), ARGUMENTS - state);
         let results = Results::new(name, &plan.outcomes);
         Self {
-            program,
-            function,
+            context,
             plan,
             name: snake(name),
             arguments,
@@ -144,14 +137,13 @@ impl<'a> StageFunction<'a> {
 
     fn scope(&self, reads_state: bool) -> Scope<'a> {
         Scope {
-            program: self.program,
-            function: self.function,
+            context: self.context,
             reads_state,
         }
     }
 
     fn word(&self, state: StateId) -> &'a Word {
-        &self.program.states[state.index()]
+        &self.context.program.states[state.index()]
     }
 
     /// Whether the stage itself stores the state word.
@@ -190,8 +182,12 @@ impl<'a> StageFunction<'a> {
         let taken = if self.has_body() {
             call
         } else {
-            self.results
-                .built(|member| scope.whole(self.plan.outcomes[member].value))
+            self.results.built(|member| {
+                scope.shaped(
+                    self.plan.outcomes[member].value,
+                    self.plan.outcomes[member].signal.shape,
+                )
+            })
         };
         if self.plan.outcomes.is_empty() {
             return quote!(if #condition { #taken; });
@@ -199,7 +195,10 @@ impl<'a> StageFunction<'a> {
         let pattern = self.results.pattern();
         let otherwise = self.results.built(|member| {
             let outcome = &self.plan.outcomes[member];
-            scope.whole(outcome.otherwise.unwrap_or(outcome.value))
+            scope.shaped(
+                outcome.otherwise.unwrap_or(outcome.value),
+                outcome.signal.shape,
+            )
         });
         quote!(let #pattern = if #condition { #taken } else { #otherwise };)
     }
@@ -217,9 +216,9 @@ impl<'a> StageFunction<'a> {
             .plan
             .body
             .iter()
-            .filter(|&&value| !self.function.node(value).name.is_empty());
+            .filter(|&&value| !self.context.function.node(value).name.is_empty());
         let computed = named.map(|&value| {
-            let name = snake(&self.function.node(value).name);
+            let name = snake(&self.context.function.node(value).name);
             let definition = scope.definition(value);
             quote!(let #name = #definition;)
         });
@@ -289,15 +288,22 @@ impl<'a> StageFunction<'a> {
             .body
             .iter()
             .rev()
-            .find(|&&value| !self.function.node(value).name.is_empty());
+            .find(|&&value| !self.context.function.node(value).name.is_empty());
         let tail = match (self.plan.outcomes.as_slice(), last) {
-            ([single], Some(&last)) if single.value == last && self.plan.stores.is_empty() => {
+            ([single], Some(&last))
+                if single.value == last
+                    && self.context.shape(last) == single.signal.shape
+                    && self.plan.stores.is_empty() =>
+            {
                 statements.pop();
                 scope.definition(last)
             }
-            _ => self
-                .results
-                .built(|member| scope.whole(self.plan.outcomes[member].value)),
+            _ => self.results.built(|member| {
+                scope.shaped(
+                    self.plan.outcomes[member].value,
+                    self.plan.outcomes[member].signal.shape,
+                )
+            }),
         };
         (quote!(-> #kind), tail)
     }
@@ -309,8 +315,8 @@ impl<'a> StageFunction<'a> {
         for group in &self.results.groups {
             for &member in &group.members {
                 let outcome = &self.plan.outcomes[member];
-                let node = self.function.node(outcome.value);
-                if outcome.signal.kind == Kind::Word && !matches!(node.op, Op::Literal(_)) {
+                let node = self.context.function.node(outcome.value);
+                if outcome.signal.shape == Shape::Word && !matches!(node.op, Op::Literal(_)) {
                     let name = format!("`{}`", snake(&outcome.signal.name));
                     let range = node.interval.to_string();
                     match ranges.iter_mut().find(|(_, known)| *known == range) {
