@@ -324,33 +324,40 @@ impl BitTrue {
         };
 
         // 8 EMF
-        let e = match self.pdcc.emf {
-            EmfSource::Estimated => [0, 1].map(|x| {
-                let State {
-                    i_prev,
-                    v_prev,
-                    e_prev,
-                    ..
-                } = &self.state;
-                let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
-                let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
-                if k.filtered {
-                    e_prev[x] + k.k_filter.mul(e - e_prev[x])
-                } else {
-                    e
-                }
-            }),
+        let (e, e_now) = match self.pdcc.emf {
+            EmfSource::Estimated => {
+                let e = [0, 1].map(|x| {
+                    let State {
+                        i_prev,
+                        v_prev,
+                        e_prev,
+                        ..
+                    } = &self.state;
+                    let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
+                    let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
+                    if k.filtered {
+                        e_prev[x] + k.k_filter.mul(e - e_prev[x])
+                    } else {
+                        e
+                    }
+                });
+                (e, e)
+            }
             EmfSource::Model => {
-                let theta_start = if delayed {
-                    angle.theta + angle.step
+                let now = k.flux.both(angle.theta);
+                let start = if delayed {
+                    k.flux.both(angle.theta + angle.step)
                 } else {
-                    angle.theta
+                    now
                 };
-                let start = k.flux.both(theta_start);
-                let end = k.flux.both(theta_start + angle.step);
-                [0, 1].map(|x| {
-                    floor_weighted(end[x] - start[x], k.flux_to_voltage).clamp(-k.e_max, k.e_max)
-                })
+                let ahead = if delayed { 2.0 } else { 1.0 };
+                let end = k.flux.both(angle.theta + ahead * angle.step);
+                let mean = |from: [f64; 2], to: [f64; 2]| {
+                    [0, 1].map(|x| {
+                        floor_weighted(to[x] - from[x], k.flux_to_voltage).clamp(-k.e_max, k.e_max)
+                    })
+                };
+                (mean(start, end), mean(now, start))
             }
         };
 
@@ -358,7 +365,7 @@ impl BitTrue {
         let u_unsat = [0, 1].map(|x| {
             let held = j_ref[x] - k.k_hold.mul(i[x]);
             if delayed {
-                held + k.k_decay.mul(v_now[x] - e[x]) + 2.0 * e[x] - v_now[x]
+                held + k.k_decay.mul(v_now[x] - e_now[x]) + e[x] + e_now[x] - v_now[x]
             } else {
                 held + e[x]
             }

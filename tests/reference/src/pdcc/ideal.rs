@@ -257,7 +257,7 @@ impl Ideal {
         };
 
         // 8 EMF
-        let e = match self.pdcc.emf {
+        let (e, e_now) = match self.pdcc.emf {
             EmfSource::Estimated => {
                 let [pa, pb] = self.state.i_prev;
                 let d = from_ab(
@@ -270,25 +270,31 @@ impl Ideal {
                 let raw = from_ab(self.state.v_prev[0], self.state.v_prev[1])
                     - (d + i_prev * (1.0 - a)) / b;
                 let e_prev = from_ab(e_a, e_b);
-                e_prev + (raw - e_prev) * self.pdcc.emf_filter
+                let e = e_prev + (raw - e_prev) * self.pdcc.emf_filter;
+                // Taken as constant over the present and the target period.
+                (e, e)
             }
             EmfSource::Model => {
-                let (start, end) = (
-                    theta + f64::from(self.pdcc.delay) * step_angle,
-                    theta + target,
-                );
-                let [e_a, e_b] = [0.0, THIRD].map(|lag| {
-                    let linkage = self.shape.zero_sum_integral(end - lag)
-                        - self.shape.zero_sum_integral(start - lag);
-                    (self.k_phase / self.pp_t_s * linkage).clamp(-self.e_max, self.e_max)
-                });
-                from_ab(e_a, e_b)
+                let start = theta + f64::from(self.pdcc.delay) * step_angle;
+                let mean = |from: f64, to: f64| {
+                    let [e_a, e_b] = [0.0, THIRD].map(|lag| {
+                        let linkage = self.shape.zero_sum_integral(to - lag)
+                            - self.shape.zero_sum_integral(from - lag);
+                        (self.k_phase / self.pp_t_s * linkage).clamp(-self.e_max, self.e_max)
+                    });
+                    from_ab(e_a, e_b)
+                };
+                (mean(start, theta + target), mean(theta, start))
             }
         };
 
         // 9 deadbeat voltage
         let DiscretePhase { a, b } = self.phase;
-        let i_then = if delayed { i * a + (v_now - e) * b } else { i };
+        let i_then = if delayed {
+            i * a + (v_now - e_now) * b
+        } else {
+            i
+        };
         let u_unsat = (i_ref - i_then * a) / b + e;
 
         // 10 limit, 11 modulate
