@@ -70,9 +70,18 @@ pub fn floor_shift(x: f64, n: u32) -> f64 {
     floor_weighted(x, pow2(-(n as i32)))
 }
 
-/// R(x) = floor(x + 1/2): how a real constant becomes a word.
+/// What the f64 arithmetic behind a constant may be off by, in units of its last bit: specifications
+/// with round numbers put constants exactly on a tie, where the order of operations would decide.
+const TIE: f64 = 1.0 / TWO_16;
+
+/// R(x) = floor(x + 1/2): how a real constant becomes a word. Ties that f64 just misses count as ties.
 pub fn round_half_up(x: f64) -> f64 {
-    (x + 0.5).floor()
+    (x + (0.5 + TIE)).floor()
+}
+
+/// floor(x) of a real constant. Whole numbers that f64 just misses count as whole.
+pub fn floor_constant(x: f64) -> f64 {
+    (x + TIE).floor()
 }
 
 /// x modulo 2^32, from 0 up; |x| < 2^50.
@@ -299,6 +308,23 @@ mod tests {
         ] {
             assert_eq!(floor(y), floored);
         }
+    }
+
+    #[test]
+    fn constants_on_a_tie_do_not_depend_on_the_order_of_operations() {
+        // An inductance of 1.145 mH at 50 us, 30 A over 2^11 counts, 48 V over 1800 counts.
+        let (k, g, w) = (0.001_145 / 5e-5, 0.014_648_437_5, 48.0 / 1800.0);
+        for value in [
+            k * g / w * 2048.0,
+            g / w * 2048.0 * 0.001_145 / 5e-5,
+            g / w * 2048.0 / (5e-5 / 0.001_145),
+        ] {
+            assert_eq!(round_half_up(value), 25_763.0);
+        }
+        assert_eq!(round_half_up(2.4999), 2.0);
+        assert_eq!(round_half_up(-2.5), -2.0);
+        assert_eq!(floor_constant(8189.999_999_999), 8190.0);
+        assert_eq!(floor_constant(8189.999), 8189.0);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::state::{Part, Parts};
 use super::tables::Table;
-use crate::exact::{Coefficient, Shift, pow2, round_half_up};
+use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
 use crate::pdcc::hall::needs_rotor;
 use crate::{
     DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Modulation, Reference, Saturation, Spec,
@@ -133,8 +133,8 @@ impl Constants {
                 v_max: round_half_up(sense.max / w * two_v),
             }),
         };
-        let i_max_bits = (inverter.max_current * 65_536.0).floor();
-        let t_max_bits = (inverter.max_current * motor.torque_constant * 65_536.0).floor();
+        let i_max_bits = floor_constant(inverter.max_current * 65_536.0);
+        let t_max_bits = floor_constant(inverter.max_current * motor.torque_constant * 65_536.0);
 
         let emf_shape = EmfShape::new(motor)?;
         let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w;
@@ -195,9 +195,9 @@ impl Constants {
             v_bus_nominal: timer_period * two_v,
             i_trip: round_half_up(inverter.trip_current / g * two_i),
             i_comm: round_half_up(pdcc.commutation_threshold / g * two_i),
-            // Divided through by g before the minimum is taken, so that whole counts stay whole.
-            di_max: ((2.0 * adc_max).min(2.0 * b * 4.0 / 3.0 * inverter.v_bus_max()? / g) * two_i)
-                .floor(),
+            di_max: floor_constant(
+                (2.0 * adc_max).min(2.0 * b * 4.0 / 3.0 * inverter.v_bus_max()? / g) * two_i,
+            ),
             i_max_bits,
             t_max_bits,
             comm_timeout: f64::from(pdcc.commutation_timeout),
