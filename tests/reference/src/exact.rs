@@ -323,7 +323,7 @@ mod tests {
         }
         assert_eq!(round_half_up(2.4999), 2.0);
         assert_eq!(round_half_up(-2.5), -2.0);
-        assert_eq!(floor_constant(8189.999_999_999), 8190.0);
+        assert_eq!(floor_constant(8_189.999_999_999), 8190.0);
         assert_eq!(floor_constant(8189.999), 8189.0);
     }
 
