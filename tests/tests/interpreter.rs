@@ -1,13 +1,105 @@
 //! The interpreted IR computes what the bit-true model computes, on every output and state bit.
 
 use hexagen_tests::interpreter::compare;
-use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
-use hexagen_tests::options::{choice_of, default_choice, describe, drive_toml, generate_toml};
+use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
+use hexagen_tests::options::{
+    default_choice, describe, drive_toml, generate_toml, product_element, product_len,
+};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Steps of each element of the full product: three blocks of input, among them closed loop.
+const PRODUCT_STEPS: u64 = 2_500;
+
+/// What became of many drives.
+#[derive(Debug, Default)]
+struct Tally {
+    compared: usize,
+    steps: u64,
+    /// Codes of the diagnostics that refused a drive, with the number of drives and the first one.
+    refused: BTreeMap<String, (usize, String)>,
+    failures: Vec<String>,
+}
+
+impl Tally {
+    fn of(motor: &Motor, choice: &[usize], steps: u64, seed: u64) -> Self {
+        let name = || format!("{}: {}", motor.name, describe(choice));
+        let mut tally = Self::default();
+        match generate_toml(&drive_toml(motor, choice, None)) {
+            Err(errors) => {
+                for error in errors {
+                    tally
+                        .refused
+                        .insert(format!("{:?}", error.code), (1, format!("{}\n      {error}", name())));
+                }
+            }
+            Ok((_, generated)) => {
+                tally.compared = 1;
+                match compare(&generated, generated.graph.program(), steps, seed) {
+                    Ok(report) => tally.steps = report.steps,
+                    Err(what) => tally.failures.push(format!("{}\n{what}", name())),
+                }
+            }
+        }
+        tally
+    }
+
+    fn add(mut self, other: Self) -> Self {
+        self.compared += other.compared;
+        self.steps += other.steps;
+        self.failures.extend(other.failures);
+        for (code, (count, example)) in other.refused {
+            let entry = self.refused.entry(code).or_insert((0, example));
+            entry.0 += count;
+        }
+        self
+    }
+
+    fn check(&self, what: &str) {
+        println!("{what}: {} drives compared over {} steps", self.compared, self.steps);
+        for (code, (count, example)) in &self.refused {
+            println!("  refused by {code}: {count}, such as {example}");
+        }
+        assert!(
+            self.failures.is_empty(),
+            "{what}: {} of {} drives differ from the model, such as\n{}",
+            self.failures.len(),
+            self.compared,
+            self.failures.iter().take(3).cloned().collect::<Vec<_>>().join("\n")
+        );
+    }
+}
 
 #[test]
 fn default_drive_of_the_paper_motor() {
     let toml = drive_toml(&motor(PAPER_MOTOR), &default_choice(), None);
     let (_, generated) = generate_toml(&toml).expect("the paper's motor generates");
-    let report = compare(&generated, generated.graph.program(), 200_000, 1).unwrap_or_else(|what| panic!("{what}"));
+    let report = compare(&generated, generated.graph.program(), 200_000, 1)
+        .unwrap_or_else(|what| panic!("{what}"));
     println!("{report}");
+}
+
+#[test]
+fn full_product_of_options_on_the_paper_motor() {
+    let paper = motor(PAPER_MOTOR);
+    let stride: usize = std::env::var("STRIDE").map_or(1, |text| text.parse().expect("a number"));
+    let tally = (0..product_len() / stride)
+        .into_par_iter()
+        .map(|index| Tally::of(&paper, &product_element(index * stride), PRODUCT_STEPS, index as u64))
+        .reduce(Tally::default, Tally::add);
+    tally.check("full product");
+}
+
+#[test]
+fn every_library_motor_in_a_sample_of_the_product() {
+    let motors = motors();
+    // A step that shares no factor with the product's axes visits all values of every axis.
+    let tally = (0..motors.len() * 64)
+        .into_par_iter()
+        .map(|index| {
+            let motor = &motors[index % motors.len()];
+            Tally::of(motor, &product_element(index * 13_831 % product_len()), 10_000, index as u64)
+        })
+        .reduce(Tally::default, Tally::add);
+    tally.check("library sample");
 }

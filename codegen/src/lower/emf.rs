@@ -2,6 +2,7 @@
 //! (semantics, steps 6 and 8 and the section on tables).
 
 use super::Lowering;
+use super::number::round_half_up;
 use super::rotor::Rotor;
 use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
 use crate::interface::Rounding;
@@ -46,7 +47,7 @@ impl Lowering<'_> {
         let scale = f64::from(frac_bits).exp2();
         let segments = fit.coefficients.len() as u32;
         let coefficients = [0, 1, 2].map(|power| {
-            let words = fit.coefficients.iter().map(|c| (c[power] * scale + 0.5).floor() as i32).collect();
+            let words = fit.coefficients.iter().map(|c| round_half_up(c[power] * scale) as i32).collect();
             let lines = [
                 format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from 0 to 1."),
                 String::new(),

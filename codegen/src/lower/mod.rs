@@ -17,7 +17,8 @@ pub use emf::{FluxModel, ModelledEmf};
 pub use limit::{LimitRule, Limited};
 pub use measure::{Currents, Hall};
 pub use modulate::{Applied, Command, PairModulation};
-pub use number::Coefficient;
+pub use number::{Coefficient, product_bound, round_down};
+use number::round_half_up;
 pub use rotor::{Rotor, RotorWords};
 pub use supervise::{Mode, SupervisorWords};
 
@@ -155,12 +156,12 @@ impl<'p> Lowering<'p> {
 
     /// A voltage in words, rounded half up.
     pub fn volts_word(&self, volts: f64) -> i64 {
-        (volts * self.scale.voltage() + 0.5).floor() as i64
+        round_half_up(volts * self.scale.voltage()) as i64
     }
 
     /// A current in words, rounded half up.
     pub fn ampere_word(&self, ampere: f64) -> i64 {
-        (ampere * self.scale.current() + 0.5).floor() as i64
+        round_half_up(ampere * self.scale.current()) as i64
     }
 
     /// The commonest select: the value of one of three phases, by two flags: `a` if `is_a`, else `b` if `is_b`, else `c`.

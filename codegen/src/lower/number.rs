@@ -4,6 +4,39 @@ use super::Lowering;
 use crate::interface::Rounding;
 use crate::ir::{ConstantId, Value};
 
+/// What is added before a real constant is rounded: far more than the error of its computation in f64, so
+/// that an exact tie (or whole number) comes out the same whatever the order of the operations.
+const GUARD: f64 = 1.0 / 65536.0;
+
+/// R(x) of the semantics pages: to the nearest whole number, ties up.
+pub fn round_half_up(x: f64) -> f64 {
+    (x + 0.5 + GUARD).floor()
+}
+
+/// The greatest whole number not above `x`.
+pub fn round_down(x: f64) -> f64 {
+    (x + GUARD).floor()
+}
+
+/// A real coefficient as a word of `word` bits and the largest shift up to `word` at which it fits; `None`
+/// where it does not fit even without fraction bits.
+fn round_coefficient(value: f64, word: u32) -> Option<(i32, u32)> {
+    let limit = f64::from(word - 1).exp2() - 1.0;
+    let rounded = |shift: u32| round_half_up(value * f64::from(shift).exp2());
+    let shift = (0..=word).rev().find(|&shift| rounded(shift).abs() <= limit)?;
+    Some((rounded(shift) as i32, shift))
+}
+
+/// The greatest magnitude of the product of the rounded coefficient with signals up to `signal` to both sides.
+pub fn product_bound(value: f64, word: u32, signal: i64) -> i64 {
+    let Some((raw, shift)) = round_coefficient(value, word) else {
+        return 0;
+    };
+    let half = if shift == 0 { 0 } else { 1_i128 << (shift - 1) };
+    let product = |signal: i64| (i128::from(raw) * i128::from(signal) + half) >> shift;
+    product(signal).abs().max(product(-signal).abs()) as i64
+}
+
 /// A coefficient: a constant and the shift of the products with it.
 #[derive(Clone, Copy, Debug)]
 pub struct Coefficient {
@@ -26,23 +59,18 @@ impl Lowering<'_> {
         doc: &str,
         physical: &str,
     ) -> Coefficient {
-        let limit = f64::from(word - 1).exp2() - 1.0;
-        let rounded = |shift: u32| (value * f64::from(shift).exp2() + 0.5).floor();
-        let shift = (0..=word)
-            .rev()
-            .find(|&shift| rounded(shift).abs() <= limit);
-        if shift.is_none() {
+        let rounded = round_coefficient(value, word);
+        if rounded.is_none() {
             self.misfits.push(name.to_owned());
         }
-        let shift = shift.unwrap_or(0);
-        let raw = rounded(shift).clamp(-limit, limit);
-        let error = raw / f64::from(shift).exp2() / value - 1.0;
+        let (raw, shift) = rounded.unwrap_or((0, 0));
+        let error = f64::from(raw) / f64::from(shift).exp2() / value - 1.0;
         let lines = [
             doc.to_owned(),
             String::new(),
             format!("{physical}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."),
         ];
-        let id = self.b.program.constant(name, raw as i32, &lines);
+        let id = self.b.program.constant(name, raw, &lines);
         self.format(
             name,
             word,

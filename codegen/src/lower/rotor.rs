@@ -2,6 +2,7 @@
 
 use super::Lowering;
 use super::measure::Hall;
+use super::number::round_half_up;
 use crate::interface::Rounding;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::spec::HallCapture;
@@ -377,7 +378,7 @@ impl Lowering<'_> {
         );
         let coefficient = {
             // The shift is fixed: 16 fraction bits hold any advance from 0 to 2.
-            let raw = (advance * 65536.0 + 0.5).floor() as i64;
+            let raw = round_half_up(advance * 65536.0) as i64;
             self.format(
                 "k_advance",
                 32,

@@ -1,6 +1,7 @@
 //! The functions outside the step that set its words (semantics, "Set-point words").
 
-use super::{Bus, Coefficient, Lowering, Scale};
+use super::number::round_half_up;
+use super::{Bus, Coefficient, Lowering, Scale, round_down};
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
@@ -31,7 +32,7 @@ impl SetPointWords {
             BusSource::Fixed => None,
             BusSource::Measured { min, max, .. } => {
                 let nominal = i64::from(spec.inverter.timer_period) << scale.voltage_bits;
-                let word = |volts: f64| (volts * scale.voltage() + 0.5).floor() as i64;
+                let word = |volts: f64| round_half_up(volts * scale.voltage()) as i64;
                 let (low, high) = (word(min), word(max));
                 let ratio =
                     |volts: i64| (i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1));
@@ -111,13 +112,13 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
     let limits = [
         (
             "i_max_bits",
-            (most * 65536.0).floor(),
+            round_down(most * 65536.0),
             "Largest set-point",
             engineering(most, "A"),
         ),
         (
             "t_max_bits",
-            (most * k_t * 65536.0).floor(),
+            round_down(most * k_t * 65536.0),
             "Largest torque set-point",
             engineering(most * k_t, "Nm"),
         ),

@@ -7,7 +7,7 @@ use crate::ir::{Interval, Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{
     Applied, Bus, Coefficient, Currents, LimitRule, Lowering, PairModulation, RotorWords, Scale,
-    SupervisorWords,
+    SupervisorWords, product_bound, round_down,
 };
 use crate::scaling::Lowered;
 use crate::spec::Spec;
@@ -212,14 +212,14 @@ impl Step<'_, '_> {
         let scale = self.lowering.scale;
         let di_max = self.di_max();
         let volts_per_word = scale.voltage() / scale.current();
-        let change = (design.k_di * volts_per_word * di_max as f64).ceil() as i64;
-        let drop =
-            (design.k_r * volts_per_word * self.lowering.current_span() as f64).ceil() as i64;
-        self.lowering.bus_interval().high + change + drop + 4
+        let change = product_bound(design.k_di * volts_per_word, options.word, di_max);
+        let span = self.lowering.current_span();
+        let drop = product_bound(design.k_r * volts_per_word, options.word, span);
+        self.lowering.bus_interval().high + change + drop
     }
 
     fn di_max(&self) -> i64 {
-        (self.design.di_max * self.lowering.scale.current()).floor() as i64
+        round_down(self.design.di_max * self.lowering.scale.current()) as i64
     }
 
     fn declare(&mut self) -> Words {
