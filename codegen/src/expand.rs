@@ -6,7 +6,7 @@
 use crate::diagnostics::Diagnostics;
 use crate::emit::rust::{Surface, emit_rust, module_name};
 use crate::interface::Interface;
-use crate::ir::{Function, FunctionBuilder, Interval, Program, verify};
+use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate};
 use crate::spec::ast::Value;
 use crate::spec::{MacroInput, MotorFile, SpecAst, check, parse_macro, parse_toml};
@@ -143,30 +143,140 @@ fn exemplary_interface() -> Interface {
 
 /// Inputs and setters of a drive, and nothing between them.
 fn empty_program(interface: &Interface) -> Program {
+    let count = Interval::new(0, i64::from(u16::MAX));
+    let mut setters = vec![
+        ("set_current", "bits", Interval::WORD),
+        ("set_torque", "bits", Interval::WORD),
+    ];
+    if interface.measured_bus {
+        setters.push(("set_bus", "counts", count));
+    }
     let mut program = Program::new(&interface.type_name);
     program.param("j", 0, Interval::point(0), "No set-point.");
-    let mut step = Function::new("step", &["All legs off."]);
-    let inputs: &[&str] = if interface.timer_capture {
-        &["_adc_a", "_adc_b", "_hall", "_hall_ticks"]
-    } else {
-        &["_adc_a", "_adc_b", "_hall"]
-    };
-    for name in inputs {
-        step.inputs.push(crate::ir::Input {
-            name: (*name).to_owned(),
-            interval: Interval::new(0, i64::from(u16::MAX)),
-            doc: String::new(),
-        });
-    }
-    program.step = step;
-    let setters: &[&str] = if interface.measured_bus {
-        &["set_current", "set_torque", "set_bus"]
-    } else {
-        &["set_current", "set_torque"]
-    };
-    for name in setters {
-        let setter = FunctionBuilder::new(&mut program, name, &["Does nothing."]).finish();
-        program.setters.push(setter);
-    }
+    program.step = empty_function("step", &[]);
+    program.setters = setters
+        .into_iter()
+        .map(|(name, input, interval)| empty_function(name, &[(input, interval)]))
+        .collect();
     program
+}
+
+fn empty_function(name: &str, inputs: &[(&str, Interval)]) -> Function {
+    let mut function = Function::new(name, &["Does nothing: the specification has errors."]);
+    function.inputs = inputs
+        .iter()
+        .map(|&(name, interval)| Input {
+            name: name.to_owned(),
+            interval,
+            doc: String::new(),
+        })
+        .collect();
+    function
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{expand_controller, expand_verify};
+    use crate::emit::rust::format_rust;
+    use crate::{Builder, pipeline};
+    use proc_macro2::TokenStream;
+    use quote::quote;
+    use std::path::Path;
+
+    fn hub(bus: &TokenStream, options: &TokenStream) -> TokenStream {
+        quote! {
+            pub HubDrive {
+                motor: { description: "Trivedi-Keshri 48 V 660 W",
+                    pole_pairs: 4, resistance: 135 mohm per_phase, inductance: 0.22 mH per_phase,
+                    winding: star, back_emf: 0.1648 V/(rad/s) line_to_line peak, emf_shape: trapezoidal,
+                    rated_current: 20 A, rated_torque: 3.3 Nm, rated_speed: 2000 rpm },
+                inverter: { bus_voltage: #bus, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12,
+                    adc_range: 40 A, hall_timer_clock: 1 MHz },
+                controller: pdcc { #options },
+            }
+        }
+    }
+
+    fn expanded(bus: &TokenStream, options: &TokenStream) -> String {
+        format_rust(&expand_controller(hub(bus, options), Path::new("")))
+    }
+
+    #[test]
+    fn macro_and_build_script_emit_the_same() {
+        let folder = std::env::temp_dir().join(format!("hexagen-same-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        std::fs::write(folder.join("hub.toml"), include_str!("example.toml"))
+            .expect("a motor file");
+        let written = Builder::new()
+            .root(&folder)
+            .out_dir(&folder)
+            .motor("hub.toml")
+            .controller("pdcc:emf=model,advance=2")
+            .name("HubDrive")
+            .generate()
+            .expect("the example generates");
+        let file = std::fs::read_to_string(&written[0].file).expect("the file is there");
+        std::fs::remove_dir_all(&folder).expect("the folder is ours");
+        assert_eq!(
+            file,
+            expanded(&quote!(48 V), &quote!(emf: model, advance: 2))
+        );
+    }
+
+    #[test]
+    fn an_erroneous_specification_keeps_the_shape_of_its_type() {
+        let right = expanded(&quote!(48 V), &quote!(hall_capture: timer));
+        let wrong = expanded(&quote!(48 ohm), &quote!(hall_capture: timer));
+        assert_eq!(wrong.matches("compile_error!").count(), 1);
+        // The signatures of the public interface, constants without their values.
+        let surface = |text: &str| -> Vec<String> {
+            let public = |line: &&str| line.trim_start().starts_with("pub ");
+            let text = text
+                .replace("(\n            ", "(")
+                .replace(",\n            ", ", ");
+            text.lines()
+                .filter(public)
+                .map(|line| {
+                    line.split(" = ")
+                        .next()
+                        .unwrap_or(line)
+                        .replace(['_', ','], "")
+                })
+                .collect()
+        };
+        assert_eq!(surface(&right), surface(&wrong));
+    }
+
+    #[test]
+    fn expansion_is_deterministic_and_tells_no_place() {
+        let options = quote!(modulation: pair);
+        let text = expanded(&quote!(48 V), &options);
+        assert_eq!(text, expanded(&quote!(48 V), &options));
+        assert!(
+            !text.contains(env!("CARGO_MANIFEST_DIR")),
+            "an absolute path leaks"
+        );
+    }
+
+    #[test]
+    fn the_example_of_the_empty_shape_generates() {
+        let ast =
+            crate::spec::parse_toml(include_str!("example.toml"), "example.toml").expect("parses");
+        let (spec, origins) = crate::spec::check(&ast).expect("passes the checks");
+        pipeline::generate(&spec, &origins).expect("generates");
+    }
+
+    #[test]
+    fn verify_makes_a_test_per_drive() {
+        let text = expand_verify(quote!(HubDrive, motors::Front)).to_string();
+        assert!(
+            text.contains("fn hub_drive_is_bit_true") && text.contains("fn front_is_bit_true"),
+            "{text}"
+        );
+        assert!(
+            expand_verify(quote!(3))
+                .to_string()
+                .contains("compile_error")
+        );
+    }
 }

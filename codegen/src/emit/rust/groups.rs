@@ -166,7 +166,7 @@ fn family(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Signal, bundle, group};
+    use super::{Shape, Signal, bundle, group};
 
     fn words(names: &[&str]) -> Vec<Signal> {
         names

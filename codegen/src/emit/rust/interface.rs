@@ -3,9 +3,9 @@
 use super::function::{Emitted, state_word};
 use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type, stored};
 use crate::interface::{Interface, PublicConstant, PublicValue, Rounding};
-use crate::ir::{Program, Word};
+use crate::ir::{Input, Program, Word};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 /// What the types are emitted from.
 pub(super) struct Types<'a> {
@@ -21,7 +21,11 @@ impl Types<'_> {
         let name = self.name;
         let docs = docs(&self.interface.doc);
         let constants = self.interface.constants.iter().map(public_constant);
-        let (arguments, names) = self.step_arguments();
+        let measurements = self.measurements();
+        let arguments = measurements
+            .iter()
+            .map(|(name, kind, _)| quote!(#name: #kind));
+        let names = measurements.iter().map(|(name, _, _)| name);
         let initial = self.program.params.iter().map(|word| {
             let initial = number(i64::from(word.initial));
             quote!(Word(#initial))
@@ -102,7 +106,16 @@ impl Types<'_> {
 
     /// The half that the control interrupt owns.
     pub(super) fn control_loop(&self) -> TokenStream {
-        let (arguments, names) = self.step_arguments();
+        let measurements = self.measurements();
+        let arguments = measurements.iter().map(|(name, kind, input)| {
+            let unused = format_ident!("_{name}");
+            let name = if input.is_some() { name } else { &unused };
+            quote!(#name: #kind)
+        });
+        let words = self.program.step.inputs.iter().map(|input| {
+            let name = snake(&input.name);
+            quote!(#name.into())
+        });
         let step_docs = self.step_docs();
         quote! {
             /// The stepping half of the drive.
@@ -116,7 +129,7 @@ impl Types<'_> {
                 #step_docs
                 #[inline]
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
-                    step(self.state, self.set_point.words.read(), #(#names.into()),*)
+                    step(self.state, self.set_point.words.read(), #(#words),*)
                 }
 
                 /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
@@ -269,10 +282,8 @@ impl Types<'_> {
             let value = stored(word, &quote!(Word(value)));
             quote!(#index => self.state.#field = #value)
         });
-        let sample = self.program.step.inputs.iter().map(|input| {
-            let name = snake(&input.name);
-            quote!(sample.#name)
-        });
+        let measurements = self.measurements();
+        let sample = measurements.iter().map(|(name, _, _)| quote!(sample.#name));
         let set_bus = if self.interface.measured_bus {
             quote! {
                 fn set_bus(&self, counts: u16) {
@@ -381,22 +392,23 @@ impl Types<'_> {
         })
     }
 
-    /// Arguments of the public `step` with their hardware types, and their names.
-    fn step_arguments(&self) -> (Vec<TokenStream>, Vec<Ident>) {
+    /// What the public `step` takes: name, hardware type, and the step's input of that name. The
+    /// hardware's side follows the specification: a captured time comes in even where this
+    /// controller makes no use of it.
+    fn measurements(&self) -> Vec<(Ident, TokenStream, Option<&Input>)> {
         let inputs = &self.program.step.inputs;
-        let arguments = inputs.iter().map(|input| {
-            let name = snake(&input.name);
-            let kind = if input.name == "hall" {
-                quote!(u8)
-            } else {
-                quote!(u16)
-            };
-            quote!(#name: #kind)
-        });
-        (
-            arguments.collect(),
-            inputs.iter().map(|input| snake(&input.name)).collect(),
-        )
+        let input = |name: &str| inputs.iter().find(|input| input.name == name);
+        let mut list = vec![
+            ("adc_a", quote!(u16)),
+            ("adc_b", quote!(u16)),
+            ("hall", quote!(u8)),
+        ];
+        if self.interface.timer_capture {
+            list.push(("hall_ticks", quote!(u16)));
+        }
+        list.into_iter()
+            .map(|(name, kind)| (snake(name), kind, input(name)))
+            .collect()
     }
 
     fn step_docs(&self) -> TokenStream {
@@ -405,11 +417,12 @@ impl Types<'_> {
             String::new(),
         ];
         lines.extend(
-            self.program
-                .step
-                .inputs
+            self.measurements()
                 .iter()
-                .map(|input| format!("- `{}`: {}", input.name, input.doc)),
+                .map(|(name, _, input)| match input {
+                    Some(input) => format!("- `{name}`: {}", input.doc),
+                    None => format!("- `{name}`: not used by this controller."),
+                }),
         );
         docs(&lines)
     }
