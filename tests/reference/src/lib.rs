@@ -22,3 +22,4 @@ pub use spec::{
     Bus, BusSense, Controller, Discretisation, EmfShapeKind, EmfSource, HallCapture, Inverter,
     Modulation, Motor, Pdcc, Reference, Saturation, Spec,
 };
+pub use verify::assert_bit_true;
