@@ -1,7 +1,16 @@
-//! The report: one self-contained HTML page about a motor and its controllers.
+//! The report: one HTML page about a motor and its controllers, complete in itself.
+//!
+//! [`ReportData`] says what there is to show; [`write`] makes the page: no script, no reference to
+//! anything outside the file, and the same bytes for the same data.
 
 mod data;
 mod expected;
+mod harmonics;
+mod highlight;
+mod page;
+mod plot;
+mod sections;
+mod window;
 
 pub use data::{
     Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SignalError,
@@ -11,3 +20,87 @@ pub use expected::{
     Band, DesignRow, Expected, ExpectedPoint, Judged, design_table, judge_limit, judge_mean,
     judge_pp, judge_rms,
 };
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The file could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A plot could not be drawn.
+    #[error("cannot draw a plot: {0}")]
+    Plot(String),
+    /// Emitted code could not be highlighted.
+    #[error("cannot highlight code: {0}")]
+    Highlight(String),
+}
+
+/// Writes the page into a folder, which is created where it is missing, and returns its path:
+/// `report-<name>.html`. A page of that name is replaced at once or not at all.
+///
+/// # Errors
+/// A file that cannot be written, or a plot that cannot be drawn.
+pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
+    let html = page::render(data)?;
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |source| ReportError::Write { path, source }
+    };
+    fs::create_dir_all(dir).map_err(failed(dir))?;
+    let path = dir.join(format!("report-{}.html", file_stem(&data.name)));
+    let beside = path.with_extension("html.part");
+    fs::write(&beside, html).map_err(failed(&beside))?;
+    fs::rename(&beside, &path).map_err(failed(&path))?;
+    Ok(path)
+}
+
+/// The page as text.
+///
+/// # Errors
+/// A plot that cannot be drawn.
+pub fn render(data: &ReportData) -> Result<String, ReportError> {
+    page::render(data)
+}
+
+/// A name as part of a file name: `TrivediKeshri660w` is `trivedi-keshri660w`.
+fn file_stem(name: &str) -> String {
+    let mut stem = String::new();
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && !stem.is_empty() && !stem.ends_with('-') {
+            stem.push('-');
+        }
+        if c.is_ascii_alphanumeric() {
+            stem.push(c.to_ascii_lowercase());
+        } else if !stem.is_empty() && !stem.ends_with('-') {
+            stem.push('-');
+        }
+    }
+    let stem = stem.trim_end_matches('-');
+    if stem.is_empty() { "motor" } else { stem }.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_stem;
+
+    #[test]
+    fn names_become_file_names() {
+        for (name, stem) in [
+            ("TrivediKeshri660w", "trivedi-keshri660w"),
+            ("../etc/x", "etc-x"),
+            ("", "motor"),
+            ("A B", "a-b"),
+        ] {
+            assert_eq!(file_stem(name), stem);
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Harmonics of the electrical angle, by projection on the record.
+
+use crate::closed_loop::Trace;
+
+/// Amplitude of each harmonic of a signal, index = order, from 0 (magnitude of the mean) to
+/// `highest`. The record should span whole electrical turns.
+pub fn amplitudes(values: &[f64], theta_e: &[f64], highest: usize) -> Vec<f64> {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let mut sums = vec![(0.0, 0.0); highest + 1];
+    for (value, theta) in values.iter().zip(theta_e) {
+        // Without the mean nothing leaks when the record is not quite a whole number of turns.
+        let value = value - mean;
+        let (sin, cos) = theta.sin_cos();
+        let (mut s, mut c) = (0.0, 1.0);
+        for sum in &mut sums {
+            sum.0 += value * c;
+            sum.1 += value * s;
+            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+        }
+    }
+    let mut amplitudes: Vec<f64> = sums
+        .into_iter()
+        .map(|(c, s): (f64, f64)| 2.0 * c.hypot(s) / count)
+        .collect();
+    amplitudes[0] = mean.abs();
+    amplitudes
+}
+
+/// Harmonics of the phase currents in percent of the fundamental, mean of the phases.
+pub fn of_current(trace: &Trace, highest: usize) -> Vec<f64> {
+    let i_c: Vec<f64> = trace
+        .i_a
+        .iter()
+        .zip(&trace.i_b)
+        .map(|(a, b)| -a - b)
+        .collect();
+    let mut percent = vec![0.0; highest + 1];
+    for phase in [&trace.i_a, &trace.i_b, &i_c] {
+        let amplitudes = amplitudes(phase, &trace.theta_e, highest);
+        let scale = 100.0 / 3.0 / amplitudes[1];
+        for (sum, amplitude) in percent.iter_mut().zip(amplitudes) {
+            *sum += scale * amplitude;
+        }
+    }
+    percent
+}
+
+/// Harmonics of the torque in percent of its mean.
+pub fn of_torque(trace: &Trace, highest: usize) -> Vec<f64> {
+    let amplitudes = amplitudes(&trace.torque, &trace.theta_e, highest);
+    let scale = 100.0 / amplitudes[0];
+    amplitudes.into_iter().map(|a| scale * a).collect()
+}
+
+/// Harmonics of the ideal quasi-square wave in percent of its fundamental: 100/n for odd orders
+/// that three does not divide, else 0.
+pub fn of_quasi_square(order: usize) -> f64 {
+    if order % 2 == 1 && !order.is_multiple_of(3) {
+        100.0 / order as f64
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn amplitudes_of_a_known_sum() {
+        let theta: Vec<f64> = (0..3600).map(|k| f64::from(k) * TAU / 1200.0).collect();
+        let wave: Vec<f64> = theta
+            .iter()
+            .map(|t| -2.0 + 0.5 * (6.0 * t).sin() + 0.25 * (12.0 * t + 1.0).cos())
+            .collect();
+        let got = amplitudes(&wave, &theta, 13);
+        for (order, amplitude) in got.iter().enumerate() {
+            let want = match order {
+                0 => 2.0,
+                6 => 0.5,
+                12 => 0.25,
+                _ => 0.0,
+            };
+            assert!((amplitude - want).abs() < 1e-9, "{order}: {amplitude}");
+        }
+    }
+
+    #[test]
+    fn quasi_square_series_is_that_of_the_sampled_wave() {
+        let theta: Vec<f64> = (0..36_000)
+            .map(|k| (f64::from(k) + 0.5) * TAU / 36_000.0)
+            .collect();
+        let wave: Vec<f64> = theta
+            .iter()
+            .map(|t| match t.to_degrees() {
+                d if (30.0..150.0).contains(&d) => 20.0,
+                d if (210.0..330.0).contains(&d) => -20.0,
+                _ => 0.0,
+            })
+            .collect();
+        let got = amplitudes(&wave, &theta, 25);
+        for (order, amplitude) in got.iter().enumerate().skip(1) {
+            let percent = 100.0 * amplitude / got[1];
+            assert!(
+                (percent - of_quasi_square(order)).abs() < 1e-3,
+                "{order}: {percent}"
+            );
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What the report is about: heading, motor, inverter, and what follows from them.
+
+use super::{number, quantity};
+use crate::report::ReportData;
+use hexagen_codegen::spec::{BusSource, EmfShape};
+use maud::{Markup, html};
+use std::f64::consts::{PI, TAU};
+
+/// The page's title.
+pub fn title(data: &ReportData) -> String {
+    format!("{}: current controllers in fixed point", motor_name(data))
+}
+
+fn motor_name(data: &ReportData) -> &str {
+    if data.motor.description.is_empty() {
+        &data.name
+    } else {
+        &data.motor.description
+    }
+}
+
+/// Heading and the sentence below it.
+pub fn heading(data: &ReportData) -> Markup {
+    html! {
+        h1 { (motor_name(data)) }
+        p.lead {
+            "Predictive current controllers for this motor, generated as fixed-point code and simulated in closed loop: "
+            (data.inverter.adc_bits) "-bit current samples every " (quantity(data.inverter.t_s, "s"))
+            ", " (quantity(data.torque, "Nm")) " demanded."
+        }
+        @if let Some(check) = &data.verification {
+            p {
+                @if check.mismatches == 0 && check.steps > 0 {
+                    span.good { "Bit for bit verified: " }
+                    (grouped(check.steps)) " steps of " (check.engine) " code equal the bit-true model in every output and state bit."
+                } @else {
+                    strong { "Not verified: " }
+                    (grouped(check.mismatches)) " of " (grouped(check.steps)) " steps of " (check.engine) " code differ from the bit-true model."
+                }
+            }
+        }
+    }
+}
+
+/// A count with thin spaces between thousands.
+pub(super) fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Tables of given and derived numbers.
+pub fn facts(data: &ReportData) -> Markup {
+    html! {
+        div.facts {
+            (table("Motor, per phase of the star", &motor(data)))
+            (table("Inverter and sensors", &inverter(data)))
+            (table("Derived", &derived(data)))
+        }
+        @if let Some(source) = &data.source {
+            p.note { "Data: " (source) }
+        }
+    }
+}
+
+fn table(title: &str, rows: &[(&str, String)]) -> Markup {
+    html! {
+        div {
+            h3 { (title) }
+            table {
+                @for (name, value) in rows { tr { td { (name) } td { (value) } } }
+            }
+        }
+    }
+}
+
+fn motor(data: &ReportData) -> Vec<(&'static str, String)> {
+    let motor = &data.motor;
+    let shape = match motor.emf_shape {
+        EmfShape::Trapezoidal { flat_top_deg } => {
+            format!("trapezoidal, {}\u{b0} flat top", number(flat_top_deg, 0))
+        }
+        EmfShape::Sinusoidal => "sinusoidal".to_owned(),
+    };
+    let mut rows = vec![
+        ("Pole pairs", motor.pole_pairs.to_string()),
+        ("Resistance", quantity(motor.resistance, "ohm")),
+        ("Inductance", quantity(motor.inductance, "H")),
+        (
+            "EMF constant, peak",
+            quantity(motor.emf_constant, "V\u{b7}s/rad"),
+        ),
+        ("EMF shape", shape),
+        ("Rated current, peak", quantity(motor.rated_current, "A")),
+    ];
+    if let Some(torque) = motor.rated_torque {
+        rows.push(("Rated torque", quantity(torque, "Nm")));
+    }
+    let rpm = motor.rated_speed * 60.0 / TAU;
+    rows.push(("Rated speed", format!("{}\u{a0}rpm", number(rpm, 0))));
+    if let Some(inertia) = motor.inertia {
+        // Engineering prefixes do not go with squares of kilograms and metres.
+        rows.push(("Inertia", format!("{inertia:.3e}\u{a0}kg\u{b7}m\u{b2}")));
+    }
+    rows
+}
+
+fn inverter(data: &ReportData) -> Vec<(&'static str, String)> {
+    let inverter = &data.inverter;
+    let bus = match inverter.bus {
+        BusSource::Fixed => quantity(inverter.v_bus, "V"),
+        BusSource::Measured { min, max, .. } => format!(
+            "{}, measured, {} to {}",
+            quantity(inverter.v_bus, "V"),
+            quantity(min, "V"),
+            quantity(max, "V")
+        ),
+    };
+    let half_range = inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1));
+    vec![
+        ("Bus voltage", bus),
+        ("Control period", quantity(inverter.t_s, "s")),
+        ("PWM frequency", quantity(1.0 / inverter.t_s, "Hz")),
+        (
+            "Timer counts for full duty",
+            inverter.timer_period.to_string(),
+        ),
+        ("Dead time", quantity(inverter.dead_time, "s")),
+        (
+            "Current converters",
+            format!(
+                "{} bits, \u{b1}{}",
+                inverter.adc_bits,
+                quantity(half_range, "A")
+            ),
+        ),
+        ("One count", quantity(inverter.adc_gain, "A")),
+        ("Trip level", quantity(inverter.trip_current, "A")),
+    ]
+}
+
+fn derived(data: &ReportData) -> Vec<(&'static str, String)> {
+    let (motor, inverter) = (&data.motor, &data.inverter);
+    let pole_pairs = f64::from(motor.pole_pairs);
+    let per_volt = inverter.t_s / motor.inductance;
+    let emf = 2.0 * motor.emf_constant * motor.rated_speed;
+    let degrees = (motor.rated_speed * pole_pairs * inverter.t_s) * 180.0 / PI;
+    vec![
+        ("Current for the demand", quantity(data.current, "A")),
+        (
+            "Torque per ampere",
+            quantity(data.torque / data.current, "Nm/A"),
+        ),
+        (
+            "Electrical time constant L/R",
+            quantity(motor.inductance / motor.resistance, "s"),
+        ),
+        ("Current per volt and period", quantity(per_volt, "A")),
+        (
+            "Electrical frequency at rated speed",
+            quantity(motor.rated_speed * pole_pairs / TAU, "Hz"),
+        ),
+        (
+            "Line-to-line EMF at rated speed",
+            format!(
+                "{}, {}\u{a0}% of the bus",
+                quantity(emf, "V"),
+                number(100.0 * emf / inverter.v_bus, 0)
+            ),
+        ),
+        (
+            "Turn per period at rated speed",
+            format!("{}\u{b0} electrical", number(degrees, 2)),
+        ),
+    ]
+}

@@ -1,0 +1,146 @@
+//! The sections of the page, and the small pieces of HTML that they share.
+
+pub mod header;
+pub mod numbers;
+pub mod results;
+pub mod spectra;
+pub mod stability;
+pub mod texts;
+pub mod torque_speed;
+pub mod waves;
+
+use super::plot::palette;
+use super::{Capture, Model, ReportData, Variant};
+use hexagen_codegen::diagnostics::engineering;
+use maud::{Markup, PreEscaped, html};
+use plotters::style::RGBColor;
+
+/// A quantity with the signs of print: ohm and micro as letters.
+fn quantity(value: f64, unit: &str) -> String {
+    let text = engineering(value, unit);
+    let Some((number, unit)) = text.split_once(' ') else {
+        return text;
+    };
+    let unit = unit.replace("ohm", "\u{3a9}");
+    let unit = unit
+        .strip_prefix('u')
+        .map_or(unit.clone(), |rest| format!("\u{b5}{rest}"));
+    format!("{}\u{a0}{unit}", number.replace('-', "\u{2212}"))
+}
+
+/// A number with so many decimals and a true minus sign; a dash where there is none.
+fn number(value: f64, decimals: usize) -> String {
+    if value.is_finite() {
+        format!("{value:.decimals$}").replace('-', "\u{2212}")
+    } else {
+        "\u{2013}".to_owned()
+    }
+}
+
+/// A percentage of ripple: two decimals below 1, one below 100.
+fn ripple(value: f64) -> String {
+    // Where rounding decides, what is shown counts.
+    let decimals = match value.abs() {
+        x if x < 0.995 => 2,
+        x if x < 99.95 => 1,
+        _ => 0,
+    };
+    number(value, decimals)
+}
+
+/// A short line of a colour, dashed or not, as legends and captions show it.
+fn swatch(color: RGBColor, width: f64, (dash, gap): (f64, f64)) -> Markup {
+    let color = palette::css(color);
+    let dashes = (gap > 0.0).then(|| format!("{dash} {gap}"));
+    html! {
+        svg.swatch viewBox="0 0 30 12" aria-hidden="true" {
+            line x1="1" y1="6" x2="29" y2="6" stroke=(color) stroke-width=(width) stroke-dasharray=[dashes] {}
+        }
+    }
+}
+
+/// A filled field of a colour.
+fn field(color: RGBColor, opacity: f64) -> Markup {
+    let color = palette::css(color);
+    html! {
+        svg.swatch viewBox="0 0 30 12" aria-hidden="true" {
+            rect x="1" y="1" width="28" height="10" fill=(color) opacity=(opacity) {}
+        }
+    }
+}
+
+/// The swatch of the variant at a place in the table.
+fn variant_swatch(index: usize) -> Markup {
+    swatch(palette::variant(index), 3.0, (0.0, 0.0))
+}
+
+/// Legend items in a row.
+fn legend(items: impl IntoIterator<Item = (Markup, String)>) -> Markup {
+    html! {
+        ul.legend {
+            @for (sign, text) in items { li { (sign) span { (text) } } }
+        }
+    }
+}
+
+/// A plot below its caption.
+fn figure(caption: &Markup, plot: &PreEscaped<String>) -> Markup {
+    html! { figure { figcaption { (caption) } (plot) } }
+}
+
+/// The variants that have records, with their place in the table.
+fn plotted(data: &ReportData) -> impl Iterator<Item = (usize, &Variant)> {
+    let variants = data.variants.iter().enumerate();
+    variants.filter(|(_, variant)| !variant.records.is_empty())
+}
+
+/// Legend of all plotted variants.
+fn variant_legend(data: &ReportData) -> Markup {
+    legend(
+        plotted(data)
+            .map(|(index, variant)| (field(palette::variant(index), 1.0), variant.label.clone())),
+    )
+}
+
+/// A model's name.
+fn model_name(model: Model) -> &'static str {
+    match model {
+        Model::Fixed => "fixed point",
+        Model::BitTrue => "bit-true model",
+        Model::Ideal => "ideal float",
+    }
+}
+
+/// A capture's name.
+fn capture_name(capture: Capture) -> &'static str {
+    match capture {
+        Capture::Sampled => "sampled",
+        Capture::Timer => "timer",
+    }
+}
+
+/// Said instead of a part that has nothing to show.
+fn nothing(what: &str) -> Markup {
+    html! { p.note { "This report has no " (what) "." } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{number, quantity, ripple};
+
+    #[test]
+    fn quantities_and_numbers_read_as_in_print() {
+        assert_eq!(quantity(0.135, "ohm"), "135\u{a0}m\u{3a9}");
+        assert_eq!(quantity(22e-5, "H"), "220\u{a0}\u{b5}H");
+        assert_eq!(quantity(-0.5, "A"), "\u{2212}500\u{a0}mA");
+        assert_eq!(number(f64::NAN, 2), "\u{2013}");
+        for (value, text) in [
+            (0.128, "0.13"),
+            (0.997, "1.0"),
+            (12.72, "12.7"),
+            (106.2, "106"),
+        ] {
+            assert_eq!(ripple(value), text);
+        }
+    }
+}

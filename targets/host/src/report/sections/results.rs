@@ -1,0 +1,196 @@
+//! The result table: every run, its merits at each speed, its limit, and what was expected.
+
+use super::{capture_name, model_name, number, ripple, variant_swatch};
+use crate::closed_loop::LimitOutcome;
+use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
+use crate::report::{Band, Expected, ReportData, Run, RunPoint};
+use maud::{Markup, html};
+
+/// The table, how many expected figures were met, and how to read it.
+pub fn section(data: &ReportData) -> Markup {
+    let judged: Vec<Judged> = data
+        .variants
+        .iter()
+        .flat_map(|variant| &variant.runs)
+        .flat_map(|run| judge_run(data, run))
+        .filter(|judged| judged.expected.is_some())
+        .collect();
+    let met = judged.iter().filter(|judged| judged.met).count();
+    html! {
+        @if !judged.is_empty() {
+            p {
+                @if met == judged.len() {
+                    span.good { "All " (judged.len()) " expected figures are met. " }
+                } @else {
+                    strong { (met) " of " (judged.len()) " expected figures are met; the others are marked \u{2260}. " }
+                }
+                "Expected figures stand in grey beside the measured ones; they count as met within 1 % of mean torque, \
+                 15 % or 0.5 points of ripple, and 2 points of the speed limit."
+            }
+        }
+        p.note {
+            "Ripple is torque after a moving mean over one control period, in percent of its mean: peak to peak (worst of three starts) and RMS. \
+             The limit is the first speed at which mean torque falls below 97 % of the demand."
+        }
+        div.scroll {
+            table.results {
+                (head(data))
+                @for (index, variant) in data.variants.iter().enumerate() {
+                    tbody {
+                        @for (row, run) in variant.runs.iter().enumerate() {
+                            tr {
+                                @if row == 0 {
+                                    th scope="rowgroup" rowspan=(variant.runs.len()) {
+                                        @if !variant.records.is_empty() { (variant_swatch(index)) " " }
+                                        (variant.label)
+                                        @if !variant.variant.is_empty() {
+                                            br;
+                                            code.variant { (variant.variant) }
+                                        }
+                                    }
+                                }
+                                td { (model_name(run.model)) }
+                                td { (capture_name(run.capture)) }
+                                (figures(data, run))
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @for note in &data.notes { p { (note) } }
+    }
+}
+
+fn head(data: &ReportData) -> Markup {
+    html! {
+        thead {
+            tr {
+                th rowspan="2" { "Variant" }
+                th rowspan="2" { "Model" }
+                th rowspan="2" { "Hall edges" }
+                @for rpm in &data.speeds_rpm {
+                    th.group.edge colspan="3" { (number(*rpm, 0)) " rpm" }
+                }
+                th.number.edge rowspan="2" { "Limit" br; small { "% of rated speed" } }
+            }
+            tr {
+                @for _ in &data.speeds_rpm {
+                    th.number.edge { "Mean" br; small { "Nm" } }
+                    th.number { "Ripple pp" br; small { "%" } }
+                    th.number { "Ripple RMS" br; small { "%" } }
+                }
+            }
+        }
+    }
+}
+
+/// The run's point at a speed.
+fn point_at(run: &Run, rpm: f64) -> Option<&RunPoint> {
+    run.points.iter().find(|point| point.rpm == rpm)
+}
+
+/// Mean, peak-to-peak and RMS ripple at one speed.
+fn judge_point(run: &Run, rpm: f64) -> Option<[Judged; 3]> {
+    let expected = run.expected.as_ref().and_then(|expected| expected.at(rpm));
+    point_at(run, rpm).map(|point| {
+        [
+            judge_mean(&point.merits, expected),
+            judge_pp(&point.merits, expected),
+            judge_rms(&point.merits, expected),
+        ]
+    })
+}
+
+/// All judged figures of a run that are in the table.
+fn judge_run(data: &ReportData, run: &Run) -> Vec<Judged> {
+    let points = data
+        .speeds_rpm
+        .iter()
+        .filter_map(|&rpm| judge_point(run, rpm));
+    let limit = judge_limit(run.limit.as_ref(), run.expected.as_ref());
+    points.flatten().chain([limit]).collect()
+}
+
+fn figures(data: &ReportData, run: &Run) -> Markup {
+    let mean = |value: f64| number(value, 2);
+    // A column for expected figures only where some row has one keeps plain tables narrow.
+    let any_expected = data
+        .variants
+        .iter()
+        .flat_map(|variant| &variant.runs)
+        .any(|run| run.expected.is_some());
+    let cell = |judged: Judged, edge: bool, show: &dyn Fn(f64) -> String| {
+        html! {
+            td.number.edge[edge].missed[!judged.met] {
+                @if !judged.met { "\u{2260}\u{a0}" }
+                (judged.measured.map_or_else(|| "\u{2013}".to_owned(), show))
+                @if any_expected {
+                    span.expected { (judged.expected.map_or_else(String::new, |band| band_text(band, show))) }
+                }
+            }
+        }
+    };
+    html! {
+        @for &rpm in &data.speeds_rpm {
+            @match judge_point(run, rpm) {
+                Some([torque, pp, rms]) => {
+                    (cell(torque, true, &mean))
+                    (cell(pp, false, &ripple))
+                    (cell(rms, false, &ripple))
+                }
+                None => { td.number.edge {} td {} td {} }
+            }
+        }
+        @match run.limit.as_ref().map(|limit| limit.outcome) {
+            Some(LimitOutcome::NotReached) => {
+                td.number.edge.missed[!lower_bound_met(run)] {
+                    "above " (run.limit.as_ref().and_then(|limit| limit.limit_pct).map_or_else(String::new, |x| number(x, 0)))
+                    @if any_expected {
+                        span.expected { (expected_limit(run.expected.as_ref())) }
+                    }
+                }
+            }
+            Some(LimitOutcome::NeverHeld) => {
+                td.number.edge.missed[!judge_limit(None, run.expected.as_ref()).met] {
+                    "never held"
+                    @if any_expected {
+                        span.expected { (expected_limit(run.expected.as_ref())) }
+                    }
+                }
+            }
+            Some(LimitOutcome::Found) => {
+                (cell(judge_limit(run.limit.as_ref(), run.expected.as_ref()), true, &|x| number(x, 1)))
+            }
+            None => {
+                td.number.edge {
+                    "\u{2013}"
+                    @if any_expected {
+                        span.expected { (expected_limit(run.expected.as_ref())) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether the lower bound of a limit that the scan did not reach agrees with the expectation.
+fn lower_bound_met(run: &Run) -> bool {
+    judge_limit(run.limit.as_ref(), run.expected.as_ref()).met
+}
+
+fn expected_limit(expected: Option<&Expected>) -> String {
+    expected
+        .and_then(|expected| expected.limit_pct)
+        .map_or_else(String::new, |band| band_text(band, &|x| number(x, 0)))
+}
+
+/// A band as one value or from-to.
+fn band_text(band: Band, show: &dyn Fn(f64) -> String) -> String {
+    let (low, high) = (show(band.low), show(band.high));
+    if low == high {
+        low
+    } else {
+        format!("{low}\u{2013}{high}")
+    }
+}
