@@ -48,7 +48,7 @@ pub enum Unscalable {
 /// Finest fraction bits that are tried for voltages.
 const FINEST_VOLTAGE: u32 = 20;
 
-/// Searches the finest scale for `lower`.
+/// Searches the finest scale for `lower`: what fits at some scale fits at every coarser one, so the search halves.
 ///
 /// # Errors
 /// [`Unscalable`] where even one fraction bit of a timer count, or none of an ADC count, does not fit.
@@ -66,63 +66,69 @@ pub fn choose_scale(
             bits: inverter.adc_bits + 1,
         });
     };
-    let ampere_per_count = inverter.adc_gain.abs();
-    let volt_per_count = inverter.v_bus / f64::from(inverter.timer_period);
-    let finest = if word == 16 { 12 } else { FINEST_VOLTAGE };
-    let mut coarsest_failure = Unscalable::TooNarrow {
+    let (mut low, mut high) = (1, if word == 16 { 12 } else { FINEST_VOLTAGE });
+    let mut finest = Err(Unscalable::TooNarrow {
         signal: "voltages".to_owned(),
         bits: 33,
-    };
-    for voltage_bits in (1..=finest).rev() {
+    });
+    while low <= high {
+        let voltage_bits = low.midpoint(high);
         let scale = Scale {
             word,
             current_bits,
             voltage_bits,
-            ampere_per_count,
-            volt_per_count,
+            ampere_per_count: inverter.adc_gain.abs(),
+            volt_per_count: inverter.v_bus / f64::from(inverter.timer_period),
         };
-        let Lowered {
-            program,
-            formats,
-            misfits,
-        } = lower(scale);
-        if let Some(signal) = misfits.into_iter().next() {
-            coarsest_failure = Unscalable::TooNarrow {
-                signal: format!("coefficient `{signal}`"),
-                bits: word + 1,
-            };
-            continue;
-        }
-        match verify(program) {
-            Ok(graph) => match (word == 16)
-                .then(|| wide_product(graph.program()))
-                .flatten()
-            {
-                None => {
-                    return Ok(Scaled {
-                        graph,
-                        formats,
-                        scale,
-                    });
-                }
-                Some((signal, bits)) => coarsest_failure = Unscalable::TooNarrow { signal, bits },
-            },
-            Err(violations) => match violations
-                .iter()
-                .find_map(|violation| Some((violation, violation.escaped?)))
-            {
-                Some((violation, interval)) => {
-                    let signal = violation.place.rsplit(": ").next().unwrap_or_default();
-                    coarsest_failure = Unscalable::TooNarrow {
-                        signal: format!("`{signal}`"),
-                        bits: interval.bits(),
-                    };
-                }
-                None => return Err(Unscalable::Broken(violations)),
-            },
+        match fit(scale, lower(scale)) {
+            Ok(scaled) => {
+                finest = Ok(scaled);
+                low = voltage_bits + 1;
+            }
+            Err(broken @ Unscalable::Broken(_)) => return Err(broken),
+            Err(too_narrow) => {
+                // Told of the coarsest scale, which is the last to fail where none fits.
+                finest = finest.or(Err(too_narrow));
+                high = voltage_bits - 1;
+            }
         }
     }
-    Err(coarsest_failure)
+    finest
+}
+
+/// Whether the program lowered at a scale fits its words.
+fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
+    let Lowered {
+        program,
+        formats,
+        misfits,
+    } = lowered;
+    if let Some(signal) = misfits.into_iter().next() {
+        return Err(Unscalable::TooNarrow {
+            signal: format!("coefficient `{signal}`"),
+            bits: scale.word + 1,
+        });
+    }
+    let graph = verify(program).map_err(|violations| {
+        let escape = |violation: &Violation| Some((violation.place.clone(), violation.escaped?));
+        match violations.iter().find_map(escape) {
+            Some((place, interval)) => Unscalable::TooNarrow {
+                signal: format!("`{}`", place.rsplit(": ").next().unwrap_or_default()),
+                bits: interval.bits(),
+            },
+            None => Unscalable::Broken(violations),
+        }
+    })?;
+    if scale.word == 16
+        && let Some((signal, bits)) = wide_product(graph.program())
+    {
+        return Err(Unscalable::TooNarrow { signal, bits });
+    }
+    Ok(Scaled {
+        graph,
+        formats,
+        scale,
+    })
 }
 
 /// A product of the step's normal path with a 16-bit coefficient that does not fit 32 bits.

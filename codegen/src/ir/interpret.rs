@@ -25,6 +25,20 @@ pub struct Machine<'g> {
     /// Set-point words, in the program's order.
     pub params: Vec<i32>,
     values: Vec<i64>,
+    /// Places of every node's operands: of the step, then of the setters.
+    operands: Vec<Vec<[usize; 3]>>,
+}
+
+/// Places of the operands of every node; unused ones are 0.
+fn operand_places(function: &Function) -> Vec<[usize; 3]> {
+    let places = |op: &Op| {
+        let mut places = [0; 3];
+        for (place, operand) in places.iter_mut().zip(op.operands()) {
+            *place = operand.index();
+        }
+        places
+    };
+    function.nodes.iter().map(|node| places(&node.op)).collect()
 }
 
 impl<'g> Machine<'g> {
@@ -41,6 +55,7 @@ impl<'g> Machine<'g> {
             state: program.states.iter().map(|word| word.initial).collect(),
             params: program.params.iter().map(|word| word.initial).collect(),
             values: vec![],
+            operands: program.functions().map(operand_places).collect(),
         }
     }
 
@@ -50,7 +65,7 @@ impl<'g> Machine<'g> {
     /// [`Escape`] when a value leaves its proven interval.
     pub fn step(&mut self, inputs: &[i32]) -> Result<Vec<i32>, Escape> {
         let program = self.program;
-        self.run(&program.step, inputs)
+        self.run(0, &program.step, inputs)
     }
 
     /// Runs the setter `name`; unknown names do nothing.
@@ -59,13 +74,20 @@ impl<'g> Machine<'g> {
     /// [`Escape`] when a value leaves its proven interval.
     pub fn set(&mut self, name: &str, inputs: &[i32]) -> Result<(), Escape> {
         let program = self.program;
-        match program.setters.iter().find(|setter| setter.name == name) {
-            Some(setter) => self.run(setter, inputs).map(drop),
+        let mut setters = program.setters.iter().zip(1..);
+        match setters.find(|(setter, _)| setter.name == name) {
+            Some((setter, number)) => self.run(number, setter, inputs).map(drop),
             None => Ok(()),
         }
     }
 
-    fn run(&mut self, function: &Function, inputs: &[i32]) -> Result<Vec<i32>, Escape> {
+    /// Runs function `number`: 0 the step, then the setters.
+    fn run(
+        &mut self,
+        number: usize,
+        function: &Function,
+        inputs: &[i32],
+    ) -> Result<Vec<i32>, Escape> {
         self.values.clear();
         self.values.resize(function.nodes.len(), 0);
         let mut node = 0;
@@ -76,7 +98,7 @@ impl<'g> Machine<'g> {
                 .is_none_or(|guard| self.values[guard.condition.index()] == 1);
             if runs {
                 for index in stage.first..stage.end {
-                    self.evaluate(function, index, inputs)?;
+                    self.evaluate(number, function, index, inputs)?;
                 }
             }
             node = stage.end;
@@ -103,17 +125,16 @@ impl<'g> Machine<'g> {
             .collect())
     }
 
+    #[inline]
     fn evaluate(
         &mut self,
+        number: usize,
         function: &Function,
         index: usize,
         inputs: &[i32],
     ) -> Result<(), Escape> {
         let node = &function.nodes[index];
-        let mut operands = [0_i64; 3];
-        for (slot, operand) in operands.iter_mut().zip(node.op.operands()) {
-            *slot = self.values[operand.index()];
-        }
+        let operands = self.operands[number][index].map(|place| self.values[place]);
         let result = match node.op {
             Op::Input(n) => inputs.get(n as usize).map(|&word| i64::from(word)),
             Op::Param(id) => Some(i64::from(self.params[id.index()])),
