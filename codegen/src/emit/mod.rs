@@ -3,4 +3,5 @@
 //! Each knows the graph, its tables and its naming, never the specification and never another
 //! emitter, and none can fail.
 
+pub mod datasheet;
 pub mod rust;

@@ -132,3 +132,75 @@ impl fmt::Display for Cost {
         Ok(())
     }
 }
+
+/// The most values that are alive at once in the function: computed (or read from state, set-point
+/// or input) and still to be used. An upper bound of the words that a compiler must keep.
+pub fn live_words(function: &Function) -> usize {
+    let mut last_use = vec![0; function.nodes.len()];
+    for (index, node) in function.nodes.iter().enumerate() {
+        for operand in node.op.operands() {
+            last_use[operand.index()] = index;
+        }
+    }
+    let results = function.outputs.iter().map(|&(_, value)| value);
+    let states = function.next_state.iter().map(|&(_, value)| value);
+    let params = function.next_params.iter().map(|&(_, value)| value);
+    for value in results.chain(states).chain(params) {
+        last_use[value.index()] = function.nodes.len();
+    }
+    let in_memory = |op: &Op| matches!(op, Op::Constant(_) | Op::Literal(_));
+    let mut live = 0_usize;
+    let mut most = 0;
+    let mut ends = vec![0_usize; function.nodes.len() + 1];
+    for (index, node) in function.nodes.iter().enumerate() {
+        live -= ends[index];
+        if !in_memory(&node.op) {
+            live += 1;
+            ends[last_use[index]] += 1;
+        }
+        most = most.max(live);
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cost, PathCost, live_words};
+    use crate::ir::{Comparison, FunctionBuilder, Interval, Program};
+
+    #[test]
+    fn rare_stages_count_in_the_worst_case_only() {
+        let mut program = Program::new("Count");
+        let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+        b.stage("read", &[]);
+        let word = Interval::symmetric(1000);
+        let (x, y) = (b.input("x", word, ""), b.input("y", word, ""));
+        let sum = b.add(x, y);
+        b.name("sum", sum);
+        let zero = b.literal(0);
+        let large = b.compare(Comparison::Less, zero, sum);
+        b.name("large", large);
+        b.guarded_stage("shrink", large, true, &[]);
+        let product = b.mul(x, y, 4);
+        b.name("product", product);
+        let [result] = b.join([("result", product, sum)]);
+        b.output("result", result);
+        let function = b.finish();
+        let normal = Cost {
+            additions: 1,
+            comparisons: 1,
+            ..Cost::default()
+        };
+        let worst = Cost {
+            multiplications: 1,
+            ..normal
+        };
+        assert_eq!(PathCost::of_function(&function), PathCost { normal, worst });
+        assert_eq!(
+            worst.to_string(),
+            "1 addition, 1 multiplication, 1 comparison, no look-ups, no divisions"
+        );
+        // x, y, sum and large, before x and y meet their last use.
+        assert_eq!(live_words(&function), 4);
+    }
+}
