@@ -9,7 +9,7 @@ use fastrand::Rng;
 use hexagen::{Legs, Sample};
 
 /// Steps after which another stream may take over.
-const BLOCK: u32 = 1024;
+const BLOCK: u32 = 512;
 
 /// Kind of input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl Stimulus {
         Ok(Self {
             random: Rng::with_seed(seed),
             stream: Stream::Motor,
-            left: BLOCK,
+            left: 1,
             motor: ToyMotor::new(spec)?,
             delay: spec.pdcc().delay,
             pending: Legs::OFF,
