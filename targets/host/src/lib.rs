@@ -1,5 +1,9 @@
-//! Under construction.
+//! The host target: a simulated plant, closed loops of any model of a controller, and the
+//! `hexagen` program on top of them.
 
+pub mod cli;
 pub mod closed_loop;
+pub mod commands;
+pub mod engine;
 pub mod plant;
 pub mod report;

@@ -1,0 +1,108 @@
+//! Embeds the motor library and compiles its controllers in.
+//!
+//! Writes `library.rs`: the texts of all motor files, the modules of the generated drives and a
+//! table of them. Every motor has the controller of its file; the paper's motor also has the
+//! variants of the result table.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::{env, fs};
+
+const FOLDER: &str = "../motors";
+const PAPER_MOTOR: &str = "trivedi-keshri-660w";
+
+/// The variants of the result table, each with both ways of reading Hall edges. The program looks
+/// drives up by their normalised specification, so a variant that is missing here is interpreted.
+const VARIANTS: [&str; 6] = [
+    "modulation=three_phase,saturation=nearest,emf=model",
+    "modulation=pair,saturation=keep_angle,emf=model",
+    "modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
+    "modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
+    "modulation=pair,saturation=torque_priority,advance=1.5,emf=model",
+    "modulation=three_phase,saturation=nearest,reference=proportional,emf=model",
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-changed=build.rs");
+    let out = env::var("OUT_DIR")?;
+    let mut motors = String::new();
+    let mut modules = String::new();
+    let mut drives = String::new();
+    for name in names()? {
+        let file = format!("{FOLDER}/{name}.toml");
+        let toml = fs::read_to_string(&file)?;
+        writeln!(
+            motors,
+            "    super::Library {{ name: {name:?}, file: \"{name}.toml\", text: {toml:?} }},"
+        )?;
+        for written in generate(&name, &file)? {
+            let module = name.replace('-', "_");
+            let path = format!("/{name}.rs");
+            writeln!(modules, "    /// Drives of the motor `{name}`.")?;
+            writeln!(
+                modules,
+                "    pub mod {module} {{ include!(concat!(env!(\"OUT_DIR\"), {path:?})); }}"
+            )?;
+            for drive in written.types {
+                writeln!(
+                    drives,
+                    "    super::BuiltIn::of::<drives::{module}::{drive}>({name:?}),"
+                )?;
+            }
+        }
+    }
+    let text = format!(
+        "pub static MOTORS: &[super::Library] = &[\n{motors}];\n\
+         pub static DRIVES: &[super::BuiltIn] = &[\n{drives}];\n\
+         /// The drives that are compiled into this program, by motor.\n\
+         pub mod drives {{\n{modules}}}\n"
+    );
+    fs::write(Path::new(&out).join("library.rs"), text)?;
+    Ok(())
+}
+
+/// Names of all motor files, without ending, sorted.
+fn names() -> Result<Vec<String>, Box<dyn Error>> {
+    println!("cargo:rerun-if-changed={FOLDER}");
+    let mut names = vec![];
+    for entry in fs::read_dir(FOLDER)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            names.extend(
+                path.file_stem()
+                    .and_then(|stem| stem.to_str())
+                    .map(str::to_owned),
+            );
+        }
+    }
+    names.sort_unstable();
+    Ok(names)
+}
+
+/// Generates the drives of one motor. A motor that no controller can be made for is left out: the
+/// program says why when it is asked.
+fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box<dyn Error>> {
+    let mut builder = hexagen_codegen::Builder::new().motor(file);
+    if name == PAPER_MOTOR {
+        builder = builder.controller("pdcc");
+        for options in VARIANTS {
+            for capture in ["timer", "sampled"] {
+                let variant = format!("pdcc:discretisation=euler,hall_capture={capture},{options}");
+                builder = builder.controller(variant);
+            }
+        }
+    }
+    match builder.generate() {
+        Ok(written) => Ok(written),
+        Err(hexagen_codegen::BuildError::Specification(errors)) => {
+            for error in errors {
+                for line in error.to_string().lines() {
+                    println!("cargo:warning={line}");
+                }
+            }
+            Ok(vec![])
+        }
+        Err(error) => Err(error.into()),
+    }
+}

@@ -1,0 +1,303 @@
+//! The program's arguments, as clap reads them.
+
+use super::{Failure, quantity, warn};
+use crate::closed_loop::RunOptions;
+use crate::commands::{compare, generate, limit, motors, report, simulate, verify};
+use crate::engine::{
+    Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
+};
+use crate::plant::{Mechanics, PlantParams};
+use clap::{Args, Parser, Subcommand};
+use hexagen_codegen::spec::{SpecAst, parse_toml};
+use std::f64::consts::TAU;
+use std::str::FromStr;
+
+/// From a motor's data sheet to a verified fixed-point current controller
+#[derive(Debug, Parser)]
+#[command(
+    name = "hexagen",
+    version,
+    after_help = "Without a command: the report on the 660 W motor.\n\
+        A motor is a TOML file or a name of the library (`hexagen motors`).\n\
+        A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
+        those of the motor file's [controller]."
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Designs, verifies and simulates the controllers of a motor, prints a table and writes a page
+    Report(report::Options),
+    /// Prints a controller's code, intermediate form or data sheet
+    Generate(generate::Options),
+    /// Runs a controller on the simulated motor and measures torque and currents
+    Simulate(simulate::Options),
+    /// Finds the speed up to which a controller holds the torque
+    Limit(limit::Options),
+    /// Compares generated code with the bit-true reference, bit for bit
+    Verify(verify::Options),
+    /// Compares fixed-point with floating-point accuracy, per controller and word length
+    Compare(compare::Options),
+    /// Lists the motors of the library
+    Motors(motors::Options),
+}
+
+/// What `generate` prints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Emit {
+    /// The Rust module
+    Rust,
+    /// The intermediate form, as text
+    Ir,
+    /// The data sheet, in Markdown
+    Datasheet,
+}
+
+impl Emit {
+    /// Ending of the file.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::Ir => "ir",
+            Self::Datasheet => "md",
+        }
+    }
+}
+
+/// Kinds of controllers that there are.
+pub const KINDS: [&str; 1] = ["pdcc"];
+
+/// A controller, or all of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Selection {
+    /// Every kind of controller in its default variant.
+    All,
+    /// One variant.
+    One(String),
+}
+
+impl FromStr for Selection {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "all" => Self::All,
+            variant => Self::One(variant.to_owned()),
+        })
+    }
+}
+
+impl Selection {
+    /// The variants that are selected.
+    pub fn variants(&self) -> Vec<String> {
+        match self {
+            Self::All => KINDS.map(str::to_owned).to_vec(),
+            Self::One(variant) => vec![variant.clone()],
+        }
+    }
+}
+
+/// A motor from the command line, with what the plant options change in its specification.
+#[derive(Clone, Debug)]
+pub struct SelectedMotor {
+    /// The motor.
+    pub source: MotorSource,
+    /// The syntax tree after the changes.
+    pub ast: SpecAst,
+}
+
+impl SelectedMotor {
+    /// Finds and reads a motor.
+    ///
+    /// # Errors
+    /// When there is none, or its file is no TOML.
+    pub fn find(given: &str, plant: &PlantArguments) -> Result<Self, Failure> {
+        let source = MotorSource::find(given)?;
+        Self::read(source, plant)
+    }
+
+    /// Every motor of the library.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn library() -> Result<Vec<Self>, Failure> {
+        let none = PlantArguments::default();
+        let all = library().iter().map(MotorSource::from);
+        all.map(|source| Self::read(source, &none)).collect()
+    }
+
+    fn read(source: MotorSource, plant: &PlantArguments) -> Result<Self, Failure> {
+        let mut ast = parse_toml(&source.text, &source.file)?;
+        plant.change_specification(&mut ast)?;
+        Ok(Self { source, ast })
+    }
+
+    /// Takes a variant through the generator; none: the controller of the motor's file.
+    ///
+    /// # Errors
+    /// All diagnostics.
+    pub fn prepare(&self, variant: Option<&str>) -> Result<Prepared, Failure> {
+        Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
+    }
+}
+
+/// Options that change the simulated plant.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Plant")]
+pub struct PlantArguments {
+    /// Dead time of the inverter's legs [default: the motor file's]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    pub dead_time: Option<f64>,
+    /// Bits of the current ADCs, of plant and controller alike: the specification changes
+    #[arg(long, value_name = "N")]
+    pub adc_bits: Option<u32>,
+    /// Range of the current ADCs, of plant and controller alike: the specification changes
+    #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text)]
+    pub adc_range: Option<String>,
+    /// True bus voltage; the controller reckons with the motor file's, or measures
+    #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage)]
+    pub v_bus: Option<f64>,
+    /// True over stated resistance
+    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    pub scale_r: Option<f64>,
+    /// True over stated inductance
+    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    pub scale_l: Option<f64>,
+    /// True over stated EMF constant
+    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    pub scale_kb: Option<f64>,
+    /// Placement error of the Hall sensors in electrical degrees: one angle for all three, or
+    /// three for Ha, Hb and Hc; positive is late in forward rotation
+    #[arg(long, value_name = "ANGLE", value_parser = quantity::hall_error, allow_hyphen_values = true)]
+    pub hall_error: Option<[f64; 3]>,
+    /// Inertia of rotor and load: the speed is free, starting at the given one
+    #[arg(long, value_name = "KGM2", value_parser = quantity::inertia)]
+    pub inertia: Option<f64>,
+    /// Load torque that opposes the motion
+    #[arg(long, value_name = "NM", value_parser = quantity::torque, requires = "inertia")]
+    pub load: Option<f64>,
+    /// Electrical angle at the start, in rad: one run in place of three [default: 0.1, 0.117, 0.134]
+    #[arg(long, value_name = "RAD", value_parser = quantity::radians, allow_hyphen_values = true)]
+    pub start_angle: Option<f64>,
+}
+
+impl PlantArguments {
+    /// ADC bits and range are the controller's, too: they are laid over the specification.
+    fn change_specification(&self, ast: &mut SpecAst) -> Result<(), Failure> {
+        let mut text = String::new();
+        if let Some(bits) = self.adc_bits {
+            text.push_str(&format!("adc_bits = {bits}\n"));
+        }
+        if let Some(range) = &self.adc_range {
+            text.push_str(&format!("adc_range = \"{range}\"\n"));
+            // The two say the same thing, as do the offset and the bits that it counts in.
+            ast.inverter.fields.retain(|field| field.name != "adc_gain");
+        }
+        if text.is_empty() {
+            return Ok(());
+        }
+        ast.inverter
+            .fields
+            .retain(|field| field.name != "adc_offset");
+        let mut over = parse_toml(&format!("[inverter]\n{text}"), "--adc-bits/--adc-range")?;
+        over.name = ast.name.clone();
+        over.inverter.location = None;
+        ast.overlay(over);
+        Ok(())
+    }
+
+    /// The plant of a drive.
+    ///
+    /// # Errors
+    /// An option out of range.
+    pub fn plant(&self, drive: &Prepared) -> Result<PlantParams, Failure> {
+        let mut plant = plant_of(&drive.spec).scaled(
+            self.scale_r.unwrap_or(1.0),
+            self.scale_l.unwrap_or(1.0),
+            self.scale_kb.unwrap_or(1.0),
+        );
+        plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
+        plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
+        plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
+        plant.mechanics = self.inertia.map(|inertia| Mechanics {
+            inertia,
+            opposing_torque: self.load.unwrap_or(0.0),
+            external_torque: 0.0,
+            viscous: 0.0,
+        });
+        plant.check()?;
+        Ok(plant)
+    }
+
+    /// The run of a drive at a mechanical speed in rpm and a torque in newton metres.
+    pub fn run(&self, drive: &Prepared, rpm: f64, torque: f64) -> RunOptions {
+        let mut run = run_of(&drive.spec, rpm * TAU / 60.0, torque);
+        if let Some(start) = self.start_angle {
+            run.starts = vec![start];
+        }
+        run
+    }
+
+    /// The drive's set-point for a torque in newton metres; warns when it is beyond its limit.
+    pub fn set_point(&self, drive: &Prepared, torque: f64) -> SetPoint {
+        let current = torque / drive.spec.torque_constant();
+        let max = drive.spec.inverter.max_current;
+        if current.abs() > max * (1.0 + 1e-9) {
+            warn(&format!(
+                "{torque} Nm take {current:.2} A: the drive limits its set-point to max_current = {max} A"
+            ));
+        }
+        SetPoint {
+            current,
+            v_bus: self.v_bus.unwrap_or(drive.spec.inverter.v_bus),
+        }
+    }
+}
+
+/// Motor, controller and model of a run.
+#[derive(Args, Clone, Debug)]
+pub struct RunArguments {
+    /// Motor file, or name of a library motor
+    #[arg(value_name = "MOTOR")]
+    pub motor: String,
+    /// Controller variant [default: the motor file's]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub controller: Option<String>,
+    /// Which model of the controller runs
+    #[arg(long, value_enum, default_value_t)]
+    pub model: Model,
+    /// Demanded torque; braking torque is negative [default: rated torque]
+    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
+    pub torque: Option<f64>,
+    /// What the plant differs in
+    #[command(flatten)]
+    pub plant: PlantArguments,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl RunArguments {
+    /// Reads the motor and takes the controller through the generator.
+    ///
+    /// # Errors
+    /// All diagnostics.
+    pub fn prepare(&self) -> Result<Prepared, Failure> {
+        SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())
+    }
+
+    /// The demanded torque in newton metres: as given, else the rated one.
+    pub fn torque(&self, drive: &Prepared) -> f64 {
+        self.torque.unwrap_or_else(|| drive.rated_torque())
+    }
+}
+
+/// Speed argument of `simulate`.
+pub fn parse_rpm(text: &str) -> Result<f64, String> {
+    quantity::rpm(text)
+}

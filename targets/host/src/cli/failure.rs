@@ -1,0 +1,60 @@
+//! Why a command did not succeed.
+
+use crate::engine::SourceError;
+use crate::plant::PlantError;
+use crate::report::ReportError;
+use hexagen_codegen::diagnostics::Diagnostics;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A command's failure; the text is complete, the kind gives the exit code.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A check failed; its result is already on stdout. The text is for stderr.
+    #[error("{0}")]
+    Check(String),
+    /// The specification, motor file or variant is wrong: all diagnostics, rendered.
+    #[error("{0}")]
+    Specification(String),
+    /// No such motor.
+    #[error("error: {0}")]
+    Motor(#[from] SourceError),
+    /// A plant option is out of range.
+    #[error("error: {0}")]
+    Plant(#[from] PlantError),
+    /// An argument makes no sense beside the others.
+    #[error("error: {0}")]
+    Argument(String),
+    /// A file cannot be written.
+    #[error("error: cannot write {}: {reason}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The report's page cannot be made.
+    #[error("error: {0}")]
+    Report(#[from] ReportError),
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(errors: Diagnostics) -> Self {
+        Self::Specification(errors.to_string())
+    }
+}
+
+impl Failure {
+    /// Tells the failure on stderr.
+    pub fn print(&self) {
+        eprintln!("{self}");
+    }
+
+    /// 1 for a failed check, 2 for bad input.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Check(_) => ExitCode::from(1),
+            _ => ExitCode::from(2),
+        }
+    }
+}

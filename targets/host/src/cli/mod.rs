@@ -1,0 +1,55 @@
+//! The command line: arguments in, exit code out.
+//!
+//! 0: fine; 1: a check failed; 2: bad input. Results go to stdout, everything else to stderr.
+//! With `--json`, stdout carries exactly one JSON object.
+
+mod arguments;
+mod failure;
+mod output;
+mod progress;
+mod quantity;
+
+pub use arguments::{
+    Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
+};
+pub use failure::Failure;
+pub use output::{TextTable, print_json, print_text, significant, warn, write_file};
+pub use progress::{bar, spinner};
+
+use crate::commands;
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Runs the program on the process's arguments.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        // Help and version are no errors; clap tells them apart and knows where each goes.
+        Err(error) => {
+            let code = u8::try_from(error.exit_code()).unwrap_or(2);
+            return match error.print() {
+                Ok(()) => ExitCode::from(code),
+                Err(_) => ExitCode::from(2),
+            };
+        }
+    };
+    let command = arguments
+        .command
+        .unwrap_or_else(|| Command::Report(commands::report::Options::default()));
+    let outcome = match command {
+        Command::Report(options) => commands::report::run(&options),
+        Command::Generate(options) => commands::generate::run(&options),
+        Command::Simulate(options) => commands::simulate::run(&options),
+        Command::Limit(options) => commands::limit::run(&options),
+        Command::Verify(options) => commands::verify::run(&options),
+        Command::Compare(options) => commands::compare::run(&options),
+        Command::Motors(options) => commands::motors::run(&options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}

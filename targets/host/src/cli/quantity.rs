@@ -1,0 +1,139 @@
+//! Quantities on the command line: a number, with or without a unit.
+
+use hexagen_codegen::spec::units::{Dimension, Unit};
+
+/// A number with an optional unit of one dimension; without one it is in SI units (degrees for
+/// angles).
+fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
+    let text = text.trim();
+    let (number, symbol) = split(text).ok_or_else(|| format!("`{text}` is not a number"))?;
+    if symbol.is_empty() {
+        return Ok(number);
+    }
+    let Some(unit) = Unit::from_symbol(symbol) else {
+        let nearest = Unit::nearest(symbol)
+            .map(|nearest| format!("; did you mean `{nearest}`?"))
+            .unwrap_or_default();
+        return Err(format!("unknown unit `{symbol}`{nearest}"));
+    };
+    if unit.dimension == dimension {
+        Ok(unit.to_si(number))
+    } else {
+        Err(format!(
+            "`{symbol}` is {}, {} is needed",
+            unit.dimension.name(),
+            dimension.name()
+        ))
+    }
+}
+
+/// The longest beginning that is a finite number, and the rest.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let boundaries = text
+        .char_indices()
+        .map(|(index, letter)| index + letter.len_utf8());
+    boundaries
+        .filter_map(|end| {
+            let number: f64 = text[..end].parse().ok()?;
+            number
+                .is_finite()
+                .then(|| (number, text[end..].trim_start()))
+        })
+        .last()
+}
+
+/// Newton metres.
+pub(super) fn torque(text: &str) -> Result<f64, String> {
+    quantity(text, Dimension::Torque)
+}
+
+/// Seconds.
+pub(super) fn time(text: &str) -> Result<f64, String> {
+    quantity(text, Dimension::Time)
+}
+
+/// Volts.
+pub(super) fn voltage(text: &str) -> Result<f64, String> {
+    quantity(text, Dimension::Voltage)
+}
+
+/// Amperes, kept as text: it goes into the specification.
+pub(super) fn current_text(text: &str) -> Result<String, String> {
+    quantity(text, Dimension::Current).map(|amperes| format!("{amperes} A"))
+}
+
+/// kg m2.
+pub(super) fn inertia(text: &str) -> Result<f64, String> {
+    quantity(text, Dimension::Inertia)
+}
+
+/// A plain positive or negative number.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "")) => Ok(number),
+        _ => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// Revolutions per minute; other units of speed are converted.
+pub(super) fn rpm(text: &str) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "" | "rpm")) => Ok(number),
+        _ => quantity(text, Dimension::Speed).map(|omega| omega * 30.0 / std::f64::consts::PI),
+    }
+}
+
+/// Radians; `deg` is converted.
+pub(super) fn radians(text: &str) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "")) => Ok(number),
+        _ => quantity(text, Dimension::Angle).map(f64::to_radians),
+    }
+}
+
+/// Degrees of one sensor or of three, `5deg` or `5deg,-3deg,0`.
+pub(super) fn hall_error(text: &str) -> Result<[f64; 3], String> {
+    let list = text
+        .split(',')
+        .map(|part| quantity(part, Dimension::Angle))
+        .collect::<Result<Vec<_>, _>>()?;
+    match list[..] {
+        [all] => Ok([all; 3]),
+        [a, b, c] => Ok([a, b, c]),
+        _ => Err("one angle for all sensors, or three for Ha, Hb and Hc".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_with_and_without_units() {
+        assert_eq!(time("1us"), Ok(1e-6));
+        assert_eq!(time("2e-6"), Ok(2e-6));
+        assert_eq!(torque("-0.5 Nm"), Ok(-0.5));
+        assert_eq!(voltage("48V"), Ok(48.0));
+        assert_eq!(current_text("40A"), Ok("40 A".to_owned()));
+        assert_eq!(rpm("-1500"), Ok(-1500.0));
+        assert_eq!(rpm("1500rpm"), Ok(1500.0));
+        assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
+        assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
+        assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
+    }
+
+    #[test]
+    fn mistakes_are_told() {
+        assert_eq!(
+            time("1 V"),
+            Err("`V` is a voltage, a time is needed".to_owned())
+        );
+        assert_eq!(
+            voltage("48 v"),
+            Err("unknown unit `v`; did you mean `V`?".to_owned())
+        );
+        assert_eq!(number("1 A"), Err("`1 A` is not a number".to_owned()));
+        assert!(hall_error("1,2").is_err());
+        assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
+    }
+}

@@ -1,0 +1,55 @@
+//! `hexagen generate`: code, intermediate form or data sheet of one controller.
+
+use crate::cli::{Emit, Failure, PlantArguments, SelectedMotor, print_text, write_file};
+use crate::engine::Prepared;
+use clap::Args;
+use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use std::path::PathBuf;
+
+/// Options of `generate`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor file, or name of a library motor
+    #[arg(value_name = "MOTOR")]
+    pub motor: String,
+    /// Controller variant [default: the motor file's]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub controller: Option<String>,
+    /// What to print
+    #[arg(long, value_enum, default_value = "rust")]
+    pub emit: Emit,
+    /// Write MOTOR.rs, .ir or .md into this folder in place of stdout
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// One of the texts of a drive: the same drive gives the same bytes.
+pub fn text_of(drive: &Prepared, emit: Emit) -> String {
+    let generated = &drive.generated;
+    match emit {
+        Emit::Rust => {
+            let surface = Surface::public(&generated.interface.type_name);
+            format_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
+        }
+        Emit::Ir => generated.graph.program().to_string(),
+        Emit::Datasheet => super::results::data_sheet(drive),
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Diagnostics, or a file that cannot be written.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let motor = SelectedMotor::find(&options.motor, &PlantArguments::default())?;
+    let drive = motor.prepare(options.controller.as_deref())?;
+    let text = text_of(&drive, options.emit);
+    let Some(folder) = &options.out else {
+        print_text(&text);
+        return Ok(());
+    };
+    let path = folder.join(format!("{}.{}", drive.motor, options.emit.ending()));
+    write_file(&path, text.as_bytes())?;
+    eprintln!("{}", path.display());
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! `hexagen limit`: the speed up to which a controller holds the torque.
+
+use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
+use crate::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit};
+use crate::engine::{EngineKind, Model, Prepared};
+use clap::Args;
+use serde::Serialize;
+
+/// Options of `limit`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor, controller and plant.
+    #[command(flatten)]
+    pub run: RunArguments,
+}
+
+/// A limit and what it is about.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// Motor.
+    pub motor: String,
+    /// Controller variant.
+    pub controller: String,
+    /// Model that ran.
+    pub model: Model,
+    /// What ran the fixed-point program; none for the references.
+    pub engine: Option<EngineKind>,
+    /// Demanded torque, Nm.
+    pub torque_nm: f64,
+    /// The limit.
+    #[serde(flatten)]
+    pub limit: SpeedLimit,
+}
+
+/// Scans for the limit.
+///
+/// # Errors
+/// Diagnostics, or a plant option out of range.
+pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
+    let arguments = &options.run;
+    let drive = arguments.prepare()?;
+    let torque = arguments.torque(&drive);
+    if torque == 0.0 {
+        return Err(Failure::Argument(
+            "--torque 0: every speed holds no torque; give the torque to be held".to_owned(),
+        ));
+    }
+    if arguments.plant.inertia.is_some() {
+        return Err(Failure::Argument(
+            "--inertia: the limit is found at fixed speeds; leave the inertia out".to_owned(),
+        ));
+    }
+    let plant = arguments.plant.plant(&drive)?;
+    let run = arguments.plant.run(&drive, 1.0, torque);
+    let set_point = arguments.plant.set_point(&drive, torque);
+    let scan = LimitOptions::new(drive.rated_rpm(), torque);
+    let progress = spinner("scanning speeds");
+    let limit = speed_limit(&plant, &run, &scan, drive.maker(arguments.model, set_point));
+    progress.finish_and_clear();
+    Ok((drive, limit?))
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`collect`].
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let (drive, limit) = collect(options)?;
+    let model = options.run.model;
+    let outcome = Outcome {
+        motor: drive.motor.clone(),
+        controller: drive.variant.clone(),
+        model,
+        engine: (model == Model::Fixed).then(|| drive.engine_kind()),
+        torque_nm: options.run.torque(&drive),
+        limit,
+    };
+    if options.run.json {
+        return print_json(&outcome);
+    }
+    let found = match (
+        outcome.limit.outcome,
+        outcome.limit.limit_rpm,
+        outcome.limit.limit_pct,
+    ) {
+        (LimitOutcome::NeverHeld, _, _) | (_, None, _) | (_, _, None) => {
+            let first = outcome.limit.curve.first().map_or(0.0, |point| point.0);
+            format!("not held even at {first:.0} rpm")
+        }
+        (LimitOutcome::Found, Some(rpm), Some(percent)) => {
+            format!("held up to {rpm:.0} rpm, {percent:.1} % of rated speed")
+        }
+        (LimitOutcome::NotReached, Some(rpm), Some(percent)) => {
+            format!("held beyond {rpm:.0} rpm, {percent:.1} % of rated speed, where the scan ends")
+        }
+    };
+    print_text(&format!(
+        "{}, {} ({model:?}): {} Nm {found}",
+        outcome.motor, outcome.controller, outcome.torque_nm
+    ));
+    Ok(())
+}

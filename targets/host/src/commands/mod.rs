@@ -1,0 +1,14 @@
+//! What the program does: one module per command.
+//!
+//! Each has its options, a function that collects plain data, and one that prints them as a table
+//! or as JSON.
+
+pub mod accuracy;
+pub mod compare;
+pub mod generate;
+pub mod limit;
+pub mod motors;
+pub mod report;
+pub mod results;
+pub mod simulate;
+pub mod verify;

@@ -1,0 +1,111 @@
+//! The motor library and the drives that are compiled into this program by its build script.
+
+use hexagen::{Drive, Fault, Format, Legs, Sample};
+use hexagen_reference::verify::{Compiled, Subject};
+use std::fmt;
+
+/// A motor of the library.
+#[derive(Clone, Copy, Debug)]
+pub struct Library {
+    /// File name without ending.
+    pub name: &'static str,
+    /// File name for messages.
+    pub file: &'static str,
+    /// TOML text.
+    pub text: &'static str,
+}
+
+/// A compiled drive.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltIn {
+    /// Name of the library's motor.
+    pub motor: &'static str,
+    /// Normalised specification.
+    pub spec: &'static str,
+    /// Formats of signals and coefficients.
+    pub formats: &'static [Format],
+    /// Names of the state words.
+    pub state_names: &'static [&'static str],
+    /// A drive at rest with zero set-point.
+    pub new: fn() -> Box<dyn Subject + Send>,
+}
+
+impl BuiltIn {
+    const fn of<D: Drive + Send + 'static>(motor: &'static str) -> Self {
+        Self {
+            motor,
+            spec: D::SPEC,
+            formats: D::FORMATS,
+            state_names: D::STATE_NAMES,
+            new: || Box::new(Compiled(D::new())),
+        }
+    }
+}
+
+mod generated {
+    include!(concat!(env!("OUT_DIR"), "/library.rs"));
+}
+
+pub use generated::drives;
+
+/// The motor library, by name.
+pub fn library() -> &'static [Library] {
+    generated::MOTORS
+}
+
+/// The compiled drive of a normalised specification, whatever its name.
+pub fn built_in(spec: &str) -> Option<&'static BuiltIn> {
+    generated::DRIVES
+        .iter()
+        .find(|drive| nameless(drive.spec) == nameless(spec))
+}
+
+/// A normalised specification without its first line, the name.
+fn nameless(spec: &str) -> &str {
+    spec.split_once('\n').map_or(spec, |(_, rest)| rest)
+}
+
+/// Any drive behind a pointer.
+pub struct AnySubject(pub Box<dyn Subject + Send>);
+
+impl fmt::Debug for AnySubject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("AnySubject")
+    }
+}
+
+impl Subject for AnySubject {
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        self.0.step(sample)
+    }
+    fn set_current(&mut self, bits: i32) {
+        self.0.set_current(bits);
+    }
+    fn set_torque(&mut self, bits: i32) {
+        self.0.set_torque(bits);
+    }
+    fn set_bus(&mut self, counts: u16) {
+        self.0.set_bus(counts);
+    }
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+    fn calibrate(&mut self) {
+        self.0.calibrate();
+    }
+    fn precharge(&mut self) {
+        self.0.precharge();
+    }
+    #[inline]
+    fn fault(&self) -> Fault {
+        self.0.fault()
+    }
+    #[inline]
+    fn state_words(&self, words: &mut [i32]) {
+        self.0.state_words(words);
+    }
+    fn set_state_words(&mut self, words: &[i32]) {
+        self.0.set_state_words(words);
+    }
+}

@@ -1,0 +1,107 @@
+//! What runs a controller in the closed loop and in the bit-for-bit test.
+//!
+//! A [`Prepared`] drive is a specification taken through the whole generator. From it come the
+//! fixed-point code (compiled into this program where the drive is built in, else interpreted),
+//! the bit-true model and the ideal model, all behind [`CurrentLoop`].
+
+mod built_in;
+mod interpreter;
+mod motor;
+mod plant;
+mod prepared;
+mod verifier;
+
+pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
+pub use interpreter::Interpreted;
+pub use motor::{MotorSource, SourceError};
+pub use plant::{plant_of, run_of};
+pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
+pub use verifier::Verifier;
+
+use crate::closed_loop::CurrentLoop;
+use crate::plant::Truth;
+use hexagen::{Legs, Sample};
+use hexagen_reference::pdcc::{BitTrue, Ideal};
+use hexagen_reference::verify::Subject;
+use serde::Serialize;
+
+/// Which model of a controller runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// The generated fixed-point program
+    #[default]
+    Fixed,
+    /// The bit-true reference: f64 with a quantiser at every rounding
+    BitTrue,
+    /// The ideal reference: f64 without rounding
+    Ideal,
+}
+
+/// What ran the fixed-point program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EngineKind {
+    /// Emitted Rust, compiled.
+    Compiled,
+    /// The generator's interpreter.
+    Interpreter,
+}
+
+impl EngineKind {
+    /// As tables and JSON say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Compiled => "compiled",
+            Self::Interpreter => "interpreter",
+        }
+    }
+}
+
+/// A controller ready for the loop, whatever computes it.
+#[derive(Debug)]
+pub enum Engine<'g> {
+    /// Emitted code.
+    Compiled(AnySubject),
+    /// The verified graph, interpreted.
+    Interpreted(Box<Interpreted<'g>>),
+    /// Model B.
+    BitTrue(Box<BitTrue>),
+    /// Model A.
+    Ideal(Box<Ideal>),
+}
+
+impl Engine<'_> {
+    /// Sets the set-point, in amperes: exact for the ideal model, the nearest word for all others.
+    pub fn set_current(&mut self, amperes: f64) {
+        let bits = (amperes * f64::from(1 << 16)).round() as i32;
+        match self {
+            Self::Compiled(drive) => drive.set_current(bits),
+            Self::Interpreted(drive) => drive.set_current(bits),
+            Self::BitTrue(model) => model.set_current(bits),
+            Self::Ideal(model) => model.set_current_amps(amperes),
+        }
+    }
+
+    /// Tells the bus voltage as an ADC count; drives with a fixed bus ignore it.
+    pub fn set_bus(&mut self, counts: u16) {
+        match self {
+            Self::Compiled(drive) => drive.set_bus(counts),
+            Self::Interpreted(drive) => drive.set_bus(counts),
+            Self::BitTrue(model) => model.set_bus(counts),
+            Self::Ideal(model) => model.set_bus(counts),
+        }
+    }
+}
+
+impl CurrentLoop for Engine<'_> {
+    #[inline]
+    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+        match self {
+            Self::Compiled(drive) => drive.step(sample),
+            Self::Interpreted(drive) => drive.step(sample),
+            Self::BitTrue(model) => model.step(sample),
+            Self::Ideal(model) => model.step_legs(sample),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Motors as the user names them: a TOML file or a motor of the library.
+
+use super::built_in::{Library, library};
+use std::path::{Path, PathBuf};
+
+/// The TOML text of a motor, and what to call it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MotorSource {
+    /// Short name: the library's, or the file's without ending.
+    pub name: String,
+    /// File name for messages, as given.
+    pub file: String,
+    /// The text.
+    pub text: String,
+}
+
+/// Why a motor cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SourceError {
+    /// Neither a file nor a motor of the library.
+    #[error("no motor `{given}`: neither a readable file ({reason}) nor a motor of the library{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
+    Unknown {
+        /// As given.
+        given: String,
+        /// Why it cannot be read as a file.
+        reason: String,
+        /// The most similar name of the library.
+        nearest: Option<String>,
+    },
+}
+
+impl MotorSource {
+    /// The motor of a path or of a name of the library. A file of the name wins.
+    ///
+    /// # Errors
+    /// When there is none of either.
+    pub fn find(given: &str) -> Result<Self, SourceError> {
+        let path = PathBuf::from(given);
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Ok(Self {
+                name: stem(&path),
+                file: given.to_owned(),
+                text,
+            }),
+            Err(error) => Self::of_library(given.trim_end_matches(".toml")).ok_or_else(|| {
+                let names = library().iter().map(|motor| motor.name);
+                let nearest = names
+                    .map(|name| (strsim::damerau_levenshtein(name, given), name))
+                    .min()
+                    .filter(|(distance, name)| *distance <= name.len() / 2)
+                    .map(|(_, name)| name.to_owned());
+                SourceError::Unknown {
+                    given: given.to_owned(),
+                    reason: error.kind().to_string(),
+                    nearest,
+                }
+            }),
+        }
+    }
+
+    /// The motor of this name in the library.
+    pub fn of_library(name: &str) -> Option<Self> {
+        library()
+            .iter()
+            .find(|motor| motor.name == name)
+            .map(Self::from)
+    }
+}
+
+impl From<&Library> for MotorSource {
+    fn from(motor: &Library) -> Self {
+        Self {
+            name: motor.name.to_owned(),
+            file: motor.file.to_owned(),
+            text: motor.text.to_owned(),
+        }
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}

@@ -1,0 +1,52 @@
+//! The plant that a specification describes.
+
+use crate::closed_loop::{Delay, RunOptions};
+use crate::plant::{AdcChannel, EmfShape, PlantParams};
+use hexagen_codegen::controllers::ControllerSpec;
+use hexagen_codegen::spec::{self, Spec};
+
+/// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
+/// time of the specification, ideal diodes, the shaft held at its speed.
+pub fn plant_of(spec: &Spec) -> PlantParams {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    PlantParams {
+        pole_pairs: motor.pole_pairs,
+        resistance: [motor.resistance; 3],
+        inductance: [motor.inductance; 3],
+        k_phase: [motor.emf_constant; 3],
+        shape: match motor.emf_shape {
+            spec::EmfShape::Trapezoidal { flat_top_deg } => EmfShape::Trapezoidal { flat_top_deg },
+            spec::EmfShape::Sinusoidal => EmfShape::Sinusoidal,
+        },
+        v_bus: inverter.v_bus,
+        t_s: inverter.t_s,
+        timer_period: inverter.timer_period as u16,
+        dead_time: inverter.dead_time,
+        diode_drop: 0.0,
+        adc: [AdcChannel {
+            bits: inverter.adc_bits,
+            amperes_per_count: inverter.adc_gain,
+            offset: f64::from(inverter.adc_offset),
+        }; 2],
+        hall_ticks_per_period: f64::from(inverter.hall_capture.ticks_per_period()),
+        hall_codes: motor.hall_codes,
+        hall_error_deg: [0.0; 3],
+        mechanics: None,
+    }
+}
+
+/// The standard measurement of a drive at a mechanical speed in rad/s and a torque in newton
+/// metres: judged against the quasi-square reference that gives this torque.
+pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
+    let ControllerSpec::Pdcc(controller) = &spec.controller;
+    let per_ampere = spec.motor.emf_constant * spec.motor.emf_shape.quasi_square_factor();
+    RunOptions {
+        delay: if controller.delay == 0 {
+            Delay::None
+        } else {
+            Delay::OnePeriod
+        },
+        commutation_threshold: controller.commutation_threshold,
+        ..RunOptions::new(omega_m, torque / per_ampere)
+    }
+}

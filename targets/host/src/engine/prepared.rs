@@ -1,0 +1,215 @@
+//! A drive taken through the generator, with the models that go with it.
+
+use super::{
+    AnySubject, BuiltIn, Engine, EngineKind, Interpreted, Model, MotorSource, Verifier, built_in,
+};
+use crate::plant::Truth;
+use hexagen::Format;
+use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::interface::{self, Interface};
+use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::spec::{BusSource, Spec, SpecAst, apply_variant, check, parse_toml};
+use hexagen_reference::pdcc::{BitTrue, Ideal};
+use hexagen_reference::{Error, FormatTable};
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+/// One drive: specification, generated program and reference models at rest.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Short name of the motor.
+    pub motor: String,
+    /// The variant as given; the kind alone for the controller of the motor's file.
+    pub variant: String,
+    /// The checked specification.
+    pub spec: Spec,
+    /// The generated program.
+    pub generated: Generated,
+    /// The specification as the reference reads it.
+    pub reference: hexagen_reference::Spec,
+    /// Formats in the types of the hardware's boundary.
+    pub formats: Vec<Format>,
+    /// The emitted source text's `[source]` fields, for data sheets.
+    pub source: Vec<(String, String)>,
+    bit_true: BitTrue,
+    ideal: Ideal,
+    built_in: Option<&'static BuiltIn>,
+}
+
+/// A set-point and the bus that the drive is told of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetPoint {
+    /// Current in amperes, with the torque's sign.
+    pub current: f64,
+    /// True bus voltage in volts; drives that measure it are told.
+    pub v_bus: f64,
+}
+
+/// Takes a motor and a variant (none: the controller of the motor's file) through the generator.
+///
+/// # Errors
+/// All diagnostics of specification, design and scaling.
+pub fn prepare(motor: &MotorSource, variant: Option<&str>) -> Result<Prepared, Diagnostics> {
+    let ast = parse_toml(&motor.text, &motor.file)?;
+    prepare_ast(ast, &motor.name, variant)
+}
+
+/// As [`prepare`], from a syntax tree.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_ast(
+    mut ast: SpecAst,
+    motor: &str,
+    variant: Option<&str>,
+) -> Result<Prepared, Diagnostics> {
+    if let Some(variant) = variant {
+        apply_variant(&mut ast, variant)?;
+    }
+    let (spec, origins) = check(&ast)?;
+    let generated = generate(&spec, &origins)?;
+    let formats = format_table(&generated.interface);
+    let models = models(&generated.interface.spec_toml, &formats);
+    let (reference, bit_true, ideal) = models.map_err(|error| {
+        // Both sides read the same normalised text: a disagreement is a bug of one of them.
+        let at = origins.at("controller.kind");
+        hexagen_codegen::diagnostics::catalogue::internal(at, &error.to_string())
+    })?;
+    Ok(Prepared {
+        motor: motor.to_owned(),
+        variant: variant.unwrap_or("pdcc").to_owned(),
+        built_in: built_in(&generated.interface.spec_toml),
+        spec,
+        generated,
+        reference,
+        formats,
+        source: ast.source,
+        bit_true,
+        ideal,
+    })
+}
+
+fn models(
+    spec: &str,
+    formats: &[Format],
+) -> Result<(hexagen_reference::Spec, BitTrue, Ideal), Error> {
+    let spec = hexagen_reference::Spec::from_toml(spec)?;
+    let bit_true = BitTrue::new(&spec, &FormatTable::new(formats))?;
+    let ideal = Ideal::new(&spec)?;
+    Ok((spec, bit_true, ideal))
+}
+
+impl Prepared {
+    /// What runs the fixed-point program.
+    pub fn engine_kind(&self) -> EngineKind {
+        if self.built_in.is_some() {
+            EngineKind::Compiled
+        } else {
+            EngineKind::Interpreter
+        }
+    }
+
+    /// Emitted code at rest, if this drive is compiled in.
+    pub fn compiled(&self) -> Option<AnySubject> {
+        self.built_in.map(|drive| AnySubject((drive.new)()))
+    }
+
+    /// The interpreted program at rest.
+    pub fn interpreted(&self) -> Interpreted<'_> {
+        Interpreted::new(&self.generated)
+    }
+
+    /// The bit-true model at rest.
+    pub fn bit_true(&self) -> BitTrue {
+        self.bit_true.clone()
+    }
+
+    /// The ideal model at rest.
+    pub fn ideal(&self) -> Ideal {
+        self.ideal.clone()
+    }
+
+    /// A controller with its set-point.
+    pub fn engine(&self, model: Model, set_point: SetPoint) -> Engine<'_> {
+        let mut engine = match model {
+            Model::Fixed => match self.compiled() {
+                Some(drive) => Engine::Compiled(drive),
+                None => Engine::Interpreted(Box::new(self.interpreted())),
+            },
+            Model::BitTrue => Engine::BitTrue(Box::new(self.bit_true())),
+            Model::Ideal => Engine::Ideal(Box::new(self.ideal())),
+        };
+        if let BusSource::Measured { gain, adc_bits, .. } = self.spec.inverter.bus {
+            let full = f64::from((1_u32 << adc_bits) - 1);
+            engine.set_bus((set_point.v_bus / gain).round().clamp(0.0, full) as u16);
+        }
+        engine.set_current(set_point.current);
+        engine
+    }
+
+    /// What measurements of closed loops take: a controller for a plant's initial state.
+    pub fn maker<'g>(
+        &'g self,
+        model: Model,
+        set_point: SetPoint,
+    ) -> impl Fn(&Truth) -> Engine<'g> + Sync {
+        move |_| self.engine(model, set_point)
+    }
+
+    /// Names of the state words.
+    pub fn state_names(&self) -> Vec<&str> {
+        let states = &self.generated.graph.program().states;
+        states.iter().map(|word| word.name.as_str()).collect()
+    }
+
+    /// The bit-for-bit test of this drive.
+    pub fn verifier(&self) -> Verifier<'_> {
+        Verifier::new(self)
+    }
+
+    /// Rated torque in newton metres: as stated, else that of the rated current.
+    pub fn rated_torque(&self) -> f64 {
+        let motor = &self.spec.motor;
+        let per_ampere = motor.emf_constant * motor.emf_shape.quasi_square_factor();
+        motor
+            .rated_torque
+            .unwrap_or(motor.rated_current * per_ampere)
+    }
+
+    /// Rated speed in rpm.
+    pub fn rated_rpm(&self) -> f64 {
+        self.spec.motor.rated_speed * 30.0 / std::f64::consts::PI
+    }
+
+    /// The compiled drive, if this one is built in.
+    pub(super) fn built_in(&self) -> Option<&'static BuiltIn> {
+        self.built_in
+    }
+}
+
+/// The format table in the types of the hardware's boundary. Widths and shifts of a verified
+/// program fit them.
+fn format_table(interface: &Interface) -> Vec<Format> {
+    let convert = |entry: &interface::FormatEntry| Format {
+        name: interned(&entry.name),
+        storage_bits: entry.storage_bits as u8,
+        frac_bits: entry.frac_bits as i8,
+        rounding: match entry.rounding {
+            interface::Rounding::Floor => hexagen::Rounding::Floor,
+            interface::Rounding::RoundHalfUp => hexagen::Rounding::RoundHalfUp,
+        },
+    };
+    interface.formats.iter().map(convert).collect()
+}
+
+/// Names of formats live as long as the program, as those of compiled drives do; there are few.
+fn interned(name: &str) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name) {
+        return known;
+    }
+    let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
+    names.insert(kept);
+    kept
+}
