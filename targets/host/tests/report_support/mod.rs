@@ -107,7 +107,10 @@ impl CurrentLoop for Deadbeat {
 }
 
 fn run(options: Options, params: &PlantParams, rpm: f64) -> hexagen_host::closed_loop::Measurement {
-    let run = RunOptions::new(rpm * TAU / 60.0, CURRENT);
+    let run = RunOptions {
+        starts: vec![0.1],
+        ..RunOptions::new(rpm * TAU / 60.0, CURRENT)
+    };
     measure(params, &run, |_: &Truth| Deadbeat {
         options,
         applied: [0.0; 3],
@@ -171,7 +174,9 @@ fn variant(label: &str, row: usize, options: Options, with_texts: bool) -> Varia
                 ..RunOptions::new(1.0, CURRENT)
             };
             let grid = LimitOptions {
-                step_rpm: 40.0,
+                from_rpm: 1200.0,
+                to_rpm: 2500.0,
+                step_rpm: 100.0,
                 ..LimitOptions::new(2000.0, TORQUE)
             };
             speed_limit(&motor(), &run, &grid, |_: &Truth| Deadbeat {
@@ -193,7 +198,7 @@ fn variant(label: &str, row: usize, options: Options, with_texts: bool) -> Varia
     }
     let (_, texts, mut stability) = generated(design.variant);
     if with_texts {
-        for factor in [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 1.8] {
+        for factor in [0.7, 0.9, 1.1, 1.4] {
             for (parameter, params) in [
                 (Parameter::Inductance, motor().scaled(1.0, factor, 1.0)),
                 (Parameter::Resistance, motor().scaled(factor, 1.0, 1.0)),

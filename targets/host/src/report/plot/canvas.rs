@@ -222,6 +222,13 @@ pub fn write_at(
         .map_err(failed)
 }
 
+/// Draws an upright line from a point of the plot upwards, so many CSS pixels long; it may leave
+/// the plotted area.
+pub fn rule_above(chart: &Chart<'_, '_>, at: (f64, f64), length: f64, style: ShapeStyle) -> Drawn {
+    let rule = EmptyElement::at(at) + PathElement::new([(0, 0), (0, -px(length))], style);
+    chart.plotting_area().draw(&rule).map_err(failed)
+}
+
 /// Steps of 1, 2 or 5 times a power of ten that part a range into at most `most` pieces.
 pub fn step(range: &Range<f64>, most: usize) -> f64 {
     let least = (range.end - range.start) / most as f64;

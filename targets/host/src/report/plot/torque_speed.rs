@@ -1,19 +1,21 @@
 //! Mean torque over speed, all variants in one plot, with the demand and marks of interest.
 
 use super::canvas::{
-    self, Axis, Chart, Margins, anchored, chart, dashed, decimals, failed, line, polyline, px,
-    text, tick_text, ticks, write_at,
+    self, Axis, Chart, Drawn, Margins, anchored, chart, dashed, decimals, failed, line, polyline,
+    px, rule_above, text, tick_text, ticks, write_at,
 };
 use super::palette::{AXIS, DEMAND, INK};
 use crate::report::{ReportError, SpeedMark};
 use maud::PreEscaped;
 use plotters::prelude::*;
-use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::ops::Range;
 
-/// Least distance in CSS pixels between texts of neighbouring marks.
-const TEXT_DISTANCE: f64 = 15.0;
+/// Height of a row of marks in CSS pixels.
+const ROW: f64 = 17.0;
+
+/// Width of a character in CSS pixels, rather too wide than too narrow.
+const CHARACTER: f64 = 7.2;
 
 /// Dash patterns of the variants in CSS pixels, so that curves on top of each other and prints
 /// without colour can be told apart.
@@ -53,14 +55,16 @@ pub fn dash(index: usize) -> (f64, f64) {
 /// Draws the plot.
 pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, ReportError> {
     let size = (1120.0, 440.0);
+    let (x_range, y_range) = (speed_range(plot), torque_range(plot));
+    let right = 16.0;
+    let width = size.0 - Margins::USUAL.left - right;
+    let marks = place_marks(plot, &x_range, width / (x_range.end - x_range.start));
+    let rows = marks.iter().map(|mark| mark.row + 1).max().unwrap_or(0);
     let margins = Margins {
-        top: 24.0,
-        right: 16.0,
+        top: ROW * rows as f64 + 8.0,
+        right,
         ..Margins::USUAL
     };
-    let x_range = speed_range(plot);
-    let y_range = torque_range(plot);
-    let width = size.0 - margins.left - margins.right;
     let description = "Mean torque over speed of all variants";
     canvas::svg(size, description, |area| {
         let step = canvas::step(&y_range, 8);
@@ -82,7 +86,7 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
                 title: "mean torque in Nm",
             },
         )?;
-        draw_marks(&mut chart, plot, &x_range, &y_range, width)?;
+        draw_marks(&mut chart, &marks, &y_range)?;
         let demand = [(x_range.start, plot.torque), (x_range.end, plot.torque)];
         polyline(&mut chart, demand, line(DEMAND, 1.0))?;
         let held = demand.map(|(rpm, torque)| (rpm, plot.held * torque));
@@ -91,7 +95,7 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
         let above = anchored(&name, HPos::Left, VPos::Bottom);
         write_at(&chart, "demand", demand[0], (6.0, -3.0), &above)?;
         let below = anchored(&name, HPos::Left, VPos::Top);
-        let percent = format!("{:.0} % of it", 100.0 * plot.held);
+        let percent = format!("{:.0} % of demand", 100.0 * plot.held);
         write_at(&chart, &percent, held[0], (6.0, 3.0), &below)?;
         for curve in &plot.curves {
             draw_curve(&mut chart, curve)?;
@@ -100,7 +104,7 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
     })
 }
 
-fn draw_curve(chart: &mut Chart<'_, '_>, curve: &Curve) -> Result<(), ReportError> {
+fn draw_curve(chart: &mut Chart<'_, '_>, curve: &Curve) -> Drawn {
     let style = line(curve.color, 2.0);
     let points = curve.points.iter().copied();
     match dash(curve.index) {
@@ -117,47 +121,57 @@ fn draw_curve(chart: &mut Chart<'_, '_>, curve: &Curve) -> Result<(), ReportErro
     Ok(())
 }
 
-fn draw_marks(
-    chart: &mut Chart<'_, '_>,
-    plot: &TorqueSpeed<'_>,
-    x_range: &Range<f64>,
-    y_range: &Range<f64>,
-    width: f64,
-) -> Result<(), ReportError> {
-    let per_rpm = width / (x_range.end - x_range.start);
+/// A mark above the plot: its text ends at its line, in a row that no other text or line meets.
+struct Placed {
+    rpm: f64,
+    text: String,
+    row: usize,
+}
+
+/// Places the marks within a range of speeds; `per_rpm` is in CSS pixels.
+fn place_marks(plot: &TorqueSpeed<'_>, x_range: &Range<f64>, per_rpm: f64) -> Vec<Placed> {
     let rated = SpeedMark {
         label: "rated".to_owned(),
         percent: 100.0,
     };
     let mut marks: Vec<&SpeedMark> = plot.marks.iter().chain([&rated]).collect();
     marks.sort_by(|a, b| a.percent.total_cmp(&b.percent));
-    let mut free_from = f64::NEG_INFINITY;
-    let upright = text(INK, 0.95).transform(FontTransform::Rotate270);
-    let upright = anchored(&upright, HPos::Left, VPos::Bottom);
+    let mut placed: Vec<Placed> = Vec::new();
     for mark in marks {
         let rpm = mark.percent / 100.0 * plot.rated_rpm;
         if !(x_range.start..=x_range.end).contains(&rpm) {
             continue;
         }
-        let from_top = [(rpm, y_range.end), (rpm, y_range.start)];
-        dashed(chart, from_top, line(AXIS, 1.0), (2.0, 3.0))?;
-        let label = format!("{}: {:.0} %", mark.label, mark.percent);
-        // Texts stand upright, left of their lines, from the bottom up; one that would meet the
-        // text before it moves to the right of its line.
-        let line_at = (rpm - x_range.start) * per_rpm;
-        let offset = if line_at - TEXT_DISTANCE < free_from {
-            TEXT_DISTANCE
-        } else {
-            -3.0
-        };
-        free_from = line_at + offset.max(0.0);
-        write_at(
+        let text = format!("{} {:.0} %", mark.label, mark.percent);
+        let text_from = rpm - text.chars().count() as f64 * CHARACTER / per_rpm;
+        // Above all earlier marks whose line stands where the text shall be.
+        let row = placed
+            .iter()
+            .filter(|earlier| earlier.rpm > text_from)
+            .map(|earlier| earlier.row + 1)
+            .max();
+        placed.push(Placed {
+            rpm,
+            text,
+            row: row.unwrap_or(0),
+        });
+    }
+    placed
+}
+
+fn draw_marks(chart: &mut Chart<'_, '_>, marks: &[Placed], y_range: &Range<f64>) -> Drawn {
+    let style = anchored(&text(INK, 0.95), HPos::Right, VPos::Bottom);
+    for mark in marks {
+        let top = (mark.rpm, y_range.end);
+        dashed(
             chart,
-            &label,
-            (rpm, y_range.start),
-            (offset, -6.0),
-            &upright,
+            [top, (mark.rpm, y_range.start)],
+            line(AXIS, 1.0),
+            (2.0, 3.0),
         )?;
+        let height = ROW * mark.row as f64;
+        rule_above(chart, top, height + ROW, line(AXIS, 1.0))?;
+        write_at(chart, &mark.text, top, (-4.0, -height - 3.0), &style)?;
     }
     Ok(())
 }

@@ -13,6 +13,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::f64::consts::FRAC_PI_3;
 
+/// Distance of the corners' names from the centre, relative to the corners'.
+const NAMES: f64 = 1.2;
+
 /// Points drawn of a turn with its ripple, at most.
 const RAW_POINTS: usize = 2400;
 
@@ -32,14 +35,14 @@ pub fn trajectory(
         bottom: 40.0,
         left: 52.0,
     };
-    let side = 300.0;
+    let side = 219.0;
     let size = (
         side + margins.left + margins.right,
         side + margins.top + margins.bottom,
     );
     canvas::svg(size, description, |area| {
         let range = -reach..reach;
-        let step = canvas::step(&range, 6);
+        let step = canvas::step(&range, 8);
         let digits = decimals(step);
         let label = |value: &f64| tick_text(*value, digits);
         let axis = |title| Axis {
@@ -77,9 +80,9 @@ pub fn trajectory(
         for (k, &corner) in corners.iter().take(6).enumerate() {
             let dot = Circle::new(corner, px(3.0), INK.stroke_width(px(1.0) as u32));
             chart.plotting_area().draw(&dot).map_err(failed)?;
-            // Inside of the corner, where no commutation passes.
-            let inside = (0.78 * corner.0, 0.78 * corner.1);
-            write_at(&chart, &format!("S{}", k + 1), inside, (0.0, 0.0), &name)?;
+            // Outside of the corner, where no commutation passes.
+            let outside = (NAMES * corner.0, NAMES * corner.1);
+            write_at(&chart, &format!("S{}", k + 1), outside, (0.0, 0.0), &name)?;
         }
         Ok(())
     })

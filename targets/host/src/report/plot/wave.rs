@@ -32,7 +32,7 @@ pub struct Wave<'a> {
 pub fn wave(wave: &Wave<'_>) -> Result<PreEscaped<String>, ReportError> {
     canvas::svg((550.0, 250.0), wave.description, |area| {
         let x_ticks: Vec<f64> = (0..=6).map(|k| FIRST_DEG + 60.0 * f64::from(k)).collect();
-        let step = canvas::step(&wave.range, 6);
+        let step = canvas::step(&wave.range, 8);
         let digits = decimals(step);
         let margins = Margins {
             top: 22.0,

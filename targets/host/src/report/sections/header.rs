@@ -158,25 +158,25 @@ fn derived(data: &ReportData) -> Vec<(&'static str, String)> {
             quantity(data.torque / data.current, "Nm/A"),
         ),
         (
-            "Electrical time constant L/R",
+            "Time constant L/R",
             quantity(motor.inductance / motor.resistance, "s"),
         ),
         ("Current per volt and period", quantity(per_volt, "A")),
         (
-            "Electrical frequency at rated speed",
+            "Frequency at rated speed",
             quantity(motor.rated_speed * pole_pairs / TAU, "Hz"),
         ),
         (
-            "Line-to-line EMF at rated speed",
+            "Line EMF at rated speed",
             format!(
-                "{}, {}\u{a0}% of the bus",
+                "{} ({}\u{a0}% of bus)",
                 quantity(emf, "V"),
                 number(100.0 * emf / inverter.v_bus, 0)
             ),
         ),
         (
-            "Turn per period at rated speed",
-            format!("{}\u{b0} electrical", number(degrees, 2)),
+            "Angle per period, rated",
+            format!("{}\u{b0} el.", number(degrees, 2)),
         ),
     ]
 }

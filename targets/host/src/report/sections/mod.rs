@@ -74,6 +74,15 @@ fn variant_swatch(index: usize) -> Markup {
     swatch(palette::variant(index), 3.0, (0.0, 0.0))
 }
 
+/// A variant's text, which may break after its commas.
+fn variant_text(variant: &str) -> Markup {
+    html! {
+        code.variant {
+            @for part in variant.split_inclusive(',') { (part) wbr; }
+        }
+    }
+}
+
 /// Legend items in a row.
 fn legend(items: impl IntoIterator<Item = (Markup, String)>) -> Markup {
     html! {

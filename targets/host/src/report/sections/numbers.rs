@@ -131,6 +131,15 @@ struct Comparison<'a> {
     ideal: &'a RunPoint,
 }
 
+impl Comparison<'_> {
+    fn pair(&self, shown: &Shown) -> Pair {
+        Pair {
+            fixed: (shown.of)(&self.fixed.merits),
+            ideal: (shown.of)(&self.ideal.merits),
+        }
+    }
+}
+
 fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
     let mut found = Vec::new();
     for (index, variant) in data.variants.iter().enumerate() {
@@ -170,26 +179,27 @@ pub fn errors(data: &ReportData) -> Markup {
     }
     html! {
         @if !comparisons.is_empty() { (merit_table(&comparisons)) }
-        @for variant in with_signals {
-            h3 { "Signals of " (variant.label) }
-            p.note { "Distance of the emitted code from the ideal model, from the same state and samples." }
-            div.scroll { (signal_table(variant)) }
+        @if !with_signals.is_empty() {
+            h3 { "Signals" }
+            p.note { "Distance of the emitted code from the ideal model, step by step, from the same state and samples." }
+            @for (place, variant) in with_signals.iter().enumerate() {
+                details open[place == 0] {
+                    summary { (variant.label) }
+                    div.scroll { (signal_table(variant)) }
+                }
+            }
         }
     }
 }
 
 fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
-    let pair = |comparison: &Comparison<'_>, shown: &Shown| Pair {
-        fixed: (shown.of)(&comparison.fixed.merits),
-        ideal: (shown.of)(&comparison.ideal.merits),
-    };
     let total = comparisons.len() * SHOWN.len();
     let apart = comparisons
         .iter()
         .flat_map(|comparison| {
             SHOWN
                 .iter()
-                .map(move |shown| pair(comparison, shown).alike(shown.percentage))
+                .map(|shown| comparison.pair(shown).alike(shown.percentage))
         })
         .filter(|alike| !alike)
         .count();
@@ -203,34 +213,43 @@ fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
             "same start, same plant; alike means within 1 %, or within 0.05 points for percentages. Each cell shows fixed point above ideal float."
         }
         div.scroll {
-            table {
+            table.errors {
                 thead {
                     tr {
-                        th { "Variant" }
-                        th { "Hall" }
+                        th { "Hall edges" }
                         th.number { "rpm" }
                         @for shown in &SHOWN {
                             th.number { (shown.name) br; small { (shown.unit) } }
                         }
                     }
                 }
-                tbody {
-                    @for comparison in comparisons {
+                @for group in comparisons.chunk_by(|a, b| a.index == b.index) {
+                    tbody {
                         tr {
-                            td { (variant_swatch(comparison.index)) " " (comparison.variant.label) }
-                            td { (comparison.capture) }
-                            td.number { (number(comparison.fixed.rpm, 0)) }
-                            @for shown in &SHOWN {
-                                @let pair = pair(comparison, shown);
-                                @let alike = pair.alike(shown.percentage);
-                                td.number.missed[!alike] {
-                                    @if !alike { "\u{2260}\u{a0}" }
-                                    (number(pair.fixed, shown.decimals)) br;
-                                    small { (number(pair.ideal, shown.decimals)) }
-                                }
+                            th colspan=(SHOWN.len() + 2) scope="rowgroup" {
+                                (variant_swatch(group[0].index)) " " (group[0].variant.label)
                             }
                         }
+                        @for comparison in group { (merit_row(comparison)) }
                     }
+                }
+            }
+        }
+    }
+}
+
+fn merit_row(comparison: &Comparison<'_>) -> Markup {
+    html! {
+        tr {
+            td { (comparison.capture) }
+            td.number { (number(comparison.fixed.rpm, 0)) }
+            @for shown in &SHOWN {
+                @let pair = comparison.pair(shown);
+                @let alike = pair.alike(shown.percentage);
+                td.number.missed[!alike] {
+                    @if !alike { "\u{2260}\u{a0}" }
+                    (number(pair.fixed, shown.decimals)) br;
+                    small { (number(pair.ideal, shown.decimals)) }
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The result table: every run, its merits at each speed, its limit, and what was expected.
 
-use super::{capture_name, model_name, number, ripple, variant_swatch};
+use super::{capture_name, model_name, number, ripple, variant_swatch, variant_text};
 use crate::closed_loop::LimitOutcome;
 use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
 use crate::report::{Band, Expected, ReportData, Run, RunPoint};
@@ -45,11 +45,11 @@ pub fn section(data: &ReportData) -> Markup {
                                         (variant.label)
                                         @if !variant.variant.is_empty() {
                                             br;
-                                            code.variant { (variant.variant) }
+                                            (variant_text(&variant.variant))
                                         }
                                     }
                                 }
-                                td { (model_name(run.model)) }
+                                td.name { (model_name(run.model)) }
                                 td { (capture_name(run.capture)) }
                                 (figures(data, run))
                             }
@@ -68,7 +68,7 @@ fn head(data: &ReportData) -> Markup {
             tr {
                 th rowspan="2" { "Variant" }
                 th rowspan="2" { "Model" }
-                th rowspan="2" { "Hall edges" }
+                th rowspan="2" { "Hall" }
                 @for rpm in &data.speeds_rpm {
                     th.group.edge colspan="3" { (number(*rpm, 0)) " rpm" }
                 }
@@ -114,19 +114,23 @@ fn judge_run(data: &ReportData, run: &Run) -> Vec<Judged> {
 
 fn figures(data: &ReportData, run: &Run) -> Markup {
     let mean = |value: f64| number(value, 2);
+    let whole = |value: f64| number(value, 0);
     // A column for expected figures only where some row has one keeps plain tables narrow.
     let any_expected = data
         .variants
         .iter()
         .flat_map(|variant| &variant.runs)
         .any(|run| run.expected.is_some());
-    let cell = |judged: Judged, edge: bool, show: &dyn Fn(f64) -> String| {
+    let cell = |judged: Judged,
+                edge: bool,
+                show: &dyn Fn(f64) -> String,
+                expected: &dyn Fn(f64) -> String| {
         html! {
             td.number.edge[edge].missed[!judged.met] {
                 @if !judged.met { "\u{2260}\u{a0}" }
                 (judged.measured.map_or_else(|| "\u{2013}".to_owned(), show))
                 @if any_expected {
-                    span.expected { (judged.expected.map_or_else(String::new, |band| band_text(band, show))) }
+                    span.expected { (judged.expected.map_or_else(String::new, |band| band_text(band, expected))) }
                 }
             }
         }
@@ -135,9 +139,9 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
         @for &rpm in &data.speeds_rpm {
             @match judge_point(run, rpm) {
                 Some([torque, pp, rms]) => {
-                    (cell(torque, true, &mean))
-                    (cell(pp, false, &ripple))
-                    (cell(rms, false, &ripple))
+                    (cell(torque, true, &mean, &mean))
+                    (cell(pp, false, &ripple, &ripple))
+                    (cell(rms, false, &ripple, &ripple))
                 }
                 None => { td.number.edge {} td {} td {} }
             }
@@ -160,7 +164,7 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
                 }
             }
             Some(LimitOutcome::Found) => {
-                (cell(judge_limit(run.limit.as_ref(), run.expected.as_ref()), true, &|x| number(x, 1)))
+                (cell(judge_limit(run.limit.as_ref(), run.expected.as_ref()), true, &|x| number(x, 1), &whole))
             }
             None => {
                 td.number.edge {

@@ -1,6 +1,6 @@
 //! Harmonics of the phase current against the ideal wave, and of the torque.
 
-use super::{figure, nothing, number, plotted, swatch, variant_legend};
+use super::{figure, legend, nothing, number, plotted, swatch, variant_legend};
 use crate::report::harmonics::{of_current, of_quasi_square, of_torque};
 use crate::report::plot::{Bars, Group, bars, palette};
 use crate::report::{ReportData, ReportError};
@@ -94,7 +94,10 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
     }
     Ok(html! {
         (variant_legend(data))
-        div.legend { (swatch(palette::INK, 2.0, (0.0, 0.0))) span { "ideal quasi-square wave (100 % divided by the order); an ideal torque has no harmonic" } }
+        (legend([(
+            swatch(palette::INK, 2.0, (0.0, 0.0)),
+            "ideal quasi-square wave: 100 % divided by the order (an ideal torque has no harmonic)".to_owned(),
+        )]))
         div.plots.two { @for plot in current { (plot) } }
         div.plots.two { @for plot in torque { (plot) } }
     })

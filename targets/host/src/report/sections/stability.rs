@@ -99,15 +99,14 @@ fn parameter_plots(
 }
 
 fn range_text((low, high): (f64, f64)) -> String {
-    let bound = |ratio: f64, open: &str| {
-        let percent = number(100.0 * ratio, 1);
+    let bound = |ratio: f64, beyond: &str| {
         if (SEARCH.0..SEARCH.1).contains(&ratio) {
-            percent
+            number(100.0 * ratio, 1)
         } else {
-            format!("{percent} {open}")
+            format!("{beyond} {}", number(100.0 * ratio, 0))
         }
     };
-    format!("{} to {}", bound(low, "or less"), bound(high, "or more"))
+    format!("{} to {}", bound(low, "\u{2264}"), bound(high, "\u{2265}"))
 }
 
 fn dot() -> Markup {

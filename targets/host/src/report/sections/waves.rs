@@ -132,15 +132,17 @@ pub fn trajectories(data: &ReportData) -> Result<Markup, ReportError> {
             let trace = &panel.record.trace;
             (0..trace.theta_e.len()).map(|k| trace.i_alpha_beta(k))
         })
-        .fold(1.25 * data.current.abs(), |most, (alpha, beta)| {
+        .fold(0.0_f64, |most, (alpha, beta)| {
             most.max(alpha.abs()).max(beta.abs())
         });
+    // The corners lie 2/sqrt(3) of the current from the centre, their names outside of them.
+    let reach = (1.04 * most).max(1.53 * data.current.abs());
     let mut plots = Vec::new();
     for panel in panels {
         let plot = trajectory(
             &panel.record.trace,
             data.current,
-            1.03 * most,
+            reach,
             palette::variant(panel.index),
             &panel.describe("Current in the alpha-beta plane"),
         )?;
