@@ -59,16 +59,24 @@ impl<'g> Interpreted<'g> {
             found.expect("a state word of every drive")
         };
         let output = |name: &str| {
-            let found = program.step.outputs.iter().position(|(known, _)| known == name);
+            let found = program
+                .step
+                .outputs
+                .iter()
+                .position(|(known, _)| known == name);
             found.expect("an output of every drive")
         };
-        let inputs = program.step.inputs.iter().map(|input| match input.name.as_str() {
-            "adc_a" => Input::AdcA,
-            "adc_b" => Input::AdcB,
-            "hall" => Input::Hall,
-            "hall_ticks" => Input::HallTicks,
-            other => panic!("unknown input {other}"),
-        });
+        let inputs = program
+            .step
+            .inputs
+            .iter()
+            .map(|input| match input.name.as_str() {
+                "adc_a" => Input::AdcA,
+                "adc_b" => Input::AdcB,
+                "hall" => Input::Hall,
+                "hall_ticks" => Input::HallTicks,
+                other => panic!("unknown input {other}"),
+            });
         Self {
             machine: Machine::of_program(program),
             program,
@@ -81,7 +89,15 @@ impl<'g> Interpreted<'g> {
                 sums: [place("sum_a"), place("sum_b")],
                 offsets: [place("offset_a"), place("offset_b")],
             },
-            outputs: ["compare_a", "compare_b", "compare_c", "leg_a", "leg_b", "leg_c"].map(output),
+            outputs: [
+                "compare_a",
+                "compare_b",
+                "compare_c",
+                "leg_a",
+                "leg_b",
+                "leg_c",
+            ]
+            .map(output),
             inputs: inputs.collect(),
             escaped,
         }
@@ -159,7 +175,12 @@ impl Subject for Interpreted<'_> {
 
     fn calibrate(&mut self) {
         if !self.is_tripped() {
-            let Words { mode, countdown, sums, .. } = self.words;
+            let Words {
+                mode,
+                countdown,
+                sums,
+                ..
+            } = self.words;
             self.machine.state[mode] = 1;
             self.machine.state[countdown] = self.calibration_samples;
             for sum in sums {
@@ -170,7 +191,9 @@ impl Subject for Interpreted<'_> {
 
     fn precharge(&mut self) {
         if !self.is_tripped() && self.precharge_periods > 0 {
-            let Words { mode, countdown, .. } = self.words;
+            let Words {
+                mode, countdown, ..
+            } = self.words;
             self.machine.state[mode] = 2;
             self.machine.state[countdown] = self.precharge_periods;
         }
@@ -238,7 +261,11 @@ pub fn compare(
 ) -> Result<Report, String> {
     let interface = &generated.interface;
     let escaped = RefCell::new(None);
-    let names: Vec<&str> = program.states.iter().map(|word| word.name.as_str()).collect();
+    let names: Vec<&str> = program
+        .states
+        .iter()
+        .map(|word| word.name.as_str())
+        .collect();
     let result = verify_subject(
         &interface.spec_toml,
         &formats(&interface.formats),
@@ -258,7 +285,10 @@ pub fn compare(
     match (escaped.into_inner(), result) {
         (Some(place), result) => Err(format!(
             "left its interval: {place}{}",
-            result.err().map(|error| format!("\n{error}")).unwrap_or_default()
+            result
+                .err()
+                .map(|error| format!("\n{error}"))
+                .unwrap_or_default()
         )),
         (None, result) => result,
     }

@@ -27,16 +27,25 @@ pub const AXES: &[Axis] = &[
     Axis {
         name: "modulation",
         values: &[
-            ("three_phase", &[("controller", "modulation", "\"three_phase\"")]),
+            (
+                "three_phase",
+                &[("controller", "modulation", "\"three_phase\"")],
+            ),
             ("pair", &[("controller", "modulation", "\"pair\"")]),
         ],
     },
     Axis {
         name: "saturation",
         values: &[
-            ("keep_angle", &[("controller", "saturation", "\"keep_angle\"")]),
+            (
+                "keep_angle",
+                &[("controller", "saturation", "\"keep_angle\"")],
+            ),
             ("nearest", &[("controller", "saturation", "\"nearest\"")]),
-            ("torque_priority", &[("controller", "saturation", "\"torque_priority\"")]),
+            (
+                "torque_priority",
+                &[("controller", "saturation", "\"torque_priority\"")],
+            ),
         ],
     },
     Axis {
@@ -56,8 +65,14 @@ pub const AXES: &[Axis] = &[
     Axis {
         name: "reference",
         values: &[
-            ("quasi_square", &[("controller", "reference", "\"quasi_square\"")]),
-            ("proportional", &[("controller", "reference", "\"proportional\"")]),
+            (
+                "quasi_square",
+                &[("controller", "reference", "\"quasi_square\"")],
+            ),
+            (
+                "proportional",
+                &[("controller", "reference", "\"proportional\"")],
+            ),
         ],
     },
     Axis {
@@ -237,12 +252,17 @@ pub fn drive_toml(motor: &Motor, choice: &[usize], type_name: Option<&str>) -> S
 
 /// The bus voltage of a motor file, volt.
 fn document_bus(document: &DocumentMut) -> f64 {
-    let stated = document.get("inverter").and_then(|table| table.get("bus_voltage"));
+    let stated = document
+        .get("inverter")
+        .and_then(|table| table.get("bus_voltage"));
     let assumed = || {
         let table = document.get("assumed")?.get("inverter")?;
         table.get("bus_voltage")?.get("value")
     };
-    let text = stated.or_else(assumed).and_then(Item::as_str).expect("a bus voltage");
+    let text = stated
+        .or_else(assumed)
+        .and_then(Item::as_str)
+        .expect("a bus voltage");
     let number = text.trim_end_matches('V').trim();
     number.parse().expect("a bus voltage in volt")
 }

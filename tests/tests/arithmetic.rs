@@ -1,0 +1,150 @@
+//! The integer primitives of emitted code against the meaning of the IR's operators.
+
+use hexagen::arith::{
+    Word, angle_fraction, angle_index, divide, divide_narrow, lookup, mul_floor, mul_limited,
+    mul_round, mul_round_narrow, select, turn_over,
+};
+use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
+use proptest::prelude::*;
+
+/// Result of a function of one operator, by the interpreter.
+fn interpreted(
+    intervals: &[Interval],
+    operands: &[i32],
+    table: &[i32],
+    build: impl Fn(&mut FunctionBuilder<'_>, &[Value], hexagen_codegen::ir::TableId) -> Value,
+) -> i32 {
+    let mut program = Program::new("Operator");
+    let table = program.table("table", table.to_vec(), &[]);
+    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+    b.stage("apply", &[]);
+    let names = ["x", "y", "z"];
+    let inputs: Vec<Value> = names
+        .iter()
+        .zip(intervals)
+        .map(|(name, &interval)| b.input(name, interval, ""))
+        .collect();
+    let result = build(&mut b, &inputs, table);
+    b.name("result", result);
+    b.output("result", result);
+    program.step = b.finish();
+    let graph = verify(program).expect("the program is right");
+    let outputs = Machine::new(&graph).step(operands);
+    outputs.expect("no value leaves its interval")[0]
+}
+
+fn symmetric(bits: u32) -> Interval {
+    Interval::new(-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+}
+
+/// A word of at most `bits` bits, small and large ones alike.
+fn word(bits: u32) -> impl Strategy<Value = i32> {
+    (any::<i32>(), 32 - bits..32).prop_map(|(word, shift)| word >> shift)
+}
+
+fn natural(bits: u32) -> impl Strategy<Value = i32> {
+    (any::<u32>(), 32 - bits..32).prop_map(|(word, shift)| (word >> shift) as i32)
+}
+
+const TABLE: [i16; 8] = [5, -3, 32767, -32768, 0, 1, 2, 3];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn rounded_products(c in word(32), x in word(32), shift in 31_u32..=62) {
+        let expected = interpreted(&[symmetric(32); 2], &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift.max(32)));
+        prop_assert_eq!(mul_round(Word(c), Word(x), shift.max(32)).0, expected);
+    }
+
+    #[test]
+    fn rounded_narrow_products(c in word(15), x in word(16), shift in 1_u32..=30) {
+        let intervals = [symmetric(15), symmetric(16)];
+        let expected = interpreted(&intervals, &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift));
+        prop_assert_eq!(mul_round_narrow(Word(c), Word(x), shift).0, expected);
+        prop_assert_eq!(mul_round(Word(c), Word(x), shift).0, expected);
+    }
+
+    #[test]
+    fn floored_products(a in word(24), c in word(24), shift in 16_u32..=40) {
+        let expected = interpreted(&[symmetric(24); 2], &[a, c], &[0], |b, x, _| b.mul_floor(x[0], x[1], shift));
+        prop_assert_eq!(mul_floor(Word(a), Word(c), shift).0, expected);
+    }
+
+    #[test]
+    fn limited_products(a in natural(31), c in natural(31), limit in natural(30)) {
+        let intervals = [Interval::new(0, i64::from(i32::MAX)), Interval::new(0, i64::from(i32::MAX)), Interval::new(0, 1 << 30)];
+        let expected = interpreted(&intervals, &[a, c, limit], &[0], |b, x, _| b.mul_limited(x[0], x[1], x[2]));
+        prop_assert_eq!(mul_limited(Word(a), Word(c), Word(limit)).0, expected);
+    }
+
+    #[test]
+    fn quotients(n in natural(31), d in natural(31), limit in natural(30), shift in 0_u32..=31) {
+        let d = d.max(1);
+        let intervals = [Interval::new(0, i64::from(i32::MAX)), Interval::new(1, i64::from(i32::MAX)), Interval::new(0, 1 << 30)];
+        let expected = interpreted(&intervals, &[n, d, limit], &[0], |b, x, _| b.divide(x[0], shift, x[1], x[2]));
+        prop_assert_eq!(divide(Word(n), Word(d), Word(limit), shift).0, expected);
+        if i64::from(n) << shift <= i64::from(u32::MAX) {
+            prop_assert_eq!(divide_narrow(Word(n), Word(d), Word(limit), shift).0, expected);
+        }
+    }
+
+    #[test]
+    fn angles_of_a_tick(ticks in natural(31)) {
+        let ticks = ticks.max(2);
+        let expected = interpreted(&[Interval::new(2, i64::from(i32::MAX))], &[ticks], &[0], |b, x, _| b.turn_over(x[0]));
+        prop_assert_eq!(turn_over(Word(ticks)).0, expected);
+    }
+
+    #[test]
+    fn angles(theta in any::<i32>(), other in any::<i32>(), segments in 1_u32..=1 << 16) {
+        let full = [Interval::WORD; 2];
+        let index = interpreted(&full[..1], &[theta], &[0], |b, x, _| b.angle_index(x[0], segments));
+        let fraction = interpreted(&full[..1], &[theta], &[0], |b, x, _| b.angle_fraction(x[0], segments));
+        let sum = interpreted(&full, &[theta, other], &[0], |b, x, _| b.angle_add(x[0], x[1]));
+        let difference = interpreted(&full, &[theta, other], &[0], |b, x, _| b.angle_sub(x[0], x[1]));
+        prop_assert_eq!(angle_index(Word(theta), segments).0, index);
+        prop_assert_eq!(angle_fraction(Word(theta), segments).0, fraction);
+        prop_assert_eq!((Word(theta) + Word(other)).0, sum);
+        prop_assert_eq!((Word(theta) - Word(other)).0, difference);
+    }
+
+    #[test]
+    fn table_entries(index in any::<i32>()) {
+        let table = TABLE.map(i32::from);
+        let expected = interpreted(&[Interval::WORD], &[index], &table, |b, x, table| b.lookup(table, x[0]));
+        prop_assert_eq!(lookup(&TABLE, Word(index)).0, expected);
+    }
+
+    #[test]
+    fn operators_of_words(a in word(30), c in word(30), bits in 0_u32..=31) {
+        let wide = [symmetric(30); 2];
+        let two = |build: fn(&mut FunctionBuilder<'_>, Value, Value) -> Value| {
+            interpreted(&wide, &[a, c], &[0], |b, x, _| build(b, x[0], x[1]))
+        };
+        let one = |build: fn(&mut FunctionBuilder<'_>, Value) -> Value| {
+            interpreted(&wide[..1], &[a], &[0], |b, x, _| build(b, x[0]))
+        };
+        let (x, y) = (Word(a), Word(c));
+        prop_assert_eq!((x + y).0, two(|b, x, y| b.add(x, y)));
+        prop_assert_eq!((x - y).0, two(|b, x, y| b.sub(x, y)));
+        prop_assert_eq!(x.min(y).0, two(|b, x, y| b.min(x, y)));
+        prop_assert_eq!(x.max(y).0, two(|b, x, y| b.max(x, y)));
+        prop_assert_eq!((-x).0, one(|b, x| b.neg(x)));
+        prop_assert_eq!(x.abs().0, one(|b, x| b.abs(x)));
+        let shifted = interpreted(&wide[..1], &[a], &[0], |b, x, _| b.shift_right(x[0], bits));
+        prop_assert_eq!((x >> bits).0, shifted);
+        let limits = [symmetric(30), Interval::new(-9000, -7), Interval::new(-6, 9000)];
+        let (low, high) = (-7 - c.rem_euclid(8000), c.rem_euclid(9000));
+        let clamped = interpreted(&limits, &[a, low, high], &[0], |b, x, _| b.clamp(x[0], x[1], x[2]));
+        prop_assert_eq!(x.clamp(Word(low), high).0, clamped);
+        let less = interpreted(&wide, &[a, c], &[0], |b, x, _| {
+            let less = b.compare(Comparison::Less, x[0], x[1]);
+            b.name("less", less);
+            b.select(less, x[1], x[0])
+        });
+        prop_assert_eq!(select(x < y, y, x).0, less);
+        prop_assert_eq!(x < c, x < y);
+        prop_assert_eq!(x == c, x == y);
+    }
+}
