@@ -242,6 +242,16 @@ impl Lowering<'_> {
         });
         let component = self.b.abs(component);
         self.b.name("component", component);
+        let near_line = [0, 1].map(|k| {
+            let value = flip(self, positive, near_line[k]);
+            let value = flip_named(
+                self,
+                pushing,
+                value,
+                ["near_x_forward", "near_y_forward"][k],
+            );
+            self.b.name(["near_x", "near_y"][k], value)
+        });
 
         // The point of the hexagon with that component (or the greatest one) nearest to (x, y).
         let reach = [0, 1].map(|k| {
@@ -257,13 +267,14 @@ impl Lowering<'_> {
         let rest = self.b.sub(kept, full);
         self.b.name("rest", rest);
         let zero = self.zero();
-        let beyond = self.b.compare(Comparison::Less, zero, rest);
+        let beyond = self.b.compare(Comparison::LessEqual, zero, rest);
         self.b.name("beyond_corner", beyond);
         let light_force = self.b.select(x_heavy, f_y, f_x);
         let f_size = self.b.abs(f_d);
         self.b.name("f_size", f_size);
         // A quarter of the EMF at least: where the light force vanishes in mid-sector the exact quotient
-        // would jump along a whole edge for an error of one ulp.
+        // would jump along a whole edge for an error of one ulp. What that gives away the nearest point,
+        // whose component is never the larger, returns.
         let quarter = self.b.shift_right(f_size, 2);
         let light_force = self.b.max(light_force, quarter);
         let force = self.b.select(beyond, light_force, f_size);
@@ -272,7 +283,9 @@ impl Lowering<'_> {
         let quotient = self.b.divide(size, shift.min(31), force, bus.volts);
         self.b.name("quotient", quotient);
         let back = self.b.neg(quotient);
-        let light = self.b.select(beyond, quotient, back);
+        let near_light = self.b.select(x_heavy, near_line[1], near_line[0]);
+        let ahead = self.b.max(quotient, near_light);
+        let light = self.b.select(beyond, ahead, back);
         self.b.name("light", light);
         let heavy = self.b.add(light, bus.volts);
         let heavy = self.b.min(heavy, bus.volts);
@@ -291,9 +304,7 @@ impl Lowering<'_> {
         let blend = self.b.divide(past, BLEND_BITS, half, one);
         self.b.name("blend", blend);
         let chosen = [0, 1].map(|k| {
-            let near = flip(self, positive, near_line[k]);
-            let near = flip_named(self, pushing, near, ["near_x_forward", "near_y_forward"][k]);
-            let way = self.b.sub(near, kept[k]);
+            let way = self.b.sub(near_line[k], kept[k]);
             let part = self.b.mul(blend, way, BLEND_BITS);
             let blended = self.b.add(kept[k], part);
             let back = flip_named(self, pushing, blended, ["blended_x", "blended_y"][k]);

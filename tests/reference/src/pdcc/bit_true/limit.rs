@@ -93,17 +93,26 @@ fn torque_priority(
     let p_max = q_x + q_y;
     let p_in = p.min(p_max);
     let x_is_heavy = along_x >= along_y;
-    let (q_heavy, f_light) = if x_is_heavy { (q_x, f_y) } else { (q_y, f_x) };
+    let near = [near[0], near[1], -(near[0] + near[1])];
+    let (q_heavy, f_light, light_near) = if x_is_heavy {
+        (q_x, f_y, sign * (near[d] - near[y]))
+    } else {
+        (q_y, f_x, sign * (near[d] - near[x]))
+    };
     let n = p_in - q_heavy;
     let f_max = f[d].abs();
-    let den = if n > 0.0 {
+    let den = if n >= 0.0 {
         f_light.max(floor_shift(f_max, LIGHT_SHARE))
     } else {
         f_max
     }
     .max(1.0);
     let quotient = div_floor(n.abs(), k.emf_product.bits(), den).min(v_bus);
-    let light = if n > 0.0 { quotient } else { -quotient };
+    let light = if n >= 0.0 {
+        quotient.max(light_near)
+    } else {
+        -quotient
+    };
     let heavy = (light + v_bus).min(v_bus);
     let (mut to_x, mut to_y) = if x_is_heavy {
         (heavy, light)
@@ -116,7 +125,6 @@ fn torque_priority(
         reach = Reach::PastReach;
         let share = floor_shift(p_max, BLEND_SHARE).max(1.0);
         let blend = floor((p - p_max) * BLEND_ONE / share).min(BLEND_ONE);
-        let near = [near[0], near[1], -(near[0] + near[1])];
         let mul15 = Shift::new(BLEND_BITS);
         to_x += mul15.round_product(blend, sign * (near[d] - near[x]) - to_x);
         to_y += mul15.round_product(blend, sign * (near[d] - near[y]) - to_y);

@@ -34,9 +34,10 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
             if p.abs() > p_max {
                 reach = Reach::PastReach;
             }
-            let kept = clip_across(u, f, p.clamp(-p_max, p_max), v_bus);
+            let near = nearest(u, v_bus);
+            let kept = clip_across(u, f, &near, v_bus);
             let blend = ((p.abs() - p_max) / (p_max * BLEND_SHARE)).clamp(0.0, 1.0);
-            kept + (nearest(u, v_bus) - kept) * blend
+            kept + (near - kept) * blend
         }
     };
     Limited { u, reach }
@@ -54,16 +55,23 @@ fn nearest(u: &Vector3<f64>, v_bus: f64) -> Vector3<f64> {
     clipped.add_scalar(-clipped.mean())
 }
 
-/// The point on the hexagon's edge, on `u`'s side, that has the scalar product `p` with `f`
-/// (|p| at most what the hexagon gives).
+/// The point on the hexagon's edge, on `u`'s side, that has `u`'s scalar product with `f`, or the
+/// greatest that the hexagon gives.
 ///
 /// Seen from the phase d of the largest EMF, the hexagon is |X|, |Y|, |X - Y| <= v_bus in the
 /// line-to-line voltages X, Y to the two others, and p = f_x X + f_y Y with weights of one sign.
 /// Where the lighter one's weight vanishes it would jump along the edge; the floor under its
-/// weight keeps it continuous for less than the demanded product.
-fn clip_across(u: &Vector3<f64>, f: &Vector3<f64>, p: f64, v_bus: f64) -> Vector3<f64> {
+/// weight keeps it continuous for less than the demanded product, and so does never giving it less
+/// than `near`, the nearest point, does (whose product is never above the demanded one).
+fn clip_across(
+    u: &Vector3<f64>,
+    f: &Vector3<f64>,
+    near: &Vector3<f64>,
+    v_bus: f64,
+) -> Vector3<f64> {
     let d = f.iamax();
     let (x, y) = ((d + 1) % 3, (d + 2) % 3);
+    let p = u.dot(f);
     // Turned so that product and weights are positive.
     let turn = if p < 0.0 { -1.0 } else { 1.0 };
     let sense = turn * f[d].signum();
@@ -74,9 +82,13 @@ fn clip_across(u: &Vector3<f64>, f: &Vector3<f64>, p: f64, v_bus: f64) -> Vector
     } else {
         (y, x)
     };
-    let missing = p.abs() - weight(heavy) * v_bus;
-    let to_light = if missing > 0.0 {
-        (missing / weight(light).max(f[d].abs() * LIGHT_SHARE)).min(v_bus)
+    // Past the reach there is never less than nothing missing, whatever rounding says.
+    let p_heavy = weight(heavy) * v_bus;
+    let missing = p.abs().min(f[d].abs() * v_bus) - p_heavy;
+    let to_light = if p.abs() >= p_heavy {
+        (missing.max(0.0) / weight(light).max(f[d].abs() * LIGHT_SHARE))
+            .min(v_bus)
+            .max(sense * (near[d] - near[light]))
     } else {
         (missing / f[d].abs()).max(-v_bus)
     };
