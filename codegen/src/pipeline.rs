@@ -77,7 +77,7 @@ fn check_stability(
     }
     let leaves = |tolerance: f64, (low, high): (f64, f64)| {
         // The search ends at 0.1 and 10; beyond it nothing is known to be unstable.
-        (1.0 - tolerance < low && low > 0.1001) || (1.0 + tolerance > high && high < 9.9)
+        (1.0 - tolerance < low && low > 0.1) || (1.0 + tolerance > high && high < 10.0)
     };
     let motor = &spec.motor;
     if leaves(motor.inductance_tolerance, stable.inductance) {

@@ -151,7 +151,7 @@ fn stable_interval(radius: impl Fn(f64) -> f64) -> (f64, f64) {
             inside = outside;
             outside *= 1.02_f64.powf(direction);
             if !(0.1..=10.0).contains(&outside) {
-                return inside;
+                return outside.clamp(0.1, 10.0);
             }
         }
         while (outside / inside - 1.0).abs() > 1e-4 {

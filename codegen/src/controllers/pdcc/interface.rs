@@ -41,9 +41,9 @@ pub fn interface(
 
 fn ratios((low, high): (f64, f64)) -> String {
     let bound = |ratio: f64| {
-        if ratio <= 0.1001 {
+        if ratio <= 0.1 {
             "10 % or less".to_owned()
-        } else if ratio >= 9.9 {
+        } else if ratio >= 10.0 {
             "1000 % or more".to_owned()
         } else {
             percent(ratio)
@@ -231,7 +231,7 @@ fn constants(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<Publi
         fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
         fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
         fixed("TORQUE_CONSTANT", spec.torque_constant(), "Nm/A", "Torque per ampere of set-point, k_t"),
-        fixed("POLE", design.plant.pole, "", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
+        fixed("POLE", design.plant.pole, "A/A", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
         fixed("GAIN", design.plant.gain, "A/V", "Gain b of the discrete plant"),
         fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),
         vectors(

@@ -114,9 +114,7 @@ impl Step<'_, '_> {
             (Some(rotor), EmfSource::Model) => {
                 let flux = self.lowering.flux_model();
                 let e_limit = self.design.e_limit;
-                let e = self
-                    .lowering
-                    .model_emf(flux, rotor, options.delay, e_limit);
+                let e = self.lowering.model_emf(flux, rotor, options.delay, e_limit);
                 (e.target, e.present)
             }
             // An estimate is taken as constant over both periods.
