@@ -52,9 +52,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
     #[test]
-    fn rounded_products(c in word(32), x in word(32), shift in 31_u32..=62) {
-        let expected = interpreted(&[symmetric(32); 2], &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift.max(32)));
-        prop_assert_eq!(mul_round(Word(c), Word(x), shift.max(32)).0, expected);
+    fn rounded_products(c in word(32), x in word(32), shift in 32_u32..=62) {
+        let expected = interpreted(&[symmetric(32); 2], &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift));
+        prop_assert_eq!(mul_round(Word(c), Word(x), shift).0, expected);
     }
 
     #[test]

@@ -45,6 +45,7 @@ impl Types<'_> {
 
             impl #name {
                 /// A drive at rest: zero set-point, initial state.
+                #[must_use]
                 pub const fn new() -> Self {
                     Self {
                         set_point: SetPoint { words: DoubleBuffer::new([#(#initial),*]) },
@@ -59,6 +60,7 @@ impl Types<'_> {
                 }
 
                 /// The set-point, for the main program.
+                #[must_use]
                 pub fn set_point(&self) -> &SetPoint {
                     &self.set_point
                 }
@@ -149,11 +151,13 @@ impl Types<'_> {
                 }
 
                 /// Why the drive is tripped, or [`Fault::None`].
+                #[must_use]
                 pub fn fault(&self) -> Fault {
                     self.state.fault()
                 }
 
                 /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+                #[must_use]
                 pub fn is_running(&self) -> bool {
                     self.state.is_running()
                 }

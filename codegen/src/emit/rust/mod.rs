@@ -23,6 +23,7 @@ use interface::Types;
 use names::{HELPERS, docs, identifiers, inner_docs, number, screaming};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// How the emitted type appears to the code around it.
@@ -165,20 +166,22 @@ fn imports(names: &BTreeSet<String>, interface: &Interface) -> TokenStream {
     } else {
         quote!({Word, #(#helpers),*})
     };
-    let mut fixed: BTreeSet<String> = interface
+    // In the order of their integer bits, as rustfmt has them.
+    let mut frac_bits: BTreeSet<Reverse<u32>> = interface
         .constants
         .iter()
         .filter_map(|constant| match constant.value {
             PublicValue::Fixed { frac_bits, .. } | PublicValue::Vectors { frac_bits, .. } => {
-                Some(interface::fixed_type(frac_bits).to_string())
+                Some(Reverse(frac_bits))
             }
             _ => None,
         })
         .collect();
-    fixed.insert("I16F16".to_owned());
-    let fixed: Vec<Ident> = fixed
+    // The set-point's type.
+    frac_bits.insert(Reverse(16));
+    let fixed: Vec<Ident> = frac_bits
         .iter()
-        .map(|name| Ident::new(name, Span::call_site()))
+        .map(|&Reverse(frac_bits)| interface::fixed_type(frac_bits))
         .collect();
     let fixed = match fixed.as_slice() {
         [single] => quote!(#single),

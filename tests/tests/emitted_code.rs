@@ -1,0 +1,110 @@
+//! What emitted code never contains, and that it is laid out as `rustfmt` lays it out.
+
+use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust, rustfmt};
+use hexagen_codegen::pipeline::generate;
+use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_tests::library::motors;
+use proc_macro2::{TokenStream, TokenTree};
+
+const VARIANTS: [&str; 4] = [
+    "pdcc",
+    "pdcc:modulation=pair,advance=1",
+    "pdcc:emf=model,reference=proportional,saturation=nearest",
+    "pdcc:saturation=keep_angle,delay=0",
+];
+
+/// Every motor in every variant that its specification allows: name, tokens.
+fn all_code() -> Vec<(String, TokenStream)> {
+    let mut all = vec![];
+    for motor in motors() {
+        for variant in VARIANTS {
+            let mut ast = parse_toml(&motor.text, &motor.name).expect("the motor parses");
+            apply_variant(&mut ast, variant).expect("the variant parses");
+            let Ok((spec, origins)) = check(&ast) else {
+                continue;
+            };
+            let Ok(generated) = generate(&spec, &origins) else {
+                continue;
+            };
+            let surface = Surface::public(&generated.interface.type_name);
+            let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
+            all.push((format!("{} {variant}", motor.name), tokens));
+        }
+    }
+    assert!(
+        all.len() > 3 * VARIANTS.len(),
+        "too few drives are generated: {}",
+        all.len()
+    );
+    all
+}
+
+/// All words, signs and numbers of the code, documentation left out.
+fn code_words(tokens: TokenStream, words: &mut Vec<String>) {
+    let mut tokens = tokens.into_iter().peekable();
+    while let Some(token) = tokens.next() {
+        match token {
+            TokenTree::Punct(sign) if sign.as_char() == '#' => {
+                words.push("#".to_owned());
+                // Attributes: `#[doc = "…"]`, `#![doc = "…"]`.
+                tokens.next_if(|token| token.to_string() == "!");
+                if let Some(TokenTree::Group(group)) = tokens.next() {
+                    let attribute = group.stream().to_string();
+                    if !attribute.starts_with("doc") {
+                        words.push(attribute);
+                    }
+                }
+            }
+            TokenTree::Group(group) => code_words(group.stream(), words),
+            TokenTree::Literal(literal) if literal.to_string().contains('"') => {}
+            other => words.push(other.to_string()),
+        }
+    }
+}
+
+#[test]
+fn no_float_no_unsafe_no_panic_no_loop_no_division() {
+    let never = [
+        "unsafe", "f32", "f64", "panic", "assert", "unwrap", "expect", "for_", "while", "loop",
+        "alloc", "Box", "Vec", "allow", "/", "%",
+    ];
+    for (name, tokens) in all_code() {
+        let mut words = vec![];
+        code_words(tokens, &mut words);
+        assert!(words.len() > 1000, "{name}: {} words", words.len());
+        for word in &words {
+            assert!(!never.contains(&word.as_str()), "{name} contains `{word}`");
+            let float =
+                word.contains('.') && word.starts_with(|first: char| first.is_ascii_digit());
+            assert!(!float, "{name} contains the number {word}");
+            assert!(
+                !word.contains("allow") && !word.contains("unsafe"),
+                "{name}: #[{word}]"
+            );
+        }
+        // `for` stands in `impl Trait for Type` alone.
+        let loops = words.windows(2).filter(|pair| pair[0] == "for").count();
+        let impls = words.iter().filter(|word| *word == "impl").count();
+        assert!(loops < impls, "{name} contains a loop");
+    }
+}
+
+#[test]
+fn rustfmt_leaves_formatted_code_alone() {
+    let (name, tokens) = all_code().remove(0);
+    let text = format_rust(&tokens);
+    let Some(formatted) = rustfmt(&text) else {
+        panic!("rustfmt is not installed (rustup component add rustfmt)");
+    };
+    assert_eq!(rustfmt(&formatted).as_ref(), Some(&formatted), "{name}");
+    // Layout is all that changes: the tokens are the emitted ones.
+    let same = |text: &str| format_rust(&text.parse().expect("Rust")) == format_rust(&tokens);
+    assert!(same(&text) && same(&formatted), "{name}");
+    // No line of code is longer than rustfmt's width: nothing was too complex for it to lay out.
+    let long = |line: &&str| line.len() > 100 && !line.contains("//") && line.starts_with("    ");
+    assert_eq!(
+        formatted.lines().filter(long).collect::<Vec<_>>(),
+        Vec::<&str>::new(),
+        "{name}"
+    );
+}
