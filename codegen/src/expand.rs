@@ -259,6 +259,33 @@ mod tests {
     }
 
     #[test]
+    fn a_motor_file_is_tracked_by_its_place_in_the_crate() {
+        let folder = std::env::temp_dir().join(format!("hexagen-track-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        std::fs::write(folder.join("hub.toml"), include_str!("example.toml"))
+            .expect("a motor file");
+        let expand = |name: &TokenStream| {
+            let call = quote!(pub #name { motor: "hub.toml", controller: pdcc });
+            expand_controller(call, &folder).to_string()
+        };
+        let text = expand(&quote!(Hub));
+        let again = expand(&quote!(Hub));
+        std::fs::remove_dir_all(&folder).expect("the folder is ours");
+        assert_eq!(text, again);
+        assert!(!text.contains("compile_error"), "{text}");
+        let tracking = quote!(include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/",
+            "hub.toml"
+        )));
+        assert!(text.contains(&tracking.to_string()), "no tracking");
+        assert!(
+            !text.contains(&*folder.to_string_lossy()),
+            "an absolute path leaks"
+        );
+    }
+
+    #[test]
     fn the_example_of_the_empty_shape_generates() {
         let ast =
             crate::spec::parse_toml(include_str!("example.toml"), "example.toml").expect("parses");

@@ -119,19 +119,23 @@ proptest! {
     #[test]
     fn operators_of_words(a in word(30), c in word(30), bits in 0_u32..=31) {
         let wide = [symmetric(30); 2];
-        let two = |build: fn(&mut FunctionBuilder<'_>, Value, Value) -> Value| {
-            interpreted(&wide, &[a, c], &[0], |b, x, _| build(b, x[0], x[1]))
-        };
-        let one = |build: fn(&mut FunctionBuilder<'_>, Value) -> Value| {
-            interpreted(&wide[..1], &[a], &[0], |b, x, _| build(b, x[0]))
-        };
+        macro_rules! two {
+            ($operator:ident) => {
+                interpreted(&wide, &[a, c], &[0], |b, x, _| b.$operator(x[0], x[1]))
+            };
+        }
+        macro_rules! one {
+            ($operator:ident) => {
+                interpreted(&wide[..1], &[a], &[0], |b, x, _| b.$operator(x[0]))
+            };
+        }
         let (x, y) = (Word(a), Word(c));
-        prop_assert_eq!((x + y).0, two(|b, x, y| b.add(x, y)));
-        prop_assert_eq!((x - y).0, two(|b, x, y| b.sub(x, y)));
-        prop_assert_eq!(x.min(y).0, two(|b, x, y| b.min(x, y)));
-        prop_assert_eq!(x.max(y).0, two(|b, x, y| b.max(x, y)));
-        prop_assert_eq!((-x).0, one(|b, x| b.neg(x)));
-        prop_assert_eq!(x.abs().0, one(|b, x| b.abs(x)));
+        prop_assert_eq!((x + y).0, two!(add));
+        prop_assert_eq!((x - y).0, two!(sub));
+        prop_assert_eq!(x.min(y).0, two!(min));
+        prop_assert_eq!(x.max(y).0, two!(max));
+        prop_assert_eq!((-x).0, one!(neg));
+        prop_assert_eq!(x.abs().0, one!(abs));
         let shifted = interpreted(&wide[..1], &[a], &[0], |b, x, _| b.shift_right(x[0], bits));
         prop_assert_eq!((x >> bits).0, shifted);
         let limits = [symmetric(30), Interval::new(-9000, -7), Interval::new(-6, 9000)];

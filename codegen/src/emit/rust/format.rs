@@ -72,12 +72,15 @@ fn is_name(text: &str) -> bool {
             .all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// A blank line before every item, but not between imports or between plain constants.
+/// A blank line before every item, but not between imports or between plain constants, and before
+/// the last part of a step.
 fn separate_items(text: &str) -> String {
     let mut separated = String::with_capacity(text.len());
     let mut before = "";
     for line in text.lines() {
-        if begins_item(line) && ends_item(before) && !stays_close(before, line) {
+        if ends_item(before)
+            && (begins_item(line) && !stays_close(before, line) || begins_ending(before, line))
+        {
             separated.push('\n');
         }
         separated.push_str(line);
@@ -95,6 +98,12 @@ fn begins_item(line: &str) -> bool {
         "///", "#[", "pub ", "fn ", "impl", "struct ", "const ", "static ", "use ",
     ];
     [0, 4, 8].contains(&depth) && words.iter().any(|word| code.starts_with(word))
+}
+
+/// What a step leaves behind stands apart from what it computes.
+fn begins_ending(before: &str, line: &str) -> bool {
+    let stores = |line: &str| line.trim_start().starts_with("state.");
+    stores(line) && !stores(before) || line.trim_start() == "Legs {"
 }
 
 fn ends_item(line: &str) -> bool {
