@@ -4,4 +4,4 @@ pub mod emf;
 mod plant;
 pub mod vectors;
 
-pub use plant::{Discretisation, DiscretePlant};
+pub use plant::{DiscretePlant, Discretisation};

@@ -100,6 +100,7 @@ impl Interval {
     }
 
     /// The smallest interval that holds both.
+    #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),

@@ -16,8 +16,8 @@ pub mod verify;
 pub use build::FunctionBuilder;
 pub use cost::{Cost, PathCost, live_words};
 pub use graph::{
-    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId, Program,
-    Stage, StateId, Table, TableId, Value, Word,
+    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId,
+    Program, Stage, StateId, Table, TableId, Value, Word,
 };
 pub use interpret::{Escape, Machine};
 pub use verify::{VerifiedGraph, Violation, verify};

@@ -154,14 +154,23 @@ impl Lowering<'_> {
         );
         let start = self.ahead("theta_start", rotor, delay);
         let end = self.ahead("theta_end", rotor, delay + 1);
-        let at_start = self.flux_at(["flux_start_a", "flux_start_b"], "theta_start_b", flux, start);
+        let at_start = self.flux_at(
+            ["flux_start_a", "flux_start_b"],
+            "theta_start_b",
+            flux,
+            start,
+        );
         let at_end = self.flux_at(["flux_end_a", "flux_end_b"], "theta_end_b", flux, end);
         let target = self.emf_between(["e_a", "e_b"], flux, at_start, at_end, e_limit);
         let present = if delay == 0 {
             target
         } else {
-            let at_now =
-                self.flux_at(["flux_now_a", "flux_now_b"], "theta_now_b", flux, rotor.theta);
+            let at_now = self.flux_at(
+                ["flux_now_a", "flux_now_b"],
+                "theta_now_b",
+                flux,
+                rotor.theta,
+            );
             self.emf_between(["e_a_now", "e_b_now"], flux, at_now, at_start, e_limit)
         };
         ModelledEmf { target, present }

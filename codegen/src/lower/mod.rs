@@ -16,9 +16,9 @@ mod supervise;
 pub use emf::{FluxModel, ModelledEmf};
 pub use limit::{LimitRule, Limited};
 pub use measure::{Currents, Hall};
-pub use modulate::{Applied, Command, PairModulation};
-pub use number::{Coefficient, product_bound, round_down};
+pub use modulate::{Applied, Command, OffLeg, PairModulation};
 use number::round_half_up;
+pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};
 pub use supervise::{Mode, SupervisorWords};
 

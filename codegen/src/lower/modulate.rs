@@ -23,6 +23,17 @@ pub struct Applied {
     pub off: Value,
 }
 
+/// What decides where an off leg's terminal sits.
+#[derive(Clone, Copy, Debug)]
+pub struct OffLeg {
+    /// The rails.
+    pub bus: Bus,
+    /// 1/3, for the mean of three legs.
+    pub third: Coefficient,
+    /// Current above which the leg's diode conducts, ampere.
+    pub threshold: f64,
+}
+
 /// State words and flags of pair modulation.
 #[derive(Clone, Copy, Debug)]
 pub struct PairModulation {
@@ -56,7 +67,7 @@ impl Lowering<'_> {
 
     fn compare_centred(&mut self, name: &str, centred: Value, bus: Bus) -> Value {
         let bits = self.scale.voltage_bits;
-        let scaled = self.to_nominal(centred, bus);
+        let scaled = self.nominal_share(centred, bus);
         let half = i64::from(self.spec.inverter.timer_period) << (bits - 1);
         let offset = self.number(
             "half_period",
@@ -64,18 +75,18 @@ impl Lowering<'_> {
             "Half the timer period, and half a count to round.",
         );
         let lifted = self.b.add(scaled, offset);
-        self.to_counts(name, lifted)
+        self.counts(name, lifted)
     }
 
     /// A voltage of the measured bus as a share of the nominal one, which the timer period stands for.
-    fn to_nominal(&mut self, volts: Value, bus: Bus) -> Value {
+    fn nominal_share(&mut self, volts: Value, bus: Bus) -> Value {
         match bus.ratio {
             None => volts,
             Some((ratio, shift)) => self.b.mul(ratio, volts, shift),
         }
     }
 
-    fn to_counts(&mut self, name: &str, lifted: Value) -> Value {
+    fn counts(&mut self, name: &str, lifted: Value) -> Value {
         let counts = self.b.shift_right(lifted, self.scale.voltage_bits);
         let zero = self.zero();
         let top = self.number(
@@ -272,10 +283,10 @@ impl Lowering<'_> {
         let volts = self.b.abs(line);
         self.b.name("line_volts", volts);
         let bits = self.scale.voltage_bits;
-        let nominal = self.to_nominal(volts, bus);
+        let nominal = self.nominal_share(volts, bus);
         let round = self.b.literal(1 << (bits - 1));
         let lifted = self.b.add(nominal, round);
-        let compare = self.to_counts("compare_line", lifted);
+        let compare = self.counts("compare_line", lifted);
         let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
         let pulsed_sign = self.b.select(forward, plus, minus);
         self.b.name("pulsed_sign", pulsed_sign);
@@ -352,9 +363,11 @@ impl Lowering<'_> {
         applied: Applied,
         currents: &Currents,
         e: [Value; 2],
-        bus: Bus,
-        third: Coefficient,
-        threshold: f64,
+        &OffLeg {
+            bus,
+            third,
+            threshold,
+        }: &OffLeg,
     ) -> [Value; 2] {
         self.b.stage(
             "applied_voltage",

@@ -23,7 +23,9 @@ pub fn round_down(x: f64) -> f64 {
 fn round_coefficient(value: f64, word: u32) -> Option<(i32, u32)> {
     let limit = f64::from(word - 1).exp2() - 1.0;
     let rounded = |shift: u32| round_half_up(value * f64::from(shift).exp2());
-    let shift = (0..=word).rev().find(|&shift| rounded(shift).abs() <= limit)?;
+    let shift = (0..=word)
+        .rev()
+        .find(|&shift| rounded(shift).abs() <= limit)?;
     Some((rounded(shift) as i32, shift))
 }
 

@@ -183,7 +183,7 @@ fn fixed(name: &str, value: f64, unit: &str, doc: &str) -> PublicConstant {
 }
 
 fn vectors(name: &str, list: &[Vector2<f64>], doc: Vec<String>) -> PublicConstant {
-    let largest = list.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    let largest = list.iter().map(Vector2::amax).fold(0.0, f64::max);
     let frac_bits = fraction_bits(largest);
     let scale = f64::from(frac_bits).exp2();
     let bits = list

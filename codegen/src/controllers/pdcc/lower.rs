@@ -6,8 +6,8 @@ use crate::diagnostics::engineering;
 use crate::ir::{Interval, Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{
-    Applied, Bus, Coefficient, Currents, LimitRule, Lowering, PairModulation, RotorWords, Scale,
-    SupervisorWords, product_bound, round_down,
+    Applied, Bus, Coefficient, Currents, LimitRule, Lowering, OffLeg, PairModulation, RotorWords,
+    Scale, SupervisorWords, product_bound, round_down,
 };
 use crate::scaling::Lowered;
 use crate::spec::Spec;
@@ -110,18 +110,15 @@ impl Step<'_, '_> {
         let third = self.third();
         let bus = self.lowering.read_bus(self.set_point);
         let now = self.applied_now(&words, &currents, bus, third);
-        let (e, e_now) = match (&rotor, options.emf) {
-            (Some(rotor), EmfSource::Model) => {
-                let flux = self.lowering.flux_model();
-                let e_limit = self.design.e_limit;
-                let e = self.lowering.model_emf(flux, rotor, options.delay, e_limit);
-                (e.target, e.present)
-            }
+        let (e, e_now) = if let (Some(rotor), EmfSource::Model) = (&rotor, options.emf) {
+            let flux = self.lowering.flux_model();
+            let e_limit = self.design.e_limit;
+            let e = self.lowering.model_emf(flux, rotor, options.delay, e_limit);
+            (e.target, e.present)
+        } else {
             // An estimate is taken as constant over both periods.
-            _ => {
-                let e = self.estimate_emf(&words, &currents);
-                (e, e)
-            }
+            let e = self.estimate_emf(&words, &currents);
+            (e, e)
         };
         let u = self.deadbeat(reference, &currents, now, e, e_now);
         let rule = match options.saturation {
@@ -171,9 +168,11 @@ impl Step<'_, '_> {
                             applied,
                             &currents,
                             e,
-                            bus,
-                            third,
-                            options.commutation_threshold,
+                            &OffLeg {
+                                bus,
+                                third,
+                                threshold: options.commutation_threshold,
+                            },
                         ),
                     };
                     remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
@@ -334,9 +333,11 @@ impl Step<'_, '_> {
             applied,
             currents,
             e,
-            bus,
-            third,
-            self.options.commutation_threshold,
+            &OffLeg {
+                bus,
+                third,
+                threshold: self.options.commutation_threshold,
+            },
         ))
     }
 

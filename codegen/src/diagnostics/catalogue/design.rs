@@ -81,7 +81,7 @@ pub fn word_too_narrow(at: &Location, signal: &str, needed: u32, word: u32) -> D
     Diagnostic::new(
         Code::WordTooNarrow,
         at,
-        format!("`word`: {word} bits, but {signal} needs {needed} bits; {remedy}"),
+        format!("`word`: {word} bits, but {needed} are needed for {signal}; {remedy}"),
     )
 }
 
@@ -146,7 +146,7 @@ mod tests {
             ),
             (
                 word_too_narrow(&at, "voltage `u_a`", 19, 16),
-                "m.toml:3:5: error[HX0504]: `word`: 16 bits, but voltage `u_a` needs 19 bits; choose `word: 32`, or lower `adc_bits`",
+                "m.toml:3:5: error[HX0504]: `word`: 16 bits, but 19 are needed for voltage `u_a`; choose `word: 32`, or lower `adc_bits`",
             ),
             (
                 coefficient_out_of_range(&at, "k_di", 0.0042, 16, 0.02, 0.001),
