@@ -46,7 +46,7 @@ pub struct Verification {
     pub engine: String,
     /// Steps compared, all variants together.
     pub steps: u64,
-    /// Steps that differed in any output or state bit.
+    /// Controllers of which a step differed in any output or state bit.
     pub mismatches: u64,
 }
 

@@ -118,9 +118,12 @@ fn ripple_tolerance(band: Band) -> f64 {
 }
 
 impl Expected {
-    /// What is expected at a speed in rpm.
+    /// What is expected at a speed in rpm, to half a turn per minute: speeds that come from rad/s
+    /// are not whole.
     pub fn at(&self, rpm: f64) -> Option<&ExpectedPoint> {
-        self.points.iter().find(|point| point.rpm == rpm)
+        self.points
+            .iter()
+            .find(|point| (point.rpm - rpm).abs() < 0.5)
     }
 }
 
@@ -222,5 +225,37 @@ fn expected(points: [ExpectedPoint; 2], limit: impl Into<Band>) -> Expected {
             .map(|(point, rpm)| ExpectedPoint { rpm, ..point })
             .collect(),
         limit_pct: Some(limit.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_hold_what_is_near_enough() {
+        let band = Band::from((106.0, 109.0));
+        for (measured, holds) in [
+            (104.0, true),
+            (103.9, false),
+            (107.0, true),
+            (111.0, true),
+            (111.1, false),
+            (f64::NAN, false),
+        ] {
+            assert_eq!(band.holds(measured, 2.0), holds, "{measured}");
+        }
+        assert_eq!(ripple_tolerance(1.8.into()), 0.5);
+        assert_eq!(ripple_tolerance(28.0.into()), 0.15 * 28.0);
+    }
+
+    #[test]
+    fn speeds_that_were_angular_find_their_expectation() {
+        let row = &design_table()[0].timer;
+        let rated = 209.439_510_239_319_5 * 30.0 / std::f64::consts::PI;
+        for rpm in [0.75 * rated, 1500.0, 1_499.999_999] {
+            assert!(row.at(rpm).is_some(), "{rpm}");
+        }
+        assert!(row.at(1000.0).is_none());
     }
 }

@@ -3,6 +3,7 @@
 //! The controller stands in for both models, so that the page has honest currents to show.
 
 use hexagen::{LegState, Legs, Sample};
+use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
@@ -129,11 +130,12 @@ fn generated(variant: &str) -> (Spec, GeneratedTexts, Stability) {
         &generated.interface,
         &Surface::public(&spec.name),
     );
+    let data_sheet = emit_datasheet(&generated.graph, &generated.interface);
     let interface = generated.interface;
     let texts = GeneratedTexts {
         formats: interface.formats,
         rust: format_rust(&tokens),
-        data_sheet: interface.doc.join("\n"),
+        data_sheet,
         spec_toml: interface.spec_toml,
     };
     let stability = Stability {

@@ -153,8 +153,10 @@ pub fn chart<'a, 'b>(
     let mut chart = ChartBuilder::on(area)
         .margin_top(px(margins.top))
         .margin_right(px(margins.right))
+        // Upright titles would touch the edge.
+        .margin_left(px(2.0))
         .set_label_area_size(LabelAreaPosition::Bottom, px(margins.bottom))
-        .set_label_area_size(LabelAreaPosition::Left, px(margins.left))
+        .set_label_area_size(LabelAreaPosition::Left, px(margins.left - 2.0))
         .build_cartesian_2d(
             Coordinate {
                 range: x.range,

@@ -34,7 +34,7 @@ const VARIANTS: [RGBColor; 8] = [
 ];
 
 /// Colours that the dark scheme replaces; the others read well on both grounds.
-const DARK: [(RGBColor, &str); 9] = [
+const DARK: [(RGBColor, &str); 11] = [
     (INK, "#D7DCE2"),
     (AXIS, "#8B949E"),
     (GRID, "#2D333B"),
@@ -43,6 +43,8 @@ const DARK: [(RGBColor, &str); 9] = [
     (PHASES[0], "#6CA6E0"),
     (PHASES[2], "#E0788A"),
     (VARIANTS[0], "#4DA3D9"),
+    (VARIANTS[1], "#F07F35"),
+    (VARIANTS[2], "#2FC295"),
     (VARIANTS[6], "#B8946C"),
 ];
 

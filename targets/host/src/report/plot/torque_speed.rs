@@ -205,14 +205,14 @@ fn speed_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     least..most + pad
 }
 
-/// Holds every curve; at least 15 % of the demand high.
+/// Holds every curve; at least 9 % of the demand high.
 fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     let torques = plot
         .curves
         .iter()
         .flat_map(|curve| curve.points.iter().map(|point| point.1));
-    let span = 0.1 * plot.torque.abs();
-    let start = (plot.torque - span, plot.torque + 0.5 * span);
+    let span = 0.03 * plot.torque.abs();
+    let start = (plot.torque - 2.0 * span, plot.torque + span);
     let (least, most) = torques
         .filter(|torque| torque.is_finite())
         .fold(start, |(least, most), torque| {

@@ -35,7 +35,7 @@ pub fn heading(data: &ReportData) -> Markup {
                     (grouped(check.steps)) " steps of " (check.engine) " code equal the bit-true model in every output and state bit."
                 } @else {
                     strong { "Not verified: " }
-                    (grouped(check.mismatches)) " of " (grouped(check.steps)) " steps of " (check.engine) " code differ from the bit-true model."
+                    (check.engine) " code of " (grouped(check.mismatches)) " controllers differs from the bit-true model (" (grouped(check.steps)) " steps compared)."
                 }
             }
         }

@@ -182,12 +182,7 @@ pub fn errors(data: &ReportData) -> Markup {
         @if !with_signals.is_empty() {
             h3 { "Signals" }
             p.note { "Distance of the emitted code from the ideal model, step by step, from the same state and samples." }
-            @for (place, variant) in with_signals.iter().enumerate() {
-                details open[place == 0] {
-                    summary { (variant.label) }
-                    div.scroll { (signal_table(variant)) }
-                }
-            }
+            div.scroll { (signal_table(&with_signals)) }
         }
     }
 }
@@ -256,15 +251,16 @@ fn merit_row(comparison: &Comparison<'_>) -> Markup {
     }
 }
 
-fn signal_table(variant: &Variant) -> Markup {
-    let bounds = variant
-        .signal_errors
+fn signal_table(variants: &[&Variant]) -> Markup {
+    let bounds = variants
         .iter()
+        .flat_map(|variant| &variant.signal_errors)
         .any(|error| error.bound.is_some());
     html! {
         table {
             thead {
                 tr {
+                    th { "Variant" }
                     th { "Signal" }
                     th.number { "Largest" }
                     th.number { "RMS" }
@@ -272,14 +268,21 @@ fn signal_table(variant: &Variant) -> Markup {
                     th { "Unit" }
                 }
             }
-            tbody {
-                @for error in &variant.signal_errors {
-                    tr {
-                        td { code { (error.signal) } }
-                        td.number { (significant(error.largest)) }
-                        td.number { (significant(error.rms)) }
-                        @if bounds { td.number { (error.bound.map_or_else(String::new, significant)) } }
-                        td { (error.unit) }
+            @for variant in variants {
+                tbody {
+                    @for (row, error) in variant.signal_errors.iter().enumerate() {
+                        tr {
+                            @if row == 0 {
+                                td rowspan=(variant.signal_errors.len()) { (variant.label) }
+                            }
+                            td { code { (error.signal) } }
+                            td.number { (significant(error.largest)) }
+                            td.number { (significant(error.rms)) }
+                            @if bounds {
+                                td.number { (error.bound.map_or_else(String::new, significant)) }
+                            }
+                            td { (error.unit) }
+                        }
                     }
                 }
             }

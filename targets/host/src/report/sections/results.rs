@@ -58,7 +58,7 @@ pub fn section(data: &ReportData) -> Markup {
                 }
             }
         }
-        @for note in &data.notes { p { (note) } }
+        @for note in &data.notes { p { (unbroken(note)) } }
     }
 }
 
@@ -187,6 +187,11 @@ fn expected_limit(expected: Option<&Expected>) -> String {
     expected
         .and_then(|expected| expected.limit_pct)
         .map_or_else(String::new, |band| band_text(band, &|x| number(x, 0)))
+}
+
+/// Percentages that do not break before their sign.
+fn unbroken(text: &str) -> String {
+    text.replace(" %", "\u{a0}%")
 }
 
 /// A band as one value or from-to.

@@ -91,7 +91,7 @@ fn parameter_plots(
             )?;
             let caption = html! {
                 (variant_swatch(index))
-                span { (variant.label) ", " (name) ", " strong { (rpm) " rpm" } }
+                span { (variant.label) ", " (name) ", " strong { (rpm) "\u{a0}rpm" } }
             };
             Ok(figure(&caption, &plot))
         })

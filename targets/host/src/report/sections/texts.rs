@@ -3,7 +3,9 @@
 use super::nothing;
 use crate::report::highlight::Highlighter;
 use crate::report::{GeneratedTexts, ReportData, ReportError, Variant};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
+use pulldown_cmark::html::push_html;
+use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
 fn generated(data: &ReportData) -> impl Iterator<Item = (&Variant, &GeneratedTexts)> {
     data.variants
@@ -36,27 +38,84 @@ pub fn code(data: &ReportData, highlighter: &Highlighter) -> Result<Markup, Repo
 
 /// Data sheets, folded.
 pub fn data_sheet(data: &ReportData) -> Markup {
-    plain(data, "data sheet", |texts| &texts.data_sheet)
+    folded(data, "data sheet", |texts| {
+        let sheet = texts.data_sheet.trim();
+        (!sheet.is_empty()).then(|| html! { div.sheet { (markdown(sheet)) } })
+    })
 }
 
 /// Normalised specifications, folded.
 pub fn spec(data: &ReportData) -> Markup {
-    plain(data, "specification", |texts| &texts.spec_toml)
+    folded(data, "specification", |texts| {
+        let spec = texts.spec_toml.trim();
+        (!spec.is_empty()).then(|| html! { pre { (spec) } })
+    })
 }
 
-fn plain(data: &ReportData, what: &str, of: fn(&GeneratedTexts) -> &str) -> Markup {
+fn folded(
+    data: &ReportData,
+    what: &str,
+    content: impl Fn(&GeneratedTexts) -> Option<Markup>,
+) -> Markup {
     let shown: Vec<_> = generated(data)
-        .filter(|(_, texts)| !of(texts).trim().is_empty())
+        .filter_map(|(variant, texts)| Some((variant, content(texts)?)))
         .collect();
     if shown.is_empty() {
         return nothing(what);
     }
     html! {
-        @for (variant, texts) in shown {
+        @for (variant, content) in shown {
             details {
                 summary { (variant.label) }
-                pre { (of(texts).trim_end()) }
+                (content)
             }
         }
+    }
+}
+
+/// Levels by which headings of a text go down, to stay below the section's own.
+const BELOW: usize = 2;
+
+/// Markdown as HTML. HTML inside of it is shown as text, so that the page stays its own.
+fn markdown(text: &str) -> Markup {
+    let lower = |level: HeadingLevel| {
+        HeadingLevel::try_from(level as usize + BELOW).unwrap_or(HeadingLevel::H6)
+    };
+    let events = Parser::new_ext(text, Options::ENABLE_TABLES).map(|event| match event {
+        Event::Start(Tag::Heading {
+            level,
+            id,
+            classes,
+            attrs,
+        }) => Event::Start(Tag::Heading {
+            level: lower(level),
+            id,
+            classes,
+            attrs,
+        }),
+        Event::End(TagEnd::Heading(level)) => Event::End(TagEnd::Heading(lower(level))),
+        Event::Html(html) | Event::InlineHtml(html) => Event::Text(html),
+        other => other,
+    });
+    let mut html = String::new();
+    push_html(&mut html, events);
+    PreEscaped(html)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::markdown;
+
+    #[test]
+    fn markdown_keeps_to_its_place() {
+        let html =
+            markdown("# Sheet\n\nof <b>one</b> & all\n\n| a | b |\n|---|---|\n| 1 | `x < y` |\n");
+        let html = html.into_string();
+        assert!(html.contains("<h3>Sheet</h3>"), "{html}");
+        assert!(
+            html.contains("of &lt;b&gt;one&lt;/b&gt; &amp; all"),
+            "{html}"
+        );
+        assert!(html.contains("<td><code>x &lt; y</code></td>"), "{html}");
     }
 }

@@ -23,7 +23,15 @@ impl Panel<'_> {
     fn caption(&self) -> Markup {
         html! {
             (variant_swatch(self.index))
-            span { (self.variant.label) ", " strong { (number(self.record.rpm, 0)) " rpm" } }
+            span { (self.variant.label) ", " strong { (number(self.record.rpm, 0)) "\u{a0}rpm" } }
+        }
+    }
+
+    /// On two lines, for narrow plots.
+    fn tall_caption(&self) -> Markup {
+        html! {
+            (variant_swatch(self.index))
+            span { (self.variant.label) br; strong { (number(self.record.rpm, 0)) "\u{a0}rpm" } }
         }
     }
 
@@ -146,7 +154,7 @@ pub fn trajectories(data: &ReportData) -> Result<Markup, ReportError> {
             palette::variant(panel.index),
             &panel.describe("Current in the alpha-beta plane"),
         )?;
-        plots.push(figure(&panel.caption(), &plot));
+        plots.push(figure(&panel.tall_caption(), &plot));
     }
     Ok(html! {
         (legend([
