@@ -1,0 +1,91 @@
+//! A crate with several motors, held by generic firmware code: what a right macro call gives.
+
+use fixed::types::I16F16;
+use hexagen::{Drive, Fault, LegState, Sample, controller};
+
+controller! {
+    /// Rear hub, from a file beside the crate's Cargo.toml.
+    pub RearHub {
+        motor: "motors/hub.toml",
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+        },
+        controller: pdcc,
+    }
+}
+
+controller! {
+    /// Steering servo, stated in place.
+    pub(crate) Steering {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_torque: 3.3 Nm,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            hall_timer_clock: 1 MHz,
+        },
+        controller: pdcc { hall_capture: timer, modulation: pair },
+    }
+}
+
+/// Both are made at compile time.
+static REAR: RearHub = RearHub::new();
+const STEERING: Steering = Steering::new();
+
+/// Firmware code that knows no motor.
+fn run<D: Drive>(drive: &mut D, amperes: i16) -> [LegState; 3] {
+    drive.set_current(I16F16::from_num(amperes));
+    let mut states = [LegState::Off; 3];
+    for _ in 0..8 {
+        states = drive
+            .step(&Sample {
+                adc_a: 2048,
+                adc_b: 2048,
+                hall: 1,
+                hall_ticks: 0,
+            })
+            .state;
+    }
+    states
+}
+
+#[test]
+fn generic_code_holds_any_drive() {
+    assert!(run(&mut RearHub::new(), 5).contains(&LegState::Pulsed));
+    let mut steering = STEERING;
+    assert!(run(&mut steering, 5).contains(&LegState::Pulsed));
+    assert!(steering.is_running());
+    steering.step(2048, 2048, 7, 0);
+    assert_ne!(Drive::fault(&steering), Fault::None);
+    assert_eq!(
+        run(&mut steering, 5),
+        [LegState::Off; 3],
+        "a trip is latched"
+    );
+    // The set-point is taken through a shared reference, so that a drive may live in a static.
+    REAR.set_current(I16F16::from_num(3));
+}
+
+#[test]
+fn drives_know_their_motors() {
+    assert_eq!(<RearHub as Drive>::NAME, "RearHub");
+    assert_eq!(<Steering as Drive>::NAME, "Steering");
+    assert!(<RearHub as Drive>::SPEC.contains("pole_pairs = 4"));
+    assert!(<Steering as Drive>::SPEC.contains("modulation = \"pair\""));
+}
