@@ -1,7 +1,7 @@
 //! The Rust emitter: from a verified graph to a module that reads as if written by hand.
 //!
-//! [`plan`] says what each stage takes and yields, [`stage`] makes a function of it, [`function`]
-//! strings the calls together, [`expression`] writes operators, [`interface`] the types around them.
+//! `plan` says what each stage takes and yields, `stage` makes a function of it, `function`
+//! strings the calls together, `expression` writes operators, `interface` the types around them.
 //! The same graph gives the same tokens, whoever asks; nothing here can fail.
 
 mod expression;
