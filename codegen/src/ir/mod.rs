@@ -1,7 +1,7 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
 //! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
-//! [`verify`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
+//! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
 //! physical meaning comes along as text for documentation only.
 

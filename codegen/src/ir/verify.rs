@@ -413,7 +413,7 @@ fn in_domain(op: &Op, x: &[Interval]) -> bool {
         Op::MulRound { shift, .. } => (1..=62).contains(&shift),
         Op::MulFloor { shift, .. } => shift <= 62,
         Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
-        Op::Divide { shift, .. } => shift <= 31,
+        Op::Divide { shift, .. } => shift <= 31 && x[2].low >= 0,
         Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => {
             (1..=1 << 16).contains(&segments)
         }

@@ -10,7 +10,10 @@ use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 #[derive(Parser)]
-#[command(name = "xtask", about = "Sets up, builds, runs and compares; `cargo xtask test` is the check of every push")]
+#[command(
+    name = "xtask",
+    about = "Sets up, builds, runs and compares; `cargo xtask test` is the check of every push"
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -33,7 +36,9 @@ enum Command {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Test => steps::run(&steps::checks()),
-        Command::Nightly { steps } => steps::run(&steps::checks()).and_then(|()| steps::run(&steps::long_checks(steps))),
+        Command::Nightly { steps } => {
+            steps::run(&steps::checks()).and_then(|()| steps::run(&steps::long_checks(steps)))
+        }
         Command::Accept => steps::run(&steps::refresh()),
     };
     match outcome {

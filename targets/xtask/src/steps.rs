@@ -15,8 +15,16 @@ pub struct Step {
 }
 
 fn step(name: &'static str, arguments: &[&str]) -> Step {
-    let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
-    Step { name, arguments, environment: vec![], needs: None }
+    let arguments = arguments
+        .iter()
+        .map(|&argument| argument.to_owned())
+        .collect();
+    Step {
+        name,
+        arguments,
+        environment: vec![],
+        needs: None,
+    }
 }
 
 /// All checks of a push.
@@ -28,11 +36,29 @@ pub fn checks() -> Vec<Step> {
         },
         Step {
             needs: Some(("clippy", "rustup component add clippy")),
-            ..step("lints", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])
+            ..step(
+                "lints",
+                &[
+                    "clippy",
+                    "--workspace",
+                    "--all-targets",
+                    "--",
+                    "-D",
+                    "warnings",
+                ],
+            )
         },
         Step {
             environment: vec![("RUSTDOCFLAGS", "-D warnings")],
-            ..step("documentation", &["doc", "--workspace", "--no-deps", "--document-private-items"])
+            ..step(
+                "documentation",
+                &[
+                    "doc",
+                    "--workspace",
+                    "--no-deps",
+                    "--document-private-items",
+                ],
+            )
         },
         step("tests", &["test", "--workspace", "--no-fail-fast"]),
     ]
@@ -41,7 +67,19 @@ pub fn checks() -> Vec<Step> {
 /// What is too long for a push.
 pub fn long_checks(steps: u64) -> Vec<Step> {
     let steps = steps.to_string();
-    vec![step("verification", &["run", "--release", "--", "verify", "--controller", "all", "--steps", &steps])]
+    vec![step(
+        "verification",
+        &[
+            "run",
+            "--release",
+            "--",
+            "verify",
+            "--controller",
+            "all",
+            "--steps",
+            &steps,
+        ],
+    )]
 }
 
 /// Rewrites recorded expectations.
@@ -57,13 +95,20 @@ pub fn refresh() -> Vec<Step> {
 /// # Errors
 /// The name of the failing step, or what is missing and how to get it.
 pub fn run(steps: &[Step]) -> Result<(), String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .unwrap_or(Path::new("."));
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     for step in steps {
         if let Some((subcommand, remedy)) = step.needs {
-            let known = Command::new(&cargo).args([subcommand, "--version"]).output();
+            let known = Command::new(&cargo)
+                .args([subcommand, "--version"])
+                .output();
             if !known.is_ok_and(|output| output.status.success()) {
-                return Err(format!("`cargo {subcommand}` is missing; install it: {remedy}"));
+                return Err(format!(
+                    "`cargo {subcommand}` is missing; install it: {remedy}"
+                ));
             }
         }
         println!("== {}: cargo {}", step.name, step.arguments.join(" "));
@@ -74,7 +119,12 @@ pub fn run(steps: &[Step]) -> Result<(), String> {
             .current_dir(root)
             .status()
             .map_err(|error| format!("cannot run cargo: {error}"))?;
-        println!("== {}: {} after {} s", step.name, if status.success() { "passed" } else { "FAILED" }, begin.elapsed().as_secs());
+        println!(
+            "== {}: {} after {} s",
+            step.name,
+            if status.success() { "passed" } else { "FAILED" },
+            begin.elapsed().as_secs()
+        );
         if !status.success() {
             return Err(format!("step `{}` failed", step.name));
         }
