@@ -9,7 +9,7 @@ mod trajectory;
 mod wave;
 
 pub use bars::{Bars, Group, bars};
-pub use stability::stability;
+pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
 pub use trajectory::trajectory;
 pub use wave::{Wave, wave};

@@ -3,10 +3,14 @@
 use super::canvas::{
     self, Axis, Margins, chart, decimals, failed, line, polyline, px, tick_text, ticks,
 };
-use super::palette::{AXIS, PHASES};
+use super::palette::PHASES;
 use crate::report::{ReportError, StabilityCheck};
 use maud::PreEscaped;
 use plotters::prelude::*;
+
+/// Ends of the search for the range's edges: beyond them nothing is known to be unstable, so they
+/// are no edges.
+pub const SEARCH: (f64, f64) = (0.1001, 9.9);
 
 /// Draws simulated runs of one parameter at one speed: filled dots are stable, crosses not.
 /// `range` is the computed stable range of true over stated value.
@@ -58,7 +62,7 @@ pub fn stability(
             let block = Rectangle::new([(low, top), (high, 0.0)], PHASES[0].mix(0.12).filled());
             chart.plotting_area().draw(&block).map_err(failed)?;
             for edge in [range.0, range.1] {
-                if x_range.contains(&edge) {
+                if x_range.contains(&edge) && (SEARCH.0..SEARCH.1).contains(&edge) {
                     polyline(&mut chart, [(edge, 0.0), (edge, top)], line(PHASES[0], 1.2))?;
                 }
             }
@@ -70,8 +74,6 @@ pub fn stability(
                 top
             }
         };
-        let points = checks.iter().map(|c| (c.factor, inside(c.ripple_rms_pct)));
-        polyline(&mut chart, points, line(AXIS, 0.8))?;
         for check in checks {
             let at = (check.factor, inside(check.ripple_rms_pct));
             let plane = chart.plotting_area();

@@ -1,12 +1,9 @@
 //! Stable ranges of the motor's parameters, computed and simulated.
 
 use super::{figure, legend, nothing, number, swatch, variant_swatch};
-use crate::report::plot::{palette, stability};
+use crate::report::plot::{SEARCH, palette, stability};
 use crate::report::{Parameter, ReportData, ReportError, Stability, StabilityCheck, Variant};
 use maud::{Markup, html};
-
-/// Ends of the search for the range's edges: beyond them nothing is known to be unstable.
-const SEARCH: (f64, f64) = (0.1001, 9.9);
 
 /// Table of the ranges, and plots of the simulated runs.
 ///
