@@ -1,6 +1,6 @@
 //! The report: one HTML page about a motor and its controllers, complete in itself.
 //!
-//! [`ReportData`] says what there is to show; [`write`] makes the page: no script, no reference to
+//! [`ReportData`] says what there is to show; [`write()`] makes the page: no script, no reference to
 //! anything outside the file, and the same bytes for the same data.
 
 mod data;
