@@ -42,12 +42,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             writeln!(modules, "    /// Drives of the motor `{name}`.")?;
             writeln!(
                 modules,
-                "    pub mod {module} {{ include!(concat!(env!(\"OUT_DIR\"), {path:?})); }}"
+                "    pub mod motor_{module} {{ include!(concat!(env!(\"OUT_DIR\"), {path:?})); }}"
             )?;
             for drive in written.types {
                 writeln!(
                     drives,
-                    "    super::BuiltIn::of::<drives::{module}::{drive}>({name:?}),"
+                    "    super::BuiltIn::of::<drives::motor_{module}::{drive}>({name:?}),"
                 )?;
             }
         }

@@ -151,7 +151,7 @@ impl SelectedMotor {
 #[command(next_help_heading = "Plant")]
 pub struct PlantArguments {
     /// Dead time of the inverter's legs [default: the motor file's]
-    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     pub dead_time: Option<f64>,
     /// Bits of the current ADCs, of plant and controller alike: the specification changes
     #[arg(long, value_name = "N")]
@@ -160,26 +160,26 @@ pub struct PlantArguments {
     #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text)]
     pub adc_range: Option<String>,
     /// True bus voltage; the controller reckons with the motor file's, or measures
-    #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage)]
+    #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
     /// True over stated resistance
-    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
     pub scale_r: Option<f64>,
     /// True over stated inductance
-    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
     pub scale_l: Option<f64>,
     /// True over stated EMF constant
-    #[arg(long, value_name = "X", value_parser = quantity::number)]
+    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
     pub scale_kb: Option<f64>,
     /// Placement error of the Hall sensors in electrical degrees: one angle for all three, or
     /// three for Ha, Hb and Hc; positive is late in forward rotation
     #[arg(long, value_name = "ANGLE", value_parser = quantity::hall_error, allow_hyphen_values = true)]
     pub hall_error: Option<[f64; 3]>,
     /// Inertia of rotor and load: the speed is free, starting at the given one
-    #[arg(long, value_name = "KGM2", value_parser = quantity::inertia)]
+    #[arg(long, value_name = "KGM2", value_parser = quantity::inertia, allow_hyphen_values = true)]
     pub inertia: Option<f64>,
     /// Load torque that opposes the motion
-    #[arg(long, value_name = "NM", value_parser = quantity::torque, requires = "inertia")]
+    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true, requires = "inertia")]
     pub load: Option<f64>,
     /// Electrical angle at the start, in rad: one run in place of three [default: 0.1, 0.117, 0.134]
     #[arg(long, value_name = "RAD", value_parser = quantity::radians, allow_hyphen_values = true)]
@@ -189,22 +189,27 @@ pub struct PlantArguments {
 impl PlantArguments {
     /// ADC bits and range are the controller's, too: they are laid over the specification.
     fn change_specification(&self, ast: &mut SpecAst) -> Result<(), Failure> {
-        let mut text = String::new();
-        if let Some(bits) = self.adc_bits {
-            text.push_str(&format!("adc_bits = {bits}\n"));
-        }
-        if let Some(range) = &self.adc_range {
-            text.push_str(&format!("adc_range = \"{range}\"\n"));
-            // The two say the same thing, as do the offset and the bits that it counts in.
+        let bits = self.adc_bits.map(|bits| format!("adc_bits = {bits}"));
+        let range = self
+            .adc_range
+            .as_ref()
+            .map(|range| format!("adc_range = \"{range}\""));
+        if range.is_some() {
+            // Another way to say the range.
             ast.inverter.fields.retain(|field| field.name != "adc_gain");
         }
-        if text.is_empty() {
+        let lines: Vec<String> = bits.into_iter().chain(range).collect();
+        if lines.is_empty() {
             return Ok(());
         }
+        // An offset counts in the bits of before; the middle of the new range takes its place.
         ast.inverter
             .fields
             .retain(|field| field.name != "adc_offset");
-        let mut over = parse_toml(&format!("[inverter]\n{text}"), "--adc-bits/--adc-range")?;
+        let mut over = parse_toml(
+            &format!("[inverter]\n{}", lines.join("\n")),
+            "--adc-bits/--adc-range",
+        )?;
         over.name = ast.name.clone();
         over.inverter.location = None;
         ast.overlay(over);
@@ -297,7 +302,10 @@ impl RunArguments {
     }
 }
 
-/// Speed argument of `simulate`.
+/// Revolutions per minute of a text; other units of speed are converted.
+///
+/// # Errors
+/// What is wrong with it.
 pub fn parse_rpm(text: &str) -> Result<f64, String> {
     quantity::rpm(text)
 }

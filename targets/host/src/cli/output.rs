@@ -14,6 +14,9 @@ pub fn print_text(text: &str) {
 }
 
 /// Prints one JSON object to stdout.
+///
+/// # Errors
+/// A value that JSON has no words for.
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::Argument(format!("no JSON: {error}")))?;

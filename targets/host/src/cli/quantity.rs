@@ -29,17 +29,16 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
 
 /// The longest beginning that is a finite number, and the rest.
 fn split(text: &str) -> Option<(f64, &str)> {
-    let boundaries = text
+    let mut ends = text
         .char_indices()
+        .rev()
         .map(|(index, letter)| index + letter.len_utf8());
-    boundaries
-        .filter_map(|end| {
-            let number: f64 = text[..end].parse().ok()?;
-            number
-                .is_finite()
-                .then(|| (number, text[end..].trim_start()))
-        })
-        .last()
+    ends.find_map(|end| {
+        let number: f64 = text[..end].parse().ok()?;
+        number
+            .is_finite()
+            .then(|| (number, text[end..].trim_start()))
+    })
 }
 
 /// Newton metres.

@@ -104,10 +104,7 @@ pub fn one_step(
     for run in runs {
         let (settling, measured) = run.periods(plant);
         for &start in &run.starts {
-            let (mut bit_true, mut ideal) = (drive.bit_true(), drive.ideal());
-            let bits = (set_point.current * f64::from(1 << 16)).round() as i32;
-            bit_true.set_current(bits);
-            ideal.set_current(bits);
+            let (bit_true, ideal) = drive.references(set_point, true);
             let beside = Beside {
                 bit_true,
                 ideal,
@@ -133,8 +130,10 @@ pub fn one_step(
     })
 }
 
-/// The ideal model on the samples that the fixed-point drive read on its own plant.
+/// The ideal model on the samples that the fixed-point drive read on its own plant, from the same
+/// state at every step.
 struct SameWords {
+    bit_true: BitTrue,
     ideal: Ideal,
     samples: std::vec::IntoIter<Sample>,
 }
@@ -142,6 +141,8 @@ struct SameWords {
 impl CurrentLoop for SameWords {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         let words = self.samples.next().unwrap_or(*sample);
+        self.ideal.rebuild_from(&self.bit_true.physical_state());
+        self.bit_true.step(&words);
         self.ideal.step_legs(&words)
     }
 }
@@ -159,9 +160,10 @@ impl CurrentLoop for Noting<'_> {
     }
 }
 
-/// Measures the ideal model from the same starts and on the same ADC and Hall words as the
-/// fixed-point drive: what differs is arithmetic alone, not the course that the last bit of an ADC
-/// gives to a loop of its own.
+/// Measures the ideal model from the same starts, on the same ADC and Hall words and with the same
+/// last samples and applied voltages as the fixed-point drive: what differs is arithmetic alone,
+/// not the course that the last bit of an ADC gives to a loop of its own. (Left to itself on
+/// foreign words, a model that estimates the EMF from its own voltages would drift away.)
 ///
 /// # Errors
 /// A plant parameter out of range.
@@ -173,8 +175,7 @@ pub fn ideal_on_same_words(
 ) -> Result<Measurement, Failure> {
     let (settling, measured) = run.periods(plant);
     let make = |initial: &Truth| {
-        let mut ideal = drive.ideal();
-        ideal.set_current_amps(set_point.current);
+        let (bit_true, ideal) = drive.references(set_point, false);
         let noting = Noting {
             engine: drive.engine(Model::Fixed, set_point),
             samples: Vec::with_capacity(settling + measured),
@@ -188,6 +189,7 @@ pub fn ideal_on_same_words(
             })
             .unwrap_or_default();
         SameWords {
+            bit_true,
             ideal,
             samples: samples.into_iter(),
         }

@@ -178,7 +178,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     print_text(
-        "\nideal: on the ADC and Hall words that the fixed-point drive read; alone: in a loop of its own.",
+        "\nideal: on the words that the fixed-point drive read and from its state; alone: in a loop of its own.",
     );
     Ok(())
 }

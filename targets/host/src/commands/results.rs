@@ -5,7 +5,7 @@
 
 use super::accuracy::{OneStep, one_step};
 use crate::cli::{Emit, Failure};
-use crate::closed_loop::{LimitOptions, RunOptions, measure, record, speed_limit};
+use crate::closed_loop::{LimitOptions, RunOptions, measure, speed_limit};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report::{
@@ -22,12 +22,16 @@ use std::f64::consts::TAU;
 pub const SPEEDS: [f64; 2] = [0.2, 0.75];
 
 /// True over stated inductance or resistance of the runs that check the stable range.
-const OFF_INDUCTANCE: [f64; 6] = [0.75, 0.85, 0.95, 1.1, 1.2, 1.3];
-const OFF_RESISTANCE: [f64; 2] = [0.5, 2.0];
+const OFF_INDUCTANCE: [f64; 8] = [0.7, 0.75, 0.78, 0.85, 1.2, 1.25, 1.28, 1.3];
+const OFF_RESISTANCE: [f64; 4] = [0.2, 0.5, 2.0, 5.0];
 
-/// RMS ripple, in percent of the mean torque, above which a run counts as unstable. A stable loop
-/// stays near 1 at the lower speed of the table; an unstable one swings between the voltage limits.
-pub const UNSTABLE_RIPPLE: f64 = 5.0;
+/// Their speed in parts of rated speed: so low that commutations, which wrong parameters disturb
+/// in stable loops, too, take no share of the ripple.
+const STABILITY_SPEED: f64 = 0.02;
+
+/// RMS ripple, in percent of the mean torque, above which such a run counts as unstable. A stable
+/// loop stays below 1 there; an unstable one swings between the limits of voltage at 3 and more.
+pub const UNSTABLE_RIPPLE: f64 = 2.0;
 
 /// One row of the table before it runs: the same variant with both ways of reading Hall edges.
 #[derive(Debug)]
@@ -65,7 +69,10 @@ impl Planned {
         let conditions = Conditions::of(drive);
         let records = SPEEDS
             .par_iter()
-            .map(|part| conditions.record(drive, part * drive.rated_rpm()))
+            .filter_map(|part| {
+                let record = conditions.record(drive, part * drive.rated_rpm());
+                record.transpose()
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let torque_speed = runs
             .first()
@@ -164,18 +171,13 @@ impl Conditions {
         run_of(&drive.spec, rpm * TAU / 60.0, self.torque)
     }
 
-    fn record(&self, drive: &Prepared, rpm: f64) -> Result<Record, Failure> {
+    /// The measured window of the first start at a speed.
+    fn record(&self, drive: &Prepared, rpm: f64) -> Result<Option<Record>, Failure> {
         let mut run = self.at(drive, rpm);
         run.starts.truncate(1);
         let measured = measure(&self.plant, &run, drive.maker(Model::Fixed, self.set_point))?;
-        match measured.traces.into_iter().next() {
-            Some(trace) => Ok(Record { rpm, trace }),
-            None => {
-                let engine = drive.engine(Model::Fixed, self.set_point);
-                let trace = record(&self.plant, &run, engine, 20e-3)?;
-                Ok(Record { rpm, trace })
-            }
-        }
+        let trace = measured.traces.into_iter().next();
+        Ok(trace.map(|trace| Record { rpm, trace }))
     }
 
     fn signal_errors(&self, drive: &Prepared) -> Result<Vec<SignalError>, Failure> {
@@ -216,7 +218,9 @@ impl Conditions {
             .into_iter()
             .chain(OFF_RESISTANCE.map(|factor| (Parameter::Resistance, factor)))
             .collect::<Vec<_>>();
-        let rpm = SPEEDS[0] * drive.rated_rpm();
+        let rpm = STABILITY_SPEED * drive.rated_rpm();
+        let mut run = self.at(drive, rpm);
+        run.starts.truncate(1);
         let checks = runs
             .into_par_iter()
             .map(|(parameter, factor)| {
@@ -225,7 +229,7 @@ impl Conditions {
                     Parameter::Resistance => self.plant.clone().scaled(factor, 1.0, 1.0),
                 };
                 let maker = drive.maker(Model::Fixed, self.set_point);
-                let merits = measure(&plant, &self.at(drive, rpm), maker)?.merits;
+                let merits = measure(&plant, &run, maker)?.merits;
                 Ok(StabilityCheck {
                     parameter,
                     factor,

@@ -2,7 +2,7 @@
 
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, TextTable, bar, print_json, print_text,
-    significant,
+    significant, warn,
 };
 use crate::engine::{EngineKind, Prepared, Verifier};
 use clap::Args;
@@ -101,6 +101,14 @@ impl From<&Report> for Coverage {
 /// Compares each drive over `steps` steps; runs of all drives share the cores.
 pub fn collect(drives: &[Prepared], steps: u64, seed: u64, progress: &ProgressBar) -> Vec<Checked> {
     let verifiers: Vec<Verifier> = drives.par_iter().map(Prepared::verifier).collect();
+    for (drive, verifier) in drives.iter().zip(&verifiers) {
+        if let Some(reason) = verifier.why_interpreted() {
+            warn(&format!(
+                "{}, {}: interpreted, {reason}",
+                drive.motor, drive.variant
+            ));
+        }
+    }
     let runs: Vec<(usize, u64, u64)> = (0..drives.len())
         .flat_map(|drive| {
             (0..steps.div_ceil(RUN)).map(move |run| (drive, run, RUN.min(steps - run * RUN)))
@@ -156,7 +164,7 @@ pub fn collect(drives: &[Prepared], steps: u64, seed: u64, progress: &ProgressBa
 /// Diagnostics, or the difference that was found.
 pub fn run(options: &Options) -> Result<(), Failure> {
     #[derive(Serialize)]
-    struct Results {
+    struct Verification {
         passed: bool,
         steps: u64,
         results: Vec<Checked>,
@@ -198,7 +206,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )),
     };
     if options.json {
-        print_json(&Results {
+        print_json(&Verification {
             passed: outcome.is_ok(),
             steps: results.iter().map(|checked| checked.steps).sum(),
             results,

@@ -5,6 +5,7 @@
 //! the bit-true model and the ideal model, all behind [`CurrentLoop`].
 
 mod built_in;
+mod external;
 mod interpreter;
 mod motor;
 mod plant;

@@ -139,12 +139,40 @@ impl Prepared {
             Model::BitTrue => Engine::BitTrue(Box::new(self.bit_true())),
             Model::Ideal => Engine::Ideal(Box::new(self.ideal())),
         };
-        if let BusSource::Measured { gain, adc_bits, .. } = self.spec.inverter.bus {
-            let full = f64::from((1_u32 << adc_bits) - 1);
-            engine.set_bus((set_point.v_bus / gain).round().clamp(0.0, full) as u16);
+        if let Some(counts) = self.bus_counts(set_point.v_bus) {
+            engine.set_bus(counts);
         }
         engine.set_current(set_point.current);
         engine
+    }
+
+    /// What the ADC of a measured bus reads at a voltage; none where the bus is not measured.
+    pub fn bus_counts(&self, v_bus: f64) -> Option<u16> {
+        match self.spec.inverter.bus {
+            BusSource::Fixed => None,
+            BusSource::Measured { gain, adc_bits, .. } => {
+                let full = f64::from((1_u32 << adc_bits) - 1);
+                Some((v_bus / gain).round().clamp(0.0, full) as u16)
+            }
+        }
+    }
+
+    /// The bit-true and the ideal model with a set-point; the same one to the last bit when
+    /// `is_rounded`, else the ideal model's is exact.
+    pub fn references(&self, set_point: SetPoint, is_rounded: bool) -> (BitTrue, Ideal) {
+        let (mut bit_true, mut ideal) = (self.bit_true(), self.ideal());
+        if let Some(counts) = self.bus_counts(set_point.v_bus) {
+            bit_true.set_bus(counts);
+            ideal.set_bus(counts);
+        }
+        let bits = (set_point.current * f64::from(1 << 16)).round() as i32;
+        bit_true.set_current(bits);
+        if is_rounded {
+            ideal.set_current(bits);
+        } else {
+            ideal.set_current_amps(set_point.current);
+        }
+        (bit_true, ideal)
     }
 
     /// What measurements of closed loops take: a controller for a plant's initial state.

@@ -1,6 +1,8 @@
-//! The bit-for-bit test of one drive, with whatever runs its fixed-point program.
+//! The bit-for-bit test of one drive, with the best there is to run its fixed-point program.
 
+use super::external::{BuildError, External, Terms, compile, verify};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
+use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_reference::verify::{Report, verify_subject};
 
 /// A drive and what runs it.
@@ -13,23 +15,36 @@ pub struct Verifier<'p> {
 #[derive(Debug)]
 enum Runner {
     BuiltIn(&'static BuiltIn),
-    Interpreter,
+    External(External),
+    Interpreter(BuildError),
 }
 
 impl<'p> Verifier<'p> {
+    /// Finds the compiled drive, else compiles it, else makes do with the interpreter.
     pub(super) fn new(drive: &'p Prepared) -> Self {
-        let runner = match drive.built_in() {
-            Some(built_in) => Runner::BuiltIn(built_in),
-            None => Runner::Interpreter,
-        };
+        let runner = drive.built_in().map_or_else(
+            || match compile_emitted(drive) {
+                Ok(external) => Runner::External(external),
+                Err(error) => Runner::Interpreter(error),
+            },
+            Runner::BuiltIn,
+        );
         Self { drive, runner }
     }
 
     /// What runs.
     pub fn kind(&self) -> EngineKind {
         match self.runner {
-            Runner::BuiltIn(_) => EngineKind::Compiled,
-            Runner::Interpreter => EngineKind::Interpreter,
+            Runner::BuiltIn(_) | Runner::External(_) => EngineKind::Compiled,
+            Runner::Interpreter(_) => EngineKind::Interpreter,
+        }
+    }
+
+    /// Why no compiled code runs, where none does.
+    pub fn why_interpreted(&self) -> Option<&BuildError> {
+        match &self.runner {
+            Runner::Interpreter(error) => Some(error),
+            _ => None,
         }
     }
 
@@ -38,25 +53,41 @@ impl<'p> Verifier<'p> {
     /// # Errors
     /// What differs, as a table.
     pub fn verify(&self, steps: u64, seed: u64) -> Result<Report, String> {
-        let interface = &self.drive.generated.interface;
-        match &self.runner {
-            Runner::BuiltIn(drive) => verify_subject(
-                drive.spec,
-                drive.formats,
-                drive.state_names,
-                || AnySubject((drive.new)()),
+        let Self { drive, runner } = self;
+        let spec = &drive.generated.interface.spec_toml;
+        let names = drive.state_names();
+        match runner {
+            Runner::BuiltIn(built_in) => verify_subject(
+                built_in.spec,
+                built_in.formats,
+                built_in.state_names,
+                || AnySubject((built_in.new)()),
                 steps,
                 seed,
-            ),
-            Runner::Interpreter => verify_subject(
-                &interface.spec_toml,
-                &self.drive.formats,
-                &self.drive.state_names(),
-                || self.drive.interpreted(),
-                steps,
-                seed,
-            ),
+            )
+            .map_err(|error| error.to_string()),
+            Runner::External(external) => {
+                let terms = Terms {
+                    spec,
+                    formats: &drive.formats,
+                    state_names: &names,
+                    model: &drive.bit_true(),
+                };
+                verify(external, terms, steps, seed).map_err(|error| error.to_string())
+            }
+            Runner::Interpreter(_) => {
+                let new = || drive.interpreted();
+                verify_subject(spec, &drive.formats, &names, new, steps, seed)
+                    .map_err(|error| error.to_string())
+            }
         }
-        .map_err(|error| error.to_string())
     }
+}
+
+fn compile_emitted(drive: &Prepared) -> Result<External, BuildError> {
+    let generated = &drive.generated;
+    let name = &generated.interface.type_name;
+    let surface = Surface::public(name);
+    let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
+    compile(&format_rust(&tokens), name)
 }

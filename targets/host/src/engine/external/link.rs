@@ -1,0 +1,229 @@
+//! The pipe to an external program.
+//!
+//! Calls are collected and sent as one batch: its length in bytes, then one record per call. The
+//! program reads a whole batch before it answers, and answers one record per step. `driver.rs` is
+//! the other end.
+
+use super::External;
+use hexagen::{Fault, LegState, Legs, Sample};
+use std::io::{self, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+/// Steps per batch.
+const BATCH: u64 = 4096;
+
+/// Why the pipe broke.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// It could not be opened, written or read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The program did not end well.
+    #[error("it ended with {0}")]
+    Ended(std::process::ExitStatus),
+}
+
+/// A call other than a step.
+#[derive(Clone, Copy, Debug)]
+pub enum Call<'w> {
+    New,
+    SetCurrent(i32),
+    SetTorque(i32),
+    SetBus(u16),
+    Reset,
+    Calibrate,
+    Precharge,
+    SetStateWords(&'w [i32]),
+}
+
+/// A running program.
+#[derive(Debug)]
+pub struct Link {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: ChildStdout,
+    state_words: usize,
+    calls: Vec<u8>,
+    expected: Vec<u8>,
+    found: Vec<u8>,
+    /// Steps whose answers are in `expected`.
+    pending: u64,
+    /// Steps before them.
+    done: u64,
+    different: Option<u64>,
+    broken: Option<LinkError>,
+}
+
+impl Link {
+    /// Starts the program.
+    pub fn open(external: &External, state_words: usize) -> Result<Self, LinkError> {
+        let mut child = Command::new(external.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()?;
+        let missing = || io::Error::from(io::ErrorKind::BrokenPipe);
+        let input = child.stdin.take().ok_or_else(missing)?;
+        let output = child.stdout.take().ok_or_else(missing)?;
+        Ok(Self {
+            child,
+            input: Some(input),
+            output,
+            state_words,
+            calls: vec![],
+            expected: vec![],
+            found: vec![],
+            pending: 0,
+            done: 0,
+            different: None,
+            broken: None,
+        })
+    }
+
+    /// Bytes of a step's answer: compare values, leg states, fault, state words.
+    fn answer_length(&self) -> usize {
+        6 + 3 + 1 + 4 * self.state_words
+    }
+
+    /// Adds a call to the batch.
+    pub fn send(&mut self, call: Call<'_>) {
+        let calls = &mut self.calls;
+        match call {
+            Call::New => calls.push(0),
+            Call::SetCurrent(bits) => {
+                calls.push(2);
+                calls.extend(bits.to_le_bytes());
+            }
+            Call::SetTorque(bits) => {
+                calls.push(3);
+                calls.extend(bits.to_le_bytes());
+            }
+            Call::SetBus(counts) => {
+                calls.push(4);
+                calls.extend(counts.to_le_bytes());
+            }
+            Call::Reset => calls.push(5),
+            Call::Calibrate => calls.push(6),
+            Call::Precharge => calls.push(7),
+            Call::SetStateWords(words) => {
+                calls.push(8);
+                calls.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+            }
+        }
+    }
+
+    fn send_step(&mut self, sample: Sample) {
+        self.calls.push(1);
+        self.calls.extend(sample.adc_a.to_le_bytes());
+        self.calls.extend(sample.adc_b.to_le_bytes());
+        self.calls.push(sample.hall);
+        self.calls.extend(sample.hall_ticks.to_le_bytes());
+        self.pending += 1;
+    }
+
+    /// Adds a step and the answer that is expected to it.
+    pub fn step(&mut self, sample: Sample, legs: &Legs, fault: Fault, words: &[i32]) {
+        self.send_step(sample);
+        let expected = &mut self.expected;
+        expected.extend(
+            legs.compare
+                .iter()
+                .flat_map(|compare| compare.to_le_bytes()),
+        );
+        expected.extend(legs.state.map(|state| state as u8));
+        expected.push(fault as u8);
+        expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        if self.pending >= BATCH {
+            self.compare();
+        }
+    }
+
+    /// Runs a step and waits for its answer; none when the program broke off.
+    pub fn step_and_wait(&mut self, sample: Sample, words: &mut [i32]) -> Option<(Legs, Fault)> {
+        self.send_step(sample);
+        self.exchange();
+        self.done += self.pending;
+        self.pending = 0;
+        if self.broken.is_some() {
+            return None;
+        }
+        let answer = &self.found;
+        let compare = |phase: usize| u16::from_le_bytes([answer[2 * phase], answer[2 * phase + 1]]);
+        let state = |leg: usize| match answer[6 + leg] {
+            0 => LegState::Pulsed,
+            1 => LegState::Low,
+            _ => LegState::Off,
+        };
+        for (word, bytes) in words.iter_mut().zip(answer[10..].chunks_exact(4)) {
+            *word = i32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        }
+        let legs = Legs {
+            compare: [compare(0), compare(1), compare(2)],
+            state: [state(0), state(1), state(2)],
+        };
+        let fault = Fault::from_word(hexagen::arith::Word(i32::from(answer[9])));
+        Some((legs, fault))
+    }
+
+    /// Sends the batch and reads its answers into `found`.
+    fn exchange(&mut self) {
+        self.found
+            .resize(self.answer_length() * self.pending as usize, 0);
+        if self.broken.is_none()
+            && let Err(error) = self.try_exchange()
+        {
+            self.broken = Some(error.into());
+        }
+        self.calls.clear();
+    }
+
+    fn try_exchange(&mut self) -> io::Result<()> {
+        let Some(input) = &mut self.input else {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        };
+        input.write_all(&(self.calls.len() as u32).to_le_bytes())?;
+        input.write_all(&self.calls)?;
+        input.flush()?;
+        self.output.read_exact(&mut self.found)
+    }
+
+    /// Exchanges the batch and compares its answers.
+    fn compare(&mut self) {
+        self.exchange();
+        if self.broken.is_none() && self.different.is_none() && self.found != self.expected {
+            let length = self.answer_length();
+            let pairs = self.found.chunks(length).zip(self.expected.chunks(length));
+            let first = pairs
+                .take_while(|(found, expected)| found == expected)
+                .count();
+            self.different = Some(self.done + first as u64);
+        }
+        self.expected.clear();
+        self.done += self.pending;
+        self.pending = 0;
+    }
+
+    /// Compares what is left and ends the program. Returns the first step that differed.
+    pub fn close(mut self) -> Result<Option<u64>, LinkError> {
+        if self.pending > 0 {
+            self.compare();
+        }
+        // The program ends when its input does.
+        drop(self.input.take());
+        let status = self.child.wait()?;
+        match self.broken.take() {
+            _ if !status.success() => Err(LinkError::Ended(status)),
+            Some(error) => Err(error),
+            None => Ok(self.different),
+        }
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        // After an early return: ends with its input, and is waited for.
+        if self.input.take().is_some() {
+            let _ = self.child.wait();
+        }
+    }
+}

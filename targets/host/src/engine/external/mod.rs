@@ -1,0 +1,160 @@
+//! Emitted code that is not built in: compiled with rustc and run as a process of its own.
+//!
+//! The runtime's sources are part of this program, so rustc is all that is needed. Of the `fixed`
+//! crate, emitted code and runtime use type names, `from_bits` and `to_bits` only; a stand-in with
+//! just these takes its place, which changes no arithmetic.
+
+mod build;
+mod link;
+
+pub use build::{BuildError, External, compile};
+
+use hexagen::{Fault, Format, Legs, Sample};
+use hexagen_reference::pdcc::BitTrue;
+use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
+use link::{Call, Link, LinkError};
+use std::cell::RefCell;
+
+/// What a bit-for-bit test needs besides the process.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Terms<'a> {
+    pub spec: &'a str,
+    pub formats: &'a [Format],
+    pub state_names: &'a [&'a str],
+    pub model: &'a BitTrue,
+}
+
+/// Why the test of an external program did not pass.
+#[derive(Debug, thiserror::Error)]
+pub enum ExternalError {
+    /// It differs.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// The process broke off.
+    #[error("the compiled program broke off: {0}")]
+    Link(#[from] LinkError),
+    /// It differs in a batch, but not step by step: an error of the link.
+    #[error("step {0} differs in a batch of steps only")]
+    Batch(u64),
+}
+
+/// Compares an external program with the bit-true model. The calls go over in batches, answered in
+/// advance by a second model; only where a batch differs is the run repeated step by step, to
+/// tell what differs.
+pub(super) fn verify(
+    external: &External,
+    terms: Terms<'_>,
+    steps: u64,
+    seed: u64,
+) -> Result<Report, ExternalError> {
+    let run = |steps: u64, link: &RefCell<Link>, is_batched: bool| {
+        let new = || {
+            link.borrow_mut().send(Call::New);
+            Remote {
+                link,
+                model: is_batched.then(|| terms.model.clone()),
+                words: vec![0; terms.state_names.len()],
+                fault: Fault::None,
+            }
+        };
+        verify_subject(
+            terms.spec,
+            terms.formats,
+            terms.state_names,
+            new,
+            steps,
+            seed,
+        )
+    };
+    let link = RefCell::new(Link::open(external, terms.state_names.len())?);
+    let report = run(steps, &link, true)?;
+    let Some(step) = link.into_inner().close()? else {
+        return Ok(report);
+    };
+    let link = RefCell::new(Link::open(external, terms.state_names.len())?);
+    run(step + 1, &link, false)?;
+    link.into_inner().close()?;
+    Err(ExternalError::Batch(step))
+}
+
+/// The external program as a subject of the test: with a model, the model answers and the
+/// program's answers are compared later; without one, every step waits for the program.
+struct Remote<'l> {
+    link: &'l RefCell<Link>,
+    model: Option<BitTrue>,
+    words: Vec<i32>,
+    fault: Fault,
+}
+
+impl Remote<'_> {
+    fn call(&mut self, call: Call, on_model: impl FnOnce(&mut BitTrue)) {
+        self.link.borrow_mut().send(call);
+        if let Some(model) = &mut self.model {
+            on_model(model);
+        }
+    }
+}
+
+impl Subject for Remote<'_> {
+    fn step(&mut self, sample: &Sample) -> Legs {
+        let mut link = self.link.borrow_mut();
+        match &mut self.model {
+            Some(model) => {
+                let legs = model.step(sample);
+                model.state_words(&mut self.words);
+                self.fault = model.fault();
+                link.step(*sample, &legs, self.fault, &self.words);
+                legs
+            }
+            None => match link.step_and_wait(*sample, &mut self.words) {
+                Some((legs, fault)) => {
+                    self.fault = fault;
+                    legs
+                }
+                // A broken process answers what no step does; the link knows why.
+                None => Legs {
+                    compare: [u16::MAX; 3],
+                    ..Legs::OFF
+                },
+            },
+        }
+    }
+
+    fn set_current(&mut self, bits: i32) {
+        self.call(Call::SetCurrent(bits), |model| model.set_current(bits));
+    }
+
+    fn set_torque(&mut self, bits: i32) {
+        self.call(Call::SetTorque(bits), |model| model.set_torque(bits));
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.call(Call::SetBus(counts), |model| model.set_bus(counts));
+    }
+
+    fn reset(&mut self) {
+        self.call(Call::Reset, BitTrue::reset);
+    }
+
+    fn calibrate(&mut self) {
+        self.call(Call::Calibrate, BitTrue::calibrate);
+    }
+
+    fn precharge(&mut self) {
+        self.call(Call::Precharge, BitTrue::precharge);
+    }
+
+    fn fault(&self) -> Fault {
+        self.fault
+    }
+
+    fn state_words(&self, words: &mut [i32]) {
+        words.copy_from_slice(&self.words);
+    }
+
+    fn set_state_words(&mut self, words: &[i32]) {
+        self.call(Call::SetStateWords(words), |model| {
+            model.set_state_words(words);
+        });
+    }
+}

@@ -1,0 +1,86 @@
+//! `hexagen generate` and `motors`: the same bytes every time, to stdout and to files.
+
+use crate::support::{PAPER, keys, number, run};
+use std::fs;
+
+#[test]
+fn the_same_drive_gives_the_same_bytes() {
+    for (emit, ending, sign) in [
+        ("rust", "rs", "pub struct TrivediKeshri660w"),
+        ("ir", "ir", "program TrivediKeshri660w"),
+        ("datasheet", "md", "# TrivediKeshri660w"),
+    ] {
+        let arguments = ["generate", PAPER, "--emit", emit];
+        let first = run(arguments);
+        assert_eq!((first.code, first.stderr.as_str()), (0, ""), "{emit}");
+        assert!(first.stdout.contains(sign), "{emit}: {}", first.stdout);
+        assert_eq!(run(arguments).stdout, first.stdout, "{emit}");
+        assert!(
+            !first.stdout.contains(env!("CARGO_MANIFEST_DIR")),
+            "{emit} names a folder"
+        );
+
+        let folder = tempfile::tempdir().expect("a folder");
+        let out = folder.path().to_str().expect("a plain path");
+        let path = folder.path().join(format!("{PAPER}.{ending}"));
+        fs::write(&path, "what was there before").expect("can be written");
+        let written = run(arguments.iter().chain(&["--out", out]));
+        assert_eq!((written.code, written.stdout.as_str()), (0, ""));
+        let text = fs::read_to_string(&path).expect("was written");
+        assert_eq!(text.trim_end(), first.stdout.trim_end(), "{emit}");
+        assert_eq!(fs::read_dir(folder.path()).expect("is there").count(), 1);
+    }
+}
+
+#[test]
+fn a_copy_of_a_file_elsewhere_gives_the_same_code() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("copy.toml");
+    let library = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../motors/trivedi-keshri-660w.toml"
+    );
+    fs::copy(library, &path).expect("can be copied");
+    let copy = run(["generate", path.to_str().expect("a plain path")]);
+    assert_eq!(copy.stdout, run(["generate", PAPER]).stdout);
+    assert_eq!(copy.code, 0);
+}
+
+#[test]
+fn a_variant_changes_the_code() {
+    let own = run(["generate", PAPER]).stdout;
+    let other = run([
+        "generate",
+        PAPER,
+        "--controller",
+        "pdcc:emf=model,advance=1.5",
+    ])
+    .stdout;
+    assert!(other.contains("theta") && !own.contains("theta"));
+}
+
+#[test]
+fn the_library_is_listed() {
+    let library = run(["motors", "--json"]).json();
+    let motors = library["motors"].as_array().expect("a list");
+    assert_eq!(keys(&library), ["motors"]);
+    assert!(motors.len() >= 12);
+    let paper = motors
+        .iter()
+        .find(|motor| motor["name"] == PAPER)
+        .expect("is there");
+    assert_eq!(number(paper, "pole_pairs"), 4.0);
+    assert_eq!(number(paper, "v_bus_v"), 48.0);
+    assert_eq!(number(paper, "emf_constant_v_s"), 0.0824);
+    assert_eq!(paper["generates"], true);
+    let table = run(["motors"]).stdout;
+    for motor in motors {
+        let name = motor["name"].as_str().expect("a name");
+        assert!(table.contains(&format!("| {name} ")), "{name}");
+        assert_eq!(
+            run(["generate", name]).code == 0,
+            motor["generates"] == true,
+            "{name}"
+        );
+    }
+}

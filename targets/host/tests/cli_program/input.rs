@@ -1,0 +1,156 @@
+//! Wrong input: code 2, nothing on stdout, and a message that says what and where.
+
+use crate::support::{PAPER, run};
+use std::fs;
+
+#[test]
+fn an_unknown_motor_is_told_with_the_nearest_name() {
+    run(["simulate", "trivedi-keshri", "--rpm", "1"]).assert_bad_input(&[
+        "error: no motor `trivedi-keshri`",
+        "did you mean `trivedi-keshri-660w`?",
+    ]);
+    run(["verify", "nothing/like/it.toml"]).assert_bad_input(&["no motor `nothing/like/it.toml`"]);
+}
+
+#[test]
+fn a_bad_variant_is_told_with_its_column() {
+    for (variant, texts) in [
+        (
+            "pdcc:modulation=bogus",
+            ["pdcc:modulation=bogus:1:17: error[HX0207]", "bogus"],
+        ),
+        (
+            "pdcc:colour=red",
+            ["pdcc:colour=red:1:6: error[HX", "colour"],
+        ),
+        ("pdcc:advance", ["pdcc:advance:1:6: error[HX", "advance"]),
+        ("pdcc:advance=9", ["pdcc:advance=9:1:14: error[HX", "9"]),
+        ("nonsense", ["nonsense:1:1: error[HX", "nonsense"]),
+    ] {
+        for command in ["simulate", "limit", "generate", "verify", "compare"] {
+            let mut arguments = vec![command, PAPER, "--controller", variant];
+            if command == "simulate" {
+                arguments.extend(["--rpm", "100"]);
+            }
+            run(&arguments).assert_bad_input(&texts);
+        }
+    }
+}
+
+#[test]
+fn errors_in_a_file_are_told_with_file_line_and_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml");
+    let text = cli_text();
+    let path_text = path.to_str().expect("a plain path");
+    let check = |text: &str, expected: &[&str]| {
+        fs::write(&path, text).expect("can be written");
+        run(["generate", path_text]).assert_bad_input(expected);
+    };
+    let at = |needle: &str| {
+        text.lines()
+            .position(|line| line.starts_with(needle))
+            .expect("is there")
+            + 1
+    };
+    let line = at("resistance");
+    let place = format!("{path_text}:{line}:14: error[HX");
+    check(
+        &text.replace("0.135 ohm per_phase", "0.135 V per_phase"),
+        &[&place, "resistance"],
+    );
+    let place = format!("{path_text}:{line}:");
+    check(
+        &text.replace("resistance = \"", "resistance = "),
+        &[&place, "error[HX"],
+    );
+    // Several errors come together.
+    let broken = text
+        .replace("0.22 mH per_phase", "0.22 mH")
+        .replace("winding", "windng");
+    check(&broken, &["inductance", "windng"]);
+    check("", &["error[HX"]);
+}
+
+/// The paper's motor as text, as a user would copy it.
+fn cli_text() -> String {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../motors/trivedi-keshri-660w.toml"
+    );
+    fs::read_to_string(path).expect("the library is there")
+}
+
+#[test]
+fn what_does_not_exist_yet_is_not_offered() {
+    run(["generate", PAPER, "--emit", "c99"]).assert_bad_input(&["c99"]);
+    run(["generate", PAPER, "--emit", "gappa"]).assert_bad_input(&["gappa"]);
+    run(["reproduce"]).assert_bad_input(&["reproduce"]);
+    run(["prove"]).assert_bad_input(&["prove"]);
+}
+
+#[test]
+fn options_out_of_range_or_at_odds_are_told() {
+    for (arguments, text) in [
+        (&["simulate", PAPER][..], "--rpm"),
+        (&["simulate", PAPER, "--rpm", "fast"], "not a number"),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--dead-time", "1V"],
+            "is a voltage",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--dead-time", "1"],
+            "dead_time",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--scale-l", "-1"],
+            "inductance",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--load", "1"],
+            "--inertia",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-bits", "30"],
+            "adc_bits",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-range", "1A"],
+            "adc_range",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--model", "magic"],
+            "magic",
+        ),
+        (
+            &[
+                "simulate",
+                PAPER,
+                "--rpm",
+                "1",
+                "--csv",
+                "/proc/nowhere/x.csv",
+            ],
+            "cannot write",
+        ),
+        (&["limit", PAPER, "--torque", "0"], "--torque 0"),
+        (&["limit", PAPER, "--inertia", "1"], "--inertia"),
+        (&["verify", PAPER, "--steps", "0"], "--steps"),
+        (&["report", "unheard-of"], "unheard-of"),
+    ] {
+        run(arguments).assert_bad_input(&[text]);
+    }
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let help = run(["--help"]);
+    assert_eq!((help.code, help.stderr.as_str()), (0, ""));
+    for command in [
+        "report", "generate", "simulate", "limit", "verify", "compare", "motors",
+    ] {
+        assert!(help.stdout.contains(command), "{command}");
+        assert_eq!(run([command, "--help"]).code, 0);
+    }
+    assert_eq!(run(["--version"]).code, 0);
+}

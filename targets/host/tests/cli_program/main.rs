@@ -1,0 +1,8 @@
+//! The program as its users run it, and the figures that its report promises.
+
+mod generate;
+mod input;
+mod rows;
+mod simulate;
+mod support;
+mod verify;

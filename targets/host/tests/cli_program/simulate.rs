@@ -1,0 +1,232 @@
+//! `hexagen simulate` and `limit`: keys, columns, models, signs and plant options.
+
+use crate::support::{PAPER, keys, number, run};
+use serde_json::Value;
+
+const MERITS: [&str; 14] = [
+    "mean_torque_nm",
+    "ripple_pp_pct",
+    "ripple_rms_pct",
+    "h6_pct",
+    "h12_pct",
+    "i5_pct",
+    "i7_pct",
+    "i11_pct",
+    "i13_pct",
+    "thd_pct",
+    "tracking_rms_a",
+    "commutation_us",
+    "switching_hz",
+    "saturated_pct",
+];
+
+/// The variant that holds its torque best.
+const BEST: &str = "pdcc:saturation=torque_priority,advance=2,emf=model,hall_capture=timer";
+
+fn simulate(arguments: &[&str]) -> Value {
+    let fixed = ["simulate", PAPER, "--json"];
+    run(fixed.iter().chain(arguments)).json()
+}
+
+#[test]
+fn json_has_the_documented_keys() {
+    let result = simulate(&["--rpm", "1500"]);
+    let found = keys(&result);
+    for key in MERITS {
+        assert!(found.contains(&key), "{key} is missing");
+        assert!(result[key].is_f64(), "{key} is no number");
+    }
+    let about: Vec<&str> = found
+        .into_iter()
+        .filter(|key| !MERITS.contains(key))
+        .collect();
+    let mut expected = ["motor", "controller", "model", "engine", "rpm", "torque_nm"];
+    expected.sort_unstable();
+    let mut about = about;
+    about.sort_unstable();
+    assert_eq!(about, expected);
+    assert_eq!(result["engine"], "compiled");
+    assert_eq!(result["model"], "fixed");
+}
+
+#[test]
+fn bit_true_gives_the_very_same_merits_and_ideal_nearly() {
+    let of = |model: &str, controller: &str| {
+        simulate(&[
+            "--rpm",
+            "1500",
+            "--model",
+            model,
+            "--controller",
+            controller,
+        ])
+    };
+    // One drive that is built in, one that is interpreted.
+    for (controller, engine) in [("pdcc", "compiled"), (BEST, "interpreter")] {
+        let fixed = of("fixed", controller);
+        let bit_true = of("bit-true", controller);
+        let ideal = of("ideal", controller);
+        assert_eq!(fixed["engine"], engine);
+        assert_eq!(bit_true["engine"], Value::Null);
+        for key in MERITS {
+            assert_eq!(fixed[key], bit_true[key], "{key}");
+        }
+        let (fixed, ideal) = (number(&fixed, MERITS[0]), number(&ideal, MERITS[0]));
+        assert!(
+            (fixed - ideal).abs() < 0.001 * ideal && fixed != ideal,
+            "{fixed} {ideal}"
+        );
+    }
+}
+
+#[test]
+fn both_directions_and_both_torques_work() {
+    for (rpm, torque) in [("-1200", "2"), ("1200", "-2"), ("-1200", "-2")] {
+        let result = simulate(&["--rpm", rpm, "--torque", torque, "--controller", BEST]);
+        let (mean, demand) = (
+            number(&result, "mean_torque_nm"),
+            number(&result, "torque_nm"),
+        );
+        assert!(
+            (mean / demand - 1.0).abs() < 0.02,
+            "{rpm} rpm {torque} Nm: {mean}"
+        );
+        assert_eq!(number(&result, "rpm").to_string(), rpm);
+    }
+}
+
+#[test]
+fn csv_has_the_documented_columns_and_a_row_per_period() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.csv");
+    let path = path.to_str().expect("a plain path");
+    simulate(&["--rpm", "1500", "--csv", path]);
+    let text = std::fs::read_to_string(path).expect("was written");
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next(),
+        Some(
+            "t,theta_e,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
+        )
+    );
+    // Six electrical turns at 1500 rpm and four pole pairs are 60 ms, 1200 periods.
+    let rows: Vec<&str> = lines.collect();
+    assert_eq!(rows.len(), 1200);
+    for row in rows {
+        assert!(
+            row.split(',').all(|cell| cell.parse::<f64>().is_ok()),
+            "{row}"
+        );
+    }
+}
+
+#[test]
+fn without_json_there_is_a_table() {
+    let said = run(["simulate", PAPER, "--rpm", "1500", "--torque", "1Nm"]);
+    assert_eq!(said.code, 0);
+    assert!(said.stdout.contains("| mean torque"), "{}", said.stdout);
+    assert!(said.stdout.contains("compiled"), "{}", said.stdout);
+    assert_eq!(said.stderr, "");
+}
+
+#[test]
+fn plant_options_reach_the_plant() {
+    let nominal = simulate(&["--rpm", "1500", "--start-angle", "0.1"]);
+    for option in [
+        ["--dead-time", "1us"],
+        ["--adc-bits", "8"],
+        ["--adc-range", "50A"],
+        ["--v-bus", "40"],
+        ["--scale-r", "2"],
+        ["--scale-l", "0.9"],
+        ["--scale-kb", "0.9"],
+        ["--hall-error", "5deg"],
+        ["--hall-error", "5deg,-5deg,0"],
+        ["--inertia", "1e-3"],
+        ["--start-angle", "10deg"],
+    ] {
+        let mut arguments = vec!["--rpm", "1500"];
+        if option[0] != "--start-angle" {
+            arguments.extend(["--start-angle", "0.1"]);
+        }
+        arguments.extend(option);
+        let changed = simulate(&arguments);
+        assert_ne!(
+            nominal["tracking_rms_a"], changed["tracking_rms_a"],
+            "{option:?}"
+        );
+    }
+}
+
+#[test]
+fn adc_options_change_plant_and_controller_together() {
+    // A range of its own would scale the torque; the same for both leaves it.
+    let mean = |range: &str| {
+        let result = simulate(&["--rpm", "800", "--adc-range", range, "--start-angle", "0.1"]);
+        number(&result, "mean_torque_nm")
+    };
+    let (narrow, wide) = (mean("30A"), mean("60A"));
+    assert!((narrow / wide - 1.0).abs() < 0.005, "{narrow} {wide}");
+}
+
+#[test]
+fn a_free_shaft_settles_where_load_and_torque_balance() {
+    // Without load the motor runs up; held back by more than its torque it slows down. Either way
+    // the set torque is held while the voltage suffices.
+    let result = simulate(&[
+        "--rpm",
+        "600",
+        "--torque",
+        "1",
+        "--inertia",
+        "5e-3",
+        "--load",
+        "1",
+        "--start-angle",
+        "0.1",
+    ]);
+    assert!(
+        (number(&result, "mean_torque_nm") - 1.0).abs() < 0.01,
+        "{result}"
+    );
+}
+
+#[test]
+fn a_set_point_beyond_the_limit_is_told() {
+    let said = run(["simulate", PAPER, "--rpm", "300", "--torque", "5", "--json"]);
+    let result = said.json();
+    assert!(said.stderr.contains("max_current"), "{}", said.stderr);
+    assert!(number(&result, "mean_torque_nm") < 4.0, "{result}");
+}
+
+#[test]
+fn limit_has_its_keys_and_agrees_with_simulate() {
+    let controller = "pdcc:saturation=nearest,hall_capture=timer";
+    let said = run([
+        "limit",
+        PAPER,
+        "--controller",
+        controller,
+        "--json",
+        "--start-angle",
+        "0.1",
+    ]);
+    let result = said.json();
+    let (rpm, percent) = (number(&result, "limit_rpm"), number(&result, "limit_pct"));
+    assert!((percent - rpm / 20.0).abs() < 1e-9, "{rpm} {percent}");
+    assert_eq!(result["outcome"], "found");
+    assert_eq!(result["engine"], "interpreter");
+    let held = |rpm: f64| {
+        let rpm = rpm.to_string();
+        let arguments = [
+            "--rpm",
+            &rpm,
+            "--controller",
+            controller,
+            "--start-angle",
+            "0.1",
+        ];
+        number(&simulate(&arguments), "mean_torque_nm") >= 0.97 * 3.3
+    };
+    assert!(held(rpm - 30.0) && !held(rpm + 30.0), "{rpm}");
+}
