@@ -4,6 +4,8 @@
 #[expect(dead_code, reason = "shared with the tests, which use the rest")]
 #[path = "src/library.rs"]
 mod library;
+#[path = "src/mutation.rs"]
+mod mutation;
 #[expect(dead_code, reason = "shared with the tests, which use the rest")]
 #[path = "src/options.rs"]
 mod options;
@@ -24,6 +26,66 @@ fn main() {
     let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let motors = library::motors();
     write_covering_array(&out_dir, &motors);
+    write_mutants(&out_dir);
+}
+
+/// Drives that faults are planted in: together they have every stage of a step.
+const MUTATED: &[(&str, &[(&str, &str)])] = &[
+    (
+        "trivedi-keshri-660w",
+        &[("saturation", "torque_priority"), ("hall_capture", "timer")],
+    ),
+    (
+        "hoverboard-hub",
+        &[
+            ("modulation", "pair"),
+            ("saturation", "nearest"),
+            ("emf", "filtered"),
+            ("advance", "1.5"),
+            ("v_bus", "measured"),
+            ("stall_timeout", "100ms"),
+            ("start_up", "short"),
+        ],
+    ),
+    (
+        "estun-emj-04apb22",
+        &[
+            ("saturation", "keep_angle"),
+            ("emf", "model"),
+            ("reference", "proportional"),
+            ("adc_inverted", "on"),
+        ],
+    ),
+];
+
+/// The text of emitted modules with one fault each.
+fn write_mutants(out_dir: &Path) {
+    let (mut text, mut list) = (String::new(), String::new());
+    let mut number = 0;
+    for (motor, settings) in MUTATED {
+        let toml = drive_toml(
+            &library::motor(motor),
+            &options::choice_of(settings),
+            Some("Mutant"),
+        );
+        let module = emit(&toml, "Mutant").expect("the drive generates");
+        for mutant in mutation::mutants(&module, 1) {
+            let what = format!("{motor}: {}", mutant.what);
+            let module = mutant.text;
+            writeln!(text, "mod mutant_{number:02} {{\n{module}\n}}").expect("a string takes all");
+            writeln!(
+                list,
+                "    ({what:?}, verify::<mutant_{number:02}::Mutant>),"
+            )
+            .expect("a string takes all");
+            number += 1;
+        }
+    }
+    let tail = format!(
+        "/// What each mutant has wrong, and its comparison with the model.\n\
+         pub const MUTANTS: &[(&str, Verify)] = &[\n{list}];\n"
+    );
+    fs::write(out_dir.join("mutants.rs"), text + &tail).expect("OUT_DIR can be written");
 }
 
 /// A drive's emitted module.

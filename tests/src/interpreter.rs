@@ -3,6 +3,7 @@
 //! What the emitted type does outside the step (reset, start-up calls, state access) is done here
 //! as the specification of the step says; the step and the setters run in the interpreter.
 
+use crate::states::{self, Space, verify_states};
 use hexagen::{Fault, Format, LegState, Legs, Rounding, Sample};
 use hexagen_codegen::interface;
 use hexagen_codegen::ir::{Machine, Program};
@@ -215,6 +216,39 @@ impl Subject for Interpreted<'_> {
 
     fn set_state_words(&mut self, words: &[i32]) {
         self.machine.state.copy_from_slice(words);
+    }
+}
+
+/// As [`compare`], from arbitrary states.
+///
+/// # Errors
+/// What differs, or which value left its proven interval.
+pub fn compare_states(
+    generated: &Generated,
+    program: &Program,
+    steps: u64,
+    seed: u64,
+) -> Result<(), String> {
+    let interface = &generated.interface;
+    let escaped = RefCell::new(None);
+    let space = Space {
+        ranges: &states::ranges(program),
+        constants: &states::constants(generated.graph.program()),
+    };
+    let subject = Interpreted::new(
+        program,
+        interface.calibration_samples,
+        interface.precharge_periods,
+        &escaped,
+    );
+    let formats = formats(&interface.formats);
+    let result = verify_states(&interface.spec_toml, &formats, space, subject, steps, seed);
+    match (escaped.into_inner(), result) {
+        (Some(place), result) => Err(format!(
+            "left its interval: {place}\n{}",
+            result.err().unwrap_or_default()
+        )),
+        (None, result) => result,
     }
 }
 

@@ -1,7 +1,11 @@
 //! What the cross-crate tests share: the motor library, the options of a drive, covering arrays,
-//! and the interpreter as a subject of the bit-for-bit test.
+//! planted faults, and what the bit-for-bit test is extended by: the interpreter as a subject, and
+//! arbitrary states.
 
+pub mod faults;
 pub mod interpreter;
 pub mod library;
+pub mod mutation;
 pub mod options;
 pub mod pairwise;
+pub mod states;

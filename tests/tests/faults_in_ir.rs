@@ -67,5 +67,10 @@ fn every_planted_fault_is_noticed() {
         missed.append(&mut unnoticed);
     }
     println!("{planted} faults planted");
-    assert!(missed.is_empty(), "{} of {planted} faults unnoticed:\n{}", missed.len(), missed.join("\n"));
+    assert!(
+        missed.is_empty(),
+        "{} of {planted} faults unnoticed:\n{}",
+        missed.len(),
+        missed.join("\n")
+    );
 }

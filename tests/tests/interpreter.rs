@@ -1,6 +1,6 @@
 //! The interpreted IR computes what the bit-true model computes, on every output and state bit.
 
-use hexagen_tests::interpreter::compare;
+use hexagen_tests::interpreter::{compare, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{
     default_choice, describe, drive_toml, generate_toml, product_element, product_len,
@@ -36,8 +36,12 @@ impl Tally {
             }
             Ok((_, generated)) => {
                 tally.compared = 1;
-                match compare(&generated, generated.graph.program(), steps, seed) {
-                    Ok(report) => tally.steps = report.steps,
+                let program = generated.graph.program();
+                let compared = compare(&generated, program, steps, seed).and_then(|report| {
+                    compare_states(&generated, program, steps / 4, seed).map(|()| report)
+                });
+                match compared {
+                    Ok(report) => tally.steps = report.steps + steps / 4,
                     Err(what) => tally.failures.push(format!("{}\n{what}", name())),
                 }
             }
@@ -86,6 +90,8 @@ fn default_drive_of_the_paper_motor() {
     let report = compare(&generated, generated.graph.program(), 200_000, 1)
         .unwrap_or_else(|what| panic!("{what}"));
     println!("{report}");
+    compare_states(&generated, generated.graph.program(), 200_000, 1)
+        .unwrap_or_else(|what| panic!("{what}"));
 }
 
 #[test]

@@ -184,14 +184,14 @@ impl Lowering<'_> {
         self.b.name("precharging", precharging);
         let charged = self.b.and(precharging, done);
         let run = self.b.literal(Mode::Run as i32);
-        let uncalibrated = self.b.select(charged, run, mode);
-        let after = if inverter.precharge_periods > 0 {
-            Mode::Precharge
+        let next_mode = if inverter.precharge_periods > 0 {
+            let uncalibrated = self.b.select(charged, run, mode);
+            let after = self.b.literal(Mode::Precharge as i32);
+            self.b.select(calibrated, after, uncalibrated)
         } else {
-            Mode::Run
+            let ready = self.b.or(calibrated, charged);
+            self.b.select(ready, run, mode)
         };
-        let after = self.b.literal(after as i32);
-        let next_mode = self.b.select(calibrated, after, uncalibrated);
         self.b.name("mode_advanced", next_mode);
         let periods = self.number(
             "precharge_periods",

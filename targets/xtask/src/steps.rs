@@ -67,19 +67,29 @@ pub fn checks() -> Vec<Step> {
 /// What is too long for a push.
 pub fn long_checks(steps: u64) -> Vec<Step> {
     let steps = steps.to_string();
-    vec![step(
-        "verification",
-        &[
-            "run",
-            "--release",
-            "--",
-            "verify",
-            "--controller",
-            "all",
-            "--steps",
-            &steps,
-        ],
-    )]
+    let verify = [
+        "run",
+        "--release",
+        "--",
+        "verify",
+        "--controller",
+        "all",
+        "--steps",
+        &steps,
+    ];
+    let faults = [
+        "test",
+        "-p",
+        "hexagen-tests",
+        "--test",
+        "faults_in_ir",
+        "--test",
+        "faults_in_rust",
+    ];
+    vec![
+        step("planted faults", &faults),
+        step("verification", &verify),
+    ]
 }
 
 /// Rewrites recorded expectations.

@@ -51,9 +51,15 @@ pub fn bars(bars: &Bars<'_>) -> Result<PreEscaped<String>, ReportError> {
             let group = bars.groups.get(index.max(0.0) as usize);
             group.map_or_else(String::new, |group| group.name.clone())
         };
+        let y = Axis {
+            range: range.clone(),
+            ticks: ticks(&range, step),
+            label: &|value| tick_text(*value, digits),
+            title: bars.y_title,
+        };
         let margins = Margins {
             top: 18.0,
-            ..Margins::USUAL
+            ..Margins::fitting(&y)
         };
         let mut chart = chart(
             area,
@@ -64,12 +70,7 @@ pub fn bars(bars: &Bars<'_>) -> Result<PreEscaped<String>, ReportError> {
                 label: &names,
                 title: bars.x_title,
             },
-            Axis {
-                range: range.clone(),
-                ticks: ticks(&range, step),
-                label: &|value| tick_text(*value, digits),
-                title: bars.y_title,
-            },
+            y,
         )?;
         let width = FILLED / bars.colors.len().max(1) as f64;
         let above = anchored(&text(AXIS, 0.8), HPos::Center, VPos::Bottom);

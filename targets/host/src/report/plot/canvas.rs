@@ -20,6 +20,9 @@ const SCALE: f64 = 4.0;
 /// Font size of labels in CSS pixels.
 const FONT: f64 = 12.0;
 
+/// Width of a label's character in CSS pixels, rather too wide than too narrow.
+pub const CHARACTER: f64 = 7.2;
+
 /// A drawing area of the page's plots.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -134,13 +137,17 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// Fits tick labels of three digits.
-    pub const USUAL: Self = Self {
-        top: 8.0,
-        right: 12.0,
-        bottom: 40.0,
-        left: 52.0,
-    };
+    /// Room that fits the labels of a vertical axis, and beside the longest its title.
+    pub fn fitting(y: &Axis<'_>) -> Self {
+        let longest = y.ticks.iter().map(|tick| (y.label)(tick).chars().count());
+        let labels = CHARACTER * longest.max().unwrap_or(0) as f64;
+        Self {
+            top: 8.0,
+            right: 12.0,
+            bottom: 40.0,
+            left: (30.0 + labels).max(52.0),
+        }
+    }
 }
 
 /// Draws the frame, grid, ticks and titles.

@@ -20,10 +20,6 @@ pub fn stability(
     x_title: &str,
     description: &str,
 ) -> Result<PreEscaped<String>, ReportError> {
-    let margins = Margins {
-        right: 20.0,
-        ..Margins::USUAL
-    };
     let factors = checks.iter().map(|check| check.factor);
     let (least, most) = factors.fold((1.0_f64, 1.0_f64), |(l, m), f| (l.min(f), m.max(f)));
     let pad = 0.04 * (most - least).max(0.1);
@@ -41,6 +37,16 @@ pub fn stability(
     canvas::svg((550.0, 250.0), description, |area| {
         let x_step = canvas::step(&x_range, 8);
         let (x_digits, y_digits) = (decimals(x_step), decimals(y_step));
+        let y = Axis {
+            range: 0.0..top,
+            ticks: ticks(&(0.0..top), y_step),
+            label: &|ripple| tick_text(*ripple, y_digits),
+            title: "RMS torque ripple in %",
+        };
+        let margins = Margins {
+            right: 20.0,
+            ..Margins::fitting(&y)
+        };
         let mut chart = chart(
             area,
             margins,
@@ -50,12 +56,7 @@ pub fn stability(
                 label: &|factor| tick_text(*factor, x_digits),
                 title: x_title,
             },
-            Axis {
-                range: 0.0..top,
-                ticks: ticks(&(0.0..top), y_step),
-                label: &|ripple| tick_text(*ripple, y_digits),
-                title: "RMS torque ripple in %",
-            },
+            y,
         )?;
         let (low, high) = (range.0.max(x_range.start), range.1.min(x_range.end));
         if low < high {

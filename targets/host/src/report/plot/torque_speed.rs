@@ -1,8 +1,8 @@
 //! Mean torque over speed, all variants in one plot, with the demand and marks of interest.
 
 use super::canvas::{
-    self, Axis, Chart, Drawn, Margins, anchored, chart, dashed, decimals, failed, line, polyline,
-    px, rule_above, text, tick_text, ticks, write_at,
+    self, Axis, CHARACTER, Chart, Drawn, Margins, anchored, chart, dashed, decimals, failed, line,
+    polyline, px, rule_above, text, tick_text, ticks, write_at,
 };
 use super::palette::{AXIS, DEMAND, INK};
 use crate::report::{ReportError, SpeedMark};
@@ -14,8 +14,8 @@ use std::ops::Range;
 /// Height of a row of marks in CSS pixels.
 const ROW: f64 = 17.0;
 
-/// Width of a character in CSS pixels, rather too wide than too narrow.
-const CHARACTER: f64 = 7.2;
+/// Share of the demand below which curves are cut off: how they fall further tells nothing.
+const LEAST: f64 = 0.8;
 
 /// Dash patterns of the variants in CSS pixels, so that curves on top of each other and prints
 /// without colour can be told apart.
@@ -27,7 +27,7 @@ pub struct Curve {
     pub color: RGBColor,
     /// Place in the legend; chooses the dash pattern.
     pub index: usize,
-    /// Speed in rpm and mean torque in newton metres, ascending.
+    /// Speed in rpm and mean torque, ascending.
     pub points: Vec<(f64, f64)>,
     /// Speed limit in rpm, marked on the curve.
     pub limit_rpm: Option<f64>,
@@ -35,7 +35,9 @@ pub struct Curve {
 
 /// The plot.
 pub struct TorqueSpeed<'a> {
-    /// Demanded torque in newton metres.
+    /// Unit of torque.
+    pub unit: &'static str,
+    /// Demanded torque.
     pub torque: f64,
     /// Rated speed in rpm.
     pub rated_rpm: f64,
@@ -56,19 +58,28 @@ pub fn dash(index: usize) -> (f64, f64) {
 pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, ReportError> {
     let size = (1120.0, 440.0);
     let (x_range, y_range) = (speed_range(plot), torque_range(plot));
-    let right = 16.0;
-    let width = size.0 - Margins::USUAL.left - right;
+    let step = canvas::step(&y_range, 8);
+    let digits = decimals(step);
+    let title = format!("mean torque in {}", plot.unit);
+    let y = Axis {
+        range: y_range.clone(),
+        ticks: ticks(&y_range, step),
+        label: &|torque| tick_text(*torque, digits),
+        title: &title,
+    };
+    let fitting = Margins {
+        right: 16.0,
+        ..Margins::fitting(&y)
+    };
+    let width = size.0 - fitting.left - fitting.right;
     let marks = place_marks(plot, &x_range, width / (x_range.end - x_range.start));
     let rows = marks.iter().map(|mark| mark.row + 1).max().unwrap_or(0);
     let margins = Margins {
         top: ROW * rows as f64 + 8.0,
-        right,
-        ..Margins::USUAL
+        ..fitting
     };
     let description = "Mean torque over speed of all variants";
     canvas::svg(size, description, |area| {
-        let step = canvas::step(&y_range, 8);
-        let digits = decimals(step);
         let x_step = canvas::step(&x_range, 12);
         let mut chart = chart(
             area,
@@ -79,12 +90,7 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
                 label: &|rpm| tick_text(*rpm, 0),
                 title: "speed in rpm",
             },
-            Axis {
-                range: y_range.clone(),
-                ticks: ticks(&y_range, step),
-                label: &|torque| tick_text(*torque, digits),
-                title: "mean torque in Nm",
-            },
+            y,
         )?;
         draw_marks(&mut chart, &marks, &y_range)?;
         let demand = [(x_range.start, plot.torque), (x_range.end, plot.torque)];
@@ -98,15 +104,19 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
         let percent = format!("{:.0} % of demand", 100.0 * plot.held);
         write_at(&chart, &percent, held[0], (6.0, 3.0), &below)?;
         for curve in &plot.curves {
-            draw_curve(&mut chart, curve)?;
+            draw_curve(&mut chart, curve, y_range.start)?;
         }
         Ok(())
     })
 }
 
-fn draw_curve(chart: &mut Chart<'_, '_>, curve: &Curve) -> Drawn {
+fn draw_curve(chart: &mut Chart<'_, '_>, curve: &Curve, floor: f64) -> Drawn {
     let style = line(curve.color, 2.0);
-    let points = curve.points.iter().copied();
+    let points = above(&curve.points, floor);
+    if let [alone] = points[..] {
+        let dot = Circle::new(alone, px(4.0), style);
+        chart.plotting_area().draw(&dot).map_err(failed)?;
+    }
     match dash(curve.index) {
         (_, 0.0) => polyline(chart, points, style)?,
         pattern => dashed(chart, points, style, pattern)?,
@@ -176,6 +186,22 @@ fn draw_marks(chart: &mut Chart<'_, '_>, marks: &[Placed], y_range: &Range<f64>)
     Ok(())
 }
 
+/// A curve down to where it first falls below a torque.
+fn above(points: &[(f64, f64)], floor: f64) -> Vec<(f64, f64)> {
+    let mut kept = Vec::new();
+    for &(x, y) in points {
+        if y >= floor {
+            kept.push((x, y));
+            continue;
+        }
+        if let Some(&(x0, y0)) = kept.last() {
+            kept.push((x0 + (x - x0) * (y0 - floor) / (y0 - y), floor));
+        }
+        break;
+    }
+    kept
+}
+
 /// Torque on a curve at a speed, linear between its points.
 fn interpolated(points: &[(f64, f64)], rpm: f64) -> Option<f64> {
     points.windows(2).find_map(|pair| {
@@ -205,7 +231,7 @@ fn speed_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     least..most + pad
 }
 
-/// Holds every curve; at least 9 % of the demand high.
+/// Holds every curve as far down as [`LEAST`] of the demand; at least 9 % of the demand high.
 fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     let torques = plot
         .curves
@@ -218,6 +244,7 @@ fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
         .fold(start, |(least, most), torque| {
             (least.min(torque), most.max(torque))
         });
+    let least = least.max(LEAST * plot.torque);
     let step = canvas::step(&(least..most), 8);
     (least / step).floor() * step..(most / step).ceil() * step
 }

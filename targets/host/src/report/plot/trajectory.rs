@@ -13,8 +13,11 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::f64::consts::FRAC_PI_3;
 
-/// Distance of the corners' names from the centre, relative to the corners'.
-const NAMES: f64 = 1.2;
+/// Width of the picture in CSS pixels.
+const WIDTH: f64 = 281.0;
+
+/// Distance of the corners' names from the corners in CSS pixels.
+const NAMES: f64 = 14.0;
 
 /// Points drawn of a turn with its ripple, at most.
 const RAW_POINTS: usize = 2400;
@@ -29,28 +32,23 @@ pub fn trajectory(
     color: RGBColor,
     description: &str,
 ) -> Result<PreEscaped<String>, ReportError> {
-    let margins = Margins {
-        top: 10.0,
-        right: 10.0,
-        bottom: 40.0,
-        left: 52.0,
+    let range = -reach..reach;
+    let step = canvas::step(&range, 8);
+    let digits = decimals(step);
+    let label = |value: &f64| tick_text(*value, digits);
+    let axis = |title| Axis {
+        range: range.clone(),
+        ticks: ticks(&range, step),
+        label: &label,
+        title,
     };
-    let side = 219.0;
-    let size = (
-        side + margins.left + margins.right,
-        side + margins.top + margins.bottom,
-    );
-    canvas::svg(size, description, |area| {
-        let range = -reach..reach;
-        let step = canvas::step(&range, 8);
-        let digits = decimals(step);
-        let label = |value: &f64| tick_text(*value, digits);
-        let axis = |title| Axis {
-            range: range.clone(),
-            ticks: ticks(&range, step),
-            label: &label,
-            title,
-        };
+    let margins = Margins {
+        right: 10.0,
+        ..Margins::fitting(&axis(""))
+    };
+    // The plotted area is a square.
+    let height = WIDTH - margins.left - margins.right + margins.top + margins.bottom;
+    canvas::svg((WIDTH, height), description, |area| {
         let mut chart = chart(area, margins, axis("i_alpha in A"), axis("i_beta in A"))?;
         let frame = Rectangle::new([(-reach, reach), (reach, -reach)], line(AXIS, 1.0));
         chart.plotting_area().draw(&frame).map_err(failed)?;
@@ -81,8 +79,9 @@ pub fn trajectory(
             let dot = Circle::new(corner, px(3.0), INK.stroke_width(px(1.0) as u32));
             chart.plotting_area().draw(&dot).map_err(failed)?;
             // Outside of the corner, where no commutation passes.
-            let outside = (NAMES * corner.0, NAMES * corner.1);
-            write_at(&chart, &format!("S{}", k + 1), outside, (0.0, 0.0), &name)?;
+            let (sin, cos) = corner.1.atan2(corner.0).sin_cos();
+            let outside = (NAMES * cos, -NAMES * sin);
+            write_at(&chart, &format!("S{}", k + 1), corner, outside, &name)?;
         }
         Ok(())
     })

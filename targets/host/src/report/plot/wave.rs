@@ -34,9 +34,15 @@ pub fn wave(wave: &Wave<'_>) -> Result<PreEscaped<String>, ReportError> {
         let x_ticks: Vec<f64> = (0..=6).map(|k| FIRST_DEG + 60.0 * f64::from(k)).collect();
         let step = canvas::step(&wave.range, 8);
         let digits = decimals(step);
+        let y = Axis {
+            range: wave.range.clone(),
+            ticks: ticks(&wave.range, step),
+            label: &|value| tick_text(*value, digits),
+            title: wave.title,
+        };
         let margins = Margins {
             top: 22.0,
-            ..Margins::USUAL
+            ..Margins::fitting(&y)
         };
         let mut chart = chart(
             area,
@@ -47,12 +53,7 @@ pub fn wave(wave: &Wave<'_>) -> Result<PreEscaped<String>, ReportError> {
                 label: &|degrees| tick_text(*degrees, 0),
                 title: "electrical angle in degrees",
             },
-            Axis {
-                range: wave.range.clone(),
-                ticks: ticks(&wave.range, step),
-                label: &|value| tick_text(*value, digits),
-                title: wave.title,
-            },
+            y,
         )?;
         let name = anchored(&text(AXIS, 0.95), HPos::Center, VPos::Bottom);
         for sector in 1..=6 {

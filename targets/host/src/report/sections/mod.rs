@@ -48,6 +48,44 @@ fn ripple(value: f64) -> String {
     number(value, decimals)
 }
 
+/// How torque is written: the unit that suits the demand.
+struct TorqueScale {
+    /// Name of the unit.
+    unit: &'static str,
+    /// Units per newton metre.
+    per_nm: f64,
+    /// Decimals that show three digits of the demand.
+    decimals: usize,
+}
+
+impl TorqueScale {
+    /// Millinewton metres for demands below 0.1 Nm.
+    fn of(data: &ReportData) -> Self {
+        let demand = data.torque.abs();
+        let (unit, per_nm) = if demand < 0.1 {
+            ("mNm", 1e3)
+        } else {
+            ("Nm", 1.0)
+        };
+        let exponent = (demand * per_nm).log10().floor();
+        let decimals = if exponent.is_finite() {
+            (2.0 - exponent).clamp(0.0, 6.0) as usize
+        } else {
+            2
+        };
+        Self {
+            unit,
+            per_nm,
+            decimals,
+        }
+    }
+
+    /// A torque in newton metres, with more decimals by so many.
+    fn text(&self, torque: f64, more: usize) -> String {
+        number(self.per_nm * torque, self.decimals + more)
+    }
+}
+
 /// A short line of a colour, dashed or not, as legends and captions show it.
 fn swatch(color: RGBColor, width: f64, (dash, gap): (f64, f64)) -> Markup {
     let color = palette::css(color);

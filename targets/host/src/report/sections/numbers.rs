@@ -1,7 +1,7 @@
 //! Number formats of the emitted code, and its distance from floating point.
 
 use super::header::grouped;
-use super::{capture_name, nothing, number, variant_swatch};
+use super::{TorqueScale, capture_name, nothing, number, variant_swatch};
 use crate::closed_loop::Merits;
 use crate::report::{Model, ReportData, Run, RunPoint, Variant};
 use hexagen_codegen::diagnostics::significant;
@@ -74,39 +74,55 @@ fn format_table(formats: &[FormatEntry]) -> Markup {
 struct Shown {
     name: &'static str,
     unit: &'static str,
+    /// Units per unit of the merit.
+    per_si: f64,
     decimals: usize,
     /// Whether it is a percentage, so that a few hundredths of a point count as equal.
     percentage: bool,
     of: fn(&Merits) -> f64,
 }
 
-const SHOWN: [Shown; 10] = [
-    shown("Mean torque", "Nm", 4, false, |m| m.mean_torque_nm),
-    shown("Ripple pp", "%", 3, true, |m| m.ripple_pp_pct),
-    shown("Ripple RMS", "%", 3, true, |m| m.ripple_rms_pct),
-    shown("Torque 6th", "%", 3, true, |m| m.h6_pct),
-    shown("Torque 12th", "%", 3, true, |m| m.h12_pct),
-    shown("Current 5th", "%", 3, true, |m| m.i5_pct),
-    shown("Current 7th", "%", 3, true, |m| m.i7_pct),
-    shown("THD", "%", 3, true, |m| m.thd_pct),
-    shown("Tracking", "A", 3, false, |m| m.tracking_rms_a),
-    shown("Commutation", "\u{b5}s", 1, false, |m| m.commutation_us),
-];
+impl Shown {
+    fn text(&self, value: f64) -> String {
+        number(self.per_si * value, self.decimals)
+    }
+}
 
-const fn shown(
-    name: &'static str,
-    unit: &'static str,
-    decimals: usize,
-    percentage: bool,
-    of: fn(&Merits) -> f64,
-) -> Shown {
-    Shown {
+/// The merits in the error table's columns.
+fn shown_merits(scale: &TorqueScale) -> [Shown; 10] {
+    let percent = |name, of| Shown {
+        name,
+        unit: "%",
+        per_si: 1.0,
+        decimals: 3,
+        percentage: true,
+        of,
+    };
+    let plain = |name, unit, decimals, of| Shown {
         name,
         unit,
+        per_si: 1.0,
         decimals,
-        percentage,
+        percentage: false,
         of,
-    }
+    };
+    [
+        Shown {
+            per_si: scale.per_nm,
+            ..plain("Mean torque", scale.unit, scale.decimals + 2, |m| {
+                m.mean_torque_nm
+            })
+        },
+        percent("Ripple pp", |m| m.ripple_pp_pct),
+        percent("Ripple RMS", |m| m.ripple_rms_pct),
+        percent("Torque 6th", |m| m.h6_pct),
+        percent("Torque 12th", |m| m.h12_pct),
+        percent("Current 5th", |m| m.i5_pct),
+        percent("Current 7th", |m| m.i7_pct),
+        percent("THD", |m| m.thd_pct),
+        plain("Tracking", "A", 3, |m| m.tracking_rms_a),
+        plain("Commutation", "\u{b5}s", 1, |m| m.commutation_us),
+    ]
 }
 
 /// Fixed and ideal values of a merit.
@@ -178,7 +194,7 @@ pub fn errors(data: &ReportData) -> Markup {
         return nothing("comparison of fixed point with float");
     }
     html! {
-        @if !comparisons.is_empty() { (merit_table(&comparisons)) }
+        @if !comparisons.is_empty() { (merit_table(&comparisons, &shown_merits(&TorqueScale::of(data)))) }
         @if !with_signals.is_empty() {
             h3 { "Signals" }
             p.note { "Distance of the emitted code from the ideal model, step by step, from the same state and samples." }
@@ -187,12 +203,12 @@ pub fn errors(data: &ReportData) -> Markup {
     }
 }
 
-fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
-    let total = comparisons.len() * SHOWN.len();
+fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
+    let total = comparisons.len() * merits.len();
     let apart = comparisons
         .iter()
         .flat_map(|comparison| {
-            SHOWN
+            merits
                 .iter()
                 .map(|shown| comparison.pair(shown).alike(shown.percentage))
         })
@@ -213,7 +229,7 @@ fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
                     tr {
                         th { "Hall edges" }
                         th.number { "rpm" }
-                        @for shown in &SHOWN {
+                        @for shown in merits {
                             th.number { (shown.name) br; small { (shown.unit) } }
                         }
                     }
@@ -221,11 +237,11 @@ fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
                 @for group in comparisons.chunk_by(|a, b| a.index == b.index) {
                     tbody {
                         tr {
-                            th colspan=(SHOWN.len() + 2) scope="rowgroup" {
+                            th colspan=(merits.len() + 2) scope="rowgroup" {
                                 (variant_swatch(group[0].index)) " " (group[0].variant.label)
                             }
                         }
-                        @for comparison in group { (merit_row(comparison)) }
+                        @for comparison in group { (merit_row(comparison, merits)) }
                     }
                 }
             }
@@ -233,18 +249,18 @@ fn merit_table(comparisons: &[Comparison<'_>]) -> Markup {
     }
 }
 
-fn merit_row(comparison: &Comparison<'_>) -> Markup {
+fn merit_row(comparison: &Comparison<'_>, merits: &[Shown]) -> Markup {
     html! {
         tr {
             td { (comparison.capture) }
             td.number { (number(comparison.fixed.rpm, 0)) }
-            @for shown in &SHOWN {
+            @for shown in merits {
                 @let pair = comparison.pair(shown);
                 @let alike = pair.alike(shown.percentage);
                 td.number.missed[!alike] {
                     @if !alike { "\u{2260}\u{a0}" }
-                    (number(pair.fixed, shown.decimals)) br;
-                    small { (number(pair.ideal, shown.decimals)) }
+                    (shown.text(pair.fixed)) br;
+                    small { (shown.text(pair.ideal)) }
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The result table: every run, its merits at each speed, its limit, and what was expected.
 
-use super::{capture_name, model_name, number, ripple, variant_swatch, variant_text};
+use super::{TorqueScale, capture_name, model_name, number, ripple, variant_swatch, variant_text};
 use crate::closed_loop::LimitOutcome;
 use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
 use crate::report::{Band, Expected, ReportData, Run, RunPoint};
@@ -76,7 +76,7 @@ fn head(data: &ReportData) -> Markup {
             }
             tr {
                 @for _ in &data.speeds_rpm {
-                    th.number.edge { "Mean" br; small { "Nm" } }
+                    th.number.edge { "Mean" br; small { (TorqueScale::of(data).unit) } }
                     th.number { "Ripple pp" br; small { "%" } }
                     th.number { "Ripple RMS" br; small { "%" } }
                 }
@@ -113,7 +113,8 @@ fn judge_run(data: &ReportData, run: &Run) -> Vec<Judged> {
 }
 
 fn figures(data: &ReportData, run: &Run) -> Markup {
-    let mean = |value: f64| number(value, 2);
+    let scale = TorqueScale::of(data);
+    let mean = |torque: f64| scale.text(torque, 0);
     let whole = |value: f64| number(value, 0);
     // A column for expected figures only where some row has one keeps plain tables narrow.
     let any_expected = data

@@ -1,6 +1,7 @@
 //! Mean torque over speed, all variants.
 
-use super::{legend, nothing, number, swatch};
+use super::{TorqueScale, legend, nothing, number, swatch};
+use crate::closed_loop::LimitOutcome;
 use crate::report::plot::{Curve, TorqueSpeed, dash, palette, torque_speed};
 use crate::report::{ReportData, ReportError, Variant};
 use maud::{Markup, html};
@@ -12,6 +13,19 @@ const HELD: f64 = 0.97;
 fn limit_rpm(variant: &Variant) -> Option<f64> {
     let run = variant.runs.first()?;
     run.limit.as_ref()?.limit_rpm
+}
+
+/// The limit as the legend has it, with the space before it.
+fn limit_text(variant: &Variant) -> String {
+    let Some(limit) = variant.runs.first().and_then(|run| run.limit.as_ref()) else {
+        return String::new();
+    };
+    match (limit.outcome, limit.limit_rpm) {
+        (LimitOutcome::NeverHeld, _) => " (never held)".to_owned(),
+        (LimitOutcome::NotReached, Some(rpm)) => format!(" (above {} rpm)", number(rpm, 0)),
+        (_, Some(rpm)) => format!(" ({} rpm)", number(rpm, 0)),
+        (_, None) => String::new(),
+    }
 }
 
 /// The plot and its legend.
@@ -28,15 +42,21 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
     if variants.is_empty() {
         return Ok(nothing("torque-speed curves"));
     }
+    let scale = TorqueScale::of(data);
     let plot = torque_speed(&TorqueSpeed {
-        torque: data.torque,
+        torque: scale.per_nm * data.torque,
+        unit: scale.unit,
         rated_rpm: data.motor.rated_speed * 60.0 / TAU,
         curves: variants
             .iter()
             .map(|&(index, variant)| Curve {
                 color: palette::variant(index),
                 index,
-                points: variant.torque_speed.clone(),
+                points: variant
+                    .torque_speed
+                    .iter()
+                    .map(|&(rpm, torque)| (rpm, scale.per_nm * torque))
+                    .collect(),
                 limit_rpm: limit_rpm(variant),
             })
             .collect(),
@@ -45,8 +65,8 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
     })?;
     Ok(html! {
         (legend(variants.iter().map(|&(index, variant)| {
-            let limit = limit_rpm(variant).map_or_else(String::new, |rpm| format!(" ({} rpm)", number(rpm, 0)));
-            (swatch(palette::variant(index), 3.0, dash(index)), format!("{}{limit}", variant.label))
+            let text = format!("{}{}", variant.label, limit_text(variant));
+            (swatch(palette::variant(index), 3.0, dash(index)), text)
         })))
         p.note { "Dots and the speeds in the legend mark where mean torque falls below 97 % of the demand. Curves end where the search for this limit ended." }
         (plot)

@@ -1,6 +1,6 @@
 //! What happens over one electrical turn: phase currents, trajectory, torque.
 
-use super::{field, figure, legend, nothing, number, plotted, swatch, variant_swatch};
+use super::{TorqueScale, field, figure, legend, nothing, number, plotted, swatch, variant_swatch};
 use crate::closed_loop::quasi_square;
 use crate::report::plot::{Wave, palette, trajectory, wave};
 use crate::report::window::{Columns, FIRST_DEG, columns};
@@ -171,27 +171,29 @@ pub fn trajectories(data: &ReportData) -> Result<Markup, ReportError> {
 /// # Errors
 /// A plot that cannot be drawn.
 pub fn torque(data: &ReportData) -> Result<Markup, ReportError> {
+    let scale = TorqueScale::of(data);
+    let demand = scale.per_nm * data.torque;
     let panels: Vec<(Panel<'_>, Columns)> = panels(data)
         .into_iter()
         .map(|panel| {
             let trace = &panel.record.trace;
-            let torque = columns(trace, COLUMNS, |k| trace.torque[k]);
+            let torque = columns(trace, COLUMNS, |k| scale.per_nm * trace.torque[k]);
             (panel, torque)
         })
         .collect();
     if panels.is_empty() {
         return Ok(nothing("records"));
     }
-    let range = torque_range(data.torque, panels.iter().map(|(_, columns)| columns));
+    let range = torque_range(demand, panels.iter().map(|(_, columns)| columns));
     let mut plots = Vec::new();
     for (panel, columns) in panels {
         let plot = wave(&Wave {
             description: &panel.describe("Torque"),
-            title: "torque in Nm",
+            title: &format!("torque in {}", scale.unit),
             range: range.clone(),
             signals: vec![(palette::variant(panel.index), columns)],
             ideal: Vec::new(),
-            demand: Some(data.torque),
+            demand: Some(demand),
         })?;
         plots.push(figure(&panel.caption(), &plot));
     }
