@@ -44,9 +44,8 @@ controller! {
     }
 }
 
-/// Both are made at compile time.
+/// Made at compile time.
 static REAR: RearHub = RearHub::new();
-const STEERING: Steering = Steering::new();
 
 /// Firmware code that knows no motor.
 fn run<D: Drive>(drive: &mut D, amperes: i16) -> [LegState; 3] {
@@ -68,7 +67,7 @@ fn run<D: Drive>(drive: &mut D, amperes: i16) -> [LegState; 3] {
 #[test]
 fn generic_code_holds_any_drive() {
     assert!(run(&mut RearHub::new(), 5).contains(&LegState::Pulsed));
-    let mut steering = STEERING;
+    let mut steering = const { Steering::new() };
     assert!(run(&mut steering, 5).contains(&LegState::Pulsed));
     assert!(steering.is_running());
     steering.step(2048, 2048, 7, 0);
