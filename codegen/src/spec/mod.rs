@@ -1,6 +1,6 @@
 //! Specification: two front ends, one syntax tree, units, checks, and the checked types.
 //!
-//! Macro tokens, TOML files and command-line variants become a [`SpecAst`]; [`check`] turns it into
+//! Macro tokens, TOML files and command-line variants become a [`SpecAst`]; [`check()`] turns it into
 //! a [`Spec`] in SI units with every default filled in, or into all errors at once.
 //!
 #![doc = include_str!("reference.md")]

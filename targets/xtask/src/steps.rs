@@ -50,15 +50,7 @@ pub fn checks() -> Vec<Step> {
         },
         Step {
             environment: vec![("RUSTDOCFLAGS", "-D warnings")],
-            ..step(
-                "documentation",
-                &[
-                    "doc",
-                    "--workspace",
-                    "--no-deps",
-                    "--document-private-items",
-                ],
-            )
+            ..step("documentation", &["doc", "--workspace", "--no-deps"])
         },
         step("tests", &["test", "--workspace", "--no-fail-fast"]),
     ]

@@ -147,7 +147,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// A right operand of an operator of [`Word`], where a small number needs no wrapping.
+    /// A right operand of an operator of `Word`, where a small number needs no wrapping.
     fn right(&self, value: Value, least: Binding) -> TokenStream {
         match self.literal(value) {
             Some(literal) => number(i64::from(literal)),

@@ -6,6 +6,7 @@ use crate::cli::{
 };
 use crate::closed_loop::{Measurement, Merits, RunOptions, measure};
 use crate::engine::{EngineKind, Model, Prepared};
+use crate::plant::PlantParams;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -54,11 +55,30 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let torque = arguments.torque(&drive);
     let plant = arguments.plant.plant(&drive)?;
     let run = arguments.plant.run(&drive, options.rpm, torque);
+    check_duration(&run, &plant, options.rpm)?;
     let set_point = arguments.plant.set_point(&drive, torque);
     let progress = spinner("simulating");
     let measured = measure(&plant, &run, drive.maker(arguments.model, set_point));
     progress.finish_and_clear();
     Ok((drive, run, measured?))
+}
+
+/// Most control periods of a run: their record takes a few hundred megabytes.
+const MOST_PERIODS: usize = 2_000_000;
+
+/// Whether the run's electrical turns fit into the record of a run.
+fn check_duration(run: &RunOptions, plant: &PlantParams, rpm: f64) -> Result<(), Failure> {
+    let (settling, measured) = run.periods(plant);
+    let periods = settling.saturating_add(measured);
+    if periods <= MOST_PERIODS {
+        return Ok(());
+    }
+    let least = rpm.abs() * periods as f64 / MOST_PERIODS as f64;
+    Err(Failure::Argument(format!(
+        "--rpm {rpm}: its electrical turns take {:.0} s; give 0 or at least {} rpm",
+        periods as f64 * plant.t_s,
+        significant(least * 1.01, 3)
+    )))
 }
 
 /// Runs the command.
