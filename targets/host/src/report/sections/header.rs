@@ -145,11 +145,20 @@ fn inverter(data: &ReportData) -> Vec<(&'static str, String)> {
     ]
 }
 
+/// Peak line-to-line EMF over peak phase EMF: twice the shape at 60 degrees, where two phases
+/// contribute alike.
+fn line_factor(shape: EmfShape) -> f64 {
+    2.0 * match shape {
+        EmfShape::Trapezoidal { flat_top_deg } => (60.0 / (90.0 - flat_top_deg / 2.0)).min(1.0),
+        EmfShape::Sinusoidal => 60.0_f64.to_radians().sin(),
+    }
+}
+
 fn derived(data: &ReportData) -> Vec<(&'static str, String)> {
     let (motor, inverter) = (&data.motor, &data.inverter);
     let pole_pairs = f64::from(motor.pole_pairs);
     let per_volt = inverter.t_s / motor.inductance;
-    let emf = 2.0 * motor.emf_constant * motor.rated_speed;
+    let emf = line_factor(motor.emf_shape) * motor.emf_constant * motor.rated_speed;
     let degrees = (motor.rated_speed * pole_pairs * inverter.t_s) * 180.0 / PI;
     vec![
         ("Current for the demand", quantity(data.current, "A")),
@@ -179,4 +188,19 @@ fn derived(data: &ReportData) -> Vec<(&'static str, String)> {
             format!("{}\u{b0} el.", number(degrees, 2)),
         ),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::line_factor;
+    use hexagen_codegen::spec::EmfShape;
+
+    #[test]
+    fn line_emf_follows_the_shape() {
+        let trapezoid = |flat_top_deg| line_factor(EmfShape::Trapezoidal { flat_top_deg });
+        assert_eq!((trapezoid(120.0), trapezoid(60.0)), (2.0, 2.0));
+        // A triangle of peak 1 at 90 degrees is 2/3 at 60.
+        assert!((trapezoid(0.0) - 4.0 / 3.0).abs() < 1e-12);
+        assert!((line_factor(EmfShape::Sinusoidal) - 3.0_f64.sqrt()).abs() < 1e-12);
+    }
 }
