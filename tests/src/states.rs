@@ -7,9 +7,8 @@
 use fastrand::Rng;
 use hexagen::{Format, Sample};
 use hexagen_codegen::ir::Program;
-use hexagen_reference::pdcc::BitTrue;
 use hexagen_reference::verify::Subject;
-use hexagen_reference::{Bus, FormatTable, HallCapture, Spec};
+use hexagen_reference::{BitTrue, Bus, FormatTable, HallCapture, Spec};
 use std::fmt::Write as _;
 
 /// Steps from one arbitrary state, the first of which is the one that matters.

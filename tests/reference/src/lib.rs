@@ -10,7 +10,7 @@ mod emf_shape;
 mod error;
 pub mod exact;
 mod formats;
-pub mod pdcc;
+mod model;
 mod spec;
 pub mod verify;
 
@@ -18,6 +18,7 @@ pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;
 pub use error::Error;
 pub use formats::FormatTable;
+pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Trace};
 pub use spec::{
     Bus, BusSense, Controller, Discretisation, EmfShapeKind, EmfSource, HallCapture, Inverter,
     Modulation, Motor, Pdcc, Reference, Saturation, Spec,

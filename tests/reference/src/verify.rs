@@ -15,8 +15,7 @@ pub use report::Report;
 pub use stimulus::{Action, Context, Stimulus, Stream};
 pub use subject::{Compiled, Subject};
 
-use crate::pdcc::{BitTrue, Mode};
-use crate::{FormatTable, Spec};
+use crate::{BitTrue, FormatTable, Mode, Spec};
 use hexagen::{Drive, Fault, Format, Legs, Sample};
 
 /// Steps that [`assert_bit_true`] runs.

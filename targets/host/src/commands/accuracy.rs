@@ -6,7 +6,7 @@ use crate::closed_loop::{ClosedLoop, CurrentLoop, Measurement, Merits, RunOption
 use crate::engine::{Engine, Model, Prepared, SetPoint};
 use crate::plant::{Plant, PlantParams, Truth};
 use hexagen::{Legs, Sample};
-use hexagen_reference::pdcc::{BitTrue, Ideal};
+use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
 
 /// Distance of the bit-true from the ideal model after one step from the same state and sample.

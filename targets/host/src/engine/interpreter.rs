@@ -6,7 +6,7 @@
 use hexagen::{Fault, LegState, Legs, Sample};
 use hexagen_codegen::ir::{Escape, Machine, Program};
 use hexagen_codegen::pipeline::Generated;
-use hexagen_reference::pdcc::Mode;
+use hexagen_reference::Mode;
 use hexagen_reference::verify::Subject;
 
 /// An interpreted drive. A value outside its proven interval, which would be a bug of the

@@ -22,8 +22,8 @@ pub use verifier::Verifier;
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
 use hexagen::{Legs, Sample};
-use hexagen_reference::pdcc::{BitTrue, Ideal};
 use hexagen_reference::verify::Subject;
+use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
 
 /// Which model of a controller runs.

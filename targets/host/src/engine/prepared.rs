@@ -9,8 +9,7 @@ use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::interface::{self, Interface};
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{BusSource, Spec, SpecAst, apply_variant, check, parse_toml};
-use hexagen_reference::pdcc::{BitTrue, Ideal};
-use hexagen_reference::{Error, FormatTable};
+use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 

@@ -1,6 +1,6 @@
 //! What a bit-for-bit test has covered.
 
-use crate::pdcc::{BitTrue, Mode, Reach};
+use crate::{BitTrue, Mode, Reach};
 use std::fmt;
 
 /// How many steps of a passed test went which way, counted in the model.

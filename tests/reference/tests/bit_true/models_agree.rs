@@ -3,8 +3,8 @@
 
 use crate::variants::{self, Variant};
 use hexagen::Sample;
-use hexagen_reference::pdcc::{BitTrue, Ideal, Mode};
 use hexagen_reference::verify::{Action, Context, Stimulus};
+use hexagen_reference::{BitTrue, Ideal, Mode};
 
 const STEPS: u64 = 1000;
 

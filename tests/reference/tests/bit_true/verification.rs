@@ -2,9 +2,8 @@
 
 use crate::variants::{self, Variant};
 use hexagen::{Fault, Legs, Sample};
-use hexagen_reference::FormatTable;
-use hexagen_reference::pdcc::BitTrue;
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
+use hexagen_reference::{BitTrue, FormatTable};
 
 /// The model in the place of a drive, with an optional fault.
 struct Mirror {

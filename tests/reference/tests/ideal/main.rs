@@ -2,7 +2,7 @@
 
 mod plant;
 
-use hexagen_reference::pdcc::Ideal;
+use hexagen_reference::Ideal;
 use plant::{Merits, merits, spec_660w};
 
 const RATED_RPM: f64 = 2000.0;

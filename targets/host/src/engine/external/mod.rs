@@ -10,7 +10,7 @@ mod link;
 pub use build::{BuildError, External, compile};
 
 use hexagen::{Fault, Format, Legs, Sample};
-use hexagen_reference::pdcc::BitTrue;
+use hexagen_reference::BitTrue;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
 use link::{Call, Link, LinkError};
 use std::cell::RefCell;

@@ -1,7 +1,7 @@
 //! Limiting to the hexagon of reachable voltages (section 10), as plane geometry.
 
 use crate::Saturation;
-use crate::pdcc::Reach;
+use crate::model::Reach;
 use nalgebra::Vector3;
 
 /// A limited voltage.

@@ -3,7 +3,7 @@
 use super::constants::Constants;
 use crate::Saturation;
 use crate::exact::{Coefficient, Shift, div_floor, floor, floor_shift, halve};
-use crate::pdcc::Reach;
+use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
 const BLEND_BITS: u32 = 15;

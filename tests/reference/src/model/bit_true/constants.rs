@@ -3,7 +3,7 @@
 use super::state::{Part, Parts};
 use super::tables::Table;
 use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
-use crate::pdcc::hall::needs_rotor;
+use crate::model::hall::needs_rotor;
 use crate::{
     DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Modulation, Reference, Saturation, Spec,
 };

@@ -2,10 +2,10 @@
 
 use super::constants::Constants;
 use crate::exact::to_i32;
-use crate::pdcc::hall::HallTiming;
-use crate::pdcc::sector;
-use crate::pdcc::supervision::{Mode, Supervisor, fault_from_word};
-use crate::pdcc::trace::PhysicalState;
+use crate::model::hall::HallTiming;
+use crate::model::sector;
+use crate::model::supervision::{Mode, Supervisor, fault_from_word};
+use crate::model::trace::PhysicalState;
 use hexagen::Fault;
 
 /// State words in f64; small enums as such. Words that the variant does not have are kept as well

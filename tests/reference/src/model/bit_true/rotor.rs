@@ -3,8 +3,8 @@
 use super::constants::Constants;
 use super::state::State;
 use crate::exact::{floor, pow2, wrap32};
-use crate::pdcc::hall::HallClock;
-use crate::pdcc::sector::HallEvent;
+use crate::model::hall::HallClock;
+use crate::model::sector::HallEvent;
 
 /// SIXTH: 60 degrees as an angle word, floor(2^32/6).
 const SIXTH: f64 = 715_827_882.0;
