@@ -19,7 +19,7 @@ impl DiscretePhase {
             spec.motor.inductance,
             spec.inverter.t_s,
         );
-        match spec.pdcc().discretisation {
+        match spec.loop_options().discretisation {
             Discretisation::Exact => {
                 let decay = -(-r * t_s / l).exp_m1();
                 Self {

@@ -20,7 +20,8 @@ pub use error::Error;
 pub use formats::FormatTable;
 pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Trace};
 pub use spec::{
-    Bus, BusSense, Controller, Discretisation, EmfShapeKind, EmfSource, HallCapture, Inverter,
-    Modulation, Motor, Pdcc, Reference, Saturation, Spec,
+    Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
+    FcsMpc, FeedForward, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, Pdcc,
+    PiPwm, Reference, Saturation, Spec,
 };
 pub use verify::assert_bit_true;

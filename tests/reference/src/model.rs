@@ -12,6 +12,8 @@ mod ideal;
 mod sector;
 mod supervision;
 mod trace;
+mod variant;
+mod vectors;
 
 pub use bit_true::{BitTrue, Course};
 pub use ideal::{Duties, Ideal};

@@ -5,8 +5,15 @@
 //! rejects unknown fields and values outside their physical range, nothing more: the generator
 //! has already judged the motor.
 
+mod controller;
+
 use crate::Error;
 use serde::Deserialize;
+
+pub use controller::{
+    Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, FeedForward,
+    LoopOptions, Modulation, OffLeg, Pdcc, PiPwm, Reference, Saturation,
+};
 
 /// A whole normalised specification.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -135,94 +142,6 @@ pub enum HallCapture {
     Timer,
 }
 
-/// A controller and its options.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Controller {
-    /// Predictive deadbeat current control.
-    Pdcc(Pdcc),
-}
-
-/// Options of predictive deadbeat current control (DESIGN section 4).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pdcc {
-    /// How a voltage becomes leg commands.
-    pub modulation: Modulation,
-    /// What gives way outside the hexagon.
-    pub saturation: Saturation,
-    /// Where the EMF comes from.
-    pub emf: EmfSource,
-    /// Weight of a new EMF estimate, above 0 to 1 (1: no filter).
-    pub emf_filter: f64,
-    /// What the currents follow.
-    pub reference: Reference,
-    /// Phase advance, periods of electrical angle.
-    pub advance: f64,
-    /// Periods between sampling and the command's effect, 0 or 1.
-    pub delay: u32,
-    /// Discretisation of the plant.
-    pub discretisation: Discretisation,
-    /// Word length, 16 or 32 bits.
-    pub word: u32,
-    /// Outgoing current that ends a commutation, ampere.
-    pub commutation_threshold: f64,
-    /// Periods after which a commutation is taken as ended.
-    pub commutation_timeout: u32,
-}
-
-/// How a voltage becomes leg commands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Modulation {
-    /// Three duties in every period.
-    ThreePhase,
-    /// Three duties in commutation, else one pulsed leg of the conducting pair.
-    Pair,
-}
-
-/// What gives way when the voltage lies outside the hexagon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Saturation {
-    /// Scale to the edge.
-    KeepAngle,
-    /// Nearest point of the hexagon.
-    Nearest,
-    /// Keep the component along the EMF.
-    TorquePriority,
-}
-
-/// Where the EMF comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum EmfSource {
-    /// From the last period's voltage and currents.
-    Estimated,
-    /// From the motor's EMF shape at the interpolated Hall angle.
-    Model,
-}
-
-/// What the currents follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Reference {
-    /// The sector's corner.
-    QuasiSquare,
-    /// Parallel to the EMF.
-    Proportional,
-}
-
-/// Discretisation of the plant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Discretisation {
-    /// a = exp(-R Ts/L), b = (1 - a)/R.
-    Exact,
-    /// a = 1 - R Ts/L, b = Ts/L.
-    Euler,
-}
-
 impl Spec {
     /// Reads a normalised specification from its TOML text.
     ///
@@ -234,14 +153,35 @@ impl Spec {
         Ok(spec)
     }
 
-    /// The PDCC options.
-    pub fn pdcc(&self) -> &Pdcc {
-        let Controller::Pdcc(pdcc) = &self.controller;
-        pdcc
+    /// The options that every controller has.
+    pub fn loop_options(&self) -> LoopOptions {
+        match &self.controller {
+            Controller::Pdcc(pdcc) => pdcc.loop_options(),
+            Controller::FcsMpc(fcs_mpc) => fcs_mpc.loop_options(),
+            Controller::PiPwm(pi_pwm) => pi_pwm.loop_options(),
+        }
+    }
+
+    /// When a commutation ends; none for a controller that knows none.
+    pub fn commutation_end(&self) -> Option<CommutationEnd> {
+        let (threshold, timeout) = match &self.controller {
+            Controller::Pdcc(Pdcc {
+                commutation_threshold,
+                commutation_timeout,
+                ..
+            })
+            | Controller::FcsMpc(FcsMpc {
+                commutation_threshold,
+                commutation_timeout,
+                ..
+            }) => (*commutation_threshold, *commutation_timeout),
+            Controller::PiPwm(_) => return None,
+        };
+        Some(CommutationEnd { threshold, timeout })
     }
 
     fn check(&self) -> Result<(), Error> {
-        let (motor, inverter, pdcc) = (&self.motor, &self.inverter, self.pdcc());
+        let (motor, inverter, options) = (&self.motor, &self.inverter, self.loop_options());
         for (field, value) in [
             ("motor.resistance", motor.resistance),
             ("motor.inductance", motor.inductance),
@@ -253,7 +193,7 @@ impl Spec {
             ("inverter.trip_current", inverter.trip_current),
             ("inverter.max_current", inverter.max_current),
             ("inverter.omega_max", inverter.omega_max),
-            ("controller.emf_filter", pdcc.emf_filter),
+            ("controller.emf_filter", options.emf_filter),
         ] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(Error::field(
@@ -276,7 +216,7 @@ impl Spec {
                 0,
                 15,
             ),
-            ("controller.delay", pdcc.delay, 0, 1),
+            ("controller.delay", options.delay, 0, 1),
         ] {
             if !(least..=greatest).contains(&value) {
                 return Err(Error::field(
@@ -286,27 +226,21 @@ impl Spec {
                 ));
             }
         }
-        if !(0.0..=2.0).contains(&pdcc.advance) {
+        if !(0.0..=2.0).contains(&options.advance) {
             return Err(Error::field(
                 "controller.advance",
-                pdcc.advance,
+                options.advance,
                 "expected 0 to 2 periods",
             ));
         }
-        if pdcc.emf_filter > 1.0 {
+        if options.emf_filter > 1.0 {
             return Err(Error::field(
                 "controller.emf_filter",
-                pdcc.emf_filter,
+                options.emf_filter,
                 "expected at most 1",
             ));
         }
-        if !(pdcc.commutation_threshold.is_finite() && pdcc.commutation_threshold >= 0.0) {
-            return Err(Error::field(
-                "controller.commutation_threshold",
-                pdcc.commutation_threshold,
-                "expected 0 or more",
-            ));
-        }
+        self.check_controller()?;
         let mut codes = motor.hall_codes;
         codes.sort_unstable();
         if codes != [1, 2, 3, 4, 5, 6] {
@@ -317,6 +251,42 @@ impl Spec {
             ));
         }
         inverter.bus_sense()?;
+        Ok(())
+    }
+
+    fn check_controller(&self) -> Result<(), Error> {
+        if let Some(CommutationEnd { threshold, .. }) = self.commutation_end()
+            && !(threshold.is_finite() && threshold >= 0.0)
+        {
+            return Err(Error::field(
+                "controller.commutation_threshold",
+                threshold,
+                "expected 0 or more",
+            ));
+        }
+        if let Controller::PiPwm(pi_pwm) = &self.controller {
+            for (field, value) in [
+                ("controller.bandwidth", pi_pwm.bandwidth),
+                ("controller.integral_time", pi_pwm.integral_time),
+            ] {
+                if !(value.is_finite() && value > 0.0) {
+                    return Err(Error::field(
+                        field,
+                        value,
+                        "expected a finite number above 0",
+                    ));
+                }
+            }
+            if pi_pwm.saturation == Saturation::TorquePriority
+                && pi_pwm.feed_forward == FeedForward::Off
+            {
+                return Err(Error::field(
+                    "controller.saturation",
+                    "torque_priority",
+                    "torque priority needs feed_forward = on",
+                ));
+            }
+        }
         Ok(())
     }
 }

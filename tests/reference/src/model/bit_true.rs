@@ -7,6 +7,7 @@
 
 mod applied;
 mod constants;
+mod law;
 mod limit;
 mod rotor;
 mod state;
@@ -16,22 +17,24 @@ use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation};
 use super::trace::{PhysicalState, Reach, Trace};
-use crate::exact::{Coefficient, div_floor, floor, floor_weighted, halve, pow2, to_u16};
-use crate::{EmfSource, Error, FormatTable, Modulation, Pdcc, Reference, Spec};
-use constants::Constants;
-use hexagen::{Fault, LegState, Legs, Sample};
+use super::variant::Variant;
+use crate::exact::{Coefficient, div_floor, floor, floor_weighted, pow2};
+use crate::{EmfSource, Error, FormatTable, Reference, Spec};
+use constants::{Constants, Scale};
+use hexagen::{Fault, Legs, Sample};
+use law::{Command, Inputs, Law};
 use state::State;
 use std::f64::consts::TAU;
 
-/// The bit-true predictive deadbeat controller of one drive.
+/// The bit-true controller of one drive.
 #[derive(Clone, Debug)]
 pub struct BitTrue {
-    pdcc: Pdcc,
-    rotor: bool,
+    variant: Variant,
     hall_sectors: [usize; 8],
     clock: HallClock,
     limits: Limits,
     k: Constants,
+    law: Law,
     // Set-point words.
     j: f64,
     v_bus: f64,
@@ -66,17 +69,8 @@ struct Signals {
     sector_eff: usize,
     commutating: bool,
     reach: Reach,
+    vector: usize,
     run: bool,
-}
-
-/// A command to the inverter and the terminal voltages that it stands for.
-#[derive(Clone, Copy, Debug)]
-struct Command {
-    legs: Legs,
-    /// `t_a_cmd` to `t_c_cmd` (pair modulation).
-    terminal: [f64; 3],
-    /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
-    off: usize,
 }
 
 impl BitTrue {
@@ -86,11 +80,10 @@ impl BitTrue {
     /// When the specification is inconsistent, a format is missing, or a coefficient does not fit
     /// its format.
     pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
-        let pdcc = *spec.pdcc();
-        let k = Constants::new(spec, formats)?;
+        let scale = Scale::new(spec, formats)?;
+        let k = Constants::new(spec, &scale)?;
         let mut model = Self {
-            pdcc,
-            rotor: super::hall::needs_rotor(&pdcc),
+            variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
             limits: Limits::new(&spec.inverter, k.i_trip)?,
@@ -100,6 +93,7 @@ impl BitTrue {
             to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
             state: State::default(),
             last: Signals::default(),
+            law: Law::new(spec, &scale)?,
             k,
         };
         model.state.offset = [model.k.offset; 2];
@@ -193,6 +187,7 @@ impl BitTrue {
             sector_eff,
             commutating,
             reach,
+            vector,
             run,
         } = self.last;
         let turn = TAU * pow2(-32);
@@ -207,6 +202,7 @@ impl BitTrue {
             sector_eff,
             commutating,
             reach,
+            vector,
             run,
         }
     }
@@ -270,7 +266,7 @@ impl BitTrue {
             sector_eff: sector,
             ..rotor::Angle::default()
         };
-        if self.rotor {
+        if self.variant.rotor {
             self.state.timing.step(
                 &self.clock,
                 &event,
@@ -283,15 +279,14 @@ impl BitTrue {
         let sector_eff = angle.sector_eff;
 
         // 5 commutation
-        let pair = self.pdcc.modulation == Modulation::Pair;
-        if pair {
+        if self.variant.commutation.is_some() {
             self.state
                 .commutate(k, sector_eff, self.j, &[i[0], i[1], i_c]);
         }
 
         // 6 reference
-        let delayed = self.pdcc.delay == 1;
-        let j_ref = match self.pdcc.reference {
+        let delayed = self.variant.delayed();
+        let j_ref = match self.variant.options.reference {
             Reference::QuasiSquare => [
                 sector::CORNER_A[sector_eff] * self.j,
                 sector::CORNER_B[sector_eff] * self.j,
@@ -309,7 +304,7 @@ impl BitTrue {
         };
 
         // 7 applied voltage
-        let v_now = match (delayed, pair) {
+        let v_now = match (self.variant.applied_now, self.variant.floating) {
             (false, _) => [0.0; 2],
             (true, false) => self.state.v_cmd,
             (true, true) => {
@@ -324,8 +319,9 @@ impl BitTrue {
         };
 
         // 8 EMF
-        let (e, e_now) = match self.pdcc.emf {
-            EmfSource::Estimated => {
+        let (e, e_now) = match self.variant.emf {
+            None => ([0.0; 2], [0.0; 2]),
+            Some(EmfSource::Estimated) => {
                 let e = [0, 1].map(|x| {
                     let State {
                         i_prev,
@@ -343,7 +339,7 @@ impl BitTrue {
                 });
                 (e, e)
             }
-            EmfSource::Model => {
+            Some(EmfSource::Model) => {
                 let now = k.flux.both(angle.theta);
                 let start = if delayed {
                     k.flux.both(angle.theta + angle.step)
@@ -361,40 +357,31 @@ impl BitTrue {
             }
         };
 
-        // 9 deadbeat voltage
-        let u_unsat = [0, 1].map(|x| {
-            let held = j_ref[x] - k.k_hold.mul(i[x]);
-            if delayed {
-                held + k.k_decay.mul(v_now[x] - e_now[x]) + e[x] + e_now[x] - v_now[x]
-            } else {
-                held + e[x]
-            }
+        // 9 to 11, the controller's own
+        let decision = self.law.decide(&Inputs {
+            k,
+            v_bus: self.v_bus,
+            to_duty: &self.to_duty,
+            j: j_ref,
+            i,
+            v_now,
+            e,
+            e_now,
+            sector_eff,
+            commutating: self.state.commutating,
+            integral: self.state.integral,
         });
-
-        // 10 limit, 11 modulate
-        let (u, reach) = limit::limit(self.pdcc.saturation, k, self.v_bus, u_unsat, e);
-        let command = if !run {
-            let legs = if self.state.supervisor.mode == Mode::Precharge {
-                Legs::LOW
-            } else {
-                Legs::OFF
-            };
-            Command {
-                legs,
-                terminal: [0.0; 3],
-                off: 0,
-            }
-        } else if pair && !self.state.commutating {
-            self.pulse_pair(sector_eff, u_unsat)
-        } else {
-            self.pulse_three(u, pair)
+        let command = match self.state.supervisor.mode {
+            Mode::Run => decision.command,
+            Mode::Precharge => Command::idle(Legs::LOW),
+            Mode::Calibrate | Mode::Tripped => Command::idle(Legs::OFF),
         };
 
         // 12 remember
         if run {
-            self.state.v_prev = match (delayed, pair) {
+            self.state.v_prev = match (delayed, self.variant.floating) {
                 (true, _) => v_now,
-                (false, false) => u,
+                (false, false) => decision.u,
                 (false, true) => applied::voltage(
                     &self.k,
                     self.v_bus,
@@ -404,10 +391,11 @@ impl BitTrue {
                     e,
                 ),
             };
-            self.state.v_cmd = u;
+            self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
             self.state.e_prev = e;
+            self.state.integral = decision.integral;
         } else {
             self.state.stop();
         }
@@ -418,85 +406,16 @@ impl BitTrue {
             i,
             e,
             v_now,
-            u_unsat,
-            u,
+            u_unsat: decision.u_unsat,
+            u: decision.u,
             theta: angle.theta,
             step_angle: angle.step,
             sector_eff,
             commutating: self.state.commutating,
-            reach,
+            reach: decision.reach,
+            vector: if run { decision.vector } else { 0 },
             run,
         };
         command.legs
-    }
-
-    /// A timer compare value from a word of whole and half counts.
-    #[inline]
-    fn compare(&self, counts: f64) -> u16 {
-        to_u16(
-            floor((counts + self.k.half_count) * self.k.to_counts).clamp(0.0, self.k.timer_period),
-        )
-    }
-
-    /// Three pulsed legs, their common mode in the middle of the bus.
-    #[inline]
-    fn pulse_three(&self, u: [f64; 2], pair: bool) -> Command {
-        let u = [u[0], u[1], -(u[0] + u[1])];
-        let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
-        let compare = u.map(|u_x| {
-            let t = u_x - middle;
-            let t = if self.k.bus.is_some() {
-                self.to_duty.mul(t)
-            } else {
-                t
-            };
-            self.compare(t + self.k.half)
-        });
-        let terminal = if pair {
-            let half_bus = halve(self.v_bus);
-            u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, self.v_bus))
-        } else {
-            [0.0; 3]
-        };
-        Command {
-            legs: Legs {
-                compare,
-                state: [LegState::Pulsed; 3],
-            },
-            terminal,
-            off: 0,
-        }
-    }
-
-    /// One pulsed leg of the conducting pair, the other low, the third off.
-    #[inline]
-    fn pulse_pair(&self, sector_eff: usize, u: [f64; 2]) -> Command {
-        let mut command = Command {
-            legs: Legs::OFF,
-            terminal: [0.0; 3],
-            off: 0,
-        };
-        if sector_eff == 0 {
-            return command;
-        }
-        let u = [u[0], u[1], -(u[0] + u[1])];
-        let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
-        let v = (u[plus] - u[minus]).clamp(-self.v_bus, self.v_bus);
-        let (pulsed, low, t) = if v >= 0.0 {
-            (plus, minus, v)
-        } else {
-            (minus, plus, -v)
-        };
-        let counts = if self.k.bus.is_some() {
-            self.to_duty.mul(t)
-        } else {
-            t
-        };
-        command.legs.compare[pulsed] = self.compare(counts);
-        command.legs.state[pulsed] = LegState::Pulsed;
-        command.legs.state[low] = LegState::Low;
-        command.terminal[pulsed] = t;
-        command.off = sector::OUT_PHASE[sector_eff] + 1;
-        command
     }
 }

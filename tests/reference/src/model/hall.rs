@@ -2,12 +2,7 @@
 //! turn, and when they stop being trustworthy. Ticks are whole numbers, so nothing is rounded.
 
 use super::sector::HallEvent;
-use crate::spec::{EmfSource, HallCapture, Inverter, Pdcc, Reference, Spec};
-
-/// Whether the variant needs the rotor's angle.
-pub fn needs_rotor(pdcc: &Pdcc) -> bool {
-    pdcc.emf == EmfSource::Model || pdcc.advance > 0.0 || pdcc.reference == Reference::Proportional
-}
+use crate::spec::{HallCapture, Inverter, Spec};
 
 /// Constants of the timing, in ticks.
 #[derive(Clone, Copy, Debug)]

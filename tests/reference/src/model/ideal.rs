@@ -1,21 +1,24 @@
-//! Model A: the deadbeat law in f64 and physical units, with no rounding anywhere.
+//! Model A: the control law in f64 and physical units, with no rounding anywhere.
 //!
 //! Vectors are amplitude-invariant alpha-beta (DESIGN section 3); the inputs are the same ADC
 //! counts, Hall codes and timer ticks that the generated code reads, the outputs exact duties.
 
+mod law;
 mod limit;
+mod vector;
 
-use super::hall::{HallClock, needs_rotor};
+use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation};
 use super::trace::{PhysicalState, Trace};
+use super::variant::Variant;
 use crate::emf_shape::THIRD;
-use crate::{
-    BusSense, DiscretePhase, EmfShape, EmfSource, Error, Modulation, Pdcc, Reference, Spec,
-};
+use crate::{BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec};
 use hexagen::{LegState, Legs, Sample};
+use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
+use vector::{clarke, from_ab, phases, to_ab};
 
 /// A sector is half open: its last angle stays this far (radians) before the next one.
 const SECTOR_END: f64 = FRAC_PI_3 * (1.0 - 1e-9);
@@ -51,25 +54,18 @@ impl Duties {
     }
 }
 
-/// What the inverter does in one period.
-#[derive(Clone, Copy, Debug)]
-struct Command {
-    duties: Duties,
-    /// Terminal voltages, volt.
-    terminal: Vector3<f64>,
-    off: Option<usize>,
-}
-
-/// The ideal predictive deadbeat controller of one drive.
+/// The ideal controller of one drive.
 #[derive(Clone, Debug)]
 pub struct Ideal {
     // From the specification.
-    pdcc: Pdcc,
+    variant: Variant,
+    law: Law,
+    /// When a leg that is off carries no current and when a commutation ends.
+    end: CommutationEnd,
     phase: DiscretePhase,
     shape: EmfShape,
     hall_sectors: [usize; 8],
     clock: HallClock,
-    rotor: bool,
     limits: Limits,
     gain: f64,
     offset_nominal: f64,
@@ -95,19 +91,20 @@ impl Ideal {
     /// # Errors
     /// When the specification is inconsistent.
     pub fn new(spec: &Spec) -> Result<Self, Error> {
-        let (motor, inverter, pdcc) = (&spec.motor, &spec.inverter, *spec.pdcc());
+        let (motor, inverter) = (&spec.motor, &spec.inverter);
         let phase = DiscretePhase::new(spec);
         let bus_sense = inverter.bus_sense()?;
         let gain = inverter.adc_gain;
         let limits = Limits::new(inverter, inverter.trip_current)?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
-            pdcc,
+            variant: Variant::new(spec),
+            law: Law::new(spec)?,
+            end: spec.commutation_end().unwrap_or_default(),
             phase,
             shape: EmfShape::new(motor)?,
             hall_sectors: sector::hall_sectors(motor),
             clock: HallClock::new(spec),
-            rotor: needs_rotor(&pdcc),
             limits,
             gain,
             offset_nominal: f64::from(inverter.adc_offset),
@@ -212,7 +209,7 @@ impl Ideal {
 
         // 4 rotor
         let sector = event.sector;
-        let (theta, step_angle, sector_eff) = if self.rotor {
+        let (theta, step_angle, sector_eff) = if self.variant.rotor {
             self.state.timing.step(
                 &self.clock,
                 &event,
@@ -225,14 +222,13 @@ impl Ideal {
         };
 
         // 5 commutation
-        let pair = self.pdcc.modulation == Modulation::Pair;
-        if pair {
+        if self.variant.commutation.is_some() {
             self.commutate(sector_eff, &i_abc);
         }
 
         // 6 reference
-        let target = f64::from(1 + self.pdcc.delay) * step_angle;
-        let i_ref = match self.pdcc.reference {
+        let target = f64::from(1 + self.variant.options.delay) * step_angle;
+        let i_ref = match self.variant.options.reference {
             Reference::QuasiSquare => {
                 from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * self.current
             }
@@ -243,9 +239,9 @@ impl Ideal {
         };
 
         // 7 applied voltage
-        let delayed = self.pdcc.delay == 1;
+        let delayed = self.variant.delayed();
         let [e_a, e_b] = self.state.e_prev;
-        let v_now = match (delayed, pair) {
+        let v_now = match (self.variant.applied_now, self.variant.floating) {
             (false, _) => Vector2::zeros(),
             (true, false) => from_ab(self.state.v_cmd[0], self.state.v_cmd[1]),
             (true, true) => self.applied(
@@ -257,8 +253,9 @@ impl Ideal {
         };
 
         // 8 EMF
-        let (e, e_now) = match self.pdcc.emf {
-            EmfSource::Estimated => {
+        let (e, e_now) = match self.variant.emf {
+            None => (Vector2::zeros(), Vector2::zeros()),
+            Some(EmfSource::Estimated) => {
                 let [pa, pb] = self.state.i_prev;
                 let d = from_ab(
                     (i_a - pa).clamp(-self.di_max, self.di_max),
@@ -270,12 +267,12 @@ impl Ideal {
                 let raw = from_ab(self.state.v_prev[0], self.state.v_prev[1])
                     - (d + i_prev * (1.0 - a)) / b;
                 let e_prev = from_ab(e_a, e_b);
-                let e = e_prev + (raw - e_prev) * self.pdcc.emf_filter;
+                let e = e_prev + (raw - e_prev) * self.variant.options.emf_filter;
                 // Taken as constant over the present and the target period.
                 (e, e)
             }
-            EmfSource::Model => {
-                let start = theta + f64::from(self.pdcc.delay) * step_angle;
+            Some(EmfSource::Model) => {
+                let start = theta + f64::from(self.variant.options.delay) * step_angle;
                 let mean = |from: f64, to: f64| {
                     let [e_a, e_b] = [0.0, THIRD].map(|lag| {
                         let linkage = self.shape.zero_sum_integral(to - lag)
@@ -288,46 +285,34 @@ impl Ideal {
             }
         };
 
-        // 9 deadbeat voltage
-        let DiscretePhase { a, b } = self.phase;
-        let i_then = if delayed {
-            i * a + (v_now - e_now) * b
-        } else {
-            i
-        };
-        let u_unsat = (i_ref - i_then * a) / b + e;
-
-        // 10 limit, 11 modulate
-        let limited = limit::limit(
-            self.pdcc.saturation,
-            &phases(&u_unsat),
-            &phases(&e),
-            self.v_bus,
-        );
-        let command = if !run {
-            let duties = if self.state.supervisor.mode == Mode::Precharge {
-                Duties::LOW
-            } else {
-                Duties::OFF
-            };
-            Command {
-                duties,
-                terminal: Vector3::zeros(),
-                off: None,
-            }
-        } else if pair && !self.state.commutating {
-            self.pulse_pair(sector_eff, &phases(&u_unsat))
-        } else {
-            self.pulse_three(&limited.u)
+        // 9 to 11, the controller's own
+        let [s_a, s_b] = self.state.integral;
+        let decision = self.law.decide(&Inputs {
+            phase: self.phase,
+            delayed,
+            v_bus: self.v_bus,
+            i_ref,
+            i,
+            v_now,
+            e,
+            e_now,
+            sector_eff,
+            commutating: self.state.commutating,
+            integral: from_ab(s_a, s_b),
+        });
+        let command = match self.state.supervisor.mode {
+            Mode::Run => decision.command,
+            Mode::Precharge => Command::idle(Duties::LOW),
+            Mode::Calibrate | Mode::Tripped => Command::idle(Duties::OFF),
         };
 
         // 12 remember
         self.state.i_prev = [i_a, i_b];
         self.state.sector_prev = sector;
         self.state.sector_eff_prev = sector_eff;
-        let u = clarke(&limited.u);
+        let u = decision.u;
         if run {
-            self.state.v_prev = to_ab(&match (delayed, pair) {
+            self.state.v_prev = to_ab(&match (delayed, self.variant.floating) {
                 (true, _) => v_now,
                 (false, false) => u,
                 (false, true) => self.applied(&command.terminal, command.off, &i_abc, &e),
@@ -336,12 +321,14 @@ impl Ideal {
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
             self.state.e_prev = to_ab(&e);
+            self.state.integral = decision.integral;
         } else {
             self.state.v_prev = [0.0; 2];
             self.state.v_cmd = [0.0; 2];
             self.state.t_cmd = [0.0; 3];
             self.state.off_cmd = None;
             self.state.e_prev = [0.0; 2];
+            self.state.integral = [0.0; 2];
             self.state.commutating = false;
             self.state.commutation_age = 0.0;
         }
@@ -349,13 +336,14 @@ impl Ideal {
             i: [i_a, i_b],
             e: to_ab(&e),
             v_now: to_ab(&v_now),
-            u_unsat: to_ab(&u_unsat),
+            u_unsat: to_ab(&decision.u_unsat),
             u: to_ab(&u),
             theta,
             step_angle,
             sector_eff,
             commutating: self.state.commutating,
-            reach: limited.reach,
+            reach: decision.reach,
+            vector: if run { decision.vector } else { 0 },
             run,
         };
         command.duties
@@ -380,7 +368,8 @@ impl Ideal {
         };
         let theta = sector as f64 * FRAC_PI_3 - FRAC_PI_3 - FRAC_PI_6 + in_sector;
         let sector_eff = if timing.edges == 2 && sector != 0 {
-            let ahead = ((in_sector + self.pdcc.advance * step_angle) / FRAC_PI_3).floor() as i64;
+            let ahead = ((in_sector + self.variant.options.advance * step_angle) / FRAC_PI_3)
+                .floor() as i64;
             (sector as i64 - 1 + ahead).rem_euclid(6) as usize + 1
         } else {
             sector
@@ -391,11 +380,11 @@ impl Ideal {
     /// Follows the commutation (section 5).
     fn commutate(&mut self, sector_eff: usize, i: &Vector3<f64>) {
         let state = &mut self.state;
-        let timeout = f64::from(self.pdcc.commutation_timeout);
+        let timeout = f64::from(self.end.timeout);
         let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
         let torque = if self.current < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * state.timing.direction;
-        let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= self.pdcc.commutation_threshold
+        let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= self.end.threshold
             || state.commutation_age >= timeout;
         state.commutating = changed || (state.commutating && !ended);
         state.commutation_age = if changed {
@@ -416,7 +405,7 @@ impl Ideal {
         let mut terminal = *terminal;
         if let Some(off) = off {
             let driven = terminal.sum() - terminal[off];
-            let threshold = self.pdcc.commutation_threshold;
+            let threshold = self.end.threshold;
             terminal[off] = if i[off] > threshold {
                 0.0
             } else if i[off] < -threshold {
@@ -429,77 +418,8 @@ impl Ideal {
         clarke(&terminal)
     }
 
-    /// Three pulsed legs, their common mode in the middle of the bus.
-    fn pulse_three(&self, u: &Vector3<f64>) -> Command {
-        let terminal = u
-            .map(|u_x| (u_x - u.max().midpoint(u.min()) + self.v_bus / 2.0).clamp(0.0, self.v_bus));
-        let duties = Duties {
-            duty: (terminal / self.v_bus).into(),
-            state: [LegState::Pulsed; 3],
-        };
-        Command {
-            duties,
-            terminal,
-            off: None,
-        }
-    }
-
-    /// One pulsed leg of the conducting pair, the other low, the third off.
-    fn pulse_pair(&self, sector_eff: usize, u: &Vector3<f64>) -> Command {
-        let mut terminal = Vector3::zeros();
-        let mut duties = Duties::OFF;
-        if sector_eff == 0 {
-            return Command {
-                duties,
-                terminal,
-                off: None,
-            };
-        }
-        let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
-        let v = (u[plus] - u[minus]).clamp(-self.v_bus, self.v_bus);
-        let (pulsed, low) = if v >= 0.0 {
-            (plus, minus)
-        } else {
-            (minus, plus)
-        };
-        terminal[pulsed] = v.abs();
-        duties.duty[pulsed] = v.abs() / self.v_bus;
-        duties.state[pulsed] = LegState::Pulsed;
-        duties.state[low] = LegState::Low;
-        Command {
-            duties,
-            terminal,
-            off: Some(sector::OUT_PHASE[sector_eff]),
-        }
-    }
-
     /// As [`Self::step`], rounded to timer counts.
     pub fn step_legs(&mut self, sample: &Sample) -> Legs {
         self.step(sample).to_legs(self.timer_period)
     }
-}
-
-/// Amplitude-invariant Clarke transform.
-fn clarke(x: &Vector3<f64>) -> Vector2<f64> {
-    Vector2::new(
-        (2.0 * x[0] - x[1] - x[2]) / 3.0,
-        (x[1] - x[2]) / 3f64.sqrt(),
-    )
-}
-
-/// The zero-sum phase values of an alpha-beta vector.
-fn phases(x: &Vector2<f64>) -> Vector3<f64> {
-    let (half_a, quadrature) = (x[0] / 2.0, x[1] * 3f64.sqrt() / 2.0);
-    Vector3::new(x[0], quadrature - half_a, -quadrature - half_a)
-}
-
-/// Alpha-beta of phases a, b with zero sum.
-fn from_ab(a: f64, b: f64) -> Vector2<f64> {
-    clarke(&Vector3::new(a, b, -(a + b)))
-}
-
-/// Phases a, b of an alpha-beta vector.
-fn to_ab(x: &Vector2<f64>) -> [f64; 2] {
-    let phases = phases(x);
-    [phases[0], phases[1]]
 }

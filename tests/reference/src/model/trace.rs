@@ -11,11 +11,11 @@ pub struct Trace {
     pub i: [f64; 2],
     /// EMF in the target period, volt.
     pub e: [f64; 2],
-    /// Voltage applied in the period that starts now, volt (0 with delay 0).
+    /// Voltage applied in the period that starts now, volt (0 where the variant has no use for it).
     pub v_now: [f64; 2],
-    /// Deadbeat voltage before limiting, volt.
+    /// Demanded voltage before limiting, volt.
     pub u_unsat: [f64; 2],
-    /// The same after limiting, volt.
+    /// The same after limiting, or that of the chosen vector, volt.
     pub u: [f64; 2],
     /// Electrical angle at the sample, radians (0 where the variant has no angle).
     pub theta: f64,
@@ -25,8 +25,10 @@ pub struct Trace {
     pub sector_eff: usize,
     /// A commutation is under way (pair modulation).
     pub commutating: bool,
-    /// Where the deadbeat voltage lay.
+    /// Where the demanded voltage lay (FCS-MPC: inside).
     pub reach: Reach,
+    /// Number of the chosen vector (FCS-MPC; 0 for the other controllers and out of control).
+    pub vector: usize,
     /// The drive is in control (neither tripped nor starting).
     pub run: bool,
 }
@@ -58,14 +60,16 @@ pub struct PhysicalState {
     pub offset: [f64; 2],
     /// Currents of phases a, b at the last sample, ampere.
     pub i_prev: [f64; 2],
-    /// Voltage that the last step commanded (`three_phase`), phases a, b, volt.
+    /// Voltage that the last step commanded (no leg ever off), phases a, b, volt.
     pub v_cmd: [f64; 2],
-    /// Terminal voltages that the last step commanded (`pair`), phases a, b, c, volt.
+    /// Terminal voltages that the last step commanded (a leg may be off), phases a, b, c, volt.
     pub t_cmd: [f64; 3],
-    /// The leg that the last step turned off (`pair`).
+    /// The leg that the last step turned off.
     pub off_cmd: Option<usize>,
     /// Voltage applied in the period that ends with the next sample, phases a, b, volt.
     pub v_prev: [f64; 2],
     /// EMF of the last step, phases a, b, volt.
     pub e_prev: [f64; 2],
+    /// Integral part of the voltage (PI), phases a, b, volt.
+    pub integral: [f64; 2],
 }

@@ -88,7 +88,7 @@ impl Stimulus {
             stream: Stream::Motor,
             left: 1,
             motor: ToyMotor::new(spec)?,
-            delay: spec.pdcc().delay,
+            delay: spec.loop_options().delay,
             pending: Legs::OFF,
             sector: 0,
             age: 0,

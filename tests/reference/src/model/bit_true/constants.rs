@@ -3,9 +3,9 @@
 use super::state::{Part, Parts};
 use super::tables::Table;
 use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
-use crate::model::hall::needs_rotor;
+use crate::model::variant::{Variant, reference_gain};
 use crate::{
-    DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Modulation, Reference, Saturation, Spec,
+    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation, Spec,
 };
 
 /// Largest magnitude of a coefficient's word.
@@ -48,8 +48,6 @@ pub struct Constants {
     pub advanced: bool,
     pub k_di: Coefficient,
     pub k_r: Coefficient,
-    pub k_hold: Coefficient,
-    pub k_decay: Coefficient,
     pub k_filter: Coefficient,
     pub k_third: Coefficient,
     pub k_set: Coefficient,
@@ -66,6 +64,87 @@ pub struct Constants {
     pub shape_product: Shift,
 }
 
+/// How physical values become words, and the plant that the coefficients describe.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale<'a> {
+    formats: &'a FormatTable,
+    pub variant: Variant,
+    pub phase: DiscretePhase,
+    /// Phase resistance, ohm.
+    pub resistance: f64,
+    /// Ampere per ADC count.
+    g: f64,
+    /// Volt per timer count.
+    pub w: f64,
+    /// 2^f_i.
+    two_i: f64,
+    /// 2^f_v.
+    pub two_v: f64,
+    /// Voltage words per current word, times ohm.
+    pub ohm: f64,
+}
+
+impl<'a> Scale<'a> {
+    pub fn new(spec: &Spec, formats: &'a FormatTable) -> Result<Self, Error> {
+        let f_i = formats.frac_bits("current")?;
+        let f_v = formats.frac_bits("voltage")?;
+        if f_v == 0 {
+            return Err(Error::Format {
+                name: "voltage",
+                frac_bits: 0,
+                expected: "expected 1 or more",
+            });
+        }
+        let g = spec.inverter.adc_gain.abs();
+        let w = spec.inverter.v_bus / f64::from(spec.inverter.timer_period);
+        Ok(Self {
+            formats,
+            variant: Variant::new(spec),
+            phase: DiscretePhase::new(spec),
+            resistance: spec.motor.resistance,
+            g,
+            w,
+            two_i: pow2(f_i as i32),
+            two_v: pow2(f_v as i32),
+            ohm: g / w * pow2(f_v as i32 - f_i as i32),
+        })
+    }
+
+    /// The coefficient of this name, rounded to its format.
+    pub fn coefficient(&self, name: &'static str, value: f64) -> Result<Coefficient, Error> {
+        let bits = self.formats.frac_bits(name)?;
+        let raw = round_half_up(value * pow2(bits as i32));
+        if raw.abs() <= WORD_MAX {
+            Ok(Coefficient::new(raw, bits))
+        } else {
+            Err(Error::Range { name, raw })
+        }
+    }
+
+    /// As [`Self::coefficient`]; zero, without a format, where the variant does not use it.
+    pub fn only_if(
+        &self,
+        used: bool,
+        name: &'static str,
+        value: f64,
+    ) -> Result<Coefficient, Error> {
+        if used {
+            self.coefficient(name, value)
+        } else {
+            Ok(Coefficient::default())
+        }
+    }
+
+    /// Fraction bits of a format; 0 where the variant does not use it.
+    pub fn bits_if(&self, used: bool, name: &'static str) -> Result<u32, Error> {
+        if used {
+            self.formats.frac_bits(name)
+        } else {
+            Ok(0)
+        }
+    }
+}
+
 /// Words of the bus voltage's measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct BusWords {
@@ -76,58 +155,38 @@ pub struct BusWords {
 }
 
 impl Constants {
-    pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
-        let (motor, inverter, pdcc) = (&spec.motor, &spec.inverter, spec.pdcc());
-        let f_i = formats.frac_bits("current")?;
-        let f_v = formats.frac_bits("voltage")?;
-        if f_v == 0 {
-            return Err(Error::Format {
-                name: "voltage",
-                frac_bits: 0,
-                expected: "expected 1 or more",
-            });
-        }
-        let (two_i, two_v) = (pow2(f_i as i32), pow2(f_v as i32));
+    pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        let (motor, inverter) = (&spec.motor, &spec.inverter);
+        let Scale {
+            formats,
+            variant,
+            phase: DiscretePhase { b, .. },
+            resistance,
+            g,
+            w,
+            two_i,
+            two_v,
+            ohm,
+        } = *scale;
         let timer_period = f64::from(inverter.timer_period);
-        let g = inverter.adc_gain.abs();
-        let w = inverter.v_bus / timer_period;
-        let DiscretePhase { a, b } = DiscretePhase::new(spec);
-        // Voltage words per current word, times ohm.
-        let ohm = g / w * pow2(f_v as i32 - f_i as i32);
-
-        let word = |name, value: f64| {
-            let raw = round_half_up(value * pow2(formats.frac_bits(name)? as i32));
-            if raw.abs() <= WORD_MAX {
-                Ok(raw)
-            } else {
-                Err(Error::Range { name, raw })
-            }
-        };
-        let coefficient = |name, value| {
-            Ok(Coefficient::new(
-                word(name, value)?,
-                formats.frac_bits(name)?,
-            ))
-        };
-        let only_if = |used: bool, name, value| {
-            if used {
-                coefficient(name, value)
-            } else {
-                Ok(Coefficient::default())
-            }
-        };
-
-        let rotor = needs_rotor(pdcc);
-        let pair = pdcc.modulation == Modulation::Pair;
-        let estimated = pdcc.emf == EmfSource::Estimated;
-        let delayed = pdcc.delay == 1;
-        let filtered = estimated && pdcc.emf_filter < 1.0;
-        let advanced = rotor && pdcc.advance > 0.0;
+        let Variant {
+            options,
+            rotor,
+            commutation,
+            floating,
+            saturation,
+            ..
+        } = variant;
+        let end = commutation.unwrap_or_default();
+        let (estimated, filtered) = (variant.estimated(), variant.filtered());
+        let delayed = variant.delayed();
+        let advanced = rotor && options.advance > 0.0;
+        let gain = reference_gain(spec);
         let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
         let bus = match inverter.bus_sense()? {
             None => None,
             Some(sense) => Some(BusWords {
-                k_bus: coefficient("k_bus", sense.gain / w * two_v)?,
+                k_bus: scale.coefficient("k_bus", sense.gain / w * two_v)?,
                 count_max: f64::from((1u32 << sense.adc_bits) - 1),
                 v_min: round_half_up(sense.min / w * two_v),
                 v_max: round_half_up(sense.max / w * two_v),
@@ -138,11 +197,9 @@ impl Constants {
 
         let emf_shape = EmfShape::new(motor)?;
         let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w;
-        let (flux, flux_to_voltage) = if estimated {
-            (Table::default(), 0.0)
-        } else {
+        let (flux, flux_to_voltage) = if variant.emf == Some(EmfSource::Model) {
             let bits = formats.frac_bits("flux")?;
-            if bits < f_v {
+            if pow2(bits as i32) < two_v {
                 return Err(Error::Format {
                     name: "flux",
                     frac_bits: bits as i32,
@@ -153,10 +210,12 @@ impl Constants {
             let table = Table::new(segments, bits, |theta| {
                 linkage * emf_shape.zero_sum_integral(theta)
             });
-            (table, pow2(f_v as i32 - bits as i32))
+            (table, two_v * pow2(-(bits as i32)))
+        } else {
+            (Table::default(), 0.0)
         };
         let torque_ratio = motor.torque_constant / motor.emf_constant;
-        let (shape, shape_product) = if pdcc.reference == Reference::Proportional {
+        let (shape, shape_product) = if options.reference == Reference::Proportional {
             let bits = formats.frac_bits("shape")?;
             let table = Table::new(formats.segments("shape_segments")?, bits, |theta| {
                 2.0 / 3.0 * torque_ratio * emf_shape.zero_sum(theta)
@@ -166,23 +225,25 @@ impl Constants {
         } else {
             (Table::default(), Shift::default())
         };
-        let bits_if = |used: bool, name| if used { formats.frac_bits(name) } else { Ok(0) };
-
         Ok(Self {
             parts: Parts::new(&[
                 (Part::Stall, inverter.stall_periods > 0),
-                (Part::Direction, rotor || pair),
+                (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
-                (Part::Pair, pair),
+                (Part::Commutation, commutation.is_some()),
                 (Part::Estimated, estimated),
-                (Part::VoltageCommand, delayed && !pair),
-                (Part::TerminalCommand, delayed && pair),
+                (Part::VoltageCommand, variant.applied_now && !floating),
+                (Part::TerminalCommand, variant.applied_now && floating),
                 (
                     Part::EmfMemory,
-                    filtered || (pair && (delayed || estimated)),
+                    filtered || (floating && (delayed || estimated)),
+                ),
+                (
+                    Part::Integral,
+                    matches!(spec.controller, Controller::PiPwm(_)),
                 ),
             ]),
-            ampere: inverter.adc_gain.abs() / two_i,
+            ampere: g / two_i,
             volt: w / two_v,
             count: two_i,
             polarity: inverter.adc_gain.signum(),
@@ -194,43 +255,36 @@ impl Constants {
             timer_period,
             v_bus_nominal: timer_period * two_v,
             i_trip: round_half_up(inverter.trip_current / g * two_i),
-            i_comm: round_half_up(pdcc.commutation_threshold / g * two_i),
+            i_comm: round_half_up(end.threshold / g * two_i),
             di_max: floor_constant(
                 (2.0 * adc_max).min(2.0 * b * 4.0 / 3.0 * inverter.v_bus_max()? / g) * two_i,
             ),
             i_max_bits,
             t_max_bits,
-            comm_timeout: f64::from(pdcc.commutation_timeout),
+            comm_timeout: f64::from(end.timeout),
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
             filtered,
             advanced,
-            k_di: only_if(estimated, "k_di", ohm / b)?,
-            k_r: only_if(estimated, "k_r", ohm * motor.resistance)?,
-            k_hold: coefficient(
-                "k_hold",
-                if delayed {
-                    ohm * a * a / b
-                } else {
-                    ohm * a / b
-                },
-            )?,
-            k_decay: only_if(delayed, "k_decay", b * motor.resistance)?,
-            k_filter: only_if(filtered, "k_filter", pdcc.emf_filter)?,
-            k_third: only_if(
-                pair || pdcc.saturation != Saturation::KeepAngle,
+            k_di: scale.only_if(estimated, "k_di", ohm / b)?,
+            k_r: scale.only_if(estimated, "k_r", ohm * resistance)?,
+            k_filter: scale.only_if(filtered, "k_filter", options.emf_filter)?,
+            k_third: scale.only_if(
+                (floating && variant.applied())
+                    || saturation.is_some_and(|rule| rule != Saturation::KeepAngle),
                 "k_third",
                 1.0 / 3.0,
             )?,
-            k_set: coefficient("k_set", two_v / (b * w) / 65_536.0)?,
-            k_torque: coefficient(
+            k_set: scale.coefficient("k_set", two_v * gain / w / 65_536.0)?,
+            k_torque: scale.coefficient(
                 "k_torque",
-                two_v / (b * w) / motor.torque_constant / 65_536.0,
+                two_v * gain / w / motor.torque_constant / 65_536.0,
             )?,
-            k_advance: only_if(advanced, "k_advance", pdcc.advance)?,
-            ratio_bits: bits_if(bus.is_some(), "ratio")?,
-            scale_bits: bits_if(pdcc.saturation == Saturation::KeepAngle, "scale")?,
-            emf_product: Shift::new(bits_if(
-                pdcc.saturation == Saturation::TorquePriority,
+            k_advance: scale.only_if(advanced, "k_advance", options.advance)?,
+            // Only pulses narrower than the period depend on the measured bus.
+            ratio_bits: scale.bits_if(bus.is_some() && saturation.is_some(), "ratio")?,
+            scale_bits: scale.bits_if(saturation == Some(Saturation::KeepAngle), "scale")?,
+            emf_product: Shift::new(scale.bits_if(
+                saturation == Some(Saturation::TorquePriority),
                 "emf_product",
             )?),
             bus,

@@ -26,6 +26,7 @@ pub struct State {
     pub off_cmd: usize,
     pub v_prev: [f64; 2],
     pub e_prev: [f64; 2],
+    pub integral: [f64; 2],
 }
 
 /// A group of state words that not every variant has.
@@ -34,16 +35,17 @@ pub enum Part {
     Stall,
     Direction,
     Rotor,
-    Pair,
+    Commutation,
     Estimated,
     VoltageCommand,
     TerminalCommand,
     EmfMemory,
+    Integral,
 }
 
 /// The groups that a variant has.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Parts(u8);
+pub struct Parts(u16);
 
 impl Parts {
     /// Those of the groups whose condition is true.
@@ -166,7 +168,7 @@ macro_rules! for_each_word {
             $show!("rev", $state.timing.rev);
             $show!("omega", $state.omega);
         }
-        if $parts.has(Part::Pair) {
+        if $parts.has(Part::Commutation) {
             $show!("sector_eff_prev", $state.sector_eff_prev);
             $show!("commutating", $state.commutating);
             $show!("commutation_age", $state.commutation_age);
@@ -192,6 +194,10 @@ macro_rules! for_each_word {
         if $parts.has(Part::EmfMemory) {
             $show!("e_a_prev", $state.e_prev[0]);
             $show!("e_b_prev", $state.e_prev[1]);
+        }
+        if $parts.has(Part::Integral) {
+            $show!("integral_a", $state.integral[0]);
+            $show!("integral_b", $state.integral[1]);
         }
     };
 }
@@ -232,6 +238,7 @@ impl State {
         self.off_cmd = 0;
         self.v_prev = [0.0; 2];
         self.e_prev = [0.0; 2];
+        self.integral = [0.0; 2];
         self.commutating = false;
         self.commutation_age = 0.0;
     }
@@ -280,6 +287,7 @@ impl State {
             off_cmd: self.off_cmd.checked_sub(1),
             v_prev: volts(self.v_prev),
             e_prev: volts(self.e_prev),
+            integral: volts(self.integral),
         }
     }
 }

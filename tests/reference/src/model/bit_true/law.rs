@@ -1,0 +1,94 @@
+//! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
+
+mod deadbeat;
+mod fcs_mpc;
+mod pdcc;
+mod pi_pwm;
+mod pulses;
+
+use super::constants::{Constants, Scale};
+use crate::exact::Coefficient;
+use crate::model::Reach;
+use crate::{Controller, Error, Spec};
+use hexagen::Legs;
+
+/// What the shared sections have found out. Pairs are phases a, b.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    pub k: &'a Constants,
+    pub v_bus: f64,
+    /// From volts of the measured bus to those of the nominal one.
+    pub to_duty: &'a Coefficient,
+    pub j: [f64; 2],
+    pub i: [f64; 2],
+    pub v_now: [f64; 2],
+    /// EMF in the target period.
+    pub e: [f64; 2],
+    /// EMF in the period that starts now.
+    pub e_now: [f64; 2],
+    pub sector_eff: usize,
+    pub commutating: bool,
+    pub integral: [f64; 2],
+}
+
+/// What a controller decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Decision {
+    pub u_unsat: [f64; 2],
+    /// Limited to what the inverter can do; becomes `v_x_cmd`.
+    pub u: [f64; 2],
+    pub reach: Reach,
+    /// Number of the chosen vector (FCS-MPC).
+    pub vector: usize,
+    pub command: Command,
+    /// `integral_x` (PI).
+    pub integral: [f64; 2],
+}
+
+/// A command to the inverter and the terminal voltages that it stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    pub legs: Legs,
+    /// `t_a_cmd` to `t_c_cmd`, where a leg may be off.
+    pub terminal: [f64; 3],
+    /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
+    pub off: usize,
+}
+
+impl Command {
+    /// All legs alike, without any voltage.
+    pub fn idle(legs: Legs) -> Self {
+        Self {
+            legs,
+            terminal: [0.0; 3],
+            off: 0,
+        }
+    }
+}
+
+/// A controller's own part of the step.
+#[derive(Clone, Debug)]
+pub enum Law {
+    Pdcc(pdcc::Pdcc),
+    FcsMpc(fcs_mpc::FcsMpc),
+    PiPwm(pi_pwm::PiPwm),
+}
+
+impl Law {
+    pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        Ok(match &spec.controller {
+            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(options, scale)?),
+            Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(options, scale)?),
+            Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options, scale)?),
+        })
+    }
+
+    #[inline]
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        match self {
+            Self::Pdcc(law) => law.decide(now),
+            Self::FcsMpc(law) => law.decide(now),
+            Self::PiPwm(law) => law.decide(now),
+        }
+    }
+}

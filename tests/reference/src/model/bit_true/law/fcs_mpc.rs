@@ -1,0 +1,165 @@
+//! FCS-MPC: the candidate nearest to the deadbeat voltage, by scores 6 (|v|^2 - 2 u v) tried one
+//! after the other.
+
+use super::deadbeat::Deadbeat;
+use super::{Command, Decision, Inputs};
+use crate::exact::{Coefficient, Shift, floor, halve, round_half_up};
+use crate::model::Reach;
+use crate::model::bit_true::constants::Scale;
+use crate::model::vectors;
+use crate::{Candidates, Error};
+use hexagen::Legs;
+
+#[derive(Clone, Debug)]
+pub struct FcsMpc {
+    candidates: Candidates,
+    /// Pairs are allowed and their off leg sits where current or EMF put it.
+    floating: bool,
+    deadbeat: Deadbeat,
+    k_sixth: Coefficient,
+    score: Shift,
+    i_comm_volts: f64,
+}
+
+impl FcsMpc {
+    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
+        let floating = scale.variant.floating;
+        let held = scale.phase.a / scale.phase.b;
+        let threshold = held * options.commutation_threshold / scale.w;
+        Ok(Self {
+            candidates: options.candidates,
+            floating,
+            deadbeat: Deadbeat::new(scale)?,
+            k_sixth: scale.only_if(!floating && scale.variant.applied(), "k_sixth", 1.0 / 6.0)?,
+            score: Shift::new(scale.bits_if(floating, "score")?),
+            i_comm_volts: round_half_up(threshold * scale.two_v),
+        })
+    }
+
+    #[inline]
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        // 9
+        let u_unsat = self.deadbeat.voltage(now);
+        // 10
+        let (zero, others) = vectors::candidates(self.candidates, now.commutating, now.sector_eff);
+        let exact = !self.floating || (zero == 0 && others.end <= vectors::FIRST_PAIR);
+        let choice = Choice::new(self, now, u_unsat);
+        let (mut vector, mut least) = (zero, choice.score(zero, exact));
+        for other in others {
+            let score = choice.score(other, exact);
+            if score < least {
+                (vector, least) = (other, score);
+            }
+        }
+        // 11
+        let legs = vectors::LEGS[vector];
+        let terminal = legs.map(|leg| if leg > 0 { now.v_bus } else { 0.0 });
+        let compare = legs.map(|leg| {
+            if leg > 0 {
+                now.k.timer_period as u16
+            } else {
+                0
+            }
+        });
+        let command = Command {
+            legs: Legs {
+                compare,
+                state: vectors::states(vector),
+            },
+            terminal,
+            off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
+        };
+        // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
+        let u = if self.floating {
+            choice.voltage(vector)
+        } else {
+            let sixth = self.k_sixth.mul(now.v_bus);
+            let [a, b, _] = vectors::sixths(vector);
+            [a * sixth, b * sixth]
+        };
+        Decision {
+            u_unsat,
+            u,
+            reach: Reach::Inside,
+            vector,
+            command,
+            integral: now.integral,
+        }
+    }
+}
+
+/// What the scores are made of.
+struct Choice<'a> {
+    law: &'a FcsMpc,
+    v_bus: f64,
+    u: [f64; 3],
+    e: [f64; 3],
+    /// K a i(k+1).
+    held: [f64; 3],
+}
+
+impl<'a> Choice<'a> {
+    fn new(law: &'a FcsMpc, now: &Inputs, u: [f64; 2]) -> Self {
+        let abc = |x: [f64; 2]| [x[0], x[1], -(x[0] + x[1])];
+        Self {
+            law,
+            v_bus: now.v_bus,
+            u: abc(u),
+            e: abc(now.e),
+            held: abc([0, 1].map(|x| now.j[x] + now.e[x] - u[x])),
+        }
+    }
+
+    /// Terminal voltage of the off leg, the two others' mean being `driven`.
+    fn off_terminal(&self, leg: usize, driven: f64) -> f64 {
+        if self.held[leg] > self.law.i_comm_volts {
+            0.0
+        } else if self.held[leg] < -self.law.i_comm_volts {
+            self.v_bus
+        } else {
+            (driven + self.e[leg] + halve(self.e[leg])).clamp(0.0, self.v_bus)
+        }
+    }
+
+    /// The vector's score; `exact` without the product that all scores of an exact list share.
+    fn score(&self, vector: usize, exact: bool) -> f64 {
+        let v = self.v_bus;
+        let product = |x, y| self.law.score.floor_product(x, y);
+        let by_bus = |y| if exact { y } else { product(v, y) };
+        let legs = vectors::LEGS[vector];
+        let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
+        let high = legs.iter().filter(|leg| **leg > 0).count();
+        match (vectors::off_leg(vector), find(1), find(-1)) {
+            // One leg high.
+            (None, Some(x), Some(_)) if high == 1 => by_bus(4.0 * v - 12.0 * self.u[x]),
+            // One leg low.
+            (None, Some(_), Some(x)) => by_bus(4.0 * v + 12.0 * self.u[x]),
+            (Some(off), Some(p), Some(q)) => {
+                let pair = by_bus(3.0 * v - 6.0 * (self.u[p] - self.u[q]));
+                if self.law.floating {
+                    let d = 2.0 * self.off_terminal(off, halve(v)) - v;
+                    product(d, d - 6.0 * self.u[off]) + pair
+                } else {
+                    pair
+                }
+            }
+            (Some(off), None, _) if self.law.floating => {
+                let tau = self.off_terminal(off, 0.0);
+                product(tau, 4.0 * tau - 12.0 * self.u[off])
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Voltages of phases a, b as the score takes them, for the trace.
+    fn voltage(&self, vector: usize) -> [f64; 2] {
+        let legs = vectors::LEGS[vector];
+        let mut terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { 0.0 });
+        if let Some(off) = vectors::off_leg(vector) {
+            let driven = halve(terminal[0] + terminal[1] + terminal[2]);
+            terminal[off] = self.off_terminal(off, driven);
+        }
+        let mean = floor((terminal[0] + terminal[1] + terminal[2]) / 3.0);
+        [terminal[0] - mean, terminal[1] - mean]
+    }
+}

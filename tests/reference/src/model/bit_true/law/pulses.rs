@@ -1,0 +1,69 @@
+//! From phase voltages to pulses (section 11).
+
+use super::{Command, Inputs};
+use crate::exact::{floor, halve, to_u16};
+use crate::model::sector;
+use hexagen::{LegState, Legs};
+
+/// A timer compare value from a word of whole and half counts.
+#[inline]
+fn compare(now: &Inputs, counts: f64) -> u16 {
+    let k = now.k;
+    to_u16(floor((counts + k.half_count) * k.to_counts).clamp(0.0, k.timer_period))
+}
+
+/// The voltage that gives the same duty on the nominal bus.
+#[inline]
+fn nominal(now: &Inputs, t: f64) -> f64 {
+    if now.k.bus.is_some() {
+        now.to_duty.mul(t)
+    } else {
+        t
+    }
+}
+
+/// Three pulsed legs, their common mode in the middle of the bus; with terminal voltages where the
+/// variant keeps them.
+#[inline]
+pub fn three(now: &Inputs, u: [f64; 2], terminals: bool) -> Command {
+    let u = [u[0], u[1], -(u[0] + u[1])];
+    let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
+    let terminal = if terminals {
+        let half_bus = halve(now.v_bus);
+        u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, now.v_bus))
+    } else {
+        [0.0; 3]
+    };
+    Command {
+        legs: Legs {
+            compare: u.map(|u_x| compare(now, nominal(now, u_x - middle) + now.k.half)),
+            state: [LegState::Pulsed; 3],
+        },
+        terminal,
+        off: 0,
+    }
+}
+
+/// One pulsed leg of the conducting pair, the other low, the third off.
+#[inline]
+pub fn pair(now: &Inputs, u: [f64; 2]) -> Command {
+    let mut command = Command::idle(Legs::OFF);
+    let sector_eff = now.sector_eff;
+    if sector_eff == 0 {
+        return command;
+    }
+    let u = [u[0], u[1], -(u[0] + u[1])];
+    let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
+    let v = (u[plus] - u[minus]).clamp(-now.v_bus, now.v_bus);
+    let (pulsed, low, t) = if v >= 0.0 {
+        (plus, minus, v)
+    } else {
+        (minus, plus, -v)
+    };
+    command.legs.compare[pulsed] = compare(now, nominal(now, t));
+    command.legs.state[pulsed] = LegState::Pulsed;
+    command.legs.state[low] = LegState::Low;
+    command.terminal[pulsed] = t;
+    command.off = sector::OUT_PHASE[sector_eff] + 1;
+    command
+}

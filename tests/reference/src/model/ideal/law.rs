@@ -1,0 +1,90 @@
+//! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
+
+mod deadbeat;
+mod fcs_mpc;
+mod pdcc;
+mod pi_pwm;
+mod pulses;
+
+use super::Duties;
+use crate::model::Reach;
+use crate::{Controller, DiscretePhase, Error, Spec};
+use nalgebra::{Vector2, Vector3};
+
+/// What the shared sections have found out; vectors are alpha-beta.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs {
+    pub phase: DiscretePhase,
+    pub delayed: bool,
+    pub v_bus: f64,
+    pub i_ref: Vector2<f64>,
+    pub i: Vector2<f64>,
+    pub v_now: Vector2<f64>,
+    /// EMF in the target period.
+    pub e: Vector2<f64>,
+    /// EMF in the period that starts now.
+    pub e_now: Vector2<f64>,
+    pub sector_eff: usize,
+    pub commutating: bool,
+    pub integral: Vector2<f64>,
+}
+
+/// What a controller decides; voltages of the zero-sum phases.
+#[derive(Clone, Copy, Debug)]
+pub struct Decision {
+    pub u_unsat: Vector2<f64>,
+    /// Limited to what the inverter can do.
+    pub u: Vector2<f64>,
+    pub reach: Reach,
+    /// Number of the chosen vector (FCS-MPC).
+    pub vector: usize,
+    pub command: Command,
+    /// Integral part of the voltage (PI), phases a, b.
+    pub integral: [f64; 2],
+}
+
+/// What the inverter does in one period.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    pub duties: Duties,
+    /// Terminal voltages, volt.
+    pub terminal: Vector3<f64>,
+    pub off: Option<usize>,
+}
+
+impl Command {
+    /// All legs alike, without any voltage.
+    pub fn idle(duties: Duties) -> Self {
+        Self {
+            duties,
+            terminal: Vector3::zeros(),
+            off: None,
+        }
+    }
+}
+
+/// A controller's own part of the step.
+#[derive(Clone, Copy, Debug)]
+pub enum Law {
+    Pdcc(crate::Pdcc),
+    FcsMpc(crate::FcsMpc),
+    PiPwm(pi_pwm::PiPwm),
+}
+
+impl Law {
+    pub fn new(spec: &Spec) -> Result<Self, Error> {
+        Ok(match &spec.controller {
+            Controller::Pdcc(options) => Self::Pdcc(*options),
+            Controller::FcsMpc(options) => Self::FcsMpc(*options),
+            Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
+        })
+    }
+
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        match self {
+            Self::Pdcc(options) => pdcc::decide(options, now),
+            Self::FcsMpc(options) => fcs_mpc::decide(options, now),
+            Self::PiPwm(law) => law.decide(now),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! From phase voltages to duties (section 11).
+
+use super::{Command, Inputs};
+use crate::model::ideal::Duties;
+use crate::model::sector;
+use hexagen::LegState;
+use nalgebra::Vector3;
+
+/// Three pulsed legs, their common mode in the middle of the bus.
+pub fn three(now: &Inputs, u: &Vector3<f64>) -> Command {
+    let v_bus = now.v_bus;
+    let terminal = u.map(|u_x| (u_x - u.max().midpoint(u.min()) + v_bus / 2.0).clamp(0.0, v_bus));
+    let duties = Duties {
+        duty: (terminal / v_bus).into(),
+        state: [LegState::Pulsed; 3],
+    };
+    Command {
+        duties,
+        terminal,
+        off: None,
+    }
+}
+
+/// One pulsed leg of the conducting pair, the other low, the third off.
+pub fn pair(now: &Inputs, u: &Vector3<f64>) -> Command {
+    let mut command = Command::idle(Duties::OFF);
+    let (sector_eff, v_bus) = (now.sector_eff, now.v_bus);
+    if sector_eff == 0 {
+        return command;
+    }
+    let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
+    let v = (u[plus] - u[minus]).clamp(-v_bus, v_bus);
+    let (pulsed, low) = if v >= 0.0 {
+        (plus, minus)
+    } else {
+        (minus, plus)
+    };
+    command.terminal[pulsed] = v.abs();
+    command.duties.duty[pulsed] = v.abs() / v_bus;
+    command.duties.state[pulsed] = LegState::Pulsed;
+    command.duties.state[low] = LegState::Low;
+    command.off = Some(sector::OUT_PHASE[sector_eff]);
+    command
+}

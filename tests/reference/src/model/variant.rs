@@ -1,0 +1,91 @@
+//! Which steps and state words a variant has, for both models.
+
+use crate::spec::{
+    Candidates, CommutationEnd, Controller, EmfSource, FeedForward, LoopOptions, Modulation,
+    OffLeg, Reference, Saturation, Spec,
+};
+
+/// What follows from a specification's choice of controller and options.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    /// The options that every controller has.
+    pub options: LoopOptions,
+    /// Section 4: the rotor's angle is interpolated.
+    pub rotor: bool,
+    /// Section 5: commutations are followed, and when they end.
+    pub commutation: Option<CommutationEnd>,
+    /// Section 8: where the EMF comes from, if the variant uses it.
+    pub emf: Option<EmfSource>,
+    /// Section 7: a leg may be off, so commands are kept as terminal voltages.
+    pub floating: bool,
+    /// Section 7: the voltage of the period that starts now is known.
+    pub applied_now: bool,
+    /// Section 10: what gives way outside the hexagon, if anything can lie there.
+    pub saturation: Option<Saturation>,
+}
+
+impl Variant {
+    pub fn new(spec: &Spec) -> Self {
+        let options = spec.loop_options();
+        let (mut emf, mut predicts) = (Some(options.emf), true);
+        let (commutates, floating, saturation) = match &spec.controller {
+            Controller::Pdcc(pdcc) => {
+                let pair = pdcc.modulation == Modulation::Pair;
+                (pair, pair, Some(pdcc.saturation))
+            }
+            Controller::FcsMpc(fcs_mpc) => {
+                let pairs = fcs_mpc.candidates != Candidates::ThreePhase;
+                (pairs, pairs && fcs_mpc.off_leg == OffLeg::Physical, None)
+            }
+            Controller::PiPwm(pi_pwm) => {
+                predicts = false;
+                if pi_pwm.feed_forward == FeedForward::Off {
+                    emf = None;
+                }
+                (false, false, Some(pi_pwm.saturation))
+            }
+        };
+        let estimated = emf == Some(EmfSource::Estimated);
+        Self {
+            options,
+            rotor: options.emf == EmfSource::Model
+                || options.advance > 0.0
+                || options.reference == Reference::Proportional,
+            commutation: spec.commutation_end().filter(|_| commutates),
+            emf,
+            floating,
+            applied_now: options.delay == 1 && (predicts || estimated),
+            saturation,
+        }
+    }
+
+    /// A command takes effect one period after its sample.
+    pub fn delayed(&self) -> bool {
+        self.options.delay == 1
+    }
+
+    /// Section 8: the EMF is estimated and filtered.
+    pub fn filtered(&self) -> bool {
+        self.estimated() && self.options.emf_filter < 1.0
+    }
+
+    /// Section 8: the EMF is estimated from the last period.
+    pub fn estimated(&self) -> bool {
+        self.emf == Some(EmfSource::Estimated)
+    }
+
+    /// Some step needs the voltage that a command really applies (section 7).
+    pub fn applied(&self) -> bool {
+        self.applied_now || self.estimated()
+    }
+}
+
+/// Voltage per ampere of the current reference: 1/b, or the proportional gain of a PI controller.
+pub fn reference_gain(spec: &Spec) -> f64 {
+    match &spec.controller {
+        Controller::Pdcc(_) | Controller::FcsMpc(_) => 1.0 / crate::DiscretePhase::new(spec).b,
+        Controller::PiPwm(pi_pwm) => {
+            std::f64::consts::TAU * pi_pwm.bandwidth * spec.motor.inductance
+        }
+    }
+}

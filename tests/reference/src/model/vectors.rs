@@ -1,0 +1,106 @@
+//! The voltage vectors of FCS-MPC: their numbers, legs and candidate lists.
+
+use super::sector::OUT_PHASE;
+use crate::Candidates;
+use hexagen::LegState;
+
+/// Number of vectors.
+pub const COUNT: usize = 16;
+/// The first vector with a leg off.
+pub const FIRST_PAIR: usize = 7;
+/// The first zero vector of a pair: leg a off; b and c follow.
+pub const FIRST_PAIR_ZERO: usize = 13;
+
+/// Legs of each vector: 1 high, -1 low, 0 off.
+pub const LEGS: [[i8; 3]; COUNT] = [
+    [-1, -1, -1],
+    [-1, -1, 1],
+    [1, -1, 1],
+    [1, -1, -1],
+    [1, 1, -1],
+    [-1, 1, -1],
+    [-1, 1, 1],
+    [0, -1, 1],
+    [1, -1, 0],
+    [1, 0, -1],
+    [0, 1, -1],
+    [-1, 1, 0],
+    [-1, 0, 1],
+    [0, -1, -1],
+    [-1, 0, -1],
+    [-1, -1, 0],
+];
+
+/// The leg that a vector turns off.
+pub fn off_leg(vector: usize) -> Option<usize> {
+    LEGS[vector].iter().position(|leg| *leg == 0)
+}
+
+/// A vector's legs as states of the inverter; high legs are pulsed over the whole period.
+pub fn states(vector: usize) -> [LegState; 3] {
+    LEGS[vector].map(|leg| match leg {
+        1 => LegState::Pulsed,
+        -1 => LegState::Low,
+        _ => LegState::Off,
+    })
+}
+
+/// Zero-sum leg voltages in sixths of the bus; a leg that is off counts as the middle of the two
+/// others.
+pub fn sixths(vector: usize) -> [f64; 3] {
+    let legs = LEGS[vector].map(f64::from);
+    let sum: f64 = legs.iter().sum();
+    legs.map(|leg| match off_leg(vector) {
+        // Half a bus for a leg, the sum of all three taken off.
+        None => 3.0 * leg - sum,
+        Some(_) if vector >= FIRST_PAIR_ZERO => 0.0,
+        Some(_) => 3.0 * leg,
+    })
+}
+
+/// The candidates in their order: a zero vector, then a run of others.
+pub fn candidates(
+    set: Candidates,
+    commutating: bool,
+    sector_eff: usize,
+) -> (usize, std::ops::Range<usize>) {
+    if sector_eff == 0 {
+        return (0, 0..0);
+    }
+    match set {
+        Candidates::ThreePhase => (0, 1..FIRST_PAIR),
+        Candidates::All => (0, 1..FIRST_PAIR_ZERO),
+        Candidates::Table2 if commutating => (0, 1..FIRST_PAIR),
+        Candidates::Table2 => (
+            FIRST_PAIR_ZERO + OUT_PHASE[sector_eff],
+            FIRST_PAIR..FIRST_PAIR_ZERO,
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn voltages_are_zero_sum_and_as_named() {
+        for vector in 0..COUNT {
+            assert_eq!(sixths(vector).iter().sum::<f64>(), 0.0);
+        }
+        assert_eq!(sixths(0), [0.0; 3]);
+        assert_eq!(sixths(3), [4.0, -2.0, -2.0]);
+        assert_eq!(sixths(4), [2.0, 2.0, -4.0]);
+        assert_eq!(sixths(8), [3.0, -3.0, 0.0]);
+        assert_eq!(sixths(14), [0.0; 3]);
+    }
+
+    #[test]
+    fn a_pair_vector_lies_between_its_namesakes() {
+        // V12 between V1 and V2, ..., V61 between V6 and V1: half their sum.
+        for pair in FIRST_PAIR..FIRST_PAIR_ZERO {
+            let (one, two) = (pair - 6, (pair - 6) % 6 + 1);
+            let middle = [0, 1, 2].map(|x| (sixths(one)[x] + sixths(two)[x]) / 2.0);
+            assert_eq!(sixths(pair), middle);
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The controllers and their options.
+
+use serde::Deserialize;
+
+/// A controller and its options.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Controller {
+    /// Predictive deadbeat current control.
+    Pdcc(Pdcc),
+    /// Finite-control-set model predictive control.
+    FcsMpc(FcsMpc),
+    /// PI control with pulse-width modulation.
+    PiPwm(PiPwm),
+}
+
+/// Options that every controller has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopOptions {
+    /// Where the EMF comes from.
+    pub emf: EmfSource,
+    /// Weight of a new EMF estimate, above 0 to 1 (1: no filter).
+    pub emf_filter: f64,
+    /// What the currents follow.
+    pub reference: Reference,
+    /// Phase advance, periods of electrical angle.
+    pub advance: f64,
+    /// Periods between sampling and the command's effect, 0 or 1.
+    pub delay: u32,
+    /// Discretisation of the plant.
+    pub discretisation: Discretisation,
+    /// Word length, 16 or 32 bits.
+    pub word: u32,
+}
+
+/// When a commutation ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CommutationEnd {
+    /// Outgoing current that ends it, ampere.
+    pub threshold: f64,
+    /// Periods after which it is taken as ended.
+    pub timeout: u32,
+}
+
+/// Declares a controller's options: those that every controller has, and its own.
+macro_rules! options {
+    ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $kind:ty,)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            /// Where the EMF comes from.
+            pub emf: EmfSource,
+            /// Weight of a new EMF estimate, above 0 to 1 (1: no filter).
+            pub emf_filter: f64,
+            /// What the currents follow.
+            pub reference: Reference,
+            /// Phase advance, periods of electrical angle.
+            pub advance: f64,
+            /// Periods between sampling and the command's effect, 0 or 1.
+            pub delay: u32,
+            /// Discretisation of the plant.
+            pub discretisation: Discretisation,
+            /// Word length, 16 or 32 bits.
+            pub word: u32,
+            $($(#[$doc])* pub $field: $kind,)*
+        }
+
+        impl $name {
+            pub(super) fn loop_options(&self) -> LoopOptions {
+                LoopOptions {
+                    emf: self.emf,
+                    emf_filter: self.emf_filter,
+                    reference: self.reference,
+                    advance: self.advance,
+                    delay: self.delay,
+                    discretisation: self.discretisation,
+                    word: self.word,
+                }
+            }
+        }
+    };
+}
+
+options! {
+    /// Options of predictive deadbeat current control (DESIGN section 4).
+    Pdcc {
+        /// How a voltage becomes leg commands.
+        modulation: Modulation,
+        /// What gives way outside the hexagon.
+        saturation: Saturation,
+        /// Outgoing current that ends a commutation, ampere.
+        commutation_threshold: f64,
+        /// Periods after which a commutation is taken as ended.
+        commutation_timeout: u32,
+    }
+}
+
+options! {
+    /// Options of finite-control-set model predictive control.
+    FcsMpc {
+        /// The vectors that are tried.
+        candidates: Candidates,
+        /// Where a leg that is off is taken to sit.
+        off_leg: OffLeg,
+        /// Outgoing current that ends a commutation, ampere.
+        commutation_threshold: f64,
+        /// Periods after which a commutation is taken as ended.
+        commutation_timeout: u32,
+    }
+}
+
+options! {
+    /// Options of PI control with pulse-width modulation.
+    PiPwm {
+        /// Bandwidth of the proportional loop, hertz: the gain is 2 pi times it times the inductance.
+        bandwidth: f64,
+        /// Integral time and tracking time of the anti-windup, seconds.
+        integral_time: f64,
+        /// Whether the EMF is added to the voltage.
+        feed_forward: FeedForward,
+        /// What gives way outside the hexagon.
+        saturation: Saturation,
+    }
+}
+
+/// The vectors that FCS-MPC tries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Candidates {
+    /// Those of three switched legs in commutation, else those of two (and their zero).
+    Table2,
+    /// Those of three switched legs.
+    ThreePhase,
+    /// All of both.
+    All,
+}
+
+/// Where FCS-MPC takes a leg that is off to sit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OffLeg {
+    /// Where its diode or its EMF puts it.
+    Physical,
+    /// In the middle of the two others.
+    Nominal,
+}
+
+/// Whether the PI controller adds the EMF to its voltage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FeedForward {
+    /// It does.
+    On,
+    /// It does not; the integral has to find it.
+    Off,
+}
+
+/// How a voltage becomes leg commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Modulation {
+    /// Three duties in every period.
+    ThreePhase,
+    /// Three duties in commutation, else one pulsed leg of the conducting pair.
+    Pair,
+}
+
+/// What gives way when the voltage lies outside the hexagon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Saturation {
+    /// Scale to the edge.
+    KeepAngle,
+    /// Nearest point of the hexagon.
+    Nearest,
+    /// Keep the component along the EMF.
+    TorquePriority,
+}
+
+/// Where the EMF comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EmfSource {
+    /// From the last period's voltage and currents.
+    Estimated,
+    /// From the motor's EMF shape at the interpolated Hall angle.
+    Model,
+}
+
+/// What the currents follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// The sector's corner.
+    QuasiSquare,
+    /// Parallel to the EMF.
+    Proportional,
+}
+
+/// Discretisation of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Discretisation {
+    /// a = exp(-R Ts/L), b = (1 - a)/R.
+    Exact,
+    /// a = 1 - R Ts/L, b = Ts/L.
+    Euler,
+}
