@@ -84,6 +84,29 @@ where
     C: CurrentLoop,
     F: Fn(&Truth) -> C + Sync,
 {
+    speed_limit_knowing(params, run, options, &[], make)
+}
+
+/// As [`speed_limit`], with the mean torque (rpm, newton metres) of speeds that were measured
+/// already from the same starts: they are not simulated again.
+///
+/// # Errors
+/// As [`speed_limit`].
+pub fn speed_limit_knowing<C, F>(
+    params: &PlantParams,
+    run: &RunOptions,
+    options: &LimitOptions,
+    known: &[(f64, f64)],
+    make: F,
+) -> Result<SpeedLimit, PlantError>
+where
+    C: CurrentLoop,
+    F: Fn(&Truth) -> C + Sync,
+{
+    let measured = |rpm: f64| {
+        let same = |point: &&(f64, f64)| (point.0 - rpm).abs() < 1e-9 * options.rated_rpm;
+        known.iter().find(same).map(|point| point.1)
+    };
     let steps = ((options.to_rpm - options.from_rpm) / options.step_rpm)
         .floor()
         .max(0.0) as usize;
@@ -92,11 +115,15 @@ where
         .collect();
     let held = |torque: f64| torque / options.torque >= HELD;
     let mut curve: Vec<(f64, f64)> = Vec::with_capacity(speeds.len());
-    let block = 2 * rayon::current_num_threads();
+    // Longer blocks would only simulate more speeds beyond the crossing.
+    let block = rayon::current_num_threads();
     for speeds in speeds.chunks(block) {
         let torques = speeds
             .par_iter()
             .map(|rpm| {
+                if let Some(torque) = measured(*rpm) {
+                    return Ok(torque);
+                }
                 let omega_m = (rpm * TAU / 60.0).copysign(run.omega_m);
                 mean_torque(
                     params,

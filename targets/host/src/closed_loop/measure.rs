@@ -111,15 +111,22 @@ where
             run_start(params, options, start, make(&initial))
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let starts: Vec<Merits> = traces
-        .iter()
-        .map(|trace| merits(trace, options.current, options.commutation_threshold))
-        .collect();
-    Ok(Measurement {
-        merits: Merits::of_starts(&starts),
-        starts,
-        traces,
-    })
+    Ok(Measurement::of(traces, options))
+}
+
+impl Measurement {
+    /// The merits of the records of all starts of a run.
+    pub fn of(traces: Vec<Trace>, options: &RunOptions) -> Self {
+        let starts: Vec<Merits> = traces
+            .iter()
+            .map(|trace| merits(trace, options.current, options.commutation_threshold))
+            .collect();
+        Self {
+            merits: Merits::of_starts(&starts),
+            starts,
+            traces,
+        }
+    }
 }
 
 /// Records a run from its first period on, start-up included, for plots and CSV. Uses the first

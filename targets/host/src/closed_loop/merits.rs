@@ -1,8 +1,8 @@
 //! The merits of a run (DESIGN.md section 7), from its record.
 
+use super::amplitudes;
 use super::trace::{Trace, quasi_square};
 use serde::Serialize;
-use std::f64::consts::TAU;
 
 /// What a run is judged by. Percentages of a mean torque or fundamental that is zero are NaN,
 /// which JSON shows as null.
@@ -44,6 +44,9 @@ pub struct Merits {
 /// Harmonics that are computed for a current.
 const ORDERS: [usize; 5] = [1, 5, 7, 11, 13];
 
+/// The highest of all harmonics that are computed.
+const HIGHEST: usize = 13;
+
 /// The merits of one record. `current` is the quasi-square reference's amplitude in amperes, with
 /// the torque's sign; `threshold` ends a commutation, in amperes. The record should span whole
 /// electrical periods.
@@ -63,16 +66,18 @@ pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
         .zip(&trace.i_b)
         .map(|(a, b)| -a - b)
         .collect();
+    let signals = [&trace.torque[..], &trace.i_a, &trace.i_b, &i_c];
+    let [torque, currents @ ..] = amplitudes(signals, &trace.theta_e, HIGHEST);
     let mut distortion = [0.0; ORDERS.len()];
-    for phase in [&trace.i_a, &trace.i_b, &i_c] {
+    for (current, harmonics) in signals[1..].iter().zip(&currents) {
         for (sum, part) in distortion
             .iter_mut()
-            .zip(current_distortion(phase, &trace.theta_e))
+            .zip(current_distortion(current, harmonics))
         {
             *sum += part / 3.0;
         }
     }
-    let torque_harmonic = |order| percent * amplitude(&trace.torque, &trace.theta_e, order);
+    let torque_harmonic = |order: usize| percent * torque[order];
 
     let bins = trace.torque.len();
     let squares = (0..bins).map(|k| {
@@ -141,28 +146,16 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Amplitude of a harmonic of the electrical angle, by projection; the mean is taken off first so
-/// that it does not leak when the record is not quite a whole number of turns.
-fn amplitude(values: &[f64], theta_e: &[f64], order: usize) -> f64 {
-    let mean = mean(values);
-    let (mut cosine, mut sine) = (0.0, 0.0);
-    for (value, theta) in values.iter().zip(theta_e) {
-        let (sin, cos) = (order as f64 * theta).rem_euclid(TAU).sin_cos();
-        cosine += (value - mean) * cos;
-        sine += (value - mean) * sin;
-    }
-    2.0 * cosine.hypot(sine) / values.len() as f64
-}
-
 /// Total distortion first, then harmonics 5, 7, 11 and 13, all in percent of the fundamental.
-fn current_distortion(current: &[f64], theta_e: &[f64]) -> [f64; ORDERS.len()] {
-    let fundamental = amplitude(current, theta_e, 1);
+/// `harmonics` are the current's amplitudes by order.
+fn current_distortion(current: &[f64], harmonics: &[f64]) -> [f64; ORDERS.len()] {
+    let fundamental = harmonics[1];
     let rest = (deviation(current).powi(2) - 0.5 * fundamental.powi(2)).max(0.0);
     ORDERS.map(|order| {
         let part = if order == 1 {
             (2.0 * rest).sqrt()
         } else {
-            amplitude(current, theta_e, order)
+            harmonics[order]
         };
         100.0 * part / fundamental
     })
@@ -193,6 +186,7 @@ mod tests {
     use super::*;
     use crate::closed_loop::trace::PeriodRow;
     use crate::plant::{Plant, PlantParams};
+    use std::f64::consts::TAU;
 
     /// A record of six turns of 800 bins with the given torque and currents over the angle.
     fn synthetic(torque: impl Fn(f64) -> f64, i: impl Fn(f64) -> f64) -> Trace {

@@ -4,12 +4,14 @@
 //! bit-true or the ideal model. Sampling is at the start of each period; the command computed in
 //! period k drives the inverter in period k + 1, or, without delay, in period k.
 
+mod harmonics;
 mod limit;
 mod measure;
 mod merits;
 mod trace;
 
-pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit};
+pub use harmonics::amplitudes;
+pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
 pub use measure::{Measurement, RunOptions, STARTS, measure, record};
 pub use merits::{Merits, merits};
 pub use trace::{PeriodRow, Trace, quasi_square};
@@ -119,6 +121,11 @@ impl<C: CurrentLoop> ClosedLoop<C> {
     /// The controller, for instance to change its set-point between two runs.
     pub fn controller(&mut self) -> &mut C {
         &mut self.controller
+    }
+
+    /// Ends the loop and gives the controller back.
+    pub fn into_controller(self) -> C {
+        self.controller
     }
 
     /// Runs a number of control periods.

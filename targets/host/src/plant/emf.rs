@@ -1,7 +1,7 @@
 //! The EMF's shape as a Taylor series in time, and the times of its corners.
 
 use super::segment::{Series, TERMS};
-use super::{EmfShape, wrap};
+use super::{EmfShape, floor, wrap};
 use std::f64::consts::{PI, TAU};
 
 /// Angle by which the shape is probed ahead of the present one, so that a corner that was just
@@ -44,7 +44,10 @@ pub(super) fn angle_to_corner(shape: EmfShape, theta_e: f64, omega_e: f64) -> f6
     let half = half_ramp(flat_top_deg);
     // All corners of the three phases: +-half modulo 60 degrees, as 180 and 120 are multiples.
     let pitch = PI / 3.0;
-    let forward = |angle: f64| AHEAD + (angle - AHEAD).rem_euclid(pitch);
+    let forward = |angle: f64| {
+        let turns = (angle - AHEAD) / pitch;
+        AHEAD + (turns - floor(turns)) * pitch
+    };
     if omega_e > 0.0 {
         forward(half - theta_e).min(forward(-half - theta_e))
     } else {

@@ -1,5 +1,6 @@
 //! Hall sensors: codes, placement errors, and exact times of their edges.
 
+use super::floor;
 use std::f64::consts::{PI, TAU};
 
 /// Angle of the rising edge of an ideally placed sensor Ha, Hb, Hc in radians.
@@ -33,7 +34,7 @@ impl Sensors {
 
     /// Half-turns from each sensor's rising edge, rounded down; even while the sensor reads 1.
     fn half_turns(&self, theta_e: f64) -> [f64; 3] {
-        self.rise.map(|rise| ((theta_e - rise) / PI).floor())
+        self.rise.map(|rise| floor((theta_e - rise) / PI))
     }
 
     /// Hall code at an electrical angle, in the motor's wiring. A combination of sensors that the

@@ -28,6 +28,10 @@ pub(super) struct Network {
     tolerance: f64,
     no_current: f64,
     rate: f64,
+    /// R/L, where all phases have the same R and the same L.
+    common_rate: Option<f64>,
+    /// Largest exponent x with x^(k+1)/(k+1)! at most 1e-17, by k: where a series may end.
+    reach: [f64; TERMS - 4],
     /// 1/k, as the series' recursion needs it.
     reciprocal: Series,
 }
@@ -44,6 +48,13 @@ impl Network {
             tolerance: 1e-11 * params.v_bus,
             no_current: NO_CURRENT * params.v_bus * params.t_s / inductance,
             rate: rates.fold(0.0, f64::max),
+            common_rate: (params.resistance == [params.resistance[0]; 3]
+                && params.inductance == [params.inductance[0]; 3])
+                .then(|| params.resistance[0] / params.inductance[0]),
+            reach: std::array::from_fn(|k| {
+                let factorial: f64 = (1..=k + 1).map(|n| n as f64).product();
+                (1e-17 * factorial).powf(1.0 / (k + 1) as f64)
+            }),
             reciprocal: std::array::from_fn(|k| if k == 0 { 0.0 } else { 1.0 / k as f64 }),
         }
     }
@@ -54,16 +65,11 @@ impl Network {
         MAX_EXPONENT / self.rate.max(omega.abs())
     }
 
-    /// Number of coefficients that a step of `h` needs.
+    /// Number of coefficients that a step of `h` needs: two more than those above 1e-17.
     pub(super) fn terms(&self, omega: f64, h: f64) -> usize {
         let x = self.rate.max(omega.abs()) * h;
-        let mut term = 1.0;
-        let mut count = 1;
-        while term > 1e-17 && count < TERMS - 2 {
-            term *= x / count as f64;
-            count += 1;
-        }
-        count + 2
+        let enough = self.reach.iter().position(|&reach| x <= reach);
+        enough.unwrap_or(TERMS - 4) + 4
     }
 
     /// Solves the network from `currents` over `segment.duration`, or up to the first event before
@@ -226,7 +232,13 @@ impl Network {
             return;
         }
         let scale = 1.0 / weight;
-        for k in 0..segment.terms {
+        // Beyond the EMF's terms, currents of equal phases decay each for itself: what they drop
+        // in R sums to zero, so the star point does not move.
+        let general = match self.common_rate {
+            Some(_) => segment.terms.min(segment.shape_terms.max(1)),
+            None => segment.terms,
+        };
+        for k in 0..general {
             let mut drive = [0.0; 3];
             let mut neutral = 0.0;
             for x in 0..3 {
@@ -242,6 +254,15 @@ impl Network {
                 for x in 0..3 {
                     segment.current[x][k + 1] =
                         conductance[x] * (drive[x] - neutral) * self.reciprocal[k + 1];
+                }
+            }
+        }
+        if let Some(rate) = self.common_rate {
+            segment.neutral[general..segment.terms].fill(0.0);
+            for k in general..segment.terms.max(1) - 1 {
+                let factor = -rate * self.reciprocal[k + 1];
+                for current in &mut segment.current {
+                    current[k + 1] = factor * current[k];
                 }
             }
         }

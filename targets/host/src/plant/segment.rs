@@ -77,9 +77,13 @@ impl Default for Segment {
 impl Segment {
     /// Phase currents in amperes at `t` seconds after the start.
     pub fn currents_at(&self, t: f64) -> [f64; 3] {
-        self.current
-            .each_ref()
-            .map(|series| evaluate(&series[..self.terms], t))
+        // Three Horner schemes side by side: none waits for another.
+        let [a, b, c] = self.current.each_ref().map(|series| &series[..self.terms]);
+        let mut sums = [0.0; 3];
+        for ((a, b), c) in a.iter().zip(b).zip(c).rev() {
+            sums = [sums[0] * t + a, sums[1] * t + b, sums[2] * t + c];
+        }
+        sums
     }
 
     /// Terminal voltages in volts against the negative rail at `t` seconds after the start.
@@ -109,9 +113,21 @@ impl Segment {
     /// Formed from the shape, so that nothing divides by the speed.
     pub fn torque(&self, out: &mut Series) {
         let terms = self.terms;
-        out[..terms].fill(0.0);
+        // A trapezoid's two coefficients, as nearly always, in one pass over all phases.
+        let [a, b, c] = self.current.each_ref().map(|series| &series[..terms]);
+        let [f_a, f_b, f_c] = &self.shape;
+        let out = &mut out[..terms];
+        for (((sum, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
+            *sum = f_a[0] * a + f_b[0] * b + f_c[0] * c;
+        }
+        if self.shape_terms > 1 {
+            for (((sum, a), b), c) in out[1..].iter_mut().zip(a).zip(b).zip(c) {
+                *sum += f_a[1] * a + f_b[1] * b + f_c[1] * c;
+            }
+        }
         for (shape, current) in self.shape.iter().zip(&self.current) {
-            for (j, s) in shape[..self.shape_terms.min(terms)].iter().enumerate() {
+            let further = shape[..self.shape_terms.min(terms)].iter().enumerate();
+            for (j, s) in further.skip(2) {
                 for (sum, c) in out[j..terms].iter_mut().zip(current) {
                     *sum += s * c;
                 }
@@ -124,7 +140,18 @@ impl Segment {
 pub(crate) fn integral(series: &[f64], t: f64) -> f64 {
     t * series
         .iter()
-        .enumerate()
+        .zip(&PER_ORDER)
         .rev()
-        .fold(0.0, |sum, (k, c)| sum * t + c / (k + 1) as f64)
+        .fold(0.0, |sum, (c, per_order)| sum * t + c * per_order)
 }
+
+/// 1/(k + 1).
+const PER_ORDER: Series = {
+    let mut table = [0.0; TERMS];
+    let mut k = 0;
+    while k < TERMS {
+        table[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    table
+};

@@ -1,31 +1,6 @@
-//! Harmonics of the electrical angle, by projection on the record.
+//! Harmonics as spectra show them.
 
-use crate::closed_loop::Trace;
-
-/// Amplitude of each harmonic of a signal, index = order, from 0 (magnitude of the mean) to
-/// `highest`. The record should span whole electrical turns.
-pub fn amplitudes(values: &[f64], theta_e: &[f64], highest: usize) -> Vec<f64> {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let mut sums = vec![(0.0, 0.0); highest + 1];
-    for (value, theta) in values.iter().zip(theta_e) {
-        // Without the mean nothing leaks when the record is not quite a whole number of turns.
-        let value = value - mean;
-        let (sin, cos) = theta.sin_cos();
-        let (mut s, mut c) = (0.0, 1.0);
-        for sum in &mut sums {
-            sum.0 += value * c;
-            sum.1 += value * s;
-            (c, s) = (c * cos - s * sin, s * cos + c * sin);
-        }
-    }
-    let mut amplitudes: Vec<f64> = sums
-        .into_iter()
-        .map(|(c, s): (f64, f64)| 2.0 * c.hypot(s) / count)
-        .collect();
-    amplitudes[0] = mean.abs();
-    amplitudes
-}
+use crate::closed_loop::{Trace, amplitudes};
 
 /// Harmonics of the phase currents in percent of the fundamental, mean of the phases.
 pub fn of_current(trace: &Trace, highest: usize) -> Vec<f64> {
@@ -36,8 +11,8 @@ pub fn of_current(trace: &Trace, highest: usize) -> Vec<f64> {
         .map(|(a, b)| -a - b)
         .collect();
     let mut percent = vec![0.0; highest + 1];
-    for phase in [&trace.i_a, &trace.i_b, &i_c] {
-        let amplitudes = amplitudes(phase, &trace.theta_e, highest);
+    let phases = [&trace.i_a[..], &trace.i_b, &i_c];
+    for amplitudes in amplitudes(phases, &trace.theta_e, highest) {
         let scale = 100.0 / 3.0 / amplitudes[1];
         for (sum, amplitude) in percent.iter_mut().zip(amplitudes) {
             *sum += scale * amplitude;
@@ -48,7 +23,7 @@ pub fn of_current(trace: &Trace, highest: usize) -> Vec<f64> {
 
 /// Harmonics of the torque in percent of its mean.
 pub fn of_torque(trace: &Trace, highest: usize) -> Vec<f64> {
-    let amplitudes = amplitudes(&trace.torque, &trace.theta_e, highest);
+    let [amplitudes] = amplitudes([&trace.torque[..]], &trace.theta_e, highest);
     let scale = 100.0 / amplitudes[0];
     amplitudes.into_iter().map(|a| scale * a).collect()
 }
@@ -75,7 +50,7 @@ mod tests {
             .iter()
             .map(|t| -2.0 + 0.5 * (6.0 * t).sin() + 0.25 * (12.0 * t + 1.0).cos())
             .collect();
-        let got = amplitudes(&wave, &theta, 13);
+        let [got] = amplitudes([&wave[..]], &theta, 13);
         for (order, amplitude) in got.iter().enumerate() {
             let want = match order {
                 0 => 2.0,
@@ -100,7 +75,7 @@ mod tests {
                 _ => 0.0,
             })
             .collect();
-        let got = amplitudes(&wave, &theta, 25);
+        let [got] = amplitudes([&wave[..]], &theta, 25);
         for (order, amplitude) in got.iter().enumerate().skip(1) {
             let percent = 100.0 * amplitude / got[1];
             assert!(
