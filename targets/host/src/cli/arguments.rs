@@ -276,7 +276,7 @@ pub struct RunArguments {
     /// Which model of the controller runs
     #[arg(long, value_enum, default_value_t)]
     pub model: Model,
-    /// Demanded torque; braking torque is negative [default: rated torque]
+    /// Demanded torque; braking torque is negative [default: rated torque, as far as max_current reaches]
     #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub torque: Option<f64>,
     /// What the plant differs in
@@ -296,9 +296,10 @@ impl RunArguments {
         SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())
     }
 
-    /// The demanded torque in newton metres: as given, else the rated one.
+    /// The demanded torque in newton metres: as given, else the rated one as far as the drive's
+    /// set-point reaches.
     pub fn torque(&self, drive: &Prepared) -> f64 {
-        self.torque.unwrap_or_else(|| drive.rated_torque())
+        self.torque.unwrap_or_else(|| drive.demand())
     }
 }
 

@@ -2,11 +2,12 @@
 //! of a closed loop.
 
 use crate::cli::Failure;
-use crate::closed_loop::{ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, measure};
+use crate::closed_loop::{ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace};
 use crate::engine::{Engine, Model, Prepared, SetPoint};
-use crate::plant::{Plant, PlantParams, Truth};
+use crate::plant::{Plant, PlantError, PlantParams, Truth};
 use hexagen::{Legs, Sample};
-use hexagen_reference::{BitTrue, Ideal};
+use hexagen_reference::{BitTrue, Duties, Ideal};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Distance of the bit-true from the ideal model after one step from the same state and sample.
@@ -32,14 +33,6 @@ pub struct OneStep {
     pub equal_compares_pct: f64,
 }
 
-/// The bit-true model in the loop, the ideal one beside it.
-struct Beside {
-    bit_true: BitTrue,
-    ideal: Ideal,
-    timer_period: f64,
-    sums: Sums,
-}
-
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     steps: u64,
@@ -52,82 +45,52 @@ struct Sums {
     equal: u64,
 }
 
-impl CurrentLoop for Beside {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
-        self.ideal.rebuild_from(&self.bit_true.physical_state());
-        let legs = self.bit_true.step(sample);
-        let duties = self.ideal.step(sample);
-        let (found, exact) = (self.bit_true.trace(), *self.ideal.trace());
+impl Sums {
+    /// Takes in a step of both models from the same state.
+    fn add(&mut self, found: &BitTrue, legs: &Legs, exact: &Ideal, duties: &Duties, period: u16) {
+        let (found, exact) = (found.trace(), *exact.trace());
         if !found.run {
-            return legs;
+            return;
         }
-        let sums = &mut self.sums;
         let same = found.sector_eff == exact.sector_eff
             && found.commutating == exact.commutating
             && found.reach == exact.reach
             && legs.state == duties.state;
         if !same {
-            sums.other_decisions += 1;
-            return legs;
+            self.other_decisions += 1;
+            return;
         }
-        sums.steps += 1;
+        self.steps += 1;
         let phases = |u: [f64; 2]| [u[0], u[1], -u[0] - u[1]];
         for (found, exact) in phases(found.u_unsat).into_iter().zip(phases(exact.u_unsat)) {
             let error = (found - exact).abs();
-            sums.u_largest = sums.u_largest.max(error);
-            sums.u_error += error * error;
-            sums.u_signal += exact * exact;
+            self.u_largest = self.u_largest.max(error);
+            self.u_error += error * error;
+            self.u_signal += exact * exact;
         }
-        let rounded = duties.to_legs(self.timer_period as u16);
+        let rounded = duties.to_legs(period);
         for phase in 0..3 {
-            let error =
-                (f64::from(legs.compare[phase]) - duties.duty[phase] * self.timer_period).abs();
-            sums.duty_largest = sums.duty_largest.max(error);
-            sums.duty_error += error * error;
-            sums.equal += u64::from(legs.compare[phase] == rounded.compare[phase]);
+            let exact = duties.duty[phase] * f64::from(period);
+            let error = (f64::from(legs.compare[phase]) - exact).abs();
+            self.duty_largest = self.duty_largest.max(error);
+            self.duty_error += error * error;
+            self.equal += u64::from(legs.compare[phase] == rounded.compare[phase]);
         }
-        legs
     }
-}
 
-/// Measures one-step errors along closed loops of the bit-true model, start-up included.
-///
-/// # Errors
-/// A plant parameter out of range.
-pub fn one_step(
-    drive: &Prepared,
-    plant: &PlantParams,
-    runs: &[RunOptions],
-    set_point: SetPoint,
-) -> Result<OneStep, Failure> {
-    let mut total = Sums::default();
-    for run in runs {
-        let (settling, measured) = run.periods(plant);
-        for &start in &run.starts {
-            let (bit_true, ideal) = drive.references(set_point, true);
-            let beside = Beside {
-                bit_true,
-                ideal,
-                timer_period: f64::from(plant.timer_period),
-                sums: total,
-            };
-            let motor = Plant::new(plant.clone(), start, run.omega_m)?;
-            let mut closed = ClosedLoop::new(motor, beside, run.delay);
-            closed.run(settling + measured, &mut ());
-            total = closed.controller().sums;
+    /// Both together.
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            steps: self.steps + other.steps,
+            other_decisions: self.other_decisions + other.other_decisions,
+            u_largest: self.u_largest.max(other.u_largest),
+            u_error: self.u_error + other.u_error,
+            u_signal: self.u_signal + other.u_signal,
+            duty_largest: self.duty_largest.max(other.duty_largest),
+            duty_error: self.duty_error + other.duty_error,
+            equal: self.equal + other.equal,
         }
     }
-    let values = 3.0 * total.steps as f64;
-    Ok(OneStep {
-        steps: total.steps,
-        other_decisions: total.other_decisions,
-        u_largest_v: total.u_largest,
-        u_rms_v: (total.u_error / values).sqrt(),
-        duty_largest_counts: total.duty_largest,
-        duty_rms_counts: (total.duty_error / values).sqrt(),
-        snr_db: 10.0 * (total.u_signal / total.u_error).log10(),
-        equal_compares_pct: 100.0 * total.equal as f64 / values,
-    })
 }
 
 /// The ideal model on the samples that the fixed-point drive read on its own plant, from the same
@@ -136,14 +99,19 @@ struct SameWords {
     bit_true: BitTrue,
     ideal: Ideal,
     samples: std::vec::IntoIter<Sample>,
+    timer_period: u16,
+    sums: Sums,
 }
 
 impl CurrentLoop for SameWords {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         let words = self.samples.next().unwrap_or(*sample);
         self.ideal.rebuild_from(&self.bit_true.physical_state());
-        self.bit_true.step(&words);
-        self.ideal.step_legs(&words)
+        let legs = self.bit_true.step(&words);
+        let duties = self.ideal.step(&words);
+        let (sums, period) = (&mut self.sums, self.timer_period);
+        sums.add(&self.bit_true, &legs, &self.ideal, &duties, period);
+        duties.to_legs(period)
     }
 }
 
@@ -160,41 +128,93 @@ impl CurrentLoop for Noting<'_> {
     }
 }
 
-/// Measures the ideal model from the same starts, on the same ADC and Hall words and with the same
-/// last samples and applied voltages as the fixed-point drive: what differs is arithmetic alone,
-/// not the course that the last bit of an ADC gives to a loop of its own. (Left to itself on
+/// The fixed-point drive and the ideal model on the words that it read.
+#[derive(Clone, Debug)]
+pub struct SideBySide {
+    /// The fixed-point drive in its own loop.
+    pub fixed: Measurement,
+    /// The ideal model on its own plant, from the same starts.
+    pub ideal: Measurement,
+    sums: Sums,
+}
+
+impl SideBySide {
+    /// The distance of single steps over several measurements, start-up included.
+    pub fn one_step<'a>(measured: impl IntoIterator<Item = &'a Self>) -> OneStep {
+        let none = Sums::default();
+        let all = measured.into_iter();
+        let total = all.fold(none, |sum, part| sum.and(&part.sums));
+        let values = 3.0 * total.steps as f64;
+        OneStep {
+            steps: total.steps,
+            other_decisions: total.other_decisions,
+            u_largest_v: total.u_largest,
+            u_rms_v: (total.u_error / values).sqrt(),
+            duty_largest_counts: total.duty_largest,
+            duty_rms_counts: (total.duty_error / values).sqrt(),
+            snr_db: 10.0 * (total.u_signal / total.u_error).log10(),
+            equal_compares_pct: 100.0 * total.equal as f64 / values,
+        }
+    }
+}
+
+/// Measures the fixed-point drive, and the ideal model from the same starts, on the same ADC and
+/// Hall words and with the same last samples and applied voltages: what differs is arithmetic
+/// alone, not the course that the last bit of an ADC gives to a loop of its own. (Left to itself on
 /// foreign words, a model that estimates the EMF from its own voltages would drift away.)
 ///
 /// # Errors
 /// A plant parameter out of range.
-pub fn ideal_on_same_words(
+pub fn side_by_side(
     drive: &Prepared,
     plant: &PlantParams,
     run: &RunOptions,
     set_point: SetPoint,
-) -> Result<Measurement, Failure> {
+) -> Result<SideBySide, Failure> {
     let (settling, measured) = run.periods(plant);
-    let make = |initial: &Truth| {
-        let (bit_true, ideal) = drive.references(set_point, false);
+    let starts = run.starts.par_iter().map(|&start| {
+        let motor = Plant::new(plant.clone(), start, run.omega_m)?;
         let noting = Noting {
             engine: drive.engine(Model::Fixed, set_point),
             samples: Vec::with_capacity(settling + measured),
         };
-        // The plant exists already for these parameters, so they are in range.
-        let samples = Plant::new(plant.clone(), initial.theta_e, initial.omega_m)
-            .map(|motor| {
-                let mut closed = ClosedLoop::new(motor, noting, run.delay);
-                closed.run(settling + measured, &mut ());
-                std::mem::take(&mut closed.controller().samples)
-            })
-            .unwrap_or_default();
-        SameWords {
+        let (fixed, noting) = settled(motor.clone(), noting, run, settling, measured);
+        let (bit_true, ideal) = drive.references(set_point, true);
+        let same_words = SameWords {
             bit_true,
             ideal,
-            samples: samples.into_iter(),
-        }
-    };
-    Ok(measure(plant, run, make)?)
+            samples: noting.samples.into_iter(),
+            timer_period: plant.timer_period,
+            sums: Sums::default(),
+        };
+        let (ideal, same_words) = settled(motor, same_words, run, settling, measured);
+        Ok((fixed, ideal, same_words.sums))
+    });
+    let starts = starts.collect::<Result<Vec<_>, PlantError>>()?;
+    let sums = starts
+        .iter()
+        .fold(Sums::default(), |sum, start| sum.and(&start.2));
+    let (fixed, ideal) = starts.into_iter().map(|(f, i, _)| (f, i)).unzip();
+    Ok(SideBySide {
+        fixed: Measurement::of(fixed, run),
+        ideal: Measurement::of(ideal, run),
+        sums,
+    })
+}
+
+/// Settles a loop and records its measured window; gives the controller back.
+fn settled<C: CurrentLoop>(
+    motor: Plant,
+    controller: C,
+    run: &RunOptions,
+    settling: usize,
+    measured: usize,
+) -> (Trace, C) {
+    let mut closed = ClosedLoop::new(motor, controller, run.delay);
+    closed.run(settling, &mut ());
+    let mut trace = Trace::new(closed.plant(), measured);
+    closed.run(measured, &mut trace);
+    (trace, closed.into_controller())
 }
 
 /// A merit of the fixed-point drive beside the ideal model's.

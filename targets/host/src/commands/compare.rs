@@ -1,6 +1,6 @@
 //! `hexagen compare`: fixed against floating point, per controller and word length.
 
-use super::accuracy::{MeritDifference, OneStep, differences, ideal_on_same_words, one_step};
+use super::accuracy::{MeritDifference, OneStep, SideBySide, differences, side_by_side};
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, TextTable, print_json, print_text,
     significant, spinner,
@@ -67,28 +67,29 @@ pub struct AtSpeed {
     pub merits: Vec<MeritDifference>,
 }
 
-/// Accuracy of one drive at rated torque.
+/// Accuracy of one drive at rated torque, as far as its set-point reaches.
 ///
 /// # Errors
 /// A plant option out of range.
 pub fn accuracy(drive: &Prepared, plant: &PlantArguments) -> Result<Accuracy, Failure> {
-    let (params, torque) = (plant.plant(drive)?, drive.rated_torque());
+    let (params, torque) = (plant.plant(drive)?, drive.demand());
     let set_point = plant.set_point(drive, torque);
     let speeds = SPEEDS.map(|part| part * drive.rated_rpm());
     let runs = speeds.map(|rpm| plant.run(drive, rpm, torque));
     let mut closed_loop = Vec::new();
+    let mut measured = Vec::new();
     for (rpm, run) in speeds.into_iter().zip(&runs) {
-        let fixed = measure(&params, run, drive.maker(Model::Fixed, set_point))?;
+        let both = side_by_side(drive, &params, run, set_point)?;
         let alone = measure(&params, run, drive.maker(Model::Ideal, set_point))?;
-        let ideal = ideal_on_same_words(drive, &params, run, set_point)?;
         closed_loop.push(AtSpeed {
             rpm,
-            merits: differences(&fixed.merits, &ideal.merits, &alone.merits),
+            merits: differences(&both.fixed.merits, &both.ideal.merits, &alone.merits),
         });
+        measured.push(both);
     }
     Ok(Accuracy {
         engine: drive.engine_kind(),
-        one_step: one_step(drive, &params, &runs, set_point)?,
+        one_step: SideBySide::one_step(&measured),
         closed_loop,
     })
 }

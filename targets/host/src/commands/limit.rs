@@ -1,6 +1,6 @@
 //! `hexagen limit`: the speed up to which a controller holds the torque.
 
-use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
+use crate::cli::{Failure, RunArguments, print_json, print_text, significant, spinner};
 use crate::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit};
 use crate::engine::{EngineKind, Model, Prepared};
 use clap::Args;
@@ -85,7 +85,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ) {
         (LimitOutcome::NeverHeld, _, _) | (_, None, _) | (_, _, None) => {
             let first = outcome.limit.curve.first().map_or(0.0, |point| point.0);
-            format!("not held even at {first:.0} rpm")
+            let reach = drive.reach();
+            let why = if reach < outcome.torque_nm.abs() {
+                format!(
+                    ": max_current = {} A limits the set-point to {} Nm",
+                    drive.spec.inverter.max_current,
+                    significant(reach, 3)
+                )
+            } else {
+                String::new()
+            };
+            format!("not held even at {first:.0} rpm{why}")
         }
         (LimitOutcome::Found, Some(rpm), Some(percent)) => {
             format!("held up to {rpm:.0} rpm, {percent:.1} % of rated speed")
@@ -96,7 +106,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     print_text(&format!(
         "{}, {} ({model:?}): {} Nm {found}",
-        outcome.motor, outcome.controller, outcome.torque_nm
+        outcome.motor,
+        outcome.controller,
+        significant(outcome.torque_nm, 4)
     ));
     Ok(())
 }

@@ -9,7 +9,8 @@ use crate::report::{
     judge_limit, judge_mean, judge_pp, judge_rms,
 };
 use clap::Args;
-use std::path::PathBuf;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
 
 /// The motor of the paper.
 const PAPER_MOTOR: &str = "trivedi-keshri-660w";
@@ -34,20 +35,37 @@ pub struct Options {
     pub out: Option<PathBuf>,
 }
 
-/// Everything the report shows.
+/// Everything the report shows. A folder that the page is meant for is tried before the long work.
 ///
 /// # Errors
-/// No such motor, diagnostics of its own controller, or a failed bit-for-bit check.
-pub fn collect(options: &Options) -> Result<(ReportData, Vec<Checked>), Failure> {
+/// No such motor, diagnostics of its own controller, or a folder that cannot be written into.
+pub fn collect(
+    options: &Options,
+    folder: Option<&Path>,
+) -> Result<(ReportData, Vec<Checked>), Failure> {
     let given = options.motor.as_deref().unwrap_or(PAPER_MOTOR);
     let motor = SelectedMotor::find(given, &PlantArguments::default())?;
     let own = motor.prepare(None)?;
     let is_paper = motor.source.name == PAPER_MOTOR;
     let mut notes = Vec::new();
     let planned = plan(&motor, is_paper, &mut notes);
+    if let Some(folder) = folder {
+        report::prepare_folder(folder)?;
+    }
     if is_paper {
         notes.extend(PAPER_NOTES.map(str::to_owned));
     }
+
+    notes.extend(planned.iter().filter_map(|row| {
+        let (torque, rated) = (row.reach()?, row.timer.rated_torque());
+        Some(format!(
+            "PDCC {}: its set-point is limited to max_current = {} A, which gives {} Nm with this reference, {:.0} % of the demand; it is measured at that torque, its limit, too.",
+            row.row.label,
+            significant(row.timer.spec.inverter.max_current, 3),
+            significant(torque, 3),
+            100.0 * torque / rated,
+        ))
+    }));
 
     let drives: Vec<Prepared> = planned
         .iter()
@@ -59,12 +77,16 @@ pub fn collect(options: &Options) -> Result<(ReportData, Vec<Checked>), Failure>
     progress.finish_and_clear();
 
     let progress = bar(planned.len() as u64, "simulating");
-    let mut variants = Vec::new();
-    for row in &planned {
-        variants.push(row.run(row.row.label == SHOWN)?);
-        progress.inc(1);
-    }
+    let variants = planned
+        .par_iter()
+        .map(|row| {
+            let variant = row.run(row.row.label == SHOWN);
+            progress.inc(1);
+            variant
+        })
+        .collect::<Result<Vec<_>, _>>();
     progress.finish_and_clear();
+    let variants = variants?;
 
     let data = ReportData {
         generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
@@ -121,7 +143,11 @@ fn verification(checked: &[Checked]) -> Verification {
 }
 
 fn source(drive: &Prepared) -> Option<String> {
-    let parts: Vec<&str> = drive.source.iter().map(|(_, text)| text.as_str()).collect();
+    let parts: Vec<String> = drive
+        .source
+        .iter()
+        .map(|(_, text)| format!("{}.", text.trim().trim_end_matches('.')))
+        .collect();
     (!parts.is_empty()).then(|| parts.join(" "))
 }
 
@@ -133,6 +159,7 @@ fn paper_marks() -> Vec<SpeedMark> {
     };
     vec![
         mark("PI-PWM (paper)", 67.0),
+        mark("predictive (paper)", 85.0),
         mark("PDCC (paper)", 87.0),
         mark("bound at 20 A", 119.0),
     ]
@@ -154,7 +181,8 @@ const PAPER_NOTES: [&str; 2] = [
 /// # Errors
 /// As [`collect`], or a page that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (data, checked) = collect(options)?;
+    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
+    let (data, checked) = collect(options, Some(&folder))?;
     let motor = &data.motor;
     print_text(&format!(
         "{}: {} Nm, {} V bus, Ts {} us, {}-bit ADC",
@@ -177,7 +205,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             verification.mismatches
         ));
     }
-    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     let page = report::write(&data, &folder)?;
     print_text(&format!("Page: {}", page.display()));
     let different: Vec<String> = checked

@@ -3,14 +3,14 @@
 //! The rows are those of the design document; for other motors than the paper's the same variants
 //! run with the generator's own discretisation, and nothing is expected of them.
 
-use super::accuracy::{OneStep, one_step};
+use super::accuracy::{OneStep, SideBySide, side_by_side};
 use crate::cli::{Emit, Failure};
-use crate::closed_loop::{LimitOptions, RunOptions, measure, speed_limit};
+use crate::closed_loop::{LimitOptions, Merits, RunOptions, measure, speed_limit_knowing};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report::{
-    Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SignalError,
-    Stability, StabilityCheck, Variant,
+    Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SameWords,
+    SignalError, Stability, StabilityCheck, Variant,
 };
 use hexagen_codegen::controllers::ControllerSpec;
 use hexagen_codegen::controllers::pdcc::{EmfSource, PdccDesign, StableRange};
@@ -54,85 +54,147 @@ struct Line<'p> {
     expected: Option<Expected>,
 }
 
+/// What one way of reading Hall edges gave at the table's speeds.
+struct AtSpeeds {
+    /// The fixed-point drive, and the ideal model on its words.
+    both: Vec<SideBySide>,
+    /// The ideal model in a loop of its own.
+    alone: Vec<Merits>,
+}
+
+impl AtSpeeds {
+    fn measure(drive: &Prepared) -> Result<Self, Failure> {
+        let conditions = Conditions::of(drive);
+        let measured = SPEEDS.par_iter().map(|part| {
+            let run = conditions.at(drive, part * drive.rated_rpm());
+            let (plant, set_point) = (&conditions.plant, conditions.set_point);
+            let both = side_by_side(drive, plant, &run, set_point)?;
+            let alone = measure(plant, &run, drive.maker(Model::Ideal, set_point))?;
+            Ok((both, alone.merits))
+        });
+        let measured = measured.collect::<Result<Vec<_>, Failure>>()?;
+        let (both, alone) = measured.into_iter().unzip();
+        Ok(Self { both, alone })
+    }
+
+    /// Merits of a model in its own loop, at each speed.
+    fn merits(&self, model: Model) -> Vec<Merits> {
+        match model {
+            Model::Ideal => self.alone.clone(),
+            Model::Fixed | Model::BitTrue => {
+                self.both.iter().map(|both| both.fixed.merits).collect()
+            }
+        }
+    }
+}
+
 impl Planned {
     /// Runs every line of the row at rated torque, and what the page shows of it besides.
     ///
     /// # Errors
     /// A plant parameter out of range.
     pub fn run(&self, shows_texts: bool) -> Result<Variant, Failure> {
-        let lines = self.lines();
-        let runs = lines
+        let captures = [Capture::Timer, Capture::Sampled];
+        let measured = captures
             .par_iter()
-            .map(Line::run)
+            .map(|capture| AtSpeeds::measure(self.drive(*capture)))
             .collect::<Result<Vec<_>, _>>()?;
-        let drive = &self.timer;
-        let conditions = Conditions::of(drive);
-        let records = SPEEDS
+        let runs = self
+            .lines()
             .par_iter()
-            .filter_map(|part| {
-                let record = conditions.record(drive, part * drive.rated_rpm());
-                record.transpose()
+            .map(|line| {
+                let of_capture = captures.iter().position(|capture| *capture == line.capture);
+                line.run(&measured[of_capture.unwrap_or(0)].merits(line.model))
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let drive = &self.timer;
+        let rpm = SPEEDS.map(|part| part * drive.rated_rpm());
+        let same_words = captures.iter().zip(&measured).flat_map(|(capture, at)| {
+            rpm.iter().zip(&at.both).map(|(rpm, both)| SameWords {
+                capture: *capture,
+                rpm: *rpm,
+                fixed: both.fixed.merits,
+                ideal: both.ideal.merits,
+            })
+        });
+        let same_words = same_words.collect();
         let torque_speed = runs
             .first()
             .and_then(|run| run.limit.as_ref())
             .map(|limit| limit.curve.clone())
             .unwrap_or_default();
+        let by_timer = measured.into_iter().next().map(|at| at.both);
+        let by_timer = by_timer.unwrap_or_default();
+        let signal_errors = signal_errors(&by_timer);
+        let records = rpm.into_iter().zip(by_timer).filter_map(|(rpm, both)| {
+            let trace = both.fixed.traces.into_iter().next()?;
+            Some(Record { rpm, trace })
+        });
         Ok(Variant {
             label: format!("PDCC {}", self.row.label),
             variant: self.timer.variant.clone(),
             runs,
-            records,
+            records: records.collect(),
             torque_speed,
-            signal_errors: conditions.signal_errors(drive)?,
-            stability: conditions.stability(drive)?,
+            reach: self.reach(),
+            same_words,
+            signal_errors,
+            stability: Conditions::of(drive).stability(drive)?,
             generated: shows_texts.then(|| texts(drive)),
         })
+    }
+
+    /// The torque that the row is measured at, where its set-point cannot ask for the rated one.
+    pub fn reach(&self) -> Option<f64> {
+        let demand = self.timer.demand();
+        (demand < self.timer.rated_torque() * (1.0 - 1e-9)).then_some(demand)
+    }
+
+    fn drive(&self, capture: Capture) -> &Prepared {
+        match capture {
+            Capture::Timer => &self.timer,
+            Capture::Sampled => &self.sampled,
+        }
     }
 
     fn lines(&self) -> Vec<Line<'_>> {
         let timer = self.is_expected.then(|| self.row.timer.clone());
         let sampled = self.row.sampled.clone().filter(|_| self.is_expected);
         [
-            (Model::Fixed, Capture::Timer),
-            (Model::Ideal, Capture::Timer),
-            (Model::Fixed, Capture::Sampled),
-            (Model::Ideal, Capture::Sampled),
+            (Model::Fixed, Capture::Timer, timer),
+            (Model::Ideal, Capture::Timer, None),
+            (Model::Fixed, Capture::Sampled, sampled),
+            (Model::Ideal, Capture::Sampled, None),
         ]
         .into_iter()
-        .map(|(model, capture)| {
-            let (drive, expected) = match capture {
-                Capture::Timer => (&self.timer, &timer),
-                Capture::Sampled => (&self.sampled, &sampled),
-            };
-            Line {
-                drive,
-                model,
-                capture,
-                expected: expected.clone().filter(|_| model == Model::Fixed),
-            }
+        .map(|(model, capture, expected)| Line {
+            drive: self.drive(capture),
+            model,
+            capture,
+            expected,
         })
         .collect()
     }
 }
 
 impl Line<'_> {
-    fn run(&self) -> Result<Run, Failure> {
+    /// Finds the limit; `merits` are those at the table's speeds.
+    fn run(&self, merits: &[Merits]) -> Result<Run, Failure> {
         let conditions = Conditions::of(self.drive);
-        let maker = || self.drive.maker(self.model, conditions.set_point);
-        let points = SPEEDS
-            .par_iter()
-            .map(|part| {
-                let rpm = part * self.drive.rated_rpm();
-                let run = conditions.at(self.drive, rpm);
-                let merits = measure(&conditions.plant, &run, maker())?.merits;
-                Ok(RunPoint { rpm, merits })
-            })
-            .collect::<Result<Vec<_>, Failure>>()?;
+        let speeds = SPEEDS.map(|part| part * self.drive.rated_rpm());
+        let points: Vec<RunPoint> = speeds
+            .into_iter()
+            .zip(merits)
+            .map(|(rpm, &merits)| RunPoint { rpm, merits })
+            .collect();
+        let known: Vec<(f64, f64)> = points
+            .iter()
+            .map(|point| (point.rpm, point.merits.mean_torque_nm))
+            .collect();
         let scan = LimitOptions::new(self.drive.rated_rpm(), conditions.torque);
         let run = conditions.at(self.drive, self.drive.rated_rpm());
-        let limit = speed_limit(&conditions.plant, &run, &scan, maker())?;
+        let maker = self.drive.maker(self.model, conditions.set_point);
+        let limit = speed_limit_knowing(&conditions.plant, &run, &scan, &known, maker)?;
         Ok(Run {
             model: match self.model {
                 Model::Fixed => crate::report::Model::Fixed,
@@ -147,6 +209,28 @@ impl Line<'_> {
     }
 }
 
+/// Distances of single steps along the measured runs.
+fn signal_errors(measured: &[SideBySide]) -> Vec<SignalError> {
+    let OneStep {
+        u_largest_v,
+        u_rms_v,
+        duty_largest_counts,
+        duty_rms_counts,
+        ..
+    } = SideBySide::one_step(measured);
+    let error = |signal: &str, unit: &str, largest, rms| SignalError {
+        signal: signal.to_owned(),
+        unit: unit.to_owned(),
+        largest,
+        rms,
+        bound: None,
+    };
+    vec![
+        error("u_unsat", "V", u_largest_v, u_rms_v),
+        error("compare", "counts", duty_largest_counts, duty_rms_counts),
+    ]
+}
+
 /// The plant as specified and the demand of rated torque.
 struct Conditions {
     plant: PlantParams,
@@ -156,7 +240,7 @@ struct Conditions {
 
 impl Conditions {
     fn of(drive: &Prepared) -> Self {
-        let torque = drive.rated_torque();
+        let torque = drive.demand();
         Self {
             plant: plant_of(&drive.spec),
             torque,
@@ -169,37 +253,6 @@ impl Conditions {
 
     fn at(&self, drive: &Prepared, rpm: f64) -> RunOptions {
         run_of(&drive.spec, rpm * TAU / 60.0, self.torque)
-    }
-
-    /// The measured window of the first start at a speed.
-    fn record(&self, drive: &Prepared, rpm: f64) -> Result<Option<Record>, Failure> {
-        let mut run = self.at(drive, rpm);
-        run.starts.truncate(1);
-        let measured = measure(&self.plant, &run, drive.maker(Model::Fixed, self.set_point))?;
-        let trace = measured.traces.into_iter().next();
-        Ok(trace.map(|trace| Record { rpm, trace }))
-    }
-
-    fn signal_errors(&self, drive: &Prepared) -> Result<Vec<SignalError>, Failure> {
-        let runs = SPEEDS.map(|part| self.at(drive, part * drive.rated_rpm()));
-        let OneStep {
-            u_largest_v,
-            u_rms_v,
-            duty_largest_counts,
-            duty_rms_counts,
-            ..
-        } = one_step(drive, &self.plant, &runs, self.set_point)?;
-        let error = |signal: &str, unit: &str, largest, rms| SignalError {
-            signal: signal.to_owned(),
-            unit: unit.to_owned(),
-            largest,
-            rms,
-            bound: None,
-        };
-        Ok(vec![
-            error("u_unsat", "V", u_largest_v, u_rms_v),
-            error("compare", "counts", duty_largest_counts, duty_rms_counts),
-        ])
     }
 
     /// The stable range and runs on both sides of its edges, for loops that have one.

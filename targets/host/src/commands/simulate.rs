@@ -118,7 +118,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
     print_text(&format!(
         "{}, {} ({:?}{engine}): {} Nm at {} rpm",
-        outcome.motor, outcome.controller, model, outcome.torque_nm, outcome.rpm
+        outcome.motor,
+        outcome.controller,
+        model,
+        significant(outcome.torque_nm, 4),
+        outcome.rpm
     ));
     let mut table = TextTable::new(1, ["merit", "value", "unit"]);
     for (name, value, unit) in rows(&outcome.merits) {

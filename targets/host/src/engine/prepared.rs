@@ -203,6 +203,18 @@ impl Prepared {
             .unwrap_or(motor.rated_current * per_ampere)
     }
 
+    /// Largest torque in newton metres that the limited set-point asks for.
+    pub fn reach(&self) -> f64 {
+        self.spec.inverter.max_current * self.spec.torque_constant()
+    }
+
+    /// The torque in newton metres that the drive is measured at unless another is asked for: the
+    /// rated one, or its reach where that is less. (A sine of the rated peak current gives 9 %
+    /// less than a quasi-square of it, which ratings refer to.)
+    pub fn demand(&self) -> f64 {
+        self.rated_torque().min(self.reach())
+    }
+
     /// Rated speed in rpm.
     pub fn rated_rpm(&self) -> f64 {
         self.spec.motor.rated_speed * 30.0 / std::f64::consts::PI

@@ -64,6 +64,11 @@ pub struct Variant {
     pub records: Vec<Record>,
     /// Torque-speed curve of the first run: rpm and mean torque in newton metres, ascending.
     pub torque_speed: Vec<(f64, f64)>,
+    /// The torque in newton metres that it is measured at, where its limited set-point cannot ask
+    /// for the demanded one.
+    pub reach: Option<f64>,
+    /// Fixed point beside the ideal model on the same ADC and Hall words.
+    pub same_words: Vec<SameWords>,
     /// Largest and typical distance of the fixed-point signals from the ideal ones.
     pub signal_errors: Vec<SignalError>,
     /// Range of the true parameters in which the loop is stable.
@@ -114,6 +119,20 @@ pub struct RunPoint {
     pub rpm: f64,
     /// What was measured.
     pub merits: Merits,
+}
+
+/// Merits of the fixed-point code at one speed, and of the ideal model on its own plant from the
+/// same start, fed the ADC and Hall words that the fixed-point code read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SameWords {
+    /// Hall capture.
+    pub capture: Capture,
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// Of the fixed-point code.
+    pub fixed: Merits,
+    /// Of the ideal model.
+    pub ideal: Merits,
 }
 
 /// The record of a measured window, whole electrical periods.

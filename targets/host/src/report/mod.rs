@@ -13,8 +13,8 @@ mod sections;
 mod window;
 
 pub use data::{
-    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SignalError,
-    SpeedMark, Stability, StabilityCheck, Variant, Verification,
+    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SameWords,
+    SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
 };
 pub use expected::{
     Band, DesignRow, Expected, ExpectedPoint, Judged, design_table, judge_limit, judge_mean,
@@ -61,6 +61,19 @@ pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
     fs::write(&beside, html).map_err(failed(&beside))?;
     fs::rename(&beside, &path).map_err(failed(&path))?;
     Ok(path)
+}
+
+/// Makes the folder of a page where it is missing, and sees whether files can be made in it: a
+/// reason to stop is better known before the work than after it.
+///
+/// # Errors
+/// A folder that cannot be made or written into.
+pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
+    let tried = fs::create_dir_all(dir).and_then(|()| tempfile::tempfile_in(dir));
+    tried.map(|_| ()).map_err(|source| ReportError::Write {
+        path: dir.to_owned(),
+        source,
+    })
 }
 
 /// The page as text.

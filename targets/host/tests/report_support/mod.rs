@@ -12,8 +12,8 @@ use hexagen_host::closed_loop::{
 };
 use hexagen_host::plant::{PlantParams, Truth};
 use hexagen_host::report::{
-    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SignalError,
-    SpeedMark, Stability, StabilityCheck, Variant, Verification, design_table,
+    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SameWords,
+    SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification, design_table,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -198,6 +198,13 @@ fn variant(label: &str, row: usize, options: Options, with_texts: bool) -> Varia
             expected: (model == Model::Fixed).then(|| design.timer.clone()),
         });
     }
+    let same_words = SPEEDS.iter().enumerate().map(|(k, &rpm)| SameWords {
+        capture: Capture::Timer,
+        rpm,
+        fixed: runs[0].points[k].merits,
+        ideal: runs[1].points[k].merits,
+    });
+    let same_words = same_words.collect();
     let (_, texts, mut stability) = generated(design.variant);
     if with_texts {
         for factor in [0.7, 0.9, 1.1, 1.4] {
@@ -222,6 +229,8 @@ fn variant(label: &str, row: usize, options: Options, with_texts: bool) -> Varia
         runs,
         records,
         torque_speed: curve,
+        reach: None,
+        same_words,
         signal_errors: vec![SignalError {
             signal: "duty".to_owned(),
             unit: "counts".to_owned(),

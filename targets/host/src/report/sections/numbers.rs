@@ -3,7 +3,7 @@
 use super::header::grouped;
 use super::{TorqueScale, capture_name, nothing, number, variant_swatch};
 use crate::closed_loop::Merits;
-use crate::report::{Model, ReportData, Run, RunPoint, Variant};
+use crate::report::{ReportData, SameWords, Variant};
 use hexagen_codegen::diagnostics::significant;
 use hexagen_codegen::interface::{FormatEntry, Rounding};
 use maud::{Markup, html};
@@ -89,7 +89,7 @@ impl Shown {
 }
 
 /// The merits in the error table's columns.
-fn shown_merits(scale: &TorqueScale) -> [Shown; 10] {
+fn shown_merits(scale: &TorqueScale) -> [Shown; 14] {
     let percent = |name, of| Shown {
         name,
         unit: "%",
@@ -119,9 +119,13 @@ fn shown_merits(scale: &TorqueScale) -> [Shown; 10] {
         percent("Torque 12th", |m| m.h12_pct),
         percent("Current 5th", |m| m.i5_pct),
         percent("Current 7th", |m| m.i7_pct),
+        percent("Current 11th", |m| m.i11_pct),
+        percent("Current 13th", |m| m.i13_pct),
         percent("THD", |m| m.thd_pct),
         plain("Tracking", "A", 3, |m| m.tracking_rms_a),
-        plain("Commutation", "\u{b5}s", 1, |m| m.commutation_us),
+        plain("Commu\u{ad}tation", "\u{b5}s", 1, |m| m.commutation_us),
+        plain("Switch\u{ad}ing", "kHz", 3, |m| 1e-3 * m.switching_hz),
+        percent("Satu\u{ad}rated", |m| m.saturated_pct),
     ]
 }
 
@@ -138,48 +142,30 @@ impl Pair {
     }
 }
 
-/// Fixed and ideal run of one variant, capture and speed.
+/// One comparison of a variant.
 struct Comparison<'a> {
     index: usize,
     variant: &'a Variant,
-    capture: &'static str,
-    fixed: &'a RunPoint,
-    ideal: &'a RunPoint,
+    at: &'a SameWords,
 }
 
 impl Comparison<'_> {
     fn pair(&self, shown: &Shown) -> Pair {
         Pair {
-            fixed: (shown.of)(&self.fixed.merits),
-            ideal: (shown.of)(&self.ideal.merits),
+            fixed: (shown.of)(&self.at.fixed),
+            ideal: (shown.of)(&self.at.ideal),
         }
     }
 }
 
 fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
-    let mut found = Vec::new();
-    for (index, variant) in data.variants.iter().enumerate() {
-        let of = |model: Model| variant.runs.iter().filter(move |run| run.model == model);
-        let pairs = of(Model::Fixed).filter_map(|fixed: &Run| {
-            let ideal = of(Model::Ideal).find(|ideal| ideal.capture == fixed.capture)?;
-            Some((fixed, ideal))
-        });
-        for (fixed, ideal) in pairs {
-            for point in &fixed.points {
-                let twin = ideal.points.iter().find(|twin| twin.rpm == point.rpm);
-                if let Some(twin) = twin {
-                    found.push(Comparison {
-                        index,
-                        variant,
-                        capture: capture_name(fixed.capture),
-                        fixed: point,
-                        ideal: twin,
-                    });
-                }
-            }
-        }
-    }
-    found
+    let variants = data.variants.iter().enumerate();
+    variants
+        .flat_map(|(index, variant)| {
+            let of_variant = variant.same_words.iter();
+            of_variant.map(move |at| Comparison { index, variant, at })
+        })
+        .collect()
 }
 
 /// Differences of merits, and of signals where they were measured.
@@ -221,7 +207,9 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
             } @else {
                 strong { (apart) " of " (grouped(total as u64)) " pairs differ (marked \u{2260}): " }
             }
-            "same start, same plant; alike means within 1 %, or within 0.05 points for percentages. Each cell shows fixed point above ideal float."
+            "same start, same plant, and the ideal model reads the ADC and Hall words that the fixed-point code read, so that arithmetic alone can make a difference. \
+             Alike means within 1 %, or within 0.05 points for percentages. Each cell shows fixed point above ideal float. \
+             (The result table above has the ideal model in a loop of its own, where a converter's last bit takes another course.)"
         }
         div.scroll {
             table.errors {
@@ -252,8 +240,8 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
 fn merit_row(comparison: &Comparison<'_>, merits: &[Shown]) -> Markup {
     html! {
         tr {
-            td { (comparison.capture) }
-            td.number { (number(comparison.fixed.rpm, 0)) }
+            td { (capture_name(comparison.at.capture)) }
+            td.number { (number(comparison.at.rpm, 0)) }
             @for shown in merits {
                 @let pair = comparison.pair(shown);
                 @let alike = pair.alike(shown.percentage);

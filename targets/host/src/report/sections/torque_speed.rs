@@ -16,16 +16,21 @@ fn limit_rpm(variant: &Variant) -> Option<f64> {
 }
 
 /// The limit as the legend has it, with the space before it.
-fn limit_text(variant: &Variant) -> String {
+fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
     let Some(limit) = variant.runs.first().and_then(|run| run.limit.as_ref()) else {
         return String::new();
     };
-    match (limit.outcome, limit.limit_rpm) {
-        (LimitOutcome::NeverHeld, _) => " (never held)".to_owned(),
-        (LimitOutcome::NotReached, Some(rpm)) => format!(" (above {} rpm)", number(rpm, 0)),
-        (_, Some(rpm)) => format!(" ({} rpm)", number(rpm, 0)),
-        (_, None) => String::new(),
-    }
+    let speed = match (limit.outcome, limit.limit_rpm) {
+        (LimitOutcome::NeverHeld, _) => "never held".to_owned(),
+        (LimitOutcome::NotReached, Some(rpm)) => format!("above {} rpm", number(rpm, 0)),
+        (_, Some(rpm)) => format!("{} rpm", number(rpm, 0)),
+        (_, None) => return String::new(),
+    };
+    let at = variant.reach.map_or_else(String::new, |torque| {
+        let torque = scale.text(torque, 0);
+        format!(" at {torque}\u{a0}{}, its most", scale.unit)
+    });
+    format!(" ({speed}{at})")
 }
 
 /// The plot and its legend.
@@ -65,10 +70,10 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
     })?;
     Ok(html! {
         (legend(variants.iter().map(|&(index, variant)| {
-            let text = format!("{}{}", variant.label, limit_text(variant));
+            let text = format!("{}{}", variant.label, limit_text(variant, &scale));
             (swatch(palette::variant(index), 3.0, dash(index)), text)
         })))
-        p.note { "Dots and the speeds in the legend mark where mean torque falls below 97 % of the demand. Curves end where the search for this limit ended." }
+        p.note { "Dots and the speeds in the legend mark where mean torque falls below 97 % of the demand (of the torque given in the legend, where a limited set-point cannot ask for more). Curves end where the search for this limit ended." }
         (plot)
     })
 }

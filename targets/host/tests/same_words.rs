@@ -1,0 +1,40 @@
+//! Fixed and ideal runs on the same ADC words: every merit of every row of the result table.
+
+use hexagen_host::commands::accuracy::{differences, side_by_side};
+use hexagen_host::engine::{EngineKind, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::report::design_table;
+use std::f64::consts::TAU;
+
+const TORQUE: f64 = 3.3;
+
+#[test]
+fn fixed_and_ideal_agree_in_every_merit_of_every_row() {
+    let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
+    let (mut compared, mut different) = (0, 0);
+    for row in design_table() {
+        for capture in ["timer", "sampled"] {
+            let capture = format!("hall_capture={capture}");
+            let variant = row.variant.replace("hall_capture=timer", &capture);
+            let drive = prepare(&motor, Some(&variant)).expect("generates");
+            assert_eq!(drive.engine_kind(), EngineKind::Compiled, "{variant}");
+            let plant = plant_of(&drive.spec);
+            let set_point = SetPoint {
+                current: TORQUE / drive.spec.torque_constant(),
+                v_bus: drive.spec.inverter.v_bus,
+            };
+            for rpm in [400.0, 1500.0] {
+                let run = run_of(&drive.spec, rpm * TAU / 60.0, TORQUE);
+                let both = side_by_side(&drive, &plant, &run, set_point).expect("runs");
+                let ideal = &both.ideal.merits;
+                for merit in differences(&both.fixed.merits, ideal, ideal) {
+                    assert!(merit.close, "{variant} at {rpm} rpm: {merit:?}");
+                    compared += 1;
+                }
+                different += usize::from(both.fixed.merits != both.ideal.merits);
+            }
+        }
+    }
+    assert_eq!(compared, 6 * 2 * 2 * 14);
+    // A run may round every compare value alike, but all of them only if the two were one model.
+    assert!(different > 12, "only {different} of 24 runs differ at all");
+}
