@@ -1,6 +1,9 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
-use crate::controllers::{ControllerSpec, pdcc};
+use crate::controllers::current_loop::{LinearLoop, LoopDesign};
+use crate::controllers::{
+    ControllerSpec, LoopOptions, StableRange, fcs_mpc, interface, pdcc, pi_pwm,
+};
 use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue};
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
@@ -21,18 +24,58 @@ pub struct Generated {
 /// # Errors
 /// Diagnostics of the design (stability) and of scaling (word too narrow), located by `origins`.
 pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
-    let ControllerSpec::Pdcc(options) = &spec.controller;
-    let design = pdcc::PdccDesign::new(spec, options);
-    let scaled = choose_scale(&spec.inverter, options.word, |scale| {
-        pdcc::lower(spec, options, &design, scale)
+    let common = spec.controller.common();
+    let design = LoopDesign::new(spec, common);
+    let scaled = choose_scale(&spec.inverter, common.word, |scale| {
+        match &spec.controller {
+            ControllerSpec::FcsMpc(options) => fcs_mpc::lower(spec, options, &design, scale),
+            ControllerSpec::Pdcc(options) => pdcc::lower(spec, options, &design, scale),
+            ControllerSpec::PiPwm(options) => pi_pwm::lower(spec, options, &design, scale),
+        }
     })
-    .map_err(|why| Diagnostics::from(unscalable(&why, options.word, origins)))?;
-    let mut errors = Collector::new();
+    .map_err(|why| Diagnostics::from(unscalable(&why, common.word, origins)))?;
     let rounded = design.rounded(&scaled);
-    let stable = check_stability(spec, options, &rounded, origins, &mut errors);
-    let interface = pdcc::interface(spec, &design, &scaled, stable);
+    let mut errors = Collector::new();
+    let law = match &spec.controller {
+        ControllerSpec::FcsMpc(_) => {
+            check_stride(spec, &design, origins, &mut errors);
+            fcs_mpc::law(spec, &design)
+        }
+        ControllerSpec::Pdcc(options) => {
+            let linear = pdcc::DeadbeatLoop {
+                options: &options.common,
+                design: &rounded,
+            };
+            pdcc::law(check_stability(spec, common, &linear, origins, &mut errors))
+        }
+        ControllerSpec::PiPwm(options) => {
+            let linear = pi_pwm::PiLoop {
+                options,
+                design: &rounded,
+                spec,
+            };
+            let stable = check_stability(spec, common, &linear, origins, &mut errors);
+            pi_pwm::law(spec, options, stable)
+        }
+    };
+    let interface = interface(spec, &design, &scaled, &law);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
+}
+
+/// A vector that lasts a whole period must not move the current by more than the rated current.
+fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let stride = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
+    if stride > motor.rated_current {
+        let at = origins.at("controller.kind");
+        errors.push(catalogue::vector_too_strong(
+            at,
+            stride,
+            motor.rated_current,
+            inverter.t_s * motor.rated_current / stride,
+        ));
+    }
 }
 
 fn unscalable(why: &Unscalable, word: u32, origins: &Origins) -> Diagnostic {
@@ -50,16 +93,13 @@ fn unscalable(why: &Unscalable, word: u32, origins: &Origins) -> Diagnostic {
 
 fn check_stability(
     spec: &Spec,
-    options: &pdcc::PdccSpec,
-    design: &pdcc::PdccDesign,
+    options: &LoopOptions,
+    linear: &impl LinearLoop,
     origins: &Origins,
     errors: &mut Collector,
-) -> pdcc::StableRange {
-    let radius = design.spectral_radius(spec, options, 1.0, 1.0);
-    let stable = pdcc::StableRange {
-        inductance: design.stable_inductance(spec, options),
-        resistance: design.stable_resistance(spec, options),
-    };
+) -> StableRange {
+    let radius = linear.spectral_radius(spec, 1.0, 1.0);
+    let stable = linear.stable_range(spec);
     if radius >= 1.0 {
         let path = if options.emf_filter < 1.0 {
             "controller.emf_filter"
@@ -136,6 +176,45 @@ hall_timer_clock = "1 MHz"
 [controller]
 kind = "pdcc"
 "#;
+
+    #[test]
+    fn every_controller_generates_for_the_paper_motor() {
+        let common = ["emf=estimated", "emf=model", "emf=estimated,emf_filter=0.7"];
+        let rest = [
+            "delay=1",
+            "delay=0",
+            "delay=1,advance=1.5",
+            "delay=1,word=16",
+            "delay=1,reference=proportional",
+        ];
+        let fcs = ["table2", "three_phase", "all"]
+            .into_iter()
+            .flat_map(|set| {
+                ["physical", "nominal"].map(|off| format!("fcs-mpc:candidates={set},off_leg={off}"))
+            });
+        let pi = ["keep_angle", "nearest", "torque_priority"]
+            .into_iter()
+            .map(|rule| format!("pi-pwm:saturation={rule}"))
+            .chain(["pi-pwm:feed_forward=off".to_owned()]);
+        let mut generated = 0;
+        for kind in fcs.chain(pi) {
+            for emf in common {
+                for rest in rest {
+                    let variant = format!("{kind},{emf},{rest}");
+                    let mut ast = parse_toml(MOTOR, "motor.toml").expect("the motor parses");
+                    apply_variant(&mut ast, &variant).expect("the variant parses");
+                    let Ok((spec, origins)) = check(&ast) else {
+                        continue;
+                    };
+                    match generate(&spec, &origins) {
+                        Ok(_) => generated += 1,
+                        Err(errors) => panic!("{variant}: {errors}"),
+                    }
+                }
+            }
+        }
+        assert!(generated > 100, "{generated}");
+    }
 
     #[test]
     fn every_variant_of_the_paper_motor_generates_or_is_refused() {

@@ -20,7 +20,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
         },
-        controller: fcs-mpc { horizon: 1 },
+        controller: phcc { band: 0.5 A },
     }
 }
 

@@ -20,7 +20,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
         },
-        controller: pdcc { horizon: 1 },
+        controller: pdcc { candidates: all },
     }
 }
 

@@ -1,12 +1,83 @@
-//! The controllers: one folder each, with its options, design and lowering.
+//! The controllers: one folder each, with its options and lowering, around the step that all share.
 //!
-//! Adding a controller adds a folder here and a variant to [`ControllerSpec`].
+//! Adding a controller adds a folder here, a variant to [`ControllerSpec`] and a row to `KINDS`.
 
+pub mod current_loop;
+pub mod fcs_mpc;
+mod interface;
 pub mod pdcc;
+pub mod pi_pwm;
+
+pub use current_loop::{EmfSource, LoopOptions, Reference, StableRange};
+pub use interface::{Law, interface};
+
+use crate::spec::Spec;
+use current_loop::{LinearLoop, LoopDesign};
+
+/// The ranges of true over stated R and L within which a linear loop is stable, with exact coefficients;
+/// none for a controller that is no linear loop.
+pub fn stable_range(spec: &Spec) -> Option<StableRange> {
+    let design = &LoopDesign::new(spec, spec.controller.common());
+    match &spec.controller {
+        ControllerSpec::FcsMpc(_) => None,
+        ControllerSpec::Pdcc(pdcc) => {
+            let options = &pdcc.common;
+            Some(pdcc::DeadbeatLoop { options, design }.stable_range(spec))
+        }
+        ControllerSpec::PiPwm(options) => Some(
+            pi_pwm::PiLoop {
+                options,
+                design,
+                spec,
+            }
+            .stable_range(spec),
+        ),
+    }
+}
+
+/// The kinds of controllers, with the options that not all of them take.
+pub(crate) const KINDS: [(&str, &[&str]); 3] = [
+    ("fcs-mpc", &["candidates", "off_leg"]),
+    ("pdcc", &["modulation", "saturation"]),
+    (
+        "pi-pwm",
+        &[
+            "bandwidth",
+            "feed_forward",
+            "integral_time",
+            "modulation",
+            "saturation",
+        ],
+    ),
+];
 
 /// A controller and its options.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControllerSpec {
+    /// Finite-control-set model predictive control.
+    FcsMpc(fcs_mpc::FcsMpcSpec),
     /// Predictive deadbeat current control.
     Pdcc(pdcc::PdccSpec),
+    /// PI control with pulse-width modulation.
+    PiPwm(pi_pwm::PiPwmSpec),
+}
+
+impl ControllerSpec {
+    /// The options that all controllers share.
+    pub fn common(&self) -> &LoopOptions {
+        match self {
+            Self::FcsMpc(options) => &options.common,
+            Self::Pdcc(options) => &options.common,
+            Self::PiPwm(options) => &options.common,
+        }
+    }
+
+    /// The name that the specification calls it by.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::FcsMpc(_) => "fcs-mpc",
+            Self::Pdcc(_) => "pdcc",
+            Self::PiPwm(_) => "pi-pwm",
+        }
+    }
 }

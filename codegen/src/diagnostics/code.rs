@@ -114,6 +114,8 @@ codes! {
     OptionWithoutEffect = 404,
     /// A controller variant on the command line that cannot be read.
     Variant = 405,
+    /// One voltage vector moves the current by more than the rated current.
+    VectorTooStrong = 406,
     /// The inductance may lie outside the loop's stable range.
     InductanceOutsideStableRange = 501,
     /// The resistance may lie outside the loop's stable range.

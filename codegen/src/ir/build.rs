@@ -314,6 +314,12 @@ impl<'p> FunctionBuilder<'p> {
         }
     }
 
+    /// A small multiple, `factor` times `a`.
+    pub fn mul_by(&mut self, factor: i32, a: Value) -> Value {
+        let factor = self.literal(factor);
+        self.push("", Op::Product(factor, a))
+    }
+
     /// floor(a b / 2^shift)
     pub fn mul_floor(&mut self, a: Value, b: Value, shift: u32) -> Value {
         self.push("", Op::MulFloor { a, b, shift })

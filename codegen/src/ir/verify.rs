@@ -153,14 +153,13 @@ impl FunctionCheck<'_> {
     }
 
     fn place(&self, value: usize) -> String {
-        match self
-            .function
-            .nodes
-            .get(value)
-            .map(|node| node.name.as_str())
-        {
-            None | Some("") => format!("{}: %{value}", self.function.name),
-            Some(name) => format!("{}: {name}", self.function.name),
+        let function = &self.function.name;
+        match self.function.nodes.get(value) {
+            None => format!("{function}: %{value}"),
+            Some(node) if node.name.is_empty() => {
+                format!("{function}: %{value} ({:?})", node.op)
+            }
+            Some(node) => format!("{function}: {}", node.name),
         }
     }
 

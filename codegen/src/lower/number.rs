@@ -89,6 +89,16 @@ impl Lowering<'_> {
         self.b.mul(constant, signal, coefficient.shift)
     }
 
+    /// `mul(coefficient, word)` for a word that is known beforehand.
+    pub fn rounded_product(&self, coefficient: Coefficient, word: i64) -> i64 {
+        let raw = self.b.program.constants[coefficient.id.index()].raw;
+        let product = i128::from(raw) * i128::from(word);
+        match coefficient.shift {
+            0 => product as i64,
+            shift => ((product + (1 << (shift - 1))) >> shift) as i64,
+        }
+    }
+
     /// A named integer constant.
     pub fn number(&mut self, name: &str, raw: i64, doc: &str) -> Value {
         let id = self.b.program.constant(name, raw as i32, &[doc.to_owned()]);

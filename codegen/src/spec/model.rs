@@ -3,8 +3,7 @@
 //! Later stages read only these types; how a value was written, in which unit and where, ends at
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
-use crate::controllers::ControllerSpec;
-use crate::controllers::pdcc::Reference;
+use crate::controllers::{ControllerSpec, Reference};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// One drive: what to call it, and its motor, inverter and controller.
@@ -24,10 +23,9 @@ impl Spec {
     /// k_t: torque in Nm per ampere of set-point, from the EMF's and the current reference's
     /// shapes ([`EmfShape::quasi_square_factor`], [`EmfShape::proportional_factor`]).
     pub fn torque_constant(&self) -> f64 {
-        let ControllerSpec::Pdcc(controller) = &self.controller;
         let shape = self.motor.emf_shape;
         self.motor.emf_constant
-            * match controller.reference {
+            * match self.controller.common().reference {
                 Reference::QuasiSquare => shape.quasi_square_factor(),
                 Reference::Proportional => shape.proportional_factor(),
             }

@@ -2,9 +2,11 @@
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
 use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
-use crate::controllers::ControllerSpec;
-use crate::controllers::pdcc::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
+use crate::controllers::fcs_mpc::{Candidates, OffLegModel};
+use crate::controllers::pdcc::Modulation;
+use crate::controllers::{ControllerSpec, EmfSource, Reference};
 use crate::design::Discretisation;
+use crate::lower::LimitRule;
 use std::fmt::{Debug, Display};
 
 impl Spec {
@@ -14,8 +16,7 @@ impl Spec {
         text.word("name", &self.name);
         self.write_motor(&mut text, &self.motor);
         self.write_inverter(&mut text, &self.inverter);
-        let ControllerSpec::Pdcc(controller) = &self.controller;
-        write_pdcc(&mut text, controller);
+        write_controller(&mut text, &self.controller);
         text.0
     }
 
@@ -78,51 +79,89 @@ impl Spec {
     }
 }
 
-fn write_pdcc(text: &mut Text, controller: &PdccSpec) {
+fn write_controller(text: &mut Text, controller: &ControllerSpec) {
     text.section("controller");
-    text.word("kind", "pdcc");
-    text.word(
-        "modulation",
-        match controller.modulation {
-            Modulation::ThreePhase => "three_phase",
-            Modulation::Pair => "pair",
-        },
-    );
-    text.word(
-        "saturation",
-        match controller.saturation {
-            Saturation::KeepAngle => "keep_angle",
-            Saturation::Nearest => "nearest",
-            Saturation::TorquePriority => "torque_priority",
-        },
-    );
+    text.word("kind", controller.kind());
+    match controller {
+        ControllerSpec::FcsMpc(options) => {
+            text.word(
+                "candidates",
+                match options.candidates {
+                    Candidates::Table2 => "table2",
+                    Candidates::ThreePhase => "three_phase",
+                    Candidates::All => "all",
+                },
+            );
+            text.word(
+                "off_leg",
+                match options.off_leg {
+                    OffLegModel::Physical => "physical",
+                    OffLegModel::Nominal => "nominal",
+                },
+            );
+        }
+        ControllerSpec::Pdcc(options) => {
+            text.word(
+                "modulation",
+                match options.modulation {
+                    Modulation::ThreePhase => "three_phase",
+                    Modulation::Pair => "pair",
+                },
+            );
+            text.word("saturation", saturation(options.saturation));
+        }
+        ControllerSpec::PiPwm(options) => {
+            text.number("bandwidth", options.bandwidth);
+            text.number("integral_time", options.integral_time);
+            text.word(
+                "feed_forward",
+                if options.feed_forward { "on" } else { "off" },
+            );
+            text.word("saturation", saturation(options.saturation));
+        }
+    }
+    write_common(text, controller);
+}
+
+fn saturation(rule: LimitRule) -> &'static str {
+    match rule {
+        LimitRule::KeepAngle => "keep_angle",
+        LimitRule::Nearest => "nearest",
+        LimitRule::TorquePriority => "torque_priority",
+    }
+}
+
+fn write_common(text: &mut Text, controller: &ControllerSpec) {
+    let common = controller.common();
     text.word(
         "emf",
-        match controller.emf {
+        match common.emf {
             EmfSource::Estimated => "estimated",
             EmfSource::Model => "model",
         },
     );
-    text.number("emf_filter", controller.emf_filter);
+    text.number("emf_filter", common.emf_filter);
     text.word(
         "reference",
-        match controller.reference {
+        match common.reference {
             Reference::QuasiSquare => "quasi_square",
             Reference::Proportional => "proportional",
         },
     );
-    text.number("advance", controller.advance);
-    text.number("delay", controller.delay);
+    text.number("advance", common.advance);
+    text.number("delay", common.delay);
     text.word(
         "discretisation",
-        match controller.discretisation {
+        match common.discretisation {
             Discretisation::Exact => "exact",
             Discretisation::Euler => "euler",
         },
     );
-    text.number("word", controller.word);
-    text.number("commutation_threshold", controller.commutation_threshold);
-    text.number("commutation_timeout", controller.commutation_timeout);
+    text.number("word", common.word);
+    if !matches!(controller, ControllerSpec::PiPwm(_)) {
+        text.number("commutation_threshold", common.commutation_threshold);
+        text.number("commutation_timeout", common.commutation_timeout);
+    }
 }
 
 #[derive(Default)]
@@ -150,9 +189,10 @@ impl Text {
 
 #[cfg(test)]
 mod tests {
-    use crate::controllers::ControllerSpec;
-    use crate::controllers::pdcc::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
+    use crate::controllers::pdcc::{Modulation, PdccSpec};
+    use crate::controllers::{ControllerSpec, EmfSource, LoopOptions, Reference};
     use crate::design::Discretisation;
+    use crate::lower::LimitRule;
     use crate::spec::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 
     fn hub_drive() -> Spec {
@@ -195,16 +235,18 @@ mod tests {
             },
             controller: ControllerSpec::Pdcc(PdccSpec {
                 modulation: Modulation::ThreePhase,
-                saturation: Saturation::TorquePriority,
-                emf: EmfSource::Estimated,
-                emf_filter: 1.0,
-                reference: Reference::QuasiSquare,
-                advance: 0.0,
-                delay: 1,
-                discretisation: Discretisation::Exact,
-                word: 32,
-                commutation_threshold: 0.5,
-                commutation_timeout: 8,
+                saturation: LimitRule::TorquePriority,
+                common: LoopOptions {
+                    emf: EmfSource::Estimated,
+                    emf_filter: 1.0,
+                    reference: Reference::QuasiSquare,
+                    advance: 0.0,
+                    delay: 1,
+                    discretisation: Discretisation::Exact,
+                    word: 32,
+                    commutation_threshold: 0.5,
+                    commutation_timeout: 8,
+                },
             }),
         }
     }

@@ -4,7 +4,7 @@
 //! crate is made for. The reference table for users is the documentation of [`crate::spec`].
 
 use super::units::Dimension as D;
-use crate::controllers::pdcc::OPTIONS;
+use crate::controllers::current_loop::OPTIONS;
 
 /// A field: its name, what it takes, and an example for messages.
 #[derive(Clone, Copy, Debug)]

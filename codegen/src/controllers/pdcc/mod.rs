@@ -1,13 +1,22 @@
 #![doc = include_str!("semantics.md")]
 
-mod design;
-mod interface;
 mod lower;
 mod options;
 mod spec;
+mod stability;
 
-pub use design::PdccDesign;
-pub use interface::{StableRange, interface};
 pub use lower::lower;
-pub(crate) use options::{OPTIONS, Surroundings, check_options};
-pub use spec::{EmfSource, Modulation, PdccSpec, Reference, Saturation};
+pub(crate) use options::check_options;
+pub use spec::{Modulation, PdccSpec};
+pub use stability::DeadbeatLoop;
+
+use crate::controllers::{Law, StableRange};
+
+/// What the documentation of the type says of the method.
+pub fn law(stable: StableRange) -> Law {
+    Law {
+        title: "Predictive deadbeat current controller",
+        notes: vec![],
+        stable: Some(stable),
+    }
+}

@@ -1,7 +1,7 @@
 //! Texts about the choice of controller and its options.
 
 use super::structure::did_you_mean;
-use crate::diagnostics::{Code, Diagnostic, Location, list};
+use crate::diagnostics::{Code, Diagnostic, Location, engineering, list};
 
 /// A controller that this version does not have; `planned`: it is a known method.
 pub fn controller_unavailable(
@@ -60,6 +60,33 @@ pub fn option_of_other_controller(
         format!(
             "`{controller}` takes no option `{option}`, only {} does; remove it",
             list(takers, "or")
+        ),
+    )
+}
+
+/// An option that this version does not have.
+pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OptionUnavailable,
+        at,
+        format!("`{option}` is not available in this version; remove it"),
+    )
+}
+
+/// One vector moves the current by `stride` ampere in a period; `t_s`: the period at which it would be
+/// the `rated` current.
+pub fn vector_too_strong(at: &Location, stride: f64, rated: f64, t_s: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::VectorTooStrong,
+        at,
+        format!(
+            "`kind`: fcs-mpc applies one vector for a whole period, which moves the current of this motor by {}, more \
+             than its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, whose \
+             modulator divides the period",
+            engineering(stride, "A"),
+            engineering(rated, "A"),
+            engineering(t_s, "s"),
+            engineering(1.0 / t_s, "Hz"),
         ),
     )
 }

@@ -3,30 +3,24 @@
 use super::inverter::Inverter;
 use super::motor::Motor;
 use super::reader::Reader;
-use crate::controllers::ControllerSpec;
-use crate::controllers::pdcc;
+use crate::controllers::current_loop::{OPTIONS, Surroundings};
+use crate::controllers::{ControllerSpec, KINDS, fcs_mpc, pdcc, pi_pwm};
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::HallCapture;
 use crate::spec::ast::{Field, Section, Value};
 
-const AVAILABLE: [&str; 1] = ["pdcc"];
 /// Known methods that this version does not have.
-const PLANNED: [&str; 3] = ["fcs-mpc", "phcc", "pi-pwm"];
+const PLANNED: [&str; 1] = ["phcc"];
 
-/// Options of the controllers that this version does not have.
-const OTHER_OPTIONS: [(&str, &[&str]); 12] = [
-    ("candidates", &["fcs-mpc"]),
-    ("off_leg", &["fcs-mpc", "phcc"]),
-    ("zero", &["pi-pwm"]),
-    ("horizon", &["fcs-mpc"]),
-    ("modulated", &["fcs-mpc"]),
-    ("table", &["phcc"]),
-    ("band", &["phcc"]),
-    ("bandwidth", &["pi-pwm"]),
-    ("integral_time", &["pi-pwm"]),
-    ("feed_forward", &["pi-pwm"]),
-    ("six_step", &["pi-pwm"]),
-    ("integral", &["pi-pwm"]),
+/// Options that only planned methods take, or that are planned for the ones named.
+const PLANNED_OPTIONS: [&str; 7] = [
+    "horizon",
+    "modulated",
+    "zero",
+    "table",
+    "band",
+    "six_step",
+    "integral",
 ];
 
 /// The controller with its options, and how Hall edges reach it.
@@ -37,29 +31,31 @@ pub(super) fn read(
     inverter: &Inverter,
     errors: &mut Collector,
 ) -> (Option<ControllerSpec>, Option<HallCapture>) {
-    let reader = Reader::new("controller", section, pdcc::OPTIONS, fallback);
+    let reader = Reader::new("controller", section, OPTIONS, fallback);
     if section.location.is_some() {
         reader.require(errors, &["kind"]);
     }
-    if let Some(field) = reader.field("kind")
-        && !is_available(field, errors)
-    {
-        // The options are those of another controller: nothing can be said about them.
-        return (None, None);
-    }
+    let kind = match reader.field("kind") {
+        None => "pdcc",
+        Some(field) => match read_kind(field, errors) {
+            Some(kind) => kind,
+            // The options are those of another controller: nothing can be said about them.
+            None => return (None, None),
+        },
+    };
+    check_takers(section, kind, errors);
     reader.check_fields(errors, |field, errors| {
-        let takers = OTHER_OPTIONS.iter().find(|(name, _)| *name == field.name);
-        if let Some((name, takers)) = takers {
+        let planned = PLANNED_OPTIONS.contains(&field.name.as_str());
+        if planned {
             let at = &field.name_location;
-            errors.push(catalogue::option_of_other_controller(
-                at, name, "pdcc", takers,
-            ));
+            errors.push(catalogue::option_planned(at, &field.name));
         }
-        takers.is_some()
+        planned
     });
-    let surroundings = pdcc::Surroundings {
+    let surroundings = Surroundings {
         t_s: inverter.t_s,
         v_bus: inverter.v_bus.as_ref().map(|given| given.si),
+        resistance: motor.resistance,
         inductance: motor.inductance,
         rated_current: motor
             .rated_current
@@ -67,31 +63,62 @@ pub(super) fn read(
             .map(|given| (given.si, given.part.clone())),
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
-    let options = pdcc::check_options(&reader, &surroundings, errors);
-    (
-        options.map(ControllerSpec::Pdcc),
-        read_capture(&reader, inverter, errors),
-    )
+    let controller = match kind {
+        "fcs-mpc" => {
+            fcs_mpc::check_options(&reader, &surroundings, errors).map(ControllerSpec::FcsMpc)
+        }
+        "pi-pwm" => {
+            pi_pwm::check_options(&reader, &surroundings, errors).map(ControllerSpec::PiPwm)
+        }
+        _ => pdcc::check_options(&reader, &surroundings, errors).map(ControllerSpec::Pdcc),
+    };
+    (controller, read_capture(&reader, inverter, errors))
 }
 
-fn is_available(field: &Field, errors: &mut Collector) -> bool {
+/// Options of another kind than the chosen one.
+fn check_takers(section: &Section, kind: &str, errors: &mut Collector) {
+    for field in &section.fields {
+        let takers: Vec<&str> = KINDS
+            .iter()
+            .filter(|(_, options)| options.contains(&field.name.as_str()))
+            .map(|(kind, _)| *kind)
+            .collect();
+        if !takers.is_empty() && !takers.contains(&kind) {
+            let at = &field.name_location;
+            errors.push(catalogue::option_of_other_controller(
+                at,
+                &field.name,
+                kind,
+                &takers,
+            ));
+        }
+    }
+}
+
+/// The name of an available controller, in the spelling of `KINDS`.
+fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
     let given = match &field.value {
         Value::Malformed(error) => {
             errors.push((**error).clone());
-            return false;
+            return None;
         }
         value => value.to_string(),
     };
-    let available = AVAILABLE.contains(&given.as_str());
-    if !available {
-        // In the macro `fcs_mpc` is as natural as `fcs-mpc`.
-        let planned = PLANNED.contains(&given.replace('_', "-").as_str());
+    // In the macro `fcs_mpc` is as natural as `fcs-mpc`.
+    let name = given.replace('_', "-");
+    let known = KINDS
+        .iter()
+        .map(|(kind, _)| *kind)
+        .find(|kind| *kind == name);
+    if known.is_none() {
+        let available = KINDS.map(|(kind, _)| kind);
+        let planned = PLANNED.contains(&name.as_str());
         let at = &field.location;
         errors.push(catalogue::controller_unavailable(
-            at, &given, planned, &AVAILABLE,
+            at, &given, planned, &available,
         ));
     }
-    available
+    known
 }
 
 /// Sampled edges by default; a capture timer needs a clock that divides the control period.

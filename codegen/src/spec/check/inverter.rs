@@ -4,7 +4,7 @@ use super::motor::Motor;
 use super::reader::{Given, Reader};
 use super::relations;
 use crate::controllers::ControllerSpec;
-use crate::controllers::pdcc::Reference;
+use crate::controllers::Reference;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, engineering, rpm};
 use crate::spec::units::Dimension;
@@ -369,8 +369,8 @@ fn finish_currents(
     let max_part = reader.part("max_current", || engineering(max, "A"));
     let peak = max
         * match (controller, motor.emf_shape) {
-            (Some(ControllerSpec::Pdcc(options)), Some(shape))
-                if options.reference == Reference::Proportional =>
+            (Some(controller), Some(shape))
+                if controller.common().reference == Reference::Proportional =>
             {
                 shape.proportional_peak()
             }

@@ -72,6 +72,7 @@ fn other_stages() -> BTreeSet<Code> {
         Code::InvalidName,
         Code::Variant,
         // Design, scaling and verification.
+        Code::VectorTooStrong,
         Code::InductanceOutsideStableRange,
         Code::ResistanceOutsideStableRange,
         Code::Unstable,

@@ -140,9 +140,9 @@ fn a_motor_file_is_overridden_field_by_field() {
         (1e-4, 3600)
     );
     assert_eq!(spec.inverter.adc_gain, 0.01);
-    let crate::controllers::ControllerSpec::Pdcc(options) = &spec.controller;
+    let options = spec.controller.common();
     assert_eq!((options.advance, options.word), (1.0, 32));
-    assert_eq!(options.emf, crate::controllers::pdcc::EmfSource::Model);
+    assert_eq!(options.emf, crate::controllers::EmfSource::Model);
     assert_eq!(
         origins.at("motor.resistance").to_string(),
         "motors/hub.toml:5:14"
@@ -172,13 +172,13 @@ fn a_variant_overrides_options_of_the_same_controller() {
     )
     .expect("parses");
     let (spec, _) = check(&ast).expect("passes");
-    let crate::controllers::ControllerSpec::Pdcc(options) = spec.controller;
+    let crate::controllers::ControllerSpec::Pdcc(pdcc) = spec.controller else {
+        panic!("a deadbeat controller");
+    };
+    let options = pdcc.common;
     assert_eq!((options.advance, options.commutation_threshold), (1.5, 0.4));
-    assert_eq!(
-        options.modulation,
-        crate::controllers::pdcc::Modulation::Pair
-    );
-    assert_eq!(options.emf, crate::controllers::pdcc::EmfSource::Model);
+    assert_eq!(pdcc.modulation, crate::controllers::pdcc::Modulation::Pair);
+    assert_eq!(options.emf, crate::controllers::EmfSource::Model);
 }
 
 #[test]

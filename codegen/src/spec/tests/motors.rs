@@ -91,7 +91,7 @@ fn the_paper_motor_is_the_paper_motor() {
         (38.0, 22.0)
     );
     assert_eq!(spec.inverter.adc_gain, 0.019_531_25);
-    let crate::controllers::ControllerSpec::Pdcc(options) = spec.controller;
+    let options = spec.controller.common();
     assert_eq!(
         (options.commutation_threshold, options.commutation_timeout),
         (0.5, 8)

@@ -12,8 +12,7 @@ use crate::report::{
     Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SameWords,
     SignalError, Stability, StabilityCheck, Variant,
 };
-use hexagen_codegen::controllers::ControllerSpec;
-use hexagen_codegen::controllers::pdcc::{EmfSource, PdccDesign, StableRange};
+use hexagen_codegen::controllers::{EmfSource, StableRange, stable_range};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -257,14 +256,12 @@ impl Conditions {
 
     /// The stable range and runs on both sides of its edges, for loops that have one.
     fn stability(&self, drive: &Prepared) -> Result<Option<Stability>, Failure> {
-        let ControllerSpec::Pdcc(options) = &drive.spec.controller;
-        if options.emf != EmfSource::Estimated {
+        let spec = &drive.spec;
+        if spec.controller.common().emf != EmfSource::Estimated {
             return Ok(None);
         }
-        let design = PdccDesign::new(&drive.spec, options);
-        let range = StableRange {
-            inductance: design.stable_inductance(&drive.spec, options),
-            resistance: design.stable_resistance(&drive.spec, options),
+        let Some(range) = stable_range(spec) else {
+            return Ok(None);
         };
         let runs = OFF_INDUCTANCE
             .map(|factor| (Parameter::Inductance, factor))

@@ -2,7 +2,6 @@
 
 use crate::closed_loop::{Delay, RunOptions};
 use crate::plant::{AdcChannel, EmfShape, PlantParams};
-use hexagen_codegen::controllers::ControllerSpec;
 use hexagen_codegen::spec::{self, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
@@ -38,7 +37,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
 /// The standard measurement of a drive at a mechanical speed in rad/s and a torque in newton
 /// metres: judged against the quasi-square reference that gives this torque.
 pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
-    let ControllerSpec::Pdcc(controller) = &spec.controller;
+    let controller = spec.controller.common();
     let per_ampere = spec.motor.emf_constant * spec.motor.emf_shape.quasi_square_factor();
     RunOptions {
         delay: if controller.delay == 0 {

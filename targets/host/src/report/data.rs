@@ -6,7 +6,7 @@
 
 use super::expected::Expected;
 use crate::closed_loop::{Merits, SpeedLimit, Trace};
-use hexagen_codegen::controllers::pdcc::StableRange;
+use hexagen_codegen::controllers::StableRange;
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 

@@ -1,6 +1,6 @@
-//! What users see of an emitted deadbeat controller: documentation, tables and associated constants.
+//! What users see of an emitted controller: documentation, tables and associated constants.
 
-use super::PdccDesign;
+use super::current_loop::{LoopDesign, StableRange};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, rpm};
 use crate::interface::{Interface, PublicConstant, PublicValue};
@@ -8,30 +8,27 @@ use crate::scaling::Scaled;
 use crate::spec::{BusSource, HallCapture, Spec};
 use nalgebra::Vector2;
 
-/// Stable ranges of true over stated inductance and resistance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StableRange {
-    /// Of the inductance.
-    pub inductance: (f64, f64),
-    /// Of the resistance.
-    pub resistance: (f64, f64),
+/// What is particular to a controller's law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// Name of the method, for titles: "Predictive deadbeat current controller".
+    pub title: &'static str,
+    /// How it is tuned, or what its choice rests on: Markdown lines.
+    pub notes: Vec<String>,
+    /// Range of R and L in which a linear loop is stable.
+    pub stable: Option<StableRange>,
 }
 
 /// Builds the interface of a scaled controller.
-pub fn interface(
-    spec: &Spec,
-    design: &PdccDesign,
-    scaled: &Scaled,
-    stable: StableRange,
-) -> Interface {
+pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Interface {
     let inverter = &spec.inverter;
     Interface {
         type_name: spec.name.clone(),
-        doc: documentation(spec, design, stable),
+        doc: documentation(spec, design, law),
         header: header(spec, design, scaled),
         spec_toml: spec.to_toml(),
         formats: scaled.formats.clone(),
-        constants: constants(spec, design, stable),
+        constants: constants(spec, design, law.stable),
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
         calibration_samples: 1 << inverter.calibration_log2,
@@ -52,15 +49,15 @@ fn ratios((low, high): (f64, f64)) -> String {
     format!("{} to {}", bound(low), bound(high))
 }
 
-fn documentation(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<String> {
+fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let name = if motor.description.is_empty() {
         "BLDC motor".to_owned()
     } else {
         motor.description.clone()
     };
-    vec![
-        format!("Predictive deadbeat current controller: {name}."),
+    let mut doc = vec![
+        format!("{}: {name}.", law.title),
         String::new(),
         format!(
             "Motor: {} pole pairs, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
@@ -81,18 +78,28 @@ fn documentation(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<S
             engineering(inverter.trip_current, "A"),
         ),
         format!("Variant: {}.", variant(spec)),
-        String::new(),
-        "# Stability".to_owned(),
-        String::new(),
-        format!(
-            "The current loop is stable while the true inductance is {} of the stated one and the true resistance",
-            ratios(stable.inductance)
-        ),
-        format!(
-            "is {} of the stated one (closed-loop poles with the emitted coefficients, one parameter off at a time;",
-            ratios(stable.resistance)
-        ),
-        "searched from 10 % to 1000 %).".to_owned(),
+    ];
+    if !law.notes.is_empty() {
+        doc.extend([String::new(), "# Method".to_owned(), String::new()]);
+        doc.extend(law.notes.iter().cloned());
+    }
+    if let Some(stable) = law.stable {
+        doc.extend([
+            String::new(),
+            "# Stability".to_owned(),
+            String::new(),
+            format!(
+                "The current loop is stable while the true inductance is {} of the stated one and the true resistance",
+                ratios(stable.inductance)
+            ),
+            format!(
+                "is {} of the stated one (closed-loop poles with the emitted coefficients, one parameter off at a time;",
+                ratios(stable.resistance)
+            ),
+            "searched from 10 % to 1000 %).".to_owned(),
+        ]);
+    }
+    doc.extend([
         String::new(),
         "# Safe states".to_owned(),
         String::new(),
@@ -105,7 +112,8 @@ fn documentation(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<S
         format!("`calibrate()` averages {} samples with all legs off, at rest; `precharge()` holds all lower switches on for", 1 << inverter.calibration_log2),
         format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
         format!("One volt over one period changes a phase current by {}.", engineering(design.plant.gain, "A")),
-    ]
+    ]);
+    doc
 }
 
 /// The options as the normalised specification writes them.
@@ -120,7 +128,7 @@ fn variant(spec: &Spec) -> String {
     pairs.join(", ")
 }
 
-fn header(spec: &Spec, design: &PdccDesign, scaled: &Scaled) -> Vec<String> {
+fn header(spec: &Spec, design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
     let scale = scaled.scale;
     let derived = [
         ("pole a", format!("{:.9}", design.plant.pole)),
@@ -205,7 +213,7 @@ fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> Public
     }
 }
 
-fn constants(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<PublicConstant> {
+fn constants(spec: &Spec, design: &LoopDesign, stable: Option<StableRange>) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let v_bus = inverter.v_bus;
     let three: Vec<Vector2<f64>> = THREE_PHASE
@@ -222,7 +230,7 @@ fn constants(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<Publi
         .map(|c| c * period)
         .collect();
     let text = |low_high: (f64, f64)| PublicValue::Text(ratios(low_high));
-    vec![
+    let mut list = vec![
         integer("POLE_PAIRS", "u32", i64::from(motor.pole_pairs), "Pole pairs."),
         integer("T_S_NS", "u32", (inverter.t_s * 1e9).round() as i64, "Control period, ns."),
         integer("TIMER_PERIOD", "u16", i64::from(inverter.timer_period), "Compare value of 100 % duty: top of the centre-aligned timer."),
@@ -253,15 +261,24 @@ fn constants(spec: &Spec, design: &PdccDesign, stable: StableRange) -> Vec<Publi
                 "The step reaches the same times by min/max injection, which needs none of them.".to_owned(),
             ],
         ),
-        PublicConstant {
-            name: "STABLE_INDUCTANCE".to_owned(),
-            value: text(stable.inductance),
-            doc: vec!["True over stated inductance within which the loop is stable.".to_owned()],
-        },
-        PublicConstant {
-            name: "STABLE_RESISTANCE".to_owned(),
-            value: text(stable.resistance),
-            doc: vec!["True over stated resistance within which the loop is stable.".to_owned()],
-        },
-    ]
+    ];
+    if let Some(stable) = stable {
+        list.extend([
+            PublicConstant {
+                name: "STABLE_INDUCTANCE".to_owned(),
+                value: text(stable.inductance),
+                doc: vec![
+                    "True over stated inductance within which the loop is stable.".to_owned(),
+                ],
+            },
+            PublicConstant {
+                name: "STABLE_RESISTANCE".to_owned(),
+                value: text(stable.resistance),
+                doc: vec![
+                    "True over stated resistance within which the loop is stable.".to_owned(),
+                ],
+            },
+        ]);
+    }
+    list
 }

@@ -1,0 +1,78 @@
+//! Numbers of the predictive laws in SI units.
+
+use super::LoopOptions;
+use crate::design::DiscretePlant;
+use crate::scaling::Scaled;
+use crate::spec::Spec;
+
+/// Coefficients of prediction, EMF estimate and deadbeat voltage (semantics page of predictive deadbeat), SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopDesign {
+    /// Discrete plant.
+    pub plant: DiscretePlant,
+    /// K = 1/b, V/A: weight of the current difference in the EMF estimate, and of the reference.
+    pub k_di: f64,
+    /// (1 - a)/b = R, ohm.
+    pub k_r: f64,
+    /// K a^2 (delay 1) or K a (delay 0), V/A: what the present current costs.
+    pub k_hold: f64,
+    /// 1 - a.
+    pub k_decay: f64,
+    /// Largest believed current change per period, ampere: twice what the largest bus can do.
+    pub di_max: f64,
+    /// Largest believed zero-sum phase EMF, volt.
+    pub e_limit: f64,
+}
+
+impl LoopDesign {
+    /// Designs the law for a checked specification.
+    pub fn new(spec: &Spec, options: &LoopOptions) -> Self {
+        let (motor, inverter) = (&spec.motor, &spec.inverter);
+        let plant = DiscretePlant::new(
+            options.discretisation,
+            motor.resistance,
+            motor.inductance,
+            inverter.t_s,
+        );
+        let k_di = plant.stiffness();
+        let hold = plant.pole.powi(if options.delay == 1 { 2 } else { 1 });
+        let adc_span = f64::from((1_u32 << inverter.adc_bits) - 1) * inverter.adc_gain.abs();
+        Self {
+            plant,
+            k_di,
+            k_r: (1.0 - plant.pole) / plant.gain,
+            k_hold: k_di * hold,
+            k_decay: 1.0 - plant.pole,
+            di_max: (2.0 * adc_span).min(2.0 * plant.gain * 4.0 / 3.0 * inverter.greatest_bus()),
+            e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
+        }
+    }
+
+    /// The same design with the coefficients as they were rounded.
+    #[must_use]
+    pub fn rounded(&self, scaled: &Scaled) -> Self {
+        let volt_per_ampere = scaled.scale.current() / scaled.scale.voltage();
+        let held = |name: &str, unit: f64, exact: f64| {
+            let constant = scaled
+                .graph
+                .program()
+                .constants
+                .iter()
+                .find(|constant| constant.name == name);
+            let format = scaled.formats.iter().find(|format| format.name == name);
+            match (constant, format) {
+                (Some(constant), Some(format)) => {
+                    f64::from(constant.raw) / f64::from(format.frac_bits).exp2() * unit
+                }
+                _ => exact,
+            }
+        };
+        Self {
+            k_di: held("k_di", volt_per_ampere, self.k_di),
+            k_r: held("k_r", volt_per_ampere, self.k_r),
+            k_hold: held("k_hold", volt_per_ampere, self.k_hold),
+            k_decay: held("k_decay", 1.0, self.k_decay),
+            ..self.clone()
+        }
+    }
+}

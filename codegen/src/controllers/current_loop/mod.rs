@@ -1,0 +1,311 @@
+//! The step that all controllers share: from the sample to the voltage asked for, and what the next
+//! step needs to know (semantics page of predictive deadbeat, steps 1 to 9 and 12).
+
+mod design;
+mod emf;
+mod options;
+mod stability;
+mod words;
+
+pub use design::LoopDesign;
+pub use options::{EmfSource, LoopOptions, Reference};
+pub(crate) use options::{OPTIONS, Surroundings, read_common, read_saturation};
+pub use stability::{LinearLoop, StableRange, estimate};
+pub use words::{Needs, Words};
+
+use crate::diagnostics::engineering;
+use crate::ir::{Program, StateId, Value};
+use crate::lower::set_point::{SetPointWords, setters};
+use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Scale};
+use crate::scaling::Lowered;
+use crate::spec::Spec;
+
+/// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
+pub fn lower_with(
+    spec: &Spec,
+    scale: Scale,
+    stiffness: f64,
+    law: impl FnOnce(&mut Lowering, SetPointWords),
+) -> Lowered {
+    let mut program = Program::new(&spec.name);
+    let set_point = SetPointWords::new(&mut program, spec, scale, stiffness);
+    let mut lowering = Lowering::new(&mut program, spec, scale);
+    let setters = setters(&mut lowering, set_point, stiffness);
+    law(&mut lowering, set_point);
+    let Lowering {
+        b,
+        formats,
+        misfits,
+        ..
+    } = lowering;
+    let step = b.finish();
+    program.step = step;
+    program.setters = setters;
+    Lowered {
+        program: program.pruned(),
+        formats,
+        misfits,
+    }
+}
+
+/// A step under construction.
+pub struct CurrentLoop<'l, 'p> {
+    /// The builder.
+    pub lowering: &'l mut Lowering<'p>,
+    /// Shared options.
+    pub options: &'l LoopOptions,
+    /// Coefficients in SI units.
+    pub design: &'l LoopDesign,
+    /// What the law needs.
+    pub needs: Needs,
+}
+
+/// What the shared part of a step knows.
+pub struct Front {
+    /// State words.
+    pub words: Words,
+    /// Phase currents.
+    pub currents: Currents,
+    /// Mode after supervision.
+    pub mode: Value,
+    /// Sector in force, with its advance.
+    pub sector: Value,
+    /// Flag, and the new words of the commutation; where the law follows it.
+    pub commutation: Option<[Value; 3]>,
+    /// Reference as voltage words, phases a, b.
+    pub reference: [Value; 2],
+    /// 1/3.
+    pub third: Coefficient,
+    /// The bus.
+    pub bus: Bus,
+    /// Voltage applied in the period that begins now, where the step needs it.
+    pub now: Option<[Value; 2]>,
+    /// EMF over the target period; none where the law needs no EMF.
+    pub e: Option<[Value; 2]>,
+    /// EMF over the period that begins now.
+    pub e_now: Option<[Value; 2]>,
+}
+
+/// State words and their new values while the drive runs; zero otherwise.
+pub type Remembered = Vec<(StateId, &'static str, Value)>;
+
+impl CurrentLoop<'_, '_> {
+    /// Steps 1 to 8.
+    pub fn front(&mut self, set_point: SetPointWords) -> Front {
+        let words = self.declare();
+        let options = *self.options;
+        let l = &mut *self.lowering;
+        let currents = l.measure(words.supervisor.offsets);
+        let hall = l.read_hall(words.supervisor.sector_prev);
+        l.b.set_state(words.supervisor.sector_prev, hall.sector);
+        if let Some(direction) = words.direction {
+            // Read here, in an open stage: the stage that senses the direction is a guarded one.
+            l.b.state(direction);
+        }
+        let j = l.b.param(set_point.j);
+        let mode = l.supervise(words.supervisor, &currents, &hall, j);
+        let rotor = words.rotor.map(|rotor| l.track_rotor(rotor, &hall));
+        let direction = match (&rotor, words.direction) {
+            (Some(rotor), _) => Some(rotor.direction),
+            (None, Some(word)) => Some(l.sense_direction(word, &hall)),
+            (None, None) => None,
+        };
+        let sector = match &rotor {
+            Some(rotor) if options.advance > 0.0 => {
+                l.advanced_sector(options.advance, &hall, rotor)
+            }
+            _ => hall.sector,
+        };
+        let commutation = match (words.pair, direction) {
+            (Some(pair), Some(direction)) => {
+                let inputs = [sector, direction, j];
+                Some(l.commutation(
+                    pair,
+                    inputs,
+                    &currents,
+                    options.commutation_threshold,
+                    options.commutation_timeout,
+                ))
+            }
+            _ => None,
+        };
+        let reference = match (&rotor, options.reference) {
+            (Some(rotor), Reference::Proportional) => {
+                l.proportional_reference(rotor, j, options.delay)
+            }
+            _ => l.quasi_square_reference(sector, j),
+        };
+        let third = l.coefficient(
+            "k_third",
+            1.0 / 3.0,
+            options.word,
+            "Mean of three legs.",
+            "1/3",
+        );
+        let bus = l.read_bus(set_point);
+        let now = self.applied_now(&words, &currents, bus, third);
+        let (e, e_now) = self.emf(&words, &currents, rotor.as_ref());
+        Front {
+            words,
+            currents,
+            mode,
+            sector,
+            commutation,
+            reference,
+            third,
+            bus,
+            now,
+            e,
+            e_now,
+        }
+    }
+
+    /// Where an off leg's terminal sits.
+    pub fn off_leg(&self, front: &Front) -> OffLeg {
+        OffLeg {
+            bus: front.bus,
+            third: front.third,
+            threshold: self.options.commutation_threshold,
+        }
+    }
+
+    /// The voltage that the inverter applies in the period that begins now (delay 1).
+    fn applied_now(
+        &mut self,
+        words: &Words,
+        currents: &Currents,
+        bus: Bus,
+        third: Coefficient,
+    ) -> Option<[Value; 2]> {
+        let l = &mut *self.lowering;
+        if let Some(v_cmd) = words.v_cmd {
+            return Some(v_cmd.map(|word| l.b.state(word)));
+        }
+        let (terminals, off) = words.t_cmd?;
+        let e_prev = words.e_prev?;
+        let applied = Applied {
+            terminals: terminals.map(|word| l.b.state(word)),
+            off: l.b.state(off),
+        };
+        let e = e_prev.map(|word| l.b.state(word));
+        Some(l.applied_voltage(
+            ["v_a_now", "v_b_now"],
+            applied,
+            currents,
+            e,
+            &OffLeg {
+                bus,
+                third,
+                threshold: self.options.commutation_threshold,
+            },
+        ))
+    }
+
+    /// Step 9: the deadbeat voltage of phases a, b.
+    pub fn deadbeat(&mut self, front: &Front) -> [Value; 2] {
+        let (reference, currents, now) = (front.reference, &front.currents, front.now);
+        let (options, design) = (*self.options, self.design);
+        let l = &mut *self.lowering;
+        let per_word = l.scale.voltage() / l.scale.current();
+        let power = if options.delay == 1 { "K a^2" } else { "K a" };
+        let k_hold = l.coefficient(
+            "k_hold",
+            design.k_hold * per_word,
+            options.word,
+            "What the present current still contributes when the voltage takes effect.",
+            &format!("{power} = {}", engineering(design.k_hold, "V/A")),
+        );
+        let k_decay = (options.delay == 1).then(|| {
+            l.coefficient(
+                "k_decay",
+                design.k_decay,
+                options.word,
+                "Share of current lost in one period.",
+                &format!("1 - a = {:.6}", design.k_decay),
+            )
+        });
+        let doc: &[&str] = if options.delay == 1 {
+            &[
+                "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
+                "i_pred = a i + b (v_now - e_now) of (7) folded in:",
+                "v = K i_ref - K a^2 i + (1 - a)(v_now - e_now) + e + e_now - v_now.",
+            ]
+        } else {
+            &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
+        };
+        l.b.stage("deadbeat_voltage", doc);
+        [0, 1].map(|x| {
+            let held = l.times(k_hold, currents.phases[x]);
+            let open = l.b.sub(reference[x], held);
+            let volts = match (k_decay, now, front.e, front.e_now) {
+                (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
+                    let driving = l.b.sub(now[x], e_now[x]);
+                    let lost = l.times(k_decay, driving);
+                    let open = l.b.add(open, lost);
+                    let open = l.b.add(open, e[x]);
+                    let open = l.b.add(open, e_now[x]);
+                    l.b.sub(open, now[x])
+                }
+                (_, _, Some(e), _) => l.b.add(open, e[x]),
+                _ => open,
+            };
+            l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+        })
+    }
+
+    /// Step 12: closes the step. `v_cmd` are the commanded voltages, `applied` the terminals of a command that
+    /// may turn a leg off.
+    pub fn remember(
+        &mut self,
+        front: &Front,
+        command: &Command,
+        v_cmd: [Value; 2],
+        applied: Option<Applied>,
+        mut remembered: Remembered,
+    ) {
+        let words = &front.words;
+        if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
+            self.lowering.b.set_state(pair.sector_prev, front.sector);
+            remembered.push((pair.commutating, "commutating_next", word));
+            remembered.push((pair.age, "commutation_age_next", age));
+        }
+        if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
+            for ((state, name), value) in terminals
+                .into_iter()
+                .zip(["t_a_cmd_next", "t_b_cmd_next", "t_c_cmd_next"])
+                .zip(applied.terminals)
+            {
+                remembered.push((state, name, value));
+            }
+            remembered.push((off, "off_cmd_next", applied.off));
+        }
+        if let Some(words) = words.v_cmd {
+            remembered.push((words[0], "v_a_cmd_next", v_cmd[0]));
+            remembered.push((words[1], "v_b_cmd_next", v_cmd[1]));
+        }
+        if let Some(v_prev) = words.v_prev {
+            let volts = match (front.now, applied, front.e) {
+                (Some(now), ..) => now,
+                (None, Some(applied), Some(e)) => {
+                    let off_leg = self.off_leg(front);
+                    let names = ["v_a_applied", "v_b_applied"];
+                    self.lowering
+                        .applied_voltage(names, applied, &front.currents, e, &off_leg)
+                }
+                _ => v_cmd,
+            };
+            remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
+            remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
+        }
+        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e) {
+            remembered.push((e_prev[0], "e_a_prev_next", e[0]));
+            remembered.push((e_prev[1], "e_b_prev_next", e[1]));
+        }
+        let l = &mut *self.lowering;
+        if let Some(i_prev) = words.i_prev {
+            l.b.set_state(i_prev[0], front.currents.phases[0]);
+            l.b.set_state(i_prev[1], front.currents.phases[1]);
+        }
+        l.hold_unless_running(front.mode, command, &remembered);
+    }
+}

@@ -1,0 +1,253 @@
+//! Options that all controllers share, and how they are read.
+
+use crate::design::Discretisation;
+use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, engineering};
+use crate::lower::LimitRule;
+use crate::spec::check::reader::Reader;
+use crate::spec::schema::{self, Rule};
+use crate::spec::units::Dimension as D;
+
+/// Where the EMF comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmfSource {
+    /// From the last period's voltage and currents.
+    Estimated,
+    /// From the motor's EMF shape at the Hall angle and speed.
+    Model,
+}
+
+/// What the currents shall follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reference {
+    /// The sector's corner.
+    QuasiSquare,
+    /// Parallel to the EMF: constant torque at least copper loss.
+    Proportional,
+}
+
+/// Options that all controllers share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopOptions {
+    /// EMF source.
+    pub emf: EmfSource,
+    /// Weight of the new estimate in the EMF filter, above 0 to 1 (1: no filter).
+    pub emf_filter: f64,
+    /// Current reference.
+    pub reference: Reference,
+    /// Phase advance, periods of electrical angle, 0 to 2.
+    pub advance: f64,
+    /// Periods between sampling and the command's effect: 0 or 1.
+    pub delay: u32,
+    /// Discretisation of the plant.
+    pub discretisation: Discretisation,
+    /// Word length of the control arithmetic, 16 or 32 bits.
+    pub word: u32,
+    /// Outgoing current below which a commutation ends, ampere.
+    pub commutation_threshold: f64,
+    /// Periods after which a commutation is taken as ended, 1 to 255.
+    pub commutation_timeout: u32,
+}
+
+/// All fields of controllers; [`crate::controllers::KINDS`] says which kind takes which.
+pub(crate) const OPTIONS: &[Rule] = &[
+    schema::word("kind", "pdcc"),
+    schema::word("emf", "estimated"),
+    schema::plain("emf_filter", 1e-3, 1.0, "0.5"),
+    schema::word("reference", "quasi_square"),
+    schema::plain("advance", 0.0, 2.0, "1.5"),
+    schema::integer("delay", 0, 1, "1"),
+    schema::word("discretisation", "exact"),
+    schema::integer("word", 1, 64, "32"),
+    schema::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A"),
+    schema::quantity(
+        "commutation_timeout",
+        &[D::Periods, D::Time],
+        1.0,
+        255.0,
+        "8 periods",
+    ),
+    schema::word("hall_capture", "sampled"),
+    schema::word("modulation", "three_phase"),
+    schema::word("saturation", "torque_priority"),
+    schema::word("candidates", "table2"),
+    schema::word("off_leg", "physical"),
+    schema::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz"),
+    schema::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms"),
+    schema::word("feed_forward", "on"),
+];
+
+/// What the defaults and limits of the options need to know of the drive; none where it is itself
+/// in error.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surroundings {
+    /// Control period, second.
+    pub t_s: Option<f64>,
+    /// Nominal bus voltage, volt.
+    pub v_bus: Option<f64>,
+    /// Phase resistance, ohm.
+    pub resistance: Option<f64>,
+    /// Phase inductance, henry.
+    pub inductance: Option<f64>,
+    /// Rated current, ampere, and how it was written.
+    pub rated_current: Option<(f64, Part)>,
+    /// Ampere per ADC count.
+    pub adc_gain: Option<f64>,
+}
+
+/// The default threshold where the motor is not too small for it, ampere.
+const COMMUTATION_THRESHOLD: f64 = 0.5;
+
+/// Reads and checks the shared options; `advance_idle` says that an advance has no effect under
+/// `reference: proportional`. None only together with an error.
+pub(crate) fn read_common(
+    reader: &Reader,
+    surroundings: &Surroundings,
+    advance_idle: bool,
+    errors: &mut Collector,
+) -> Option<LoopOptions> {
+    let emf = reader.word(
+        errors,
+        "emf",
+        &[
+            ("estimated", EmfSource::Estimated),
+            ("model", EmfSource::Model),
+        ],
+    );
+    let emf_filter = reader.plain(errors, "emf_filter");
+    let reference = reader.word(
+        errors,
+        "reference",
+        &[
+            ("quasi_square", Reference::QuasiSquare),
+            ("proportional", Reference::Proportional),
+        ],
+    );
+    let advance = reader.plain(errors, "advance");
+    let delay = reader.integer(errors, "delay");
+    let discretisation = reader.word(
+        errors,
+        "discretisation",
+        &[
+            ("exact", Discretisation::Exact),
+            ("euler", Discretisation::Euler),
+        ],
+    );
+    let word = read_word_length(reader, errors);
+    let commutation_threshold = read_threshold(reader, surroundings, errors);
+    let commutation_timeout = read_timeout(reader, surroundings, errors);
+
+    if let Some(filter) = &emf_filter
+        && emf == Some(EmfSource::Model)
+    {
+        errors.push(catalogue::option_without_effect(
+            &filter.part.location,
+            "emf_filter",
+            &filter.part.given,
+            reader
+                .field("emf")
+                .map_or(reader.location(), |field| &field.location),
+            "emf: model",
+            "it smooths the estimate, and the model needs none",
+        ));
+    }
+    if let Some(advance) = &advance
+        && advance.si > 0.0
+        && reference == Some(Reference::Proportional)
+        && advance_idle
+    {
+        errors.push(catalogue::option_without_effect(
+            &advance.part.location,
+            "advance",
+            &advance.part.given,
+            reader.field("reference").map_or(reader.location(), |field| &field.location),
+            "reference: proportional",
+            "advance moves sectors and commutations, and with `modulation: three_phase` this reference has neither",
+        ));
+    }
+    Some(LoopOptions {
+        emf: emf.unwrap_or(EmfSource::Estimated),
+        emf_filter: emf_filter.map_or(1.0, |given| given.si),
+        reference: reference.unwrap_or(Reference::QuasiSquare),
+        advance: advance.map_or(0.0, |given| given.si),
+        delay: delay.unwrap_or(1),
+        discretisation: discretisation.unwrap_or(Discretisation::Exact),
+        word,
+        commutation_threshold: commutation_threshold?,
+        commutation_timeout: commutation_timeout?,
+    })
+}
+
+fn read_word_length(reader: &Reader, errors: &mut Collector) -> u32 {
+    let word = reader.integer(errors, "word").unwrap_or(32);
+    if word != 16 && word != 32 {
+        let part = reader.part("word", String::new);
+        errors.push(catalogue::not_one_of(
+            &part.location,
+            "word",
+            &part.given,
+            &["16", "32"],
+        ));
+    }
+    word
+}
+
+/// 0.5 A by default; a quarter of the rated current where that is less.
+fn read_threshold(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -> Option<f64> {
+    let given = reader.plain_quantity(errors, "commutation_threshold");
+    if reader.field("commutation_threshold").is_some() && given.is_none() {
+        return None;
+    }
+    let (rated, rated_part) = drive.rated_current.as_ref()?;
+    let threshold = given.map_or(COMMUTATION_THRESHOLD.min(rated / 4.0), |given| given.si);
+    let part = reader.part("commutation_threshold", || engineering(threshold, "A"));
+    if threshold >= *rated {
+        errors.push(catalogue::threshold_above_rated(&part, rated_part));
+    } else if let Some(count) = drive.adc_gain
+        && threshold < count
+    {
+        errors.push(catalogue::threshold_below_count(&part, count));
+    }
+    Some(threshold)
+}
+
+/// By default twice the time in which the bus drives the rated current out of a winding pair,
+/// 4 L I/(v_bus Ts), within 4 to 255 periods.
+fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -> Option<u32> {
+    if reader.field("commutation_timeout").is_none() {
+        let (rated, _) = drive.rated_current.as_ref()?;
+        let periods = (4.0 * drive.inductance? * rated / (drive.v_bus? * drive.t_s?)).ceil();
+        return Some(periods.clamp(4.0, 255.0) as u32);
+    }
+    let given = reader.timespan(errors, "commutation_timeout")?;
+    let periods = match given.dimension {
+        Some(D::Time) => given.si / drive.t_s?,
+        _ => given.si,
+    };
+    // A time that is a whole number of periods but for its rounding is that number.
+    let whole = (periods - 1e-6).ceil();
+    if !(1.0..=255.0).contains(&whole) {
+        errors.push(catalogue::out_of_limits(
+            &given.part.location,
+            "commutation_timeout",
+            &given.part.given,
+            "1 period",
+            "255 periods",
+        ));
+        return None;
+    }
+    Some(whole as u32)
+}
+
+/// Which rule limits the voltage, where the controller has one.
+pub(crate) fn read_saturation(reader: &Reader, errors: &mut Collector) -> Option<LimitRule> {
+    reader.word(
+        errors,
+        "saturation",
+        &[
+            ("keep_angle", LimitRule::KeepAngle),
+            ("nearest", LimitRule::Nearest),
+            ("torque_priority", LimitRule::TorquePriority),
+        ],
+    )
+}

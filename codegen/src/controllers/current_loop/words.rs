@@ -1,0 +1,134 @@
+//! State words of the shared step, each only where the variant needs it.
+
+use super::{CurrentLoop, EmfSource, Reference};
+use crate::ir::{Interval, StateId};
+use crate::lower::{PairModulation, RotorWords, SupervisorWords};
+
+/// What a law needs of the step around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// Whether a commutation is going on.
+    pub commutation: bool,
+    /// The real voltage of a leg that it turned off.
+    pub off_leg: bool,
+    /// The current at the end of the period that begins now.
+    pub prediction: bool,
+    /// The EMF.
+    pub emf: bool,
+}
+
+/// State words of the shared step.
+pub struct Words {
+    /// Modes, faults, offsets.
+    pub supervisor: SupervisorWords,
+    /// Direction of rotation, where no rotor words hold it.
+    pub direction: Option<StateId>,
+    /// Timing of Hall edges.
+    pub rotor: Option<RotorWords>,
+    /// Commutation.
+    pub pair: Option<PairModulation>,
+    /// Current of the last sample.
+    pub i_prev: Option<[StateId; 2]>,
+    /// Commanded voltage.
+    pub v_cmd: Option<[StateId; 2]>,
+    /// Commanded terminals and the leg that is off.
+    pub t_cmd: Option<([StateId; 3], StateId)>,
+    /// Voltage of the period that ended.
+    pub v_prev: Option<[StateId; 2]>,
+    /// EMF of the last step.
+    pub e_prev: Option<[StateId; 2]>,
+}
+
+impl CurrentLoop<'_, '_> {
+    pub(super) fn declare(&mut self) -> Words {
+        let (options, needs) = (*self.options, self.needs);
+        let needs_rotor = (needs.emf && options.emf == EmfSource::Model)
+            || options.advance > 0.0
+            || options.reference == Reference::Proportional;
+        let estimated = needs.emf && options.emf == EmfSource::Estimated;
+        let e_bound = self.e_bound();
+        let l = &mut *self.lowering;
+        let current = Interval::symmetric(l.current_span());
+        let bus = l.bus_interval().high;
+        let volts = Interval::symmetric(bus);
+        let supervisor = l.supervisor_words();
+        let rotor = needs_rotor.then(|| l.rotor_words());
+        let direction = (needs.commutation && !needs_rotor).then(|| l.direction_word());
+        let pair_words = needs
+            .commutation
+            .then(|| l.pair_words(options.commutation_timeout));
+        let i_prev = estimated.then(|| {
+            ["i_a_prev", "i_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    current,
+                    "Current of the last sample, words of current.",
+                )
+            })
+        });
+        let v_cmd =
+            (options.delay == 1 && !needs.off_leg && (needs.prediction || estimated)).then(|| {
+                ["v_a_cmd", "v_b_cmd"].map(|name| {
+                    l.state(
+                        name,
+                        0,
+                        volts,
+                        "Limited voltage of the last step, applied during this period.",
+                    )
+                })
+            });
+        let t_cmd = (options.delay == 1 && needs.off_leg).then(|| {
+            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    Interval::new(0, bus),
+                    "Terminal voltage of the last step's command; of an off leg 0.",
+                )
+            });
+            (
+                terminals,
+                l.state(
+                    "off_cmd",
+                    0,
+                    Interval::new(0, 3),
+                    "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.",
+                ),
+            )
+        });
+        let v_prev = estimated.then(|| {
+            ["v_a_prev", "v_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    volts,
+                    "Voltage applied during the period that just ended.",
+                )
+            })
+        });
+        let remembers_e = (needs.off_leg && (options.delay == 1 || estimated))
+            || (estimated && options.emf_filter < 1.0);
+        let e_prev = remembers_e.then(|| {
+            ["e_a_prev", "e_b_prev"].map(|name| {
+                l.state(
+                    name,
+                    0,
+                    Interval::symmetric(e_bound),
+                    "EMF of the last step.",
+                )
+            })
+        });
+        Words {
+            supervisor,
+            direction,
+            rotor,
+            pair: pair_words,
+            i_prev,
+            v_cmd,
+            t_cmd,
+            v_prev,
+            e_prev,
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! The vector nearest to the deadbeat voltage, by geometry instead of enumeration (semantics, step 10).
+//!
+//! Over the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector wins while no
+//! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
+//! the sign of a line voltage, so three scores remain.
+
+use super::lower::{unless_lost, zero_vectors};
+use super::{Candidates, FcsMpcSpec};
+use crate::controllers::current_loop::{CurrentLoop, Front};
+use crate::diagnostics::engineering;
+use crate::interface::Rounding;
+use crate::ir::{Comparison, Value};
+use crate::lower::Lowering;
+
+/// Pairs by the leg that is off, in the order of their vectors: V12 | V45 leave a off, V23 | V56 c, V34 | V61 b.
+/// Off phase, the phase that is high in the first vector, the phase that is low in it.
+const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
+
+/// A vector and its score, six times (|v|^2 - 2 u v).
+#[derive(Clone, Copy)]
+struct Candidate {
+    vector: Value,
+    score: Value,
+}
+
+impl CurrentLoop<'_, '_> {
+    /// The number of the allowed vector nearest to `u`.
+    pub(super) fn choose(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 2]) -> Value {
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "nearest_vector",
+            &[
+                "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
+                "phase exceeds a third of the bus, else the gates are the signs of the phase voltages (a zero goes to the vector",
+                "that stands first in V1 to V6).",
+            ],
+        );
+        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
+        let phases = [u[0], u[1], u_c];
+        let [high, low] = l.extremes(["u_max", "u_min"], phases);
+        let depth = l.b.neg(low);
+        let largest = l.b.max(high, depth);
+        l.b.name("u_largest", largest);
+        let three = nearest_three_phase(l, phases, largest, front.bus.volts);
+        let vector = match (options.candidates, front.commutation) {
+            (Candidates::ThreePhase, _) | (_, None) => three,
+            (Candidates::Table2, Some([commutating, ..])) => {
+                let pair = if options.floating() {
+                    self.nearest_physical(options, front, phases, None)
+                } else {
+                    nearest_nominal(&mut *self.lowering, front, phases)
+                };
+                let l = &mut *self.lowering;
+                l.b.select(commutating, three, pair)
+            }
+            (Candidates::All, Some(_)) if options.floating() => {
+                self.nearest_physical(options, front, phases, Some((three, largest)))
+            }
+            (Candidates::All, Some(_)) => {
+                nearest_of_all(&mut *self.lowering, front, phases, three, largest)
+            }
+        };
+        unless_lost(&mut *self.lowering, front.sector, vector)
+    }
+
+    /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`.
+    fn nearest_physical(
+        &mut self,
+        options: &FcsMpcSpec,
+        front: &Front,
+        u: [Value; 3],
+        three_phase: Option<(Value, Value)>,
+    ) -> Value {
+        let threshold_volts = if options.common.delay == 1 {
+            self.design.k_hold / self.design.plant.pole
+        } else {
+            self.design.k_hold
+        } * options.common.commutation_threshold;
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "predict_off_legs",
+            &[
+                "Where each leg would sit if it were off in the target period: at a rail while its predicted current flows",
+                "through a diode, else where its EMF puts it. h = K a i(k+1) = K i_ref + e - u needs no product.",
+            ],
+        );
+        let e = front.e.unwrap_or([u[0], u[1]]);
+        let e_c = l.third_phase("e_c_off", e[0], e[1]);
+        let e = [e[0], e[1], e_c];
+        let h = [0, 1].map(|x| {
+            let sum = l.b.add(front.reference[x], e[x]);
+            let h = l.b.sub(sum, u[x]);
+            l.b.name(["h_a", "h_b"][x], h)
+        });
+        let h_c = l.third_phase("h_c", h[0], h[1]);
+        let h = [h[0], h[1], h_c];
+        let limit = l.volts_word(threshold_volts);
+        let doc = format!(
+            "Predicted current above which an off leg's diode conducts, as K a i: {}.",
+            engineering(threshold_volts, "V")
+        );
+        let bus = front.bus.volts;
+        let half = l.b.shift_right(bus, 1);
+        l.b.name("half_bus_off", half);
+        let mut flags = vec![];
+        let mut offsets = vec![];
+        let mut lifts = vec![];
+        for x in 0..3 {
+            let bound = l.number("i_comm_volts", limit, &doc);
+            let inward = l.b.compare(Comparison::Less, bound, h[x]);
+            l.b.name(["a_inward", "b_inward", "c_inward"][x], inward);
+            let bound = l.number("i_comm_volts", limit, &doc);
+            let negative = l.b.neg(bound);
+            let outward = l.b.compare(Comparison::Less, h[x], negative);
+            l.b.name(["a_outward", "b_outward", "c_outward"][x], outward);
+            let half_e = l.b.shift_right(e[x], 1);
+            let lift = l.b.add(e[x], half_e);
+            l.b.name(["lift_a", "lift_b", "lift_c"][x], lift);
+            let free = l.b.add(half, lift);
+            let zero = l.zero();
+            let free = l.b.clamp(free, zero, bus);
+            let outer = l.b.select(outward, bus, free);
+            let zero = l.zero();
+            let tau = l.b.select(inward, zero, outer);
+            let twice = l.b.shift_left(tau, 1);
+            let offset = l.b.sub(twice, bus);
+            l.b.name(["d_a", "d_b", "d_c"][x], offset);
+            flags.push([inward, outward]);
+            offsets.push(offset);
+            lifts.push(lift);
+        }
+        l.b.stage(
+            "nearest_pair",
+            &[
+                "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
+                "vectors, the least of three, and the zero vector where that is not worse. Ties go to the vector that stands first.",
+            ],
+        );
+        // Factors first: their intervals give the shift of all products.
+        let mut factors = vec![];
+        let mut vectors = vec![];
+        for (order, (off, plus, minus)) in PAIRS.into_iter().enumerate() {
+            let (vector, size) = better_of_two(l, order, u, plus, minus);
+            vectors.push(vector);
+            let gain = l.b.mul_by(3, bus);
+            let six = l.b.mul_by(6, size);
+            let along = l.b.sub(gain, six);
+            l.b.name(["along_a", "along_c", "along_b"][order], along);
+            let six = l.b.mul_by(6, u[off]);
+            let aside = l.b.sub(offsets[off], six);
+            l.b.name(["aside_a", "aside_c", "aside_b"][order], aside);
+            factors.push(((offsets[off], aside), (bus, along)));
+        }
+        let rival = match three_phase {
+            Some((vector, largest)) => {
+                let four = l.b.shift_left(bus, 2);
+                let twelve = l.b.mul_by(12, largest);
+                let along = l.b.sub(four, twelve);
+                l.b.name("along_three", along);
+                (vector, [bus, along])
+            }
+            None => self.pair_zero(
+                front,
+                [flags[0], flags[1], flags[2]],
+                [lifts[0], lifts[1], lifts[2]],
+                u,
+            ),
+        };
+        let l = &mut *self.lowering;
+        let widths: Vec<u32> = factors
+            .iter()
+            .flat_map(|&(first, second)| [first, second])
+            .chain([(rival.1[0], rival.1[1])])
+            .map(|(x, y)| l.b.interval(x).bits() + l.b.interval(y).bits())
+            .collect();
+        // A product of n + m bits fits n + m - 1; the sum of two and one bit to spare make 31 at most.
+        let shift = widths.into_iter().max().unwrap_or(62).saturating_sub(31);
+        if shift > 31 {
+            l.misfits.push("score".to_owned());
+        }
+        l.format(
+            "score",
+            32,
+            shift as i32,
+            Rounding::Floor,
+            "products of two voltages in scores",
+        );
+        let mut best: Option<Candidate> = None;
+        for (order, (first, second)) in factors.into_iter().enumerate() {
+            let aside = l.b.mul_floor(first.0, first.1, shift);
+            let along = l.b.mul_floor(second.0, second.1, shift);
+            let score = l.b.add(aside, along);
+            l.b.name(["score_a", "score_c", "score_b"][order], score);
+            let next = Candidate {
+                vector: vectors[order],
+                score,
+            };
+            best = Some(match best {
+                None => next,
+                Some(best) => first_least(l, order, best, next),
+            });
+        }
+        let Some(best) = best else {
+            return rival.0;
+        };
+        let score = l.b.mul_floor(rival.1[0], rival.1[1], shift);
+        if three_phase.is_some() {
+            // V0 scores 0, the best three-phase vector less than that or V0 was taken.
+            let zero = l.zero();
+            let score = l.b.min(score, zero);
+            let better = l.b.compare(Comparison::Less, best.score, score);
+            return l.b.select(better, best.vector, rival.0);
+        }
+        let better = l.b.compare(Comparison::Less, best.score, score);
+        l.b.select(better, best.vector, rival.0)
+    }
+
+    /// The zero vector of the sector's pair and the factors of its score.
+    fn pair_zero(
+        &mut self,
+        front: &Front,
+        flags: [[Value; 2]; 3],
+        lifts: [Value; 3],
+        u: [Value; 3],
+    ) -> (Value, [Value; 2]) {
+        let l = &mut *self.lowering;
+        let vector = zero_vector(l, front.sector);
+        let [is_a, is_b] = [13, 14].map(|number| {
+            let number = l.b.literal(number);
+            l.b.compare(Comparison::Equal, vector, number)
+        });
+        l.b.name("a_is_off", is_a);
+        l.b.name("b_is_off", is_b);
+        let lift = l.pick(is_a, is_b, lifts);
+        let u_off = l.pick(is_a, is_b, u);
+        let inward = l.pick(is_a, is_b, flags.map(|pair| pair[0]));
+        let outward = l.pick(is_a, is_b, flags.map(|pair| pair[1]));
+        let zero = l.zero();
+        let free = l.b.clamp(lift, zero, front.bus.volts);
+        let outer = l.b.select(outward, front.bus.volts, free);
+        let zero = l.zero();
+        let tau = l.b.select(inward, zero, outer);
+        l.b.name("tau_zero", tau);
+        let four = l.b.shift_left(tau, 2);
+        let twelve = l.b.mul_by(12, u_off);
+        let aside = l.b.sub(four, twelve);
+        l.b.name("aside_zero", aside);
+        (vector, [tau, aside])
+    }
+}
+
+fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
+    let table = l.b.program.table(
+        "zero_vector",
+        zero_vectors(),
+        &["Zero vector of the pair of sectors 1 to 6: its legs low, the third off.".to_owned()],
+    );
+    let vector = l.b.lookup(table, sector);
+    l.b.name("pair_zero_vector", vector)
+}
+
+/// V0 to V6: the nearest to `u`.
+fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], largest: Value, bus: Value) -> Value {
+    let table = l.b.program.table(
+        "vector_of_gates",
+        vec![0, 3, 5, 4, 1, 2, 6, 0],
+        &[
+            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
+                .to_owned(),
+        ],
+    );
+    let zero = l.zero();
+    let b_high = l.b.compare(Comparison::Less, zero, u[1]);
+    l.b.name("b_is_high", b_high);
+    let zero = l.zero();
+    let b_low = l.b.compare(Comparison::Less, u[1], zero);
+    let bits: Vec<Value> = [(0, b_high, 1), (2, b_low, 4)]
+        .into_iter()
+        .map(|(x, on_zero, bit)| {
+            // u_x > 0, or u_x = 0 and the first of the two tied vectors has the leg high.
+            let (one, zero) = (l.b.literal(1), l.zero());
+            let tie = l.b.select(on_zero, one, zero);
+            let lifted = l.b.add(u[x], tie);
+            let zero = l.zero();
+            let is_high = l.b.compare(Comparison::Less, zero, lifted);
+            let (on, off) = (l.b.literal(bit), l.zero());
+            l.b.select(is_high, on, off)
+        })
+        .collect();
+    let (on, off) = (l.b.literal(2), l.zero());
+    let bit_b = l.b.select(b_high, on, off);
+    let gates = l.b.add(bits[0], bit_b);
+    let gates = l.b.add(gates, bits[1]);
+    l.b.name("gates", gates);
+    let active = l.b.lookup(table, gates);
+    let triple = l.b.mul_by(3, largest);
+    let idle = l.b.compare(Comparison::LessEqual, triple, bus);
+    let zero = l.zero();
+    let vector = l.b.select(idle, zero, active);
+    l.b.name("vector_three", vector)
+}
+
+/// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.
+fn better_of_two(
+    l: &mut Lowering<'_>,
+    order: usize,
+    u: [Value; 3],
+    plus: usize,
+    minus: usize,
+) -> (Value, Value) {
+    let line = l.b.sub(u[plus], u[minus]);
+    l.b.name(["line_a", "line_c", "line_b"][order], line);
+    let zero = l.zero();
+    let is_back = l.b.compare(Comparison::Less, line, zero);
+    let (first, second) = (
+        l.b.literal(7 + order as i32),
+        l.b.literal(10 + order as i32),
+    );
+    let vector = l.b.select(is_back, second, first);
+    l.b.name(["pair_a", "pair_c", "pair_b"][order], vector);
+    let size = l.b.abs(line);
+    l.b.name(["size_a", "size_c", "size_b"][order], size);
+    (vector, size)
+}
+
+/// The candidate of the lesser score; on a tie that of the lesser number.
+fn first_least(l: &mut Lowering<'_>, order: usize, best: Candidate, next: Candidate) -> Candidate {
+    let less = l.b.compare(Comparison::Less, next.score, best.score);
+    let equal = l.b.compare(Comparison::Equal, next.score, best.score);
+    let earlier = l.b.compare(Comparison::Less, next.vector, best.vector);
+    let tied = l.b.and(equal, earlier);
+    let take = l.b.or(less, tied);
+    l.b.name(["take_a", "take_c", "take_b"][order], take);
+    let vector = l.b.select(take, next.vector, best.vector);
+    l.b.name(["best_a", "best_c", "best_b"][order], vector);
+    let score = l.b.select(take, next.score, best.score);
+    l.b.name(
+        ["best_score_a", "best_score_c", "best_score_b"][order],
+        score,
+    );
+    Candidate { vector, score }
+}
+
+/// The nominal pair vector of the greatest line voltage and that voltage.
+fn greatest_line(l: &mut Lowering<'_>, u: [Value; 3]) -> (Value, Value) {
+    let mut best: Option<Candidate> = None;
+    for (order, (_, plus, minus)) in PAIRS.into_iter().enumerate() {
+        let (vector, size) = better_of_two(l, order, u, plus, minus);
+        let score = l.b.neg(size);
+        l.b.name(["score_a", "score_c", "score_b"][order], score);
+        let next = Candidate { vector, score };
+        best = Some(match best {
+            None => next,
+            Some(best) => first_least(l, order, best, next),
+        });
+    }
+    match best {
+        Some(best) => {
+            let size = l.b.neg(best.score);
+            (best.vector, l.b.name("line_largest", size))
+        }
+        None => (u[0], u[0]),
+    }
+}
+
+fn pair_stage(l: &mut Lowering<'_>) {
+    l.b.stage(
+        "nearest_pair",
+        &[
+            "The pair vector nearest to the deadbeat voltage: the one of the greatest line voltage, and the zero vector while",
+            "that is at most half the bus. Ties go to the vector that stands first in V12 to V61.",
+        ],
+    );
+}
+
+fn nearest_nominal(l: &mut Lowering<'_>, front: &Front, u: [Value; 3]) -> Value {
+    pair_stage(l);
+    let zero = zero_vector(l, front.sector);
+    let (vector, line) = greatest_line(l, u);
+    let twice = l.b.shift_left(line, 1);
+    let idle = l.b.compare(Comparison::LessEqual, twice, front.bus.volts);
+    l.b.select(idle, zero, vector)
+}
+
+fn nearest_of_all(
+    l: &mut Lowering<'_>,
+    front: &Front,
+    u: [Value; 3],
+    three: Value,
+    largest: Value,
+) -> Value {
+    pair_stage(l);
+    let (vector, line) = greatest_line(l, u);
+    // Scores over the bus: three-phase 4 V - 12 u or 0, pair 3 V - 6 line.
+    let four = l.b.shift_left(front.bus.volts, 2);
+    let twelve = l.b.mul_by(12, largest);
+    let of_three = l.b.sub(four, twelve);
+    let zero = l.zero();
+    let of_three = l.b.min(of_three, zero);
+    let three_bus = l.b.mul_by(3, front.bus.volts);
+    let six = l.b.mul_by(6, line);
+    let of_pair = l.b.sub(three_bus, six);
+    let better = l.b.compare(Comparison::Less, of_pair, of_three);
+    l.b.select(better, vector, three)
+}

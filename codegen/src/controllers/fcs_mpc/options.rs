@@ -1,0 +1,84 @@
+//! Options of finite-control-set model predictive control, and how they are read.
+
+use crate::controllers::LoopOptions;
+use crate::controllers::current_loop::{Surroundings, read_common};
+use crate::diagnostics::Collector;
+use crate::spec::check::reader::Reader;
+
+/// The vectors among which the controller chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Candidates {
+    /// Table 2's: V0 to V6 in commutation, else V0 and V12 to V61.
+    Table2,
+    /// V0 to V6 always.
+    ThreePhase,
+    /// V0 to V6 and V12 to V61 always.
+    All,
+}
+
+/// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OffLegModel {
+    /// Where its diodes or its EMF put it.
+    Physical,
+    /// Midway, as Table 2's vectors have it.
+    Nominal,
+}
+
+/// Options of finite-control-set model predictive control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FcsMpcSpec {
+    /// Candidate set.
+    pub candidates: Candidates,
+    /// Model of an off leg; of no effect with [`Candidates::ThreePhase`].
+    pub off_leg: OffLegModel,
+    /// Options that all controllers share.
+    pub common: LoopOptions,
+}
+
+impl FcsMpcSpec {
+    /// Whether pair vectors are among the candidates.
+    pub fn pairs(&self) -> bool {
+        self.candidates != Candidates::ThreePhase
+    }
+
+    /// Whether a command may turn a leg off whose real voltage the prediction follows.
+    pub fn floating(&self) -> bool {
+        self.pairs() && self.off_leg == OffLegModel::Physical
+    }
+}
+
+/// Reads and checks the options. None only together with an error.
+pub(crate) fn check_options(
+    reader: &Reader,
+    surroundings: &Surroundings,
+    errors: &mut Collector,
+) -> Option<FcsMpcSpec> {
+    let candidates = reader
+        .word(
+            errors,
+            "candidates",
+            &[
+                ("table2", Candidates::Table2),
+                ("three_phase", Candidates::ThreePhase),
+                ("all", Candidates::All),
+            ],
+        )
+        .unwrap_or(Candidates::Table2);
+    let off_leg = reader
+        .word(
+            errors,
+            "off_leg",
+            &[
+                ("physical", OffLegModel::Physical),
+                ("nominal", OffLegModel::Nominal),
+            ],
+        )
+        .unwrap_or(OffLegModel::Physical);
+    let without_sectors = candidates == Candidates::ThreePhase;
+    Some(FcsMpcSpec {
+        candidates,
+        off_leg,
+        common: read_common(reader, surroundings, without_sectors, errors)?,
+    })
+}

@@ -1,0 +1,94 @@
+//! Options of PI control, and how they are read.
+
+use crate::controllers::LoopOptions;
+use crate::controllers::current_loop::{Surroundings, read_common, read_saturation};
+use crate::diagnostics::Collector;
+use crate::diagnostics::catalogue;
+use crate::lower::LimitRule;
+use crate::spec::check::reader::Reader;
+use crate::spec::{MotorSpec, Spec};
+use std::f64::consts::TAU;
+
+/// Bandwidth where none is stated, hertz.
+const BANDWIDTH: f64 = 1000.0;
+
+/// Options of PI control with pulse-width modulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PiPwmSpec {
+    /// Bandwidth of the current loop, hertz.
+    pub bandwidth: f64,
+    /// Integral time, second.
+    pub integral_time: f64,
+    /// Whether the EMF is added to the voltage.
+    pub feed_forward: bool,
+    /// Saturation rule.
+    pub saturation: LimitRule,
+    /// Options that all controllers share.
+    pub common: LoopOptions,
+}
+
+impl PiPwmSpec {
+    /// Proportional gain 2 pi f L, V/A.
+    pub fn proportional_gain(&self, motor: &MotorSpec) -> f64 {
+        TAU * self.bandwidth * motor.inductance
+    }
+
+    /// Share of the proportional voltage that one period integrates: T_s/T_i.
+    pub fn integral_share(&self, spec: &Spec) -> f64 {
+        spec.inverter.t_s / self.integral_time
+    }
+}
+
+/// Reads and checks the options. None only together with an error.
+pub(crate) fn check_options(
+    reader: &Reader,
+    surroundings: &Surroundings,
+    errors: &mut Collector,
+) -> Option<PiPwmSpec> {
+    let bandwidth = reader.plain_quantity(errors, "bandwidth");
+    let integral_time = reader.plain_quantity(errors, "integral_time");
+    let feed_forward = reader
+        .word(errors, "feed_forward", &[("on", true), ("off", false)])
+        .unwrap_or(true);
+    let modulation = reader.word(
+        errors,
+        "modulation",
+        &[("three_phase", true), ("pair", false), ("table2", false)],
+    );
+    if modulation == Some(false)
+        && let Some(field) = reader.field("modulation")
+    {
+        let given = field.value.to_string();
+        errors.push(catalogue::option_unavailable(
+            &field.location,
+            "modulation",
+            &given,
+            &["three_phase"],
+        ));
+    }
+    let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::Nearest);
+    if saturation == LimitRule::TorquePriority
+        && !feed_forward
+        && let Some(field) = reader.field("saturation")
+    {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            "saturation",
+            "torque_priority",
+            reader
+                .field("feed_forward")
+                .map_or(reader.location(), |field| &field.location),
+            "feed_forward: off",
+            "it keeps the component along the EMF, which is known with `feed_forward: on` only",
+        ));
+    }
+    let common = read_common(reader, surroundings, true, errors)?;
+    let time_constant = surroundings.inductance? / surroundings.resistance?;
+    Some(PiPwmSpec {
+        bandwidth: bandwidth.map_or(BANDWIDTH, |given| given.si),
+        integral_time: integral_time.map_or(time_constant, |given| given.si),
+        feed_forward,
+        saturation,
+        common,
+    })
+}

@@ -1,0 +1,44 @@
+//! The PI loop as a linear system.
+
+use super::PiPwmSpec;
+use crate::controllers::current_loop::{LinearLoop, LoopDesign, estimate};
+use crate::design::DiscretePlant;
+use crate::spec::Spec;
+use nalgebra::DVector;
+
+/// The PI loop; state i, i_prev, v_now, v_prev, e_prev, integral.
+#[derive(Clone, Copy, Debug)]
+pub struct PiLoop<'d> {
+    /// Options.
+    pub options: &'d PiPwmSpec,
+    /// Coefficients of the EMF estimate.
+    pub design: &'d LoopDesign,
+    /// The drive.
+    pub spec: &'d Spec,
+}
+
+impl LinearLoop for PiLoop<'_> {
+    fn order(&self) -> usize {
+        6
+    }
+
+    fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64> {
+        let [i, i_prev, v_now, v_prev, e_prev, integral] = [x[0], x[1], x[2], x[3], x[4], x[5]];
+        let common = &self.options.common;
+        let e = if self.options.feed_forward {
+            estimate(common, self.design, [i, i_prev], v_prev, e_prev)
+        } else {
+            0.0
+        };
+        let proportional = -self.options.proportional_gain(&self.spec.motor) * i;
+        let u = proportional + integral + e;
+        let integral = integral + self.options.integral_share(self.spec) * proportional;
+        let (applied, v_next, v_last) = if common.delay == 1 {
+            (v_now, u, v_now)
+        } else {
+            (u, 0.0, u)
+        };
+        let next = real.pole * i + real.gain * applied;
+        DVector::from_vec(vec![next, i, v_next, v_last, e, integral])
+    }
+}
