@@ -1,5 +1,7 @@
 //! The bit-true model against the ideal one, and the bit-for-bit test itself.
 
+mod fcs_mpc;
 mod models_agree;
+mod pi_pwm;
 mod variants;
 mod verification;

@@ -1,7 +1,10 @@
-//! Every PDCC variant on two very different motors, with formats of about 30 bits.
+//! Every PDCC variant and a spread of the other controllers' on two very different motors, with formats of about 30 bits.
 
 use hexagen::{Format, Rounding};
-use hexagen_reference::{DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec};
+use hexagen_reference::{
+    Candidates, Controller, DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec,
+};
+use std::f64::consts::TAU;
 
 /// One choice of every option.
 #[derive(Clone, Debug)]
@@ -90,25 +93,8 @@ pub fn all() -> Vec<Variant> {
             let capture = ["sampled", "timer"][pick(2)];
             let bus = ["fixed", "measured"][pick(2)];
             assert_eq!(left, 0);
-            let ticks = if capture == "timer" { 50 } else { 2 };
-            // 60 degrees in 200 periods at the least speed, a turn in 20 at the greatest.
-            let (age_max, rev_min) = (200 * ticks, 20 * ticks);
-            let sense = if bus == "measured" {
-                "bus_gain = 0.1\nbus_adc_bits = 12\nbus_min = 40.0\nbus_max = 390.0"
-            } else {
-                ""
-            };
-            let toml = format!(
+            let options = format!(
                 r#"
-name = "Variant"
-{text}
-bus = "{bus}"
-{sense}
-hall_capture = "{capture}"
-ticks = {ticks}
-age_max = {age_max}
-rev_min = {rev_min}
-[controller]
 kind = "pdcc"
 modulation = "{modulation}"
 saturation = "{saturation}"
@@ -123,25 +109,118 @@ commutation_threshold = 0.1
 commutation_timeout = 8
 "#
             );
-            let spec = Spec::from_toml(&toml).expect("a valid specification");
             let name = format!(
                 "{motor}: {modulation} {saturation} {emf} {filter} {reference} advance {advance} delay {delay} \
                  {discretisation} {capture} {bus}"
             );
-            variants.push(Variant {
-                formats: formats(&spec),
-                spec,
-                toml,
-                name,
-            });
+            variants.push(variant(name, text, capture, bus, &options));
         }
     }
     variants
 }
 
+/// A spread of the options of FCS-MPC and PI-PWM, on both motors.
+pub fn others() -> Vec<Variant> {
+    const KINDS: [(&str, &[&str], &[&str]); 2] = [
+        (
+            "fcs-mpc",
+            &["table2", "three_phase", "all"],
+            &["physical", "nominal"],
+        ),
+        (
+            "pi-pwm",
+            &["keep_angle", "nearest", "torque_priority"],
+            &["on", "off"],
+        ),
+    ];
+    let mut variants = Vec::new();
+    for (motor, text) in MOTORS {
+        for (kind, firsts, seconds) in KINDS {
+            for index in 0..72 {
+                let (first, second) = (firsts[index % 3], seconds[index / 3 % 2]);
+                if (first, second) == ("torque_priority", "off") {
+                    continue;
+                }
+                let (emf, filter) =
+                    [("estimated", 1.0), ("estimated", 0.4), ("model", 1.0)][index / 6 % 3];
+                let delay = [1, 0][index / 18 % 2];
+                let reference = ["quasi_square", "proportional"][index / 36];
+                // The rest varies out of step with these.
+                let advance = [0.0, 1.5][index % 5 % 2];
+                let discretisation = ["exact", "euler"][index % 7 % 2];
+                let capture = ["sampled", "timer"][index % 11 % 2];
+                let bus = ["fixed", "measured"][index % 13 % 2];
+                let own = if kind == "fcs-mpc" {
+                    format!(
+                        "candidates = \"{first}\"\noff_leg = \"{second}\"\n\
+                         commutation_threshold = 0.1\ncommutation_timeout = 8"
+                    )
+                } else {
+                    format!(
+                        "saturation = \"{first}\"\nfeed_forward = \"{second}\"\n\
+                         bandwidth = 1000.0\nintegral_time = 0.0016"
+                    )
+                };
+                let options = format!(
+                    r#"
+kind = "{kind}"
+emf = "{emf}"
+emf_filter = {filter:?}
+reference = "{reference}"
+advance = {advance:?}
+delay = {delay}
+discretisation = "{discretisation}"
+word = 32
+{own}
+"#
+                );
+                let name = format!(
+                    "{motor}: {kind} {first} {second} {emf} {filter} {reference} advance {advance} \
+                     delay {delay} {discretisation} {capture} {bus}"
+                );
+                variants.push(variant(name, text, capture, bus, &options));
+            }
+        }
+    }
+    variants
+}
+
+/// A motor's text with the rest of its inverter and a controller.
+fn variant(name: String, motor: &str, capture: &str, bus: &str, controller: &str) -> Variant {
+    let ticks = if capture == "timer" { 50 } else { 2 };
+    // 60 degrees in 200 periods at the least speed, a turn in 20 at the greatest.
+    let (age_max, rev_min) = (200 * ticks, 20 * ticks);
+    let sense = if bus == "measured" {
+        "bus_gain = 0.1\nbus_adc_bits = 12\nbus_min = 40.0\nbus_max = 390.0"
+    } else {
+        ""
+    };
+    let toml = format!(
+        r#"
+name = "Variant"
+{motor}
+bus = "{bus}"
+{sense}
+hall_capture = "{capture}"
+ticks = {ticks}
+age_max = {age_max}
+rev_min = {rev_min}
+[controller]
+{controller}
+"#
+    );
+    let spec = Spec::from_toml(&toml).expect("a valid specification");
+    Variant {
+        formats: formats(&spec),
+        spec,
+        toml,
+        name,
+    }
+}
+
 /// Formats with as many bits as the plant's ranges allow.
 pub fn formats(spec: &Spec) -> &'static [Format] {
-    let (motor, inverter, pdcc) = (&spec.motor, &spec.inverter, spec.pdcc());
+    let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
     let g = inverter.adc_gain.abs();
     let w = inverter.v_bus / f64::from(inverter.timer_period);
     let DiscretePhase { a, b } = DiscretePhase::new(spec);
@@ -150,6 +229,18 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let f_i = 29 - (2.0 * adc_max).log2().ceil() as i32;
     let volts = 4.0 * (adc_max * g / b + 2.0 * inverter.v_bus_max().expect("a bus"));
     let f_v = 29 - (volts / w).log2().ceil() as i32;
+    // Scores of FCS-MPC are sums of up to twelve voltages.
+    let f_v = match spec.controller {
+        Controller::FcsMpc(_) => f_v - 4,
+        Controller::Pdcc(_) | Controller::PiPwm(_) => f_v,
+    };
+    let (gain, integral_share) = match &spec.controller {
+        Controller::PiPwm(pi) => (
+            TAU * pi.bandwidth * motor.inductance,
+            inverter.t_s / pi.integral_time,
+        ),
+        Controller::Pdcc(_) | Controller::FcsMpc(_) => (1.0 / b, 1.0),
+    };
     let scale = 2f64.powi(f_v);
     let ohm = g / w * 2f64.powi(f_v - f_i);
     let shift = |value: f64| (30 - value.log2().ceil() as i32).clamp(0, 62);
@@ -163,14 +254,18 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_r", shift(ohm * motor.resistance)),
         ("k_hold", shift(ohm * a / b)),
         ("k_decay", shift(b * motor.resistance)),
-        ("k_filter", shift(pdcc.emf_filter)),
+        ("k_filter", shift(options.emf_filter)),
         ("k_third", shift(1.0 / 3.0)),
-        ("k_set", shift(scale / (b * w) / 65_536.0)),
+        ("k_sixth", shift(1.0 / 6.0)),
+        ("score", 30),
+        ("k_p", shift(ohm * gain)),
+        ("k_i", shift(integral_share)),
+        ("k_set", shift(scale * gain / w / 65_536.0)),
         (
             "k_torque",
-            shift(scale / (b * w) / motor.torque_constant / 65_536.0),
+            shift(scale * gain / w / motor.torque_constant / 65_536.0),
         ),
-        ("k_advance", shift(pdcc.advance.max(1.0))),
+        ("k_advance", shift(options.advance.max(1.0))),
         ("k_bus", shift(0.1 / w * scale)),
         ("ratio", 24),
         ("scale", 30),
@@ -197,13 +292,24 @@ pub fn table(variant: &Variant) -> FormatTable {
     FormatTable::new(variant.formats)
 }
 
-/// Whether the variant pulses only the conducting pair.
-pub fn is_pair(variant: &Variant) -> bool {
-    variant.spec.pdcc().modulation == Modulation::Pair
+/// Whether the variant follows commutations.
+pub fn commutates(variant: &Variant) -> bool {
+    match &variant.spec.controller {
+        Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::Pair,
+        Controller::FcsMpc(fcs_mpc) => fcs_mpc.candidates != Candidates::ThreePhase,
+        Controller::PiPwm(_) => false,
+    }
+}
+
+/// Whether a voltage can lie outside of what the variant can make.
+pub fn saturates(variant: &Variant) -> bool {
+    !matches!(variant.spec.controller, Controller::FcsMpc(_))
 }
 
 /// Whether the variant interpolates the rotor's angle.
 pub fn has_rotor(variant: &Variant) -> bool {
-    let pdcc = variant.spec.pdcc();
-    pdcc.emf == EmfSource::Model || pdcc.advance > 0.0 || pdcc.reference == Reference::Proportional
+    let options = variant.spec.loop_options();
+    options.emf == EmfSource::Model
+        || options.advance > 0.0
+        || options.reference == Reference::Proportional
 }

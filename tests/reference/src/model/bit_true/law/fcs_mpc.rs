@@ -15,6 +15,8 @@ pub struct FcsMpc {
     candidates: Candidates,
     /// Pairs are allowed and their off leg sits where current or EMF put it.
     floating: bool,
+    /// The vector's voltage is needed in a later step.
+    remembers: bool,
     deadbeat: Deadbeat,
     k_sixth: Coefficient,
     score: Shift,
@@ -29,6 +31,7 @@ impl FcsMpc {
         Ok(Self {
             candidates: options.candidates,
             floating,
+            remembers: scale.variant.applied(),
             deadbeat: Deadbeat::new(scale)?,
             k_sixth: scale.only_if(!floating && scale.variant.applied(), "k_sixth", 1.0 / 6.0)?,
             score: Shift::new(scale.bits_if(floating, "score")?),
@@ -73,7 +76,12 @@ impl FcsMpc {
         let u = if self.floating {
             choice.voltage(vector)
         } else {
-            let sixth = self.k_sixth.mul(now.v_bus);
+            // Without a use for the voltage there is no coefficient, and only the trace shows it.
+            let sixth = if self.remembers {
+                self.k_sixth.mul(now.v_bus)
+            } else {
+                floor(now.v_bus / 6.0)
+            };
             let [a, b, _] = vectors::sixths(vector);
             [a * sixth, b * sixth]
         };

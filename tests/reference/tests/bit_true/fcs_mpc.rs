@@ -1,0 +1,145 @@
+//! FCS-MPC chooses the nearest vector of its list, the first of equals.
+
+use crate::variants::{self, Variant};
+use hexagen::{LegState, Sample};
+use hexagen_reference::verify::{Action, Context, Stimulus};
+use hexagen_reference::{BitTrue, Candidates, Controller, FcsMpc, Ideal, OffLeg, Reference};
+
+/// The vectors' legs as the paper names them, by number.
+const LEGS: [&str; 16] = [
+    "---", "--+", "+-+", "+--", "++-", "-+-", "-++", "0-+", "+-0", "+0-", "0+-", "-+0", "-0+",
+    "0--", "-0-", "--0",
+];
+/// The leg that is off in sectors 1 to 6.
+const OFF: [usize; 6] = [0, 2, 1, 0, 2, 1];
+
+fn fcs_mpc() -> impl Iterator<Item = (Variant, FcsMpc)> {
+    variants::others().into_iter().filter_map(|variant| {
+        let Controller::FcsMpc(options) = variant.spec.controller else {
+            return None;
+        };
+        Some((variant, options))
+    })
+}
+
+/// Phase voltages of a vector in units of the bus, a leg that is off without voltage.
+fn voltage(vector: usize) -> [f64; 3] {
+    let legs = LEGS[vector].as_bytes();
+    let driven = legs.iter().filter(|leg| **leg != b'0').count() as f64;
+    let high = legs.iter().filter(|leg| **leg == b'+').count() as f64;
+    [0, 1, 2].map(|x| match legs[x] {
+        b'+' => 1.0 - high / driven,
+        b'-' => -high / driven,
+        _ => 0.0,
+    })
+}
+
+#[test]
+fn the_nearest_of_the_list_is_chosen() {
+    let mut seen = [0u32; 16];
+    for (seed, (variant, options)) in (0..).zip(fcs_mpc()) {
+        if options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase {
+            continue;
+        }
+        let mut ideal = Ideal::new(&variant.spec).expect("a model");
+        let mut stimulus = Stimulus::new(&variant.spec, seed).expect("a stimulus");
+        let mut v_bus = variant.spec.inverter.v_bus;
+        for _ in 0..1000 {
+            let context = Context {
+                offset: [f64::from(variant.spec.inverter.adc_offset); 2],
+                tripped: !ideal.trace().run,
+            };
+            let (action, sample) = stimulus.next(&context);
+            match action {
+                Some(Action::SetCurrent(bits)) => ideal.set_current(bits),
+                Some(Action::SetBus(counts)) => {
+                    ideal.set_bus(counts);
+                    v_bus = (f64::from(counts.min(4095)) * 0.1).clamp(40.0, 390.0);
+                }
+                Some(Action::Reset) => ideal.reset(),
+                _ => {}
+            }
+            let duties = ideal.step(&sample);
+            let trace = ideal.trace();
+            if !trace.run {
+                assert_eq!(trace.vector, 0);
+                continue;
+            }
+            let list: Vec<usize> = match options.candidates {
+                Candidates::ThreePhase => (0..7).collect(),
+                Candidates::All => (0..13).collect(),
+                Candidates::Table2 if trace.commutating => (0..7).collect(),
+                Candidates::Table2 => std::iter::once(13 + OFF[trace.sector_eff - 1])
+                    .chain(7..13)
+                    .collect(),
+            };
+            let [a, b] = trace.u_unsat;
+            let u = [a, b, -(a + b)];
+            let cost = |vector: usize| -> f64 {
+                let v = voltage(vector);
+                (0..3).map(|x| (u[x] - v[x] * v_bus).powi(2)).sum()
+            };
+            let least = list.iter().map(|v| cost(*v)).fold(f64::MAX, f64::min);
+            assert!(list.contains(&trace.vector), "{}", variant.name);
+            assert!(
+                cost(trace.vector) <= least + 1e-9 * (v_bus + a.abs() + b.abs()).powi(2),
+                "{}: {trace:?}",
+                variant.name
+            );
+            seen[trace.vector] += 1;
+            for (x, leg) in LEGS[trace.vector].bytes().enumerate() {
+                let expected = match leg {
+                    b'+' => (1.0, LegState::Pulsed),
+                    b'-' => (0.0, LegState::Low),
+                    _ => (0.0, LegState::Off),
+                };
+                assert_eq!((duties.duty[x], duties.state[x]), expected);
+            }
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
+}
+
+#[test]
+fn equals_go_to_the_first() {
+    let mut tried = 0;
+    for (variant, options) in fcs_mpc() {
+        let (inverter, common) = (&variant.spec.inverter, variant.spec.loop_options());
+        if options.candidates != Candidates::ThreePhase
+            || common.reference != Reference::QuasiSquare
+            || variants::has_rotor(&variant)
+        {
+            continue;
+        }
+        for sector in 1..=6 {
+            for sense in [1, -1] {
+                // From rest the demand is the sector's corner, midway between two vectors.
+                let mut bit_true =
+                    BitTrue::new(&variant.spec, &variants::table(&variant)).expect("a model");
+                let mut ideal = Ideal::new(&variant.spec).expect("a model");
+                let bits = sense * (inverter.max_current * 65_536.0) as i32;
+                bit_true.set_current(bits);
+                ideal.set_current(bits);
+                let sample = Sample {
+                    adc_a: inverter.adc_offset as u16,
+                    adc_b: inverter.adc_offset as u16,
+                    hall: variant.spec.motor.hall_codes[sector - 1],
+                    hall_ticks: 0,
+                };
+                let legs = bit_true.step(&sample);
+                let duties = ideal.step(&sample);
+                let first = if sense > 0 {
+                    sector
+                } else {
+                    (sector + 2) % 6 + 1
+                };
+                let expected = first.min(first % 6 + 1);
+                assert_eq!(bit_true.trace().vector, expected, "{}", variant.name);
+                assert_eq!(ideal.trace().vector, expected, "{}", variant.name);
+                assert_eq!(legs, duties.to_legs(inverter.timer_period as u16));
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 0);
+}
