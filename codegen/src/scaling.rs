@@ -38,8 +38,8 @@ pub enum Unscalable {
     TooNarrow {
         /// Signal or coefficient.
         signal: String,
-        /// Bits that it needs.
-        bits: u32,
+        /// Bits that it needs, where they are known.
+        bits: Option<u32>,
     },
     /// An invariant other than a range is broken: a bug of the generator.
     Broken(Vec<Violation>),
@@ -63,13 +63,13 @@ pub fn choose_scale(
     let Some(current_bits) = u32::checked_sub(spare, inverter.adc_bits) else {
         return Err(Unscalable::TooNarrow {
             signal: "phase currents".to_owned(),
-            bits: inverter.adc_bits + 1,
+            bits: Some(inverter.adc_bits + 1),
         });
     };
     let (mut low, mut high) = (1, if word == 16 { 12 } else { FINEST_VOLTAGE });
     let mut finest = Err(Unscalable::TooNarrow {
         signal: "voltages".to_owned(),
-        bits: 33,
+        bits: None,
     });
     while low <= high {
         let voltage_bits = low.midpoint(high);
@@ -106,7 +106,7 @@ fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
     if let Some(signal) = misfits.into_iter().next() {
         return Err(Unscalable::TooNarrow {
             signal: format!("coefficient `{signal}`"),
-            bits: scale.word + 1,
+            bits: None,
         });
     }
     let graph = verify(program).map_err(|violations| {
@@ -114,15 +114,15 @@ fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
         match violations.iter().find_map(escape) {
             Some((place, interval)) => Unscalable::TooNarrow {
                 signal: format!("`{}`", place.rsplit(": ").next().unwrap_or_default()),
-                bits: interval.bits(),
+                bits: Some(interval.bits()),
             },
             None => Unscalable::Broken(violations),
         }
     })?;
     if scale.word == 16
-        && let Some((signal, bits)) = wide_product(graph.program())
+        && let Some(signal) = wide_product(graph.program())
     {
-        return Err(Unscalable::TooNarrow { signal, bits });
+        return Err(Unscalable::TooNarrow { signal, bits: None });
     }
     Ok(Scaled {
         graph,
@@ -132,7 +132,7 @@ fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
 }
 
 /// A product of the step's normal path with a 16-bit coefficient that does not fit 32 bits.
-fn wide_product(program: &Program) -> Option<(String, u32)> {
+fn wide_product(program: &Program) -> Option<String> {
     let step: &Function = &program.step;
     let normal = step
         .stages
@@ -158,6 +158,6 @@ fn wide_product(program: &Program) -> Option<(String, u32)> {
             let bits = 65 - product.leading_zeros();
             // Angles keep 64-bit products whatever the word; their coefficients are marked by their size.
             let sixteen = i64::from(constant.raw).abs() < 1 << 15;
-            (sixteen && bits > 32).then(|| (format!("the product with `{}`", constant.name), bits))
+            (sixteen && bits > 32).then(|| format!("the product with `{}`", constant.name))
         })
 }

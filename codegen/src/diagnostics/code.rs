@@ -122,10 +122,8 @@ codes! {
     ResistanceOutsideStableRange = 502,
     /// The loop is unstable with the nominal motor.
     Unstable = 503,
-    /// A signal does not fit the word.
+    /// A signal or coefficient does not fit the word.
     WordTooNarrow = 504,
-    /// A coefficient does not fit the word.
-    CoefficientOutOfRange = 505,
     /// The generator broke one of its own invariants.
     Internal = 901,
 }

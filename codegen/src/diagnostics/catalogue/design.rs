@@ -71,42 +71,19 @@ pub fn unstable_loop(at: &Location, field: &str, given: &str, radius: f64) -> Di
 
 /// A signal needs more bits than the word has.
 ///
-/// `signal`: its name with the quantity, e.g. ``voltage `u_a` ``; `needed`: bits it needs.
-pub fn word_too_narrow(at: &Location, signal: &str, needed: u32, word: u32) -> Diagnostic {
+/// `signal`: its name with the quantity, e.g. ``voltage `u_a` ``; `needed`: bits it needs, where
+/// they are known.
+pub fn word_too_narrow(at: &Location, signal: &str, needed: Option<u32>, word: u32) -> Diagnostic {
     let remedy = if word < 32 {
         "choose `word: 32`, or lower `adc_bits`"
     } else {
         "lower `adc_bits`, the timer's period or the ADC range"
     };
-    Diagnostic::new(
-        Code::WordTooNarrow,
-        at,
-        format!("`word`: {word} bits, but {needed} are needed for {signal}; {remedy}"),
-    )
-}
-
-/// A coefficient cannot be held in the word with useful precision.
-///
-/// `error`: relative error it would get; `limit`: the greatest one allowed.
-pub fn coefficient_out_of_range(
-    at: &Location,
-    coefficient: &str,
-    value: f64,
-    word: u32,
-    error: f64,
-    limit: f64,
-) -> Diagnostic {
-    Diagnostic::new(
-        Code::CoefficientOutOfRange,
-        at,
-        format!(
-            "`word`: {word} bits hold the coefficient `{coefficient}` = {} with an error of {}, \
-             but at most {} is allowed; choose `word: 32`, or change the control period",
-            significant(value),
-            percent(error),
-            percent(limit),
-        ),
-    )
+    let lack = match needed {
+        Some(needed) => format!("{word} bits, but {needed} are needed for {signal}"),
+        None => format!("{word} bits are too few for {signal}"),
+    };
+    Diagnostic::new(Code::WordTooNarrow, at, format!("`word`: {lack}; {remedy}"))
 }
 
 /// The generator broke one of its own invariants: a bug, reported without a panic.
@@ -145,12 +122,12 @@ mod tests {
                 "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose another value or `emf: model`",
             ),
             (
-                word_too_narrow(&at, "voltage `u_a`", 19, 16),
+                word_too_narrow(&at, "voltage `u_a`", Some(19), 16),
                 "m.toml:3:5: error[HX0504]: `word`: 16 bits, but 19 are needed for voltage `u_a`; choose `word: 32`, or lower `adc_bits`",
             ),
             (
-                coefficient_out_of_range(&at, "k_di", 0.0042, 16, 0.02, 0.001),
-                "m.toml:3:5: error[HX0505]: `word`: 16 bits hold the coefficient `k_di` = 0.0042 with an error of 2 %, but at most 0.1 % is allowed; choose `word: 32`, or change the control period",
+                word_too_narrow(&at, "coefficient `k_di`", None, 32),
+                "m.toml:3:5: error[HX0504]: `word`: 32 bits are too few for coefficient `k_di`; lower `adc_bits`, the timer's period or the ADC range",
             ),
             (
                 internal(&at, "node 7 has no interval"),

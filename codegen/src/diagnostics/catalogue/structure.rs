@@ -174,8 +174,12 @@ pub fn invalid_name(at: &Location, name: &str) -> Diagnostic {
     )
 }
 
-/// ``; did you mean `x`?`` for the closest known word, or nothing.
+/// ``; did you mean `x`?`` for the closest known word, or nothing. Where one word is known the
+/// message names it already.
 pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
+    if known.len() < 2 {
+        return String::new();
+    }
     nearest(word, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
 }
 

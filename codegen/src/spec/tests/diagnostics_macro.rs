@@ -77,7 +77,6 @@ fn other_stages() -> BTreeSet<Code> {
         Code::ResistanceOutsideStableRange,
         Code::Unstable,
         Code::WordTooNarrow,
-        Code::CoefficientOutOfRange,
         Code::Internal,
     ]
     .into()
