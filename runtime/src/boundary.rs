@@ -85,6 +85,13 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// The word of the state that stands for this fault.
+    #[inline]
+    #[must_use]
+    pub const fn word(self) -> Word {
+        Word(self as i32)
+    }
+
     /// The fault that a word of the state stands for; words that stand for none count as
     /// [`Fault::None`].
     #[inline]

@@ -56,14 +56,14 @@ impl Word {
     /// The lower half, for words that are known to fit 16 signed bits.
     #[inline(always)]
     #[must_use]
-    pub fn to_i16(self) -> i16 {
+    pub const fn to_i16(self) -> i16 {
         self.0 as i16
     }
 
     /// The lower half, for words that are known to lie in 0..=65535.
     #[inline(always)]
     #[must_use]
-    pub fn to_u16(self) -> u16 {
+    pub const fn to_u16(self) -> u16 {
         self.0 as u16
     }
 }

@@ -239,7 +239,7 @@ fn constants(spec: &Spec, design: &LoopDesign, stable: Option<StableRange>) -> V
         fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
         fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
         fixed("TORQUE_CONSTANT", spec.torque_constant(), "Nm/A", "Torque per ampere of set-point, k_t"),
-        fixed("POLE", design.plant.pole, "A/A", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
+        fixed("POLE", design.plant.pole, "", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
         fixed("GAIN", design.plant.gain, "A/V", "Gain b of the discrete plant"),
         fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),
         vectors(

@@ -29,7 +29,7 @@ fn trim_zeros(text: &str) -> String {
 }
 
 /// `value` in `unit` with the prefix that leaves one to three digits before the point,
-/// e.g. `engineering(0.135, "ohm")` is `135 mohm`.
+/// e.g. `engineering(0.135, "ohm")` is `135 mohm`. A number without unit takes no prefix.
 pub fn engineering(value: f64, unit: &str) -> String {
     const PREFIXES: [(i32, &str); 8] = [
         (-12, "p"),
@@ -41,6 +41,9 @@ pub fn engineering(value: f64, unit: &str) -> String {
         (6, "M"),
         (9, "G"),
     ];
+    if unit.is_empty() {
+        return significant(value);
+    }
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}");
     }
@@ -111,6 +114,7 @@ mod tests {
             (20_000.0, "Hz", "20 kHz"),
             (48.0, "V", "48 V"),
             (1e-13, "F", "0.1 pF"),
+            (0.969_784_1, "", "0.9698"),
         ] {
             assert_eq!(engineering(value, unit), text);
         }

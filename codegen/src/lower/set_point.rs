@@ -166,11 +166,12 @@ fn set_j(
 ) -> Function {
     let bits = bits.clamp(0.0, f64::from(i32::MAX)) as i32;
     let range = lowering.b.program.params[j.index()].interval;
-    let mut b = FunctionBuilder::new(
-        lowering.b.program,
-        name,
-        &["Sets the set-point; saturates at the largest of the specification."],
-    );
+    let quantity = match name {
+        "set_torque" => "torque in newton metres",
+        _ => "current in amperes, peak of the quasi-square wave",
+    };
+    let doc = format!("Sets the {quantity}; saturates at {physical} to both sides.");
+    let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc]);
     b.stage(
         name,
         &["Clamps the set-point and turns it into the voltage K i_ref."],

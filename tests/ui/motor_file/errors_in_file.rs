@@ -1,4 +1,4 @@
-use hexagen::{Drive, controller};
+use hexagen::controller;
 
 controller! {
     pub Hub {

@@ -88,3 +88,57 @@ fn drives_know_their_motors() {
     assert!(<RearHub as Drive>::SPEC.contains("pole_pairs = 4"));
     assert!(<Steering as Drive>::SPEC.contains("modulation = \"pair\""));
 }
+
+/// Motors named like the types that emitted code uses, and like a word of the language.
+mod motors_of_any_name {
+    use hexagen::controller;
+
+    macro_rules! drives {
+        ($($name:ident)*) => {$(
+            controller! {
+                pub $name {
+                    motor: "motors/hub.toml",
+                    inverter: {
+                        bus_voltage: 48 V,
+                        f_pwm: 20 kHz,
+                        timer_clock: 72 MHz,
+                        adc_bits: 12,
+                        adc_range: 40 A,
+                    },
+                    controller: pdcc { emf: model },
+                }
+            }
+        )*};
+    }
+
+    drives! {
+        ControlLoop Default DoubleBuffer Drive Fault Format I16F16 LegState Legs Loop Mode Rounding
+        Sample SetPoint State TrackRotorResults Word
+    }
+}
+
+#[test]
+fn a_motor_may_be_named_like_a_type_of_emitted_code() {
+    assert!(run(&mut motors_of_any_name::Drive::new(), 5).contains(&LegState::Pulsed));
+    assert!(run(&mut motors_of_any_name::Word::default(), 5).contains(&LegState::Pulsed));
+    assert!(run(&mut motors_of_any_name::Legs::new(), 5).contains(&LegState::Pulsed));
+    assert_eq!(<motors_of_any_name::Drive as Drive>::NAME, "Drive");
+    assert_eq!(<motors_of_any_name::State as Drive>::NAME, "State");
+}
+
+#[test]
+fn the_owner_of_a_drive_needs_neither_its_halves_nor_the_trait() {
+    let mut drive = const { motors_of_any_name::Mode::new() };
+    drive.set_current(I16F16::from_num(5));
+    drive.set_torque(I16F16::from_num(1));
+    drive.precharge();
+    assert!(!drive.is_running());
+    assert_eq!(drive.step(2048, 2048, 1).state, [LegState::Low; 3]);
+    drive.calibrate();
+    assert_eq!(drive.step(2048, 2048, 1).state, [LegState::Off; 3]);
+    drive.step(2048, 2048, 0);
+    assert_eq!(drive.fault(), Fault::Hall);
+    drive.reset();
+    assert!(drive.is_running());
+    assert_eq!(drive.fault(), Fault::None);
+}

@@ -4,11 +4,21 @@
 //! dividends that provably fit 32 bits take the `_narrow` helpers.
 
 use super::groups::Shape;
-use super::names::{loaded, number, screaming, snake};
+use super::names::{loaded, number, screaming, snake, stored};
 use super::plan::Context;
-use crate::ir::{Comparison, Interval, Node, Op, Value};
+use crate::ir::{Comparison, Interval, Node, Op, Value, Word};
 use proc_macro2::TokenStream;
 use quote::quote;
+
+/// A number as the state word keeps it.
+pub(super) fn initial(word: &Word, raw: i32) -> TokenStream {
+    let literal = number(i64::from(raw));
+    match Shape::of_state(word).constant(raw) {
+        Some(constant) => stored(word, &constant),
+        None if word.storage_bits == 16 => literal,
+        None => quote!(Word(#literal)),
+    }
+}
 
 /// How tightly an expression binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,18 +96,24 @@ impl<'a> Scope<'a> {
     }
 
     fn in_shape(&self, value: Value, shape: Shape) -> Expression {
+        let named = |literal| shape.constant(literal);
+        if let Some(constant) = self.literal(value).and_then(named) {
+            return Expression::atom(constant);
+        }
         if shape != Shape::Leg || self.context.shape(value) == Shape::Leg {
             return self.value(value);
         }
-        Expression::atom(match self.literal(value) {
-            Some(0) => quote!(LegState::Pulsed),
-            Some(1) => quote!(LegState::Low),
-            Some(_) => quote!(LegState::Off),
-            None => {
-                let word = self.whole(value);
-                quote!(LegState::from_word(#word))
-            }
-        })
+        let word = self.whole(value);
+        Expression::atom(quote!(LegState::from_word(#word)))
+    }
+
+    /// A value as the state word keeps it.
+    pub(super) fn kept(&self, word: &Word, value: Value) -> TokenStream {
+        let shape = Shape::of_state(word);
+        match self.literal(value) {
+            Some(literal) => initial(word, literal),
+            None => stored(word, &self.in_shape(value, shape).within(Binding::Atom)),
+        }
     }
 
     /// What the `let` of a named value binds.
@@ -325,8 +341,12 @@ impl<'a> Scope<'a> {
             (Comparison::LessEqual, false) => quote!(<=),
             (Comparison::LessEqual, true) => quote!(>=),
         };
+        let named = |literal| self.context.shape(left).constant(literal);
+        let right = match self.literal(right).and_then(named) {
+            Some(constant) => constant,
+            None => self.right(right, Binding::Sum),
+        };
         let left = self.value(left).within(Binding::Sum);
-        let right = self.right(right, Binding::Sum);
         Expression::new(quote!(#left #operator #right), Binding::Compare)
     }
 

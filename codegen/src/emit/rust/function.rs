@@ -2,7 +2,7 @@
 
 use super::expression::Scope;
 use super::groups::Shape;
-use super::names::{docs, loaded, number, snake, stored};
+use super::names::{docs, loaded, number, snake};
 use super::plan::Context;
 use super::stage::{StageFunction, output};
 use crate::ir::{Function, Op, Program, Value, Word};
@@ -13,6 +13,16 @@ use quote::quote;
 pub(super) struct Emitted {
     /// The function itself.
     pub main: TokenStream,
+    /// Its stages, in order of their calls.
+    pub stages: TokenStream,
+}
+
+/// A setter of set-point words.
+pub(super) struct Setter {
+    /// The method of the set-point.
+    pub method: TokenStream,
+    /// The method of the drive, which calls it.
+    pub delegate: TokenStream,
     /// Its stages, in order of their calls.
     pub stages: TokenStream,
 }
@@ -128,10 +138,7 @@ fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> TokenStrea
     }
     let writes = kept.iter().map(|&(word, value)| {
         let field = snake(&word.name);
-        let value = match named.literal(value) {
-            Some(literal) if word.storage_bits == 16 => number(i64::from(literal)),
-            _ => stored(word, &named.receiver(value)),
-        };
+        let value = named.kept(word, value);
         quote!(state.#field = #value;)
     });
     quote!(#reads #(#writes)*)
@@ -139,7 +146,7 @@ fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> TokenStrea
 
 /// A setter: a method of the set-point. Stages of a setter that has several become functions named
 /// after it.
-pub(super) fn emit_setter(program: &Program, function: &Function) -> Emitted {
+pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
     let context = Context::new(program, function);
     let plans = context.plan();
     let single = matches!(plans.as_slice(), [only] if only.stage.guard.is_none());
@@ -188,15 +195,25 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Emitted {
             let words = param_pattern(program, function);
             quote!(let #words = self.words.read();)
         });
-    let (argument, conversion) = setter_argument(function);
+    let Arguments {
+        typed,
+        names,
+        conversion,
+    } = setter_arguments(function);
     let (name, doc) = (snake(&function.name), docs(&function.doc));
-    let main = quote! {
+    let method = quote! {
         #doc
-        pub fn #name(&self, #argument) {
+        pub fn #name(&self, #typed) {
             #conversion
             #reads
             #body
             self.words.update(|[#(#slots),*]| #update);
+        }
+    };
+    let delegate = quote! {
+        #doc
+        pub fn #name(&self, #typed) {
+            self.set_point.#name(#names);
         }
     };
     let stages = if single {
@@ -204,7 +221,11 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Emitted {
     } else {
         stages.iter().map(StageFunction::definition).collect()
     };
-    Emitted { main, stages }
+    Setter {
+        method,
+        delegate,
+        stages,
+    }
 }
 
 /// The place of a set-point word in the buffer, besides the value of its name.
@@ -212,8 +233,17 @@ fn slot(word: &Word) -> proc_macro2::Ident {
     snake(&format!("{}_word", word.name))
 }
 
-/// The arguments of a setter, and what makes words of them.
-fn setter_argument(function: &Function) -> (TokenStream, TokenStream) {
+/// The arguments of a setter.
+struct Arguments {
+    /// With their types.
+    typed: TokenStream,
+    /// Without.
+    names: TokenStream,
+    /// What makes words of them.
+    conversion: TokenStream,
+}
+
+fn setter_arguments(function: &Function) -> Arguments {
     let quantity = match function.name.as_str() {
         "set_current" => Some(snake("current")),
         "set_torque" => Some(snake("torque")),
@@ -221,10 +251,11 @@ fn setter_argument(function: &Function) -> (TokenStream, TokenStream) {
     };
     if let (Some(quantity), [input]) = (quantity, function.inputs.as_slice()) {
         let name = snake(&input.name);
-        return (
-            quote!(#quantity: I16F16),
-            quote!(let #name = Word(#quantity.to_bits());),
-        );
+        return Arguments {
+            typed: quote!(#quantity: I16F16),
+            names: quote!(#quantity),
+            conversion: quote!(let #name = Word(#quantity.to_bits());),
+        };
     }
     let names: Vec<_> = function
         .inputs
@@ -235,10 +266,11 @@ fn setter_argument(function: &Function) -> (TokenStream, TokenStream) {
         let narrow = input.interval.low >= 0 && input.interval.high <= i64::from(u16::MAX);
         if narrow { quote!(u16) } else { quote!(i32) }
     });
-    (
-        quote!(#(#names: #types),*),
-        quote!(#(let #names = Word::from(#names);)*),
-    )
+    Arguments {
+        typed: quote!(#(#names: #types),*),
+        names: quote!(#(#names),*),
+        conversion: quote!(#(let #names = Word::from(#names);)*),
+    }
 }
 
 /// A state word read at its place, for methods of the state.

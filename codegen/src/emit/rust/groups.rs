@@ -4,6 +4,7 @@
 //! they mean. Grouping looks at names and kinds alone; it is the same on both sides of a call.
 
 use super::names::snake;
+use crate::ir::Word;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -15,10 +16,54 @@ pub(super) const ARGUMENTS: usize = 7;
 pub(super) enum Shape {
     /// `Word`
     Word,
+    /// `Word`: what the drive is doing, a constant of `hexagen::mode`.
+    Mode,
+    /// `Word`: what tripped the drive, a `Fault` as a word.
+    Fault,
     /// `bool`
     Flag,
     /// `LegState`: a word that does nothing but leave the step as the state of a leg.
     Leg,
+}
+
+impl Shape {
+    /// The shape of a state word.
+    pub(super) fn of_state(word: &Word) -> Self {
+        match word.name.as_str() {
+            "mode" => Self::Mode,
+            "fault" => Self::Fault,
+            _ => Self::Word,
+        }
+    }
+
+    /// The name of a number that has one in this shape.
+    pub(super) fn constant(self, number: i32) -> Option<TokenStream> {
+        let constant = match (self, number) {
+            (Self::Mode, 0) => quote!(mode::RUN),
+            (Self::Mode, 1) => quote!(mode::CALIBRATE),
+            (Self::Mode, 2) => quote!(mode::PRECHARGE),
+            (Self::Mode, 3) => quote!(mode::TRIPPED),
+            (Self::Fault, 0) => quote!(Fault::None.word()),
+            (Self::Fault, 1) => quote!(Fault::AdcRange.word()),
+            (Self::Fault, 2) => quote!(Fault::OverCurrent.word()),
+            (Self::Fault, 3) => quote!(Fault::Hall.word()),
+            (Self::Fault, 4) => quote!(Fault::Stall.word()),
+            (Self::Leg, 0) => quote!(LegState::Pulsed),
+            (Self::Leg, 1) => quote!(LegState::Low),
+            (Self::Leg, _) => quote!(LegState::Off),
+            _ => return None,
+        };
+        Some(constant)
+    }
+
+    /// Whether a `Word` holds it.
+    pub(super) fn is_word(self) -> bool {
+        matches!(self, Self::Word | Self::Mode | Self::Fault)
+    }
+
+    fn shares_type(self, other: Self) -> bool {
+        self == other || self.is_word() && other.is_word()
+    }
 }
 
 /// A named value.
@@ -72,8 +117,9 @@ pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
         for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
             if groups.len() > limit {
-                let fits =
-                    |group: &Group| group.shape == shape && (!singles || group.members.len() == 1);
+                let fits = |group: &Group| {
+                    group.shape.shares_type(shape) && (!singles || group.members.len() == 1)
+                };
                 let members: Vec<usize> = groups
                     .iter()
                     .filter(|group| fits(group))
@@ -135,7 +181,7 @@ impl Group {
 /// `Word`, `bool` or `LegState`.
 pub(super) fn rust_type(shape: Shape) -> TokenStream {
     match shape {
-        Shape::Word => quote!(Word),
+        Shape::Word | Shape::Mode | Shape::Fault => quote!(Word),
         Shape::Flag => quote!(bool),
         Shape::Leg => quote!(LegState),
     }

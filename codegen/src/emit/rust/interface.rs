@@ -1,6 +1,8 @@
 //! The emitted types: the drive, its two halves, its state, and the trait that all drives share.
 
-use super::function::{Emitted, state_word};
+use super::expression::initial;
+use super::function::{Setter, state_word};
+use super::imports::PLACEHOLDER;
 use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type, stored};
 use crate::interface::{Interface, PublicConstant, PublicValue, Rounding};
 use crate::ir::{Input, Program, Word};
@@ -17,8 +19,10 @@ pub(super) struct Types<'a> {
 
 impl Types<'_> {
     /// The drive: set-point and state together.
-    pub(super) fn drive(&self, attributes: &TokenStream) -> TokenStream {
-        let name = self.name;
+    pub(super) fn drive(&self, attributes: &TokenStream, setters: &[Setter]) -> TokenStream {
+        let name = format_ident!("{PLACEHOLDER}");
+        let setters = setters.iter().map(|setter| &setter.delegate);
+        let commands = commands();
         let docs = docs(&self.interface.doc);
         let constants = self.interface.constants.iter().map(public_constant);
         let measurements = self.measurements();
@@ -70,6 +74,9 @@ impl Types<'_> {
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
                     self.split().1.step(#(#names),*)
                 }
+
+                #(#setters)*
+                #commands
             }
 
             impl Default for #name {
@@ -81,8 +88,8 @@ impl Types<'_> {
     }
 
     /// The half that the main program writes.
-    pub(super) fn set_point(&self, setters: &[Emitted]) -> TokenStream {
-        let methods = setters.iter().map(|setter| &setter.main);
+    pub(super) fn set_point(&self, setters: &[Setter]) -> TokenStream {
+        let methods = setters.iter().map(|setter| &setter.method);
         let count = Literal::usize_unsuffixed(self.program.params.len());
         let words = self.program.params.iter().enumerate().map(|(index, word)| {
             doc(&format!(
@@ -119,8 +126,9 @@ impl Types<'_> {
             quote!(#name.into())
         });
         let step_docs = self.step_docs();
+        let commands = commands();
         quote! {
-            /// The stepping half of the drive.
+            /// The half of the drive that the control interrupt owns.
             #[derive(Debug)]
             pub struct ControlLoop<'drive> {
                 set_point: &'drive SetPoint,
@@ -134,33 +142,7 @@ impl Types<'_> {
                     step(self.state, self.set_point.words.read(), #(#words),*)
                 }
 
-                /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
-                pub fn reset(&mut self) {
-                    self.state.reset();
-                }
-
-                /// Starts current-offset calibration: all legs off, the motor at rest. Ignored
-                /// when tripped.
-                pub fn calibrate(&mut self) {
-                    self.state.calibrate();
-                }
-
-                /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped.
-                pub fn precharge(&mut self) {
-                    self.state.precharge();
-                }
-
-                /// Why the drive is tripped, or [`Fault::None`].
-                #[must_use]
-                pub fn fault(&self) -> Fault {
-                    self.state.fault()
-                }
-
-                /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
-                #[must_use]
-                pub fn is_running(&self) -> bool {
-                    self.state.is_running()
-                }
+                #commands
             }
         }
     }
@@ -175,12 +157,8 @@ impl Types<'_> {
         });
         let initial = words.iter().map(|word| {
             let name = snake(&word.name);
-            let value = number(i64::from(word.initial));
-            if word.storage_bits == 16 {
-                quote!(#name: #value)
-            } else {
-                quote!(#name: Word(#value))
-            }
+            let value = initial(word, word.initial);
+            quote!(#name: #value)
         });
         let kept = ["offset_a", "offset_b"]
             .into_iter()
@@ -255,8 +233,8 @@ impl Types<'_> {
 
     /// The trait that all drives share.
     pub(super) fn drive_trait(&self) -> TokenStream {
-        let name = self.name;
-        let name_text = name.to_string();
+        let name = format_ident!("{PLACEHOLDER}");
+        let name_text = self.name.to_string();
         let spec = raw_text(&self.interface.spec_toml);
         let formats = self.interface.formats.iter().map(|entry| {
             let name = &entry.name;
@@ -316,33 +294,33 @@ impl Types<'_> {
                 }
 
                 fn set_current(&self, current: I16F16) {
-                    self.set_point.set_current(current);
+                    self.set_current(current);
                 }
 
                 fn set_torque(&self, torque: I16F16) {
-                    self.set_point.set_torque(torque);
+                    self.set_torque(torque);
                 }
 
                 #set_bus
 
                 fn reset(&mut self) {
-                    self.state.reset();
+                    self.reset();
                 }
 
                 fn calibrate(&mut self) {
-                    self.state.calibrate();
+                    self.calibrate();
                 }
 
                 fn precharge(&mut self) {
-                    self.state.precharge();
+                    self.precharge();
                 }
 
                 fn fault(&self) -> Fault {
-                    self.state.fault()
+                    self.fault()
                 }
 
                 fn is_running(&self) -> bool {
-                    self.state.is_running()
+                    self.is_running()
                 }
 
                 fn state_word(&self, index: usize) -> i32 {
@@ -417,7 +395,9 @@ impl Types<'_> {
 
     fn step_docs(&self) -> TokenStream {
         let mut lines = vec![
-            "Runs one control period: takes this period's measurements, returns the command that takes effect at its end.".to_owned(),
+            "Runs one control period: takes the measurements of its start, returns the inverter's command.".to_owned(),
+            String::new(),
+            "The command takes effect as many periods later as `delay` in [`Drive::SPEC`] says.".to_owned(),
             String::new(),
         ];
         lines.extend(
@@ -429,6 +409,40 @@ impl Types<'_> {
                 }),
         );
         docs(&lines)
+    }
+}
+
+/// What both the drive and its control loop let their owner do, besides stepping.
+fn commands() -> TokenStream {
+    quote! {
+        /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
+        pub fn reset(&mut self) {
+            self.state.reset();
+        }
+
+        /// Starts current-offset calibration: all legs off, the motor at rest. Ignored
+        /// when tripped.
+        pub fn calibrate(&mut self) {
+            self.state.calibrate();
+        }
+
+        /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, and where
+        /// the specification has no pre-charge.
+        pub fn precharge(&mut self) {
+            self.state.precharge();
+        }
+
+        /// What tripped the drive, or [`Fault::None`].
+        #[must_use]
+        pub fn fault(&self) -> Fault {
+            self.state.fault()
+        }
+
+        /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+        #[must_use]
+        pub fn is_running(&self) -> bool {
+            self.state.is_running()
+        }
     }
 }
 

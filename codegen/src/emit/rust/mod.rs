@@ -8,6 +8,7 @@ mod expression;
 mod format;
 mod function;
 mod groups;
+mod imports;
 mod interface;
 mod names;
 mod plan;
@@ -16,14 +17,14 @@ mod stage;
 pub use format::{format_rust, rustfmt};
 pub use names::module_name;
 
-use crate::interface::{Interface, PublicValue};
+use crate::interface::Interface;
 use crate::ir::{PathCost, Program, Table, VerifiedGraph};
 use function::{emit_setter, emit_step};
+use imports::{imports, settle};
 use interface::Types;
-use names::{HELPERS, docs, identifiers, inner_docs, number, screaming};
+use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
-use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// How the emitted type appears to the code around it.
@@ -63,10 +64,9 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     let types = Types {
         program,
         interface,
-
         name: &surface.name,
     };
-    let drive = types.drive(&surface.type_attributes);
+    let drive = types.drive(&surface.type_attributes, &setters);
     let set_point = types.set_point(&setters);
     let control_loop = types.control_loop();
     let (step_main, step_stages) = (&step.main, &step.stages);
@@ -85,7 +85,8 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     };
     let names = identifiers(&body);
     let constants = constants(program, &names);
-    let imports = imports(&names, interface);
+    let imports = imports(&names, interface, &surface.name);
+    let items = settle(quote!(#constants #body), &surface.name);
     let header = inner_docs(&header(program, interface));
     let Surface {
         name,
@@ -93,7 +94,7 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
         attributes,
         ..
     } = surface;
-    let module = Ident::new(&module_name(&name.to_string()), Span::call_site());
+    let module = module_ident(&name.to_string());
     quote! {
         #attributes
         #visibility use #module::#name;
@@ -102,8 +103,7 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
         #visibility mod #module {
             #header
             #imports
-            #constants
-            #body
+            #items
         }
     }
 }
@@ -153,58 +153,4 @@ fn emit_table(table: &Table) -> TokenStream {
     let count = Literal::usize_unsuffixed(table.values.len());
     let values = table.values.iter().map(|&value| number(i64::from(value)));
     quote!(#doc static #name: [#element; #count] = [#(#values),*];)
-}
-
-fn imports(names: &BTreeSet<String>, interface: &Interface) -> TokenStream {
-    let helpers = HELPERS
-        .iter()
-        .filter(|&&helper| names.contains(helper))
-        .map(|helper| Ident::new(helper, Span::call_site()));
-    let helpers: Vec<Ident> = helpers.collect();
-    let arith = if helpers.is_empty() {
-        quote!(Word)
-    } else {
-        quote!({Word, #(#helpers),*})
-    };
-    // In the order of their integer bits, as rustfmt has them.
-    let mut frac_bits: BTreeSet<Reverse<u32>> = interface
-        .constants
-        .iter()
-        .filter_map(|constant| match constant.value {
-            PublicValue::Fixed { frac_bits, .. } | PublicValue::Vectors { frac_bits, .. } => {
-                Some(Reverse(frac_bits))
-            }
-            _ => None,
-        })
-        .collect();
-    // The set-point's type.
-    frac_bits.insert(Reverse(16));
-    let fixed: Vec<Ident> = frac_bits
-        .iter()
-        .map(|&Reverse(frac_bits)| interface::fixed_type(frac_bits))
-        .collect();
-    let fixed = match fixed.as_slice() {
-        [single] => quote!(#single),
-        many => quote!({ #(#many),* }),
-    };
-    let shared = [
-        "DoubleBuffer",
-        "Drive",
-        "Fault",
-        "Format",
-        "LegState",
-        "Legs",
-        "Rounding",
-        "Sample",
-        "mode",
-    ];
-    let shared = shared
-        .into_iter()
-        .filter(|name| names.contains(*name))
-        .map(|name| Ident::new(name, Span::call_site()));
-    quote! {
-        use ::hexagen::arith::#arith;
-        use ::hexagen::fixed::types::#fixed;
-        use ::hexagen::{#(#shared),*};
-    }
 }

@@ -2,7 +2,7 @@
 
 use crate::ir::Word;
 use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
-use quote::quote;
+use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
@@ -20,22 +20,31 @@ pub(super) const HELPERS: [&str; 11] = [
     "turn_over",
 ];
 
-/// What else a local name would hide or clash with: words of the language, and names that the
-/// emitted functions use themselves.
-const RESERVED: [&str; 42] = [
-    "as", "async", "await", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
-    "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
-    "match", "mod", "move", "mut", "pub", "ref", "return", "self", "state", "static", "step",
-    "struct", "super", "trait", "true", "type", "unsafe", "use", "where",
-];
+/// What else a local name would hide: names that the emitted functions use themselves.
+const RESERVED: [&str; 2] = ["state", "step"];
 
 /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind
 /// it where that name is taken.
 pub(super) fn snake(name: &str) -> Ident {
-    if RESERVED.contains(&name) || HELPERS.contains(&name) {
+    if RESERVED.contains(&name) || HELPERS.contains(&name) || is_keyword(name) {
         Ident::new(&format!("{name}_"), Span::call_site())
     } else {
         Ident::new(name, Span::call_site())
+    }
+}
+
+/// Whether the language keeps the word for itself.
+fn is_keyword(name: &str) -> bool {
+    syn::parse_str::<Ident>(name).is_err()
+}
+
+/// The identifier of a type's module: `loop_` for `Loop`.
+pub(super) fn module_ident(type_name: &str) -> Ident {
+    let name = module_name(type_name);
+    if is_keyword(&name) {
+        format_ident!("{name}_")
+    } else {
+        format_ident!("{name}")
     }
 }
 
@@ -193,13 +202,14 @@ fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{camel, module_name, number, raw_text};
+    use super::{camel, module_ident, module_name, number, raw_text};
 
     #[test]
     fn names_convert_between_cases() {
         assert_eq!(module_name("HubDrive"), "hub_drive");
         assert_eq!(module_name("BLDC42Drive"), "bldc_42_drive");
         assert_eq!(module_name("PMDrive"), "pm_drive");
+        assert_eq!(module_ident("Loop"), "loop_");
         assert_eq!(camel("track_rotor"), "TrackRotor");
     }
 

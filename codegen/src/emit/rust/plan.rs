@@ -6,7 +6,7 @@
 
 use super::groups::{Shape, Signal};
 use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Who uses a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,7 @@ pub(super) struct Context<'a> {
     pub function: &'a Function,
     users: Vec<Vec<User>>,
     legs: BTreeSet<Value>,
+    codes: BTreeMap<Value, Shape>,
 }
 
 /// A value that leaves a stage.
@@ -74,11 +75,13 @@ impl<'a> Context<'a> {
     pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
         let users = users(function);
         let legs = legs(function, &users);
+        let codes = codes(program, function);
         Self {
             program,
             function,
             users,
             legs,
+            codes,
         }
     }
 
@@ -96,7 +99,7 @@ impl<'a> Context<'a> {
         match self.function.node(value).kind {
             Kind::Flag => Shape::Flag,
             Kind::Word if self.legs.contains(&value) => Shape::Leg,
-            Kind::Word => Shape::Word,
+            Kind::Word => self.codes.get(&value).copied().unwrap_or(Shape::Word),
         }
     }
 
@@ -238,4 +241,33 @@ fn legs(function: &Function, users: &[Vec<User>]) -> BTreeSet<Value> {
         }
     }
     legs
+}
+
+/// The modes and faults: the state words themselves, and all choices that end in them.
+fn codes(program: &Program, function: &Function) -> BTreeMap<Value, Shape> {
+    let shape = |state: StateId| Shape::of_state(&program.states[state.index()]);
+    let read = function.nodes.iter().enumerate();
+    let read = read.filter_map(|(index, node)| match node.op {
+        Op::State(state) => Some((Value(index as u32), shape(state))),
+        _ => None,
+    });
+    let written = function.next_state.iter();
+    let mut open: Vec<(Value, Shape)> = written
+        .map(|&(state, value)| (value, shape(state)))
+        .chain(read)
+        .filter(|&(_, shape)| shape != Shape::Word)
+        .collect();
+    let mut codes = BTreeMap::new();
+    while let Some((value, shape)) = open.pop() {
+        match function.node(value).op {
+            Op::Select {
+                then, otherwise, ..
+            } => open.extend([(then, shape), (otherwise, shape)]),
+            Op::Join { taken, otherwise } => open.extend([(taken, shape), (otherwise, shape)]),
+            Op::State(_) => {}
+            _ => continue,
+        }
+        codes.insert(value, shape);
+    }
+    codes
 }

@@ -1,8 +1,8 @@
 //! One stage as one function, and its call.
 
 use super::expression::Scope;
-use super::groups::{ARGUMENTS, Group, Shape, Signal, bundle, group, rust_type};
-use super::names::{camel, docs, loaded, number, snake, stored};
+use super::groups::{ARGUMENTS, Group, Signal, bundle, group, rust_type};
+use super::names::{camel, docs, loaded, snake};
 use super::plan::{Context, Outcome, StagePlan};
 use crate::ir::{Function, Op, StateId, Value, Word};
 use proc_macro2::{Ident, Span, TokenStream};
@@ -235,10 +235,7 @@ impl<'a> StageFunction<'a> {
         for &(state, value) in &self.plan.stores {
             let word = self.word(state);
             let field = snake(&word.name);
-            let value = match scope.literal(value) {
-                Some(literal) if word.storage_bits == 16 => number(i64::from(literal)),
-                _ => stored(word, &scope.receiver(value)),
-            };
+            let value = scope.kept(word, value);
             statements.push(quote!(state.#field = #value;));
         }
         let (result, tail) = self.result(&mut statements);
@@ -316,7 +313,7 @@ impl<'a> StageFunction<'a> {
             for &member in &group.members {
                 let outcome = &self.plan.outcomes[member];
                 let node = self.context.function.node(outcome.value);
-                if outcome.signal.shape == Shape::Word && !matches!(node.op, Op::Literal(_)) {
+                if outcome.signal.shape.is_word() && !matches!(node.op, Op::Literal(_)) {
                     let name = format!("`{}`", snake(&outcome.signal.name));
                     let range = node.interval.to_string();
                     match ranges.iter_mut().find(|(_, known)| *known == range) {

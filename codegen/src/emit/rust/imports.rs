@@ -1,0 +1,130 @@
+//! The names of a module that come from outside, and what happens where the user's type has one of
+//! them.
+//!
+//! Emitted code uses short names: `Word`, `Legs`, `Drive`. A motor may be called like that, too;
+//! then its type has the name, and the other item is `HexagenWord` in this one module.
+
+use super::interface::fixed_type;
+use super::names::HELPERS;
+use crate::interface::{Interface, PublicValue};
+use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+/// Stands for the user's type until its name is settled against all others.
+pub(super) const PLACEHOLDER: &str = "EmittedDrive";
+
+/// Items of the runtime crate's root.
+const SHARED: [&str; 9] = [
+    "DoubleBuffer",
+    "Drive",
+    "Fault",
+    "Format",
+    "LegState",
+    "Legs",
+    "Rounding",
+    "Sample",
+    "mode",
+];
+
+/// Types that the module defines beside the user's; besides them the results of large stages.
+const OWN: [&str; 3] = ["ControlLoop", "SetPoint", "State"];
+
+/// Gives the user's type its name, and every other type of that name in `body` another one.
+pub(super) fn settle(body: TokenStream, name: &Ident) -> TokenStream {
+    let taken = name.to_string();
+    let clashes = taken == "Word"
+        || taken == "Default"
+        || SHARED.contains(&&*taken)
+        || OWN.contains(&&*taken)
+        || taken.ends_with("Results")
+        || is_fixed(&taken);
+    let alias = clashes.then(|| alias(&taken));
+    replace(body, name, alias.as_ref())
+}
+
+fn replace(tokens: TokenStream, name: &Ident, alias: Option<&Ident>) -> TokenStream {
+    tokens
+        .into_iter()
+        .map(|token| match (token, alias) {
+            (TokenTree::Ident(ident), _) if ident == PLACEHOLDER => TokenTree::Ident(name.clone()),
+            (TokenTree::Ident(ident), Some(alias)) if ident == *name => alias.clone().into(),
+            // Links of the documentation follow.
+            (TokenTree::Literal(literal), Some(alias)) => {
+                let text = literal.to_string();
+                let link = format!("[`{name}::");
+                let text = text.replace(&link, &format!("[`{alias}::"));
+                TokenTree::Literal(text.parse().unwrap_or(literal))
+            }
+            (TokenTree::Group(group), _) => {
+                let mut replaced =
+                    Group::new(group.delimiter(), replace(group.stream(), name, alias));
+                replaced.set_span(group.span());
+                replaced.into()
+            }
+            (token, _) => token,
+        })
+        .collect()
+}
+
+fn alias(name: &str) -> Ident {
+    format_ident!("Hexagen{name}")
+}
+
+/// Whether the name is that of a `fixed` type of 32 bits, as [`fixed_type`] gives them.
+fn is_fixed(name: &str) -> bool {
+    (0..=32).any(|frac_bits| fixed_type(frac_bits) == name)
+}
+
+/// The imports of a body that holds `names`; `name` is the user's type.
+pub(super) fn imports(
+    names: &BTreeSet<String>,
+    interface: &Interface,
+    name: &Ident,
+) -> TokenStream {
+    let import = |item: &str| {
+        let ident = Ident::new(item, Span::call_site());
+        if *name == item {
+            let alias = alias(item);
+            quote!(#ident as #alias)
+        } else {
+            quote!(#ident)
+        }
+    };
+    let list = |items: Vec<TokenStream>| match items.as_slice() {
+        [single] => single.clone(),
+        many => quote!({ #(#many),* }),
+    };
+    let used = |item: &&str| names.contains(*item);
+    let arith = std::iter::once("Word").chain(HELPERS.into_iter().filter(used));
+    let arith = list(arith.map(import).collect());
+    // In the order of their integer bits, as rustfmt has them.
+    let mut frac_bits: BTreeSet<Reverse<u32>> = interface
+        .constants
+        .iter()
+        .filter_map(|constant| match constant.value {
+            PublicValue::Fixed { frac_bits, .. } | PublicValue::Vectors { frac_bits, .. } => {
+                Some(Reverse(frac_bits))
+            }
+            _ => None,
+        })
+        .collect();
+    // The set-point's type.
+    frac_bits.insert(Reverse(16));
+    let fixed = frac_bits
+        .into_iter()
+        .map(|Reverse(frac_bits)| import(&fixed_type(frac_bits).to_string()));
+    let fixed = list(fixed.collect());
+    let shared = list(SHARED.into_iter().filter(used).map(import).collect());
+    let standard = (*name == "Default").then(|| {
+        let import = import("Default");
+        quote!(use ::core::default::#import;)
+    });
+    quote! {
+        #standard
+        use ::hexagen::arith::#arith;
+        use ::hexagen::fixed::types::#fixed;
+        use ::hexagen::#shared;
+    }
+}
