@@ -48,7 +48,7 @@ impl Variant {
         let estimated = emf == Some(EmfSource::Estimated);
         Self {
             options,
-            rotor: options.emf == EmfSource::Model
+            rotor: emf == Some(EmfSource::Model)
                 || options.advance > 0.0
                 || options.reference == Reference::Proportional,
             commutation: spec.commutation_end().filter(|_| commutates),

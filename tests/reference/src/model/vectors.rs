@@ -99,7 +99,7 @@ mod tests {
         // V12 between V1 and V2, ..., V61 between V6 and V1: half their sum.
         for pair in FIRST_PAIR..FIRST_PAIR_ZERO {
             let (one, two) = (pair - 6, (pair - 6) % 6 + 1);
-            let middle = [0, 1, 2].map(|x| (sixths(one)[x] + sixths(two)[x]) / 2.0);
+            let middle = [0, 1, 2].map(|x| f64::midpoint(sixths(one)[x], sixths(two)[x]));
             assert_eq!(sixths(pair), middle);
         }
     }

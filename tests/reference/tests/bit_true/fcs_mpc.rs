@@ -25,8 +25,8 @@ fn fcs_mpc() -> impl Iterator<Item = (Variant, FcsMpc)> {
 /// Phase voltages of a vector in units of the bus, a leg that is off without voltage.
 fn voltage(vector: usize) -> [f64; 3] {
     let legs = LEGS[vector].as_bytes();
-    let driven = legs.iter().filter(|leg| **leg != b'0').count() as f64;
-    let high = legs.iter().filter(|leg| **leg == b'+').count() as f64;
+    let driven = 3.0 - LEGS[vector].matches('0').count() as f64;
+    let high = LEGS[vector].matches('+').count() as f64;
     [0, 1, 2].map(|x| match legs[x] {
         b'+' => 1.0 - high / driven,
         b'-' => -high / driven,
