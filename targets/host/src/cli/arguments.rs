@@ -154,22 +154,22 @@ pub struct PlantArguments {
     #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     pub dead_time: Option<f64>,
     /// Bits of the current ADCs, of plant and controller alike: the specification changes
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub adc_bits: Option<u32>,
     /// Range of the current ADCs, of plant and controller alike: the specification changes
-    #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text)]
+    #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text, allow_hyphen_values = true)]
     pub adc_range: Option<String>,
     /// True bus voltage; the controller reckons with the motor file's, or measures
     #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
     /// True over stated resistance
-    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_r: Option<f64>,
     /// True over stated inductance
-    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_l: Option<f64>,
     /// True over stated EMF constant
-    #[arg(long, value_name = "X", value_parser = quantity::number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_kb: Option<f64>,
     /// Placement error of the Hall sensors in electrical degrees: one angle for all three, or
     /// three for Ha, Hb and Hc; positive is late in forward rotation

@@ -41,9 +41,24 @@ fn split(text: &str) -> Option<(f64, &str)> {
     })
 }
 
+/// A value within a range of magnitudes, which the message names: what no motor has is a slip of
+/// the pen, and would take the simulation hours.
+fn within(value: f64, least: f64, most: f64, unit: &str) -> Result<f64, String> {
+    if (least..=most).contains(&value.abs()) {
+        Ok(value)
+    } else {
+        let range = if least > 0.0 {
+            format!("{least} to {most}")
+        } else {
+            format!("at most {most}")
+        };
+        Err(format!("{value:e} is out of range: {range}{unit}"))
+    }
+}
+
 /// Newton metres.
 pub(super) fn torque(text: &str) -> Result<f64, String> {
-    quantity(text, Dimension::Torque)
+    within(quantity(text, Dimension::Torque)?, 0.0, 1e5, " Nm")
 }
 
 /// Seconds.
@@ -53,7 +68,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
 
 /// Volts.
 pub(super) fn voltage(text: &str) -> Result<f64, String> {
-    quantity(text, Dimension::Voltage)
+    within(quantity(text, Dimension::Voltage)?, 0.0, 1e4, " V")
 }
 
 /// Amperes, kept as text: it goes into the specification.
@@ -63,13 +78,13 @@ pub(super) fn current_text(text: &str) -> Result<String, String> {
 
 /// kg m2.
 pub(super) fn inertia(text: &str) -> Result<f64, String> {
-    quantity(text, Dimension::Inertia)
+    within(quantity(text, Dimension::Inertia)?, 1e-9, 100.0, " kg m2")
 }
 
-/// A plain positive or negative number.
-pub(super) fn number(text: &str) -> Result<f64, String> {
+/// A true value over the stated one.
+pub(super) fn factor(text: &str) -> Result<f64, String> {
     match split(text.trim()) {
-        Some((number, "")) => Ok(number),
+        Some((number, "")) => within(number, 0.01, 100.0, " times the stated value"),
         _ => Err(format!("`{text}` is not a number")),
     }
 }
@@ -131,7 +146,15 @@ mod tests {
             voltage("48 v"),
             Err("unknown unit `v`; did you mean `V`?".to_owned())
         );
-        assert_eq!(number("1 A"), Err("`1 A` is not a number".to_owned()));
+        assert_eq!(factor("1 A"), Err("`1 A` is not a number".to_owned()));
+        assert_eq!(
+            factor("1e300"),
+            Err("1e300 is out of range: 0.01 to 100 times the stated value".to_owned())
+        );
+        assert_eq!(
+            torque("-1e300"),
+            Err("-1e300 is out of range: at most 100000 Nm".to_owned())
+        );
         assert!(hall_error("1,2").is_err());
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }

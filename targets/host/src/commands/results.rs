@@ -12,7 +12,7 @@ use crate::report::{
     Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SameWords,
     SignalError, Stability, StabilityCheck, Variant,
 };
-use hexagen_codegen::controllers::{EmfSource, StableRange, stable_range};
+use hexagen_codegen::controllers::{EmfSource, stable_range};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use rayon::prelude::*;
 use std::f64::consts::TAU;

@@ -66,8 +66,18 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
 /// Most control periods of a run: their record takes a few hundred megabytes.
 const MOST_PERIODS: usize = 2_000_000;
 
+/// Fewest control periods of an electrical turn: one per sector.
+const LEAST_PERIODS_PER_TURN: f64 = 6.0;
+
 /// Whether the run's electrical turns fit into the record of a run.
 fn check_duration(run: &RunOptions, plant: &PlantParams, rpm: f64) -> Result<(), Failure> {
+    let pole_pairs = f64::from(plant.pole_pairs);
+    let most = 60.0 / (LEAST_PERIODS_PER_TURN * plant.t_s * pole_pairs);
+    if rpm.abs() > most {
+        return Err(Failure::Argument(format!(
+            "--rpm {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {most:.0} rpm"
+        )));
+    }
     let (settling, measured) = run.periods(plant);
     let periods = settling.saturating_add(measured);
     if periods <= MOST_PERIODS {

@@ -25,7 +25,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
     /// Steps per motor and controller
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub steps: u64,
     /// Seed of the inputs
     #[arg(long, value_name = "N", default_value_t = 1)]

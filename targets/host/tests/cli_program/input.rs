@@ -134,6 +134,30 @@ fn options_out_of_range_or_at_odds_are_told() {
             "cannot write",
         ),
         (&["simulate", PAPER, "--rpm", "0.001"], "at least"),
+        (&["simulate", PAPER, "--rpm", "1e9"], "at most 50000 rpm"),
+        (&["simulate", PAPER, "--rpm", "nan"], "not a number"),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--torque", "1e300"],
+            "out of range",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--scale-l", "1e-9"],
+            "out of range",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--inertia", "1e-300"],
+            "out of range",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-range", "-4A"],
+            "adc_range",
+        ),
+        (&["verify", PAPER, "--steps", "-5"], "--steps"),
+        (&["report", PAPER, "--out", "/proc/nowhere"], "cannot write"),
+        (
+            &["generate", PAPER, "--out", "/proc/nowhere"],
+            "cannot write",
+        ),
         (&["limit", PAPER, "--torque", "0"], "--torque 0"),
         (&["limit", PAPER, "--inertia", "1"], "--inertia"),
         (&["verify", PAPER, "--steps", "0"], "--steps"),
