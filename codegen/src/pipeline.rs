@@ -2,9 +2,11 @@
 
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
 use crate::controllers::{
-    ControllerSpec, LoopOptions, StableRange, fcs_mpc, interface, pdcc, pi_pwm,
+    ControllerSpec, EmfSource, LoopOptions, StableRange, fcs_mpc, interface, pdcc, pi_pwm,
 };
-use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue};
+use crate::diagnostics::{
+    Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
+};
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::scaling::{Scaled, Unscalable, choose_scale};
@@ -101,20 +103,36 @@ fn check_stability(
     let radius = linear.spectral_radius(spec, 1.0, 1.0);
     let stable = linear.stable_range(spec);
     if radius >= 1.0 {
-        let path = if options.emf_filter < 1.0 {
-            "controller.emf_filter"
-        } else {
-            "controller.discretisation"
+        let (field, default, remedy) = match &spec.controller {
+            ControllerSpec::PiPwm(pi) => (
+                "bandwidth",
+                engineering(pi.bandwidth, "Hz"),
+                "choose a lower one or a shorter control period",
+            ),
+            _ => (
+                "emf_filter",
+                significant(options.emf_filter),
+                "choose another value or `emf: model`",
+            ),
         };
-        let given = origins.given(path, "the setting");
+        let path = format!("controller.{field}");
         errors.push(catalogue::unstable_loop(
-            origins.at(path),
-            path.trim_start_matches("controller."),
-            &given,
+            origins.at(&path),
+            field,
+            &origins.given(&path, &default),
             radius,
+            remedy,
         ));
         return stable;
     }
+    let remedy = match (&spec.controller, options.emf) {
+        (ControllerSpec::PiPwm(_), _) => "lower `bandwidth`",
+        (_, EmfSource::Estimated) if options.emf_filter >= 1.0 => {
+            "choose `emf: model`, add an `emf_filter` below 1,"
+        }
+        (_, EmfSource::Estimated) => "choose `emf: model`",
+        (_, EmfSource::Model) => "shorten the control period",
+    };
     let leaves = |tolerance: f64, (low, high): (f64, f64)| {
         // The search ends at 0.1 and 10; beyond it nothing is known to be unstable.
         (1.0 - tolerance < low && low > 0.1) || (1.0 + tolerance > high && high < 10.0)
@@ -122,28 +140,22 @@ fn check_stability(
     let motor = &spec.motor;
     if leaves(motor.inductance_tolerance, stable.inductance) {
         let path = "motor.inductance_tolerance";
-        let given = origins.given(
-            path,
-            &crate::diagnostics::percent(motor.inductance_tolerance),
-        );
+        let given = origins.given(path, &percent(motor.inductance_tolerance));
         errors.push(catalogue::inductance_outside_stable_range(
             origins.at(path),
             &given,
-            stable.inductance.0,
-            stable.inductance.1,
+            stable.inductance,
+            remedy,
         ));
     }
     if leaves(motor.resistance_tolerance, stable.resistance) {
         let path = "motor.resistance_tolerance";
-        let given = origins.given(
-            path,
-            &crate::diagnostics::percent(motor.resistance_tolerance),
-        );
+        let given = origins.given(path, &percent(motor.resistance_tolerance));
         errors.push(catalogue::resistance_outside_stable_range(
             origins.at(path),
             &given,
-            stable.resistance.0,
-            stable.resistance.1,
+            stable.resistance,
+            remedy,
         ));
     }
     stable

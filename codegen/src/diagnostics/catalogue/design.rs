@@ -5,22 +5,20 @@ use crate::diagnostics::{Code, Diagnostic, Location, percent, significant};
 /// The inductance may leave the range in which the loop is stable.
 ///
 /// `given`: the tolerance as written (or `10 % (default)`); `low`, `high`: ratios L_true/L_model
-/// between which the loop is stable.
+/// between which the loop is stable; `remedy`: what widens them, a clause.
 pub fn inductance_outside_stable_range(
     at: &Location,
     given: &str,
-    low: f64,
-    high: f64,
+    (low, high): (f64, f64),
+    remedy: &str,
 ) -> Diagnostic {
     Diagnostic::new(
         Code::InductanceOutsideStableRange,
         at,
         format!(
-            "`inductance_tolerance`: {given}, but with `emf: estimated` the loop is stable only \
-             while the true inductance is {} to {} of the stated one; choose `emf: model`, add an \
-             `emf_filter` below 1, or narrow the tolerance to {}",
-            percent(low),
-            percent(high),
+            "`inductance_tolerance`: {given}, but the loop is stable only while the true \
+             inductance is {} of the stated one; {remedy} or narrow the tolerance to {}",
+            ratios(low, high),
             percent(narrowest(low, high)),
         ),
     )
@@ -31,21 +29,30 @@ pub fn inductance_outside_stable_range(
 pub fn resistance_outside_stable_range(
     at: &Location,
     given: &str,
-    low: f64,
-    high: f64,
+    (low, high): (f64, f64),
+    remedy: &str,
 ) -> Diagnostic {
     Diagnostic::new(
         Code::ResistanceOutsideStableRange,
         at,
         format!(
             "`resistance_tolerance`: {given}, but the loop is stable only while the true \
-             resistance is {} to {} of the stated one; choose `emf: model`, shorten the control \
-             period, or narrow the tolerance to {}",
-            percent(low),
-            percent(high),
+             resistance is {} of the stated one; {remedy} or narrow the tolerance to {}",
+            ratios(low, high),
             percent(narrowest(low, high)),
         ),
     )
+}
+
+/// The range in words; the search for it ends at 0.1 and 10.
+fn ratios(low: f64, high: f64) -> String {
+    if high >= 10.0 {
+        format!("at least {}", percent(low))
+    } else if low <= 0.1 {
+        format!("at most {}", percent(high))
+    } else {
+        format!("{} to {}", percent(low), percent(high))
+    }
 }
 
 /// Whole percent, rounded down so that the advice holds.
@@ -56,14 +63,21 @@ fn narrowest(low: f64, high: f64) -> f64 {
         / 100.0
 }
 
-/// The loop is unstable even with the motor exactly as stated; `radius`: largest pole's magnitude.
-pub fn unstable_loop(at: &Location, field: &str, given: &str, radius: f64) -> Diagnostic {
+/// The loop is unstable even with the motor exactly as stated; `radius`: largest pole's magnitude;
+/// `remedy`: a clause.
+pub fn unstable_loop(
+    at: &Location,
+    field: &str,
+    given: &str,
+    radius: f64,
+    remedy: &str,
+) -> Diagnostic {
     Diagnostic::new(
         Code::Unstable,
         at,
         format!(
             "`{field}`: {given} makes the current loop unstable with the motor as stated (largest \
-             pole {}, must be below 1); choose another value or `emf: model`",
+             pole {}, must be below 1); {remedy}",
             significant(radius),
         ),
     )
@@ -110,16 +124,21 @@ mod tests {
         };
         let cases = [
             (
-                inductance_outside_stable_range(&at, "30 %", 0.83, 1.257),
-                "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but with `emf: estimated` the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf: model`, add an `emf_filter` below 1, or narrow the tolerance to 17 %",
+                inductance_outside_stable_range(&at, "30 %", (0.83, 1.257), "choose `emf: model`"),
+                "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf: model` or narrow the tolerance to 17 %",
             ),
             (
-                resistance_outside_stable_range(&at, "30 % (default)", 0.1, 1.2),
-                "m.toml:3:5: error[HX0502]: `resistance_tolerance`: 30 % (default), but the loop is stable only while the true resistance is 10 % to 120 % of the stated one; choose `emf: model`, shorten the control period, or narrow the tolerance to 20 %",
+                resistance_outside_stable_range(
+                    &at,
+                    "30 % (default)",
+                    (0.1, 1.2),
+                    "lower `bandwidth`",
+                ),
+                "m.toml:3:5: error[HX0502]: `resistance_tolerance`: 30 % (default), but the loop is stable only while the true resistance is at most 120 % of the stated one; lower `bandwidth` or narrow the tolerance to 20 %",
             ),
             (
-                unstable_loop(&at, "emf_filter", "0.001", 1.25),
-                "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose another value or `emf: model`",
+                unstable_loop(&at, "emf_filter", "0.001", 1.25, "choose `emf: model`"),
+                "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose `emf: model`",
             ),
             (
                 word_too_narrow(&at, "voltage `u_a`", Some(19), 16),
