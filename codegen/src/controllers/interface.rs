@@ -60,8 +60,9 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
         format!("{}: {name}.", law.title),
         String::new(),
         format!(
-            "Motor: {} pole pairs, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
+            "Motor: {} pole pair{}, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
             motor.pole_pairs,
+            if motor.pole_pairs == 1 { "" } else { "s" },
             engineering(motor.resistance, "ohm"),
             engineering(motor.inductance, "H"),
             engineering(motor.emf_constant, "V s/rad"),
@@ -103,11 +104,11 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
         String::new(),
         "# Safe states".to_owned(),
         String::new(),
-        "An ADC count outside the converter's range, a phase current above the trip level, a Hall code of 000 or 111".to_owned(),
+        "Each of these turns all legs off until `reset()`: an ADC count outside the converter's range, a phase current".to_owned(),
         if inverter.stall_periods > 0 {
-            format!("or {} periods without a Hall edge under current demand turn all legs off until `reset()`.", inverter.stall_periods)
+            format!("above the trip level, a Hall code of 000 or 111, {} periods without a Hall edge under current demand.", inverter.stall_periods)
         } else {
-            "turns all legs off until `reset()`.".to_owned()
+            "above the trip level, a Hall code of 000 or 111.".to_owned()
         },
         format!("`calibrate()` averages {} samples with all legs off, at rest; `precharge()` holds all lower switches on for", 1 << inverter.calibration_log2),
         format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
@@ -180,11 +181,16 @@ fn fixed(name: &str, value: f64, unit: &str, doc: &str) -> PublicConstant {
     let frac_bits = fraction_bits(value);
     let bits = (value * f64::from(frac_bits).exp2()).round() as i32;
     let error = f64::from(bits) / f64::from(frac_bits).exp2() - value;
+    let error = if error == 0.0 {
+        "exact".to_owned()
+    } else {
+        format!("{error:.1e} off")
+    };
     PublicConstant {
         name: name.to_owned(),
         value: PublicValue::Fixed { bits, frac_bits },
         doc: vec![format!(
-            "{doc}: {}; {frac_bits} fraction bits, {error:.1e} off.",
+            "{doc}: {}; {frac_bits} fraction bits, {error}.",
             engineering(value, unit)
         )],
     }

@@ -97,7 +97,8 @@ impl CurrentLoop<'_, '_> {
         [0, 1].map(|x| {
             let previous = l.b.state(i_prev[x]);
             let change = l.b.sub(currents.phases[x], previous);
-            let doc = "Largest change of current in one period that is believed, words of current.";
+            let doc =
+                "Limit of the change of current in one period that is believed, words of current.";
             let (low, high) = (
                 l.number("di_min", -di_max, doc),
                 l.number("di_max", di_max, doc),
