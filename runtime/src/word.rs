@@ -2,7 +2,7 @@
 //!
 //! Generated code is proven, value by value, never to leave its word, so the operators need no
 //! checks: they wrap, contain no panic path whatever the compiler's overflow checks, and cost one
-//! instruction each. Small numbers stand beside a word as they are: `countdown - 1`, `mode == 3`.
+//! instruction each. Small numbers stand beside a word as they are: `countdown - 1`, `sector == 3`.
 #![expect(
     clippy::inline_always,
     reason = "each is one instruction, and firmware is debugged unoptimised, too"
