@@ -14,14 +14,20 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The variants of the result table, each with both ways of reading Hall edges. The program looks
 /// drives up by their normalised specification, so a variant that is missing here is interpreted.
-const VARIANTS: [&str; 6] = [
-    "modulation=three_phase,saturation=nearest,emf=model",
-    "modulation=pair,saturation=keep_angle,emf=model",
-    "modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
-    "modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
-    "modulation=pair,saturation=torque_priority,advance=1.5,emf=model",
-    "modulation=three_phase,saturation=nearest,reference=proportional,emf=model",
+const VARIANTS: [&str; 9] = [
+    "pdcc:modulation=three_phase,saturation=nearest,emf=model",
+    "pdcc:modulation=pair,saturation=keep_angle,emf=model",
+    "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
+    "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
+    "pdcc:modulation=pair,saturation=torque_priority,advance=1.5,emf=model",
+    "pdcc:modulation=three_phase,saturation=nearest,reference=proportional,emf=model",
+    "fcs-mpc:candidates=table2,off_leg=nominal,emf=model",
+    "fcs-mpc:candidates=table2,off_leg=physical,emf=model",
+    "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model",
 ];
+
+/// Every motor gets each of these with all options at their defaults, where it can have it.
+const KINDS: [&str; 2] = ["fcs-mpc", "pi-pwm"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");
@@ -84,11 +90,16 @@ fn names() -> Result<Vec<String>, Box<dyn Error>> {
 /// program says why when it is asked.
 fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box<dyn Error>> {
     let mut builder = hexagen_codegen::Builder::new().motor(file);
+    builder = builder.controller("pdcc");
+    for kind in KINDS {
+        if has_controller(file, kind)? {
+            builder = builder.controller(kind);
+        }
+    }
     if name == PAPER_MOTOR {
-        builder = builder.controller("pdcc");
         for options in VARIANTS {
             for capture in ["timer", "sampled"] {
-                let variant = format!("pdcc:discretisation=euler,hall_capture={capture},{options}");
+                let variant = format!("{options},discretisation=euler,hall_capture={capture}");
                 builder = builder.controller(variant);
             }
         }
@@ -105,4 +116,15 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
         }
         Err(error) => Err(error.into()),
     }
+}
+
+/// Whether a controller of this kind can be made for the motor; the program says why when it cannot.
+fn has_controller(file: &str, kind: &str) -> Result<bool, Box<dyn Error>> {
+    use hexagen_codegen::pipeline::generate;
+    use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+    let Ok(mut ast) = parse_toml(&fs::read_to_string(file)?, file) else {
+        return Ok(false);
+    };
+    Ok(apply_variant(&mut ast, kind).is_ok()
+        && check(&ast).is_ok_and(|(spec, origins)| generate(&spec, &origins).is_ok()))
 }

@@ -1,6 +1,6 @@
 //! The EMF as the step sees it: estimated from the last period, or modelled (step 8).
 
-use super::words::Words;
+use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EmfSource};
 use crate::diagnostics::engineering;
 use crate::ir::Value;
@@ -16,7 +16,7 @@ impl CurrentLoop<'_, '_> {
         currents: &Currents,
         rotor: Option<&Rotor>,
     ) -> (Pair, Pair) {
-        if !self.needs.emf {
+        if self.needs.emf == EmfUse::None {
             return (None, None);
         }
         if let (Some(rotor), EmfSource::Model) = (rotor, self.options.emf) {

@@ -11,7 +11,7 @@ pub use design::LoopDesign;
 pub use options::{EmfSource, LoopOptions, Reference};
 pub(crate) use options::{OPTIONS, Surroundings, read_common, read_saturation};
 pub use stability::{LinearLoop, StableRange, estimate};
-pub use words::{Needs, Words};
+pub use words::{EmfUse, Needs, Words};
 
 use crate::diagnostics::engineering;
 use crate::ir::{Program, StateId, Value};

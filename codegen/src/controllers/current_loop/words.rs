@@ -11,10 +11,19 @@ pub struct Needs {
     pub commutation: bool,
     /// The real voltage of a leg that it turned off.
     pub off_leg: bool,
-    /// The current at the end of the period that begins now.
-    pub prediction: bool,
     /// The EMF.
-    pub emf: bool,
+    pub emf: EmfUse,
+}
+
+/// What a law uses the EMF for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmfUse {
+    /// Nothing.
+    None,
+    /// It is added to the voltage.
+    FeedForward,
+    /// It takes part in the prediction of the current at the end of the period that begins now.
+    Prediction,
 }
 
 /// State words of the shared step.
@@ -42,10 +51,10 @@ pub struct Words {
 impl CurrentLoop<'_, '_> {
     pub(super) fn declare(&mut self) -> Words {
         let (options, needs) = (*self.options, self.needs);
-        let needs_rotor = (needs.emf && options.emf == EmfSource::Model)
+        let needs_rotor = (needs.emf != EmfUse::None && options.emf == EmfSource::Model)
             || options.advance > 0.0
             || options.reference == Reference::Proportional;
-        let estimated = needs.emf && options.emf == EmfSource::Estimated;
+        let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
         let e_bound = self.e_bound();
         let l = &mut *self.lowering;
         let current = Interval::symmetric(l.current_span());
@@ -67,8 +76,10 @@ impl CurrentLoop<'_, '_> {
                 )
             })
         });
-        let v_cmd =
-            (options.delay == 1 && !needs.off_leg && (needs.prediction || estimated)).then(|| {
+        let v_cmd = (options.delay == 1
+            && !needs.off_leg
+            && (needs.emf == EmfUse::Prediction || estimated))
+            .then(|| {
                 ["v_a_cmd", "v_b_cmd"].map(|name| {
                     l.state(
                         name,

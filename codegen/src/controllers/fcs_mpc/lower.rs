@@ -1,7 +1,7 @@
 //! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
 
 use super::FcsMpcSpec;
-use crate::controllers::current_loop::{CurrentLoop, Front, LoopDesign, Needs, lower_with};
+use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
 use crate::ir::{Comparison, TableId, Value};
 use crate::lower::{Applied, Command, Lowering, Scale};
@@ -38,8 +38,7 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             needs: Needs {
                 commutation: options.pairs(),
                 off_leg: options.floating(),
-                prediction: true,
-                emf: true,
+                emf: EmfUse::Prediction,
             },
         };
         let front = step.front(set_point);

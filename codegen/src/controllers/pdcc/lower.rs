@@ -1,7 +1,7 @@
 //! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
 
 use super::{Modulation, PdccSpec};
-use crate::controllers::current_loop::{CurrentLoop, LoopDesign, Needs, lower_with};
+use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::lower::Scale;
 use crate::scaling::Lowered;
 use crate::spec::Spec;
@@ -17,8 +17,7 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
             needs: Needs {
                 commutation: pair,
                 off_leg: pair,
-                prediction: true,
-                emf: true,
+                emf: EmfUse::Prediction,
             },
         };
         let front = step.front(set_point);

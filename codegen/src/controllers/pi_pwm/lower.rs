@@ -1,7 +1,7 @@
 //! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
 
 use super::PiPwmSpec;
-use crate::controllers::current_loop::{CurrentLoop, LoopDesign, Needs, lower_with};
+use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::diagnostics::engineering;
 use crate::ir::Interval;
 use crate::lower::Scale;
@@ -19,8 +19,11 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             needs: Needs {
                 commutation: false,
                 off_leg: false,
-                prediction: false,
-                emf: options.feed_forward,
+                emf: if options.feed_forward {
+                    EmfUse::FeedForward
+                } else {
+                    EmfUse::None
+                },
             },
         };
         let front = step.front(set_point);

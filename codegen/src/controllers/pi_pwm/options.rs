@@ -82,6 +82,23 @@ pub(crate) fn check_options(
             "it keeps the component along the EMF, which is known with `feed_forward: on` only",
         ));
     }
+    if !feed_forward {
+        for name in ["emf", "emf_filter"] {
+            let Some(field) = reader.field(name) else {
+                continue;
+            };
+            errors.push(catalogue::option_without_effect(
+                &field.location,
+                name,
+                &field.value.to_string(),
+                reader
+                    .field("feed_forward")
+                    .map_or(reader.location(), |field| &field.location),
+                "feed_forward: off",
+                "the regulator needs no EMF then",
+            ));
+        }
+    }
     let common = read_common(reader, surroundings, true, errors)?;
     let time_constant = surroundings.inductance? / surroundings.resistance?;
     Some(PiPwmSpec {

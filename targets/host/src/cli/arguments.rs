@@ -70,7 +70,7 @@ impl Emit {
 }
 
 /// Kinds of controllers that there are.
-pub const KINDS: [&str; 1] = ["pdcc"];
+pub const KINDS: [&str; 3] = ["fcs-mpc", "pdcc", "pi-pwm"];
 
 /// A controller, or all of them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -56,6 +56,14 @@ pub struct Checked {
     pub mismatch: Option<String>,
 }
 
+/// A controller that cannot be made for a motor.
+#[derive(Clone, Debug, Serialize)]
+struct Refused {
+    motor: String,
+    controller: String,
+    reason: String,
+}
+
 /// How many steps went which way.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Coverage {
@@ -168,6 +176,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         passed: bool,
         steps: u64,
         results: Vec<Checked>,
+        refused: Vec<Refused>,
     }
     let none = PlantArguments::default();
     let motors = if options.motors.is_empty() {
@@ -182,10 +191,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         None => vec![None],
         Some(selection) => selection.variants().into_iter().map(Some).collect(),
     };
-    let mut drives = Vec::new();
+    let takes_all = options.controller == Some(Selection::All);
+    let (mut drives, mut refused) = (Vec::new(), Vec::new());
     for motor in &motors {
         for variant in &variants {
-            drives.push(motor.prepare(variant.as_deref())?);
+            match (motor.prepare(variant.as_deref()), variant) {
+                (Ok(drive), _) => drives.push(drive),
+                // Of all controllers some cannot work with some motors; one that was named must.
+                (Err(reason), Some(controller)) if takes_all => {
+                    warn(&format!("{controller} is left out: {reason}"));
+                    refused.push(Refused {
+                        motor: motor.source.name.clone(),
+                        controller: controller.clone(),
+                        reason: reason.to_string(),
+                    });
+                }
+                (Err(failure), _) => return Err(failure),
+            }
         }
     }
     let progress = bar(options.steps * drives.len() as u64, "comparing");
@@ -210,6 +232,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             passed: outcome.is_ok(),
             steps: results.iter().map(|checked| checked.steps).sum(),
             results,
+            refused,
         })?;
     } else {
         print_text(&table(&results));

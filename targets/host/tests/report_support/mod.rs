@@ -139,7 +139,7 @@ fn generated(variant: &str) -> (Spec, GeneratedTexts, Stability) {
         spec_toml: interface.spec_toml,
     };
     let stability = Stability {
-        range: hexagen_codegen::controllers::pdcc::StableRange {
+        range: hexagen_codegen::controllers::StableRange {
             inductance: (0.8, 1.25),
             resistance: (0.1, 10.0),
         },
