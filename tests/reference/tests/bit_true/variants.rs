@@ -2,7 +2,8 @@
 
 use hexagen::{Format, Rounding};
 use hexagen_reference::{
-    Candidates, Controller, DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec,
+    Candidates, Controller, DiscretePhase, EmfSource, FeedForward, FormatTable, Modulation,
+    Reference, Spec,
 };
 use std::f64::consts::TAU;
 
@@ -309,7 +310,11 @@ pub fn saturates(variant: &Variant) -> bool {
 /// Whether the variant interpolates the rotor's angle.
 pub fn has_rotor(variant: &Variant) -> bool {
     let options = variant.spec.loop_options();
-    options.emf == EmfSource::Model
+    let needs_emf = !matches!(
+        &variant.spec.controller,
+        Controller::PiPwm(pi_pwm) if pi_pwm.feed_forward == FeedForward::Off
+    );
+    needs_emf && options.emf == EmfSource::Model
         || options.advance > 0.0
         || options.reference == Reference::Proportional
 }
