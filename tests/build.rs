@@ -29,40 +29,11 @@ fn main() {
     write_mutants(&out_dir);
 }
 
-/// Drives that faults are planted in: together they have every stage of a step.
-const MUTATED: &[(&str, &[(&str, &str)])] = &[
-    (
-        "trivedi-keshri-660w",
-        &[("saturation", "torque_priority"), ("hall_capture", "timer")],
-    ),
-    (
-        "hoverboard-hub",
-        &[
-            ("modulation", "pair"),
-            ("saturation", "nearest"),
-            ("emf", "filtered"),
-            ("advance", "1.5"),
-            ("v_bus", "measured"),
-            ("stall_timeout", "100ms"),
-            ("start_up", "short"),
-        ],
-    ),
-    (
-        "estun-emj-04apb22",
-        &[
-            ("saturation", "keep_angle"),
-            ("emf", "model"),
-            ("reference", "proportional"),
-            ("adc_inverted", "on"),
-        ],
-    ),
-];
-
 /// The text of emitted modules with one fault each.
 fn write_mutants(out_dir: &Path) {
     let (mut text, mut list) = (String::new(), String::new());
     let mut number = 0;
-    for (motor, settings) in MUTATED {
+    for (drive, (motor, settings)) in mutation::MUTATED.iter().enumerate() {
         let toml = drive_toml(
             &library::motor(motor),
             &options::choice_of(settings),
@@ -70,20 +41,19 @@ fn write_mutants(out_dir: &Path) {
         );
         let module = emit(&toml, "Mutant").expect("the drive generates");
         for mutant in mutation::mutants(&module, 1) {
-            let what = format!("{motor}: {}", mutant.what);
-            let module = mutant.text;
+            let (what, module) = (mutant.what, mutant.text);
             writeln!(text, "mod mutant_{number:02} {{\n{module}\n}}").expect("a string takes all");
             writeln!(
                 list,
-                "    ({what:?}, verify::<mutant_{number:02}::Mutant>),"
+                "    ({drive}, {what:?}, is_noticed::<mutant_{number:02}::Mutant>),"
             )
             .expect("a string takes all");
             number += 1;
         }
     }
     let tail = format!(
-        "/// What each mutant has wrong, and its comparison with the model.\n\
-         pub const MUTANTS: &[(&str, Verify)] = &[\n{list}];\n"
+        "/// Place of the drive, what is wrong, and whether it is noticed.\n\
+         pub const MUTANTS: &[(usize, &str, IsNoticed)] = &[\n{list}];\n"
     );
     fs::write(out_dir.join("mutants.rs"), text + &tail).expect("OUT_DIR can be written");
 }

@@ -2,13 +2,15 @@
 //! table, a shift or a rounding, operators and operands exchanged, a state word forgotten.
 
 use hexagen_codegen::ir::{Comparison, Function, Interval, Op, Program, Value};
+use std::collections::HashMap;
+use std::fmt::Write as _;
 
 /// A fault: where, what, and the program with it.
 #[derive(Clone, Debug)]
 pub struct Fault {
     /// Stage and name of the value, or the name of the constant, table or word.
     pub place: String,
-    /// What was changed.
+    /// What was changed; with a number where the place has several of the same.
     pub what: String,
     /// The faulty program. Its intervals are opened to the whole word, so that only a wrong result
     /// (or one that leaves the word) gives it away.
@@ -28,9 +30,16 @@ pub fn faults(program: &Program) -> impl Iterator<Item = Fault> + '_ {
         .chain(tables(program))
         .chain(words(program))
         .chain(nodes(program));
-    changes.map(move |(place, what, change)| {
+    let mut known: HashMap<(String, String), u32> = HashMap::new();
+    changes.map(move |(place, mut what, change)| {
         let mut program = open.clone();
         change.apply(&mut program);
+        // Values without a name can share a place.
+        let number = known.entry((place.clone(), what.clone())).or_insert(0);
+        *number += 1;
+        if *number > 1 {
+            write!(what, " ({number})").expect("a string takes all");
+        }
         Fault {
             place,
             what,
@@ -100,13 +109,29 @@ fn tables(program: &Program) -> impl Iterator<Item = Found> + '_ {
         .tables
         .iter()
         .enumerate()
-        .flat_map(|(index, table)| {
-            table.values.iter().enumerate().map(move |(entry, &value)| {
+        .flat_map(move |(index, table)| {
+            let entries = table.values.iter().enumerate();
+            let read = entries.filter(move |&(entry, _)| is_read(program, index, entry));
+            read.map(move |(entry, &value)| {
                 let place = format!("{}[{entry}]", table.name);
                 let change = Change::Entry(index, entry, value.wrapping_add(1));
                 (place, "one more".to_owned(), change)
             })
         })
+}
+
+/// Whether a lookup's index can be that of the entry, by its proven interval: tables are padded.
+fn is_read(program: &Program, table: usize, entry: usize) -> bool {
+    program.functions().any(|function| {
+        function.nodes.iter().any(|node| match node.op {
+            Op::Lookup { table: id, index } if id.index() == table => {
+                let Interval { low, high } = function.node(index).interval;
+                let length = program.tables[table].values.len() as i64;
+                (entry as i64 - low).rem_euclid(length) <= high - low
+            }
+            _ => false,
+        })
+    })
 }
 
 fn words(program: &Program) -> impl Iterator<Item = Found> + '_ {
@@ -151,13 +176,14 @@ fn nodes(program: &Program) -> impl Iterator<Item = Found> + '_ {
                 .iter()
                 .enumerate()
                 .flat_map(move |(index, node)| {
-                    wrong_operators(node.op).into_iter().map(move |(what, op)| {
-                        (
-                            place(function, index),
-                            what.to_owned(),
-                            Change::Op(number, index, op),
-                        )
-                    })
+                    let operators = wrong_operators(node.op)
+                        .into_iter()
+                        .map(|(what, op)| (what.to_owned(), op));
+                    operators
+                        .chain(wrong_literals(node.op))
+                        .map(move |(what, op)| {
+                            (place(function, index), what, Change::Op(number, index, op))
+                        })
                 })
         })
 }
@@ -185,15 +211,22 @@ fn place(function: &Function, index: usize) -> String {
     )
 }
 
+fn wrong_literals(op: Op) -> impl Iterator<Item = (String, Op)> {
+    let literal = match op {
+        Op::Literal(value) => Some(value),
+        _ => None,
+    };
+    literal.into_iter().flat_map(|value| {
+        [value.wrapping_add(1), value.wrapping_sub(1)]
+            .map(|wrong| (format!("{wrong} for {value}"), Op::Literal(wrong)))
+    })
+}
+
 /// Operators that are wrong in one way, with what is wrong.
 fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
     // The identity, for an operator left out.
     let same = |a: Value| Op::Max(a, a);
     match op {
-        Op::Literal(value) => vec![
-            ("one more", Op::Literal(value.wrapping_add(1))),
-            ("one less", Op::Literal(value.wrapping_sub(1))),
-        ],
         Op::Add(a, b) => vec![
             ("- for +", Op::Sub(a, b)),
             ("second term left out", same(a)),
@@ -363,7 +396,9 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
             },
         )],
         Op::Product(a, b) => vec![("sum for product", Op::Add(a, b))],
-        Op::Input(_)
+        // Literals have faults of their own.
+        Op::Literal(_)
+        | Op::Input(_)
         | Op::Param(_)
         | Op::State(_)
         | Op::Constant(_)

@@ -3,10 +3,10 @@
 //! What the emitted type does outside the step (reset, start-up calls, state access) is done here
 //! as the specification of the step says; the step and the setters run in the interpreter.
 
-use crate::states::{self, Space, verify_states};
+use crate::cases::{self, Case};
 use hexagen::{Fault, Format, LegState, Legs, Rounding, Sample};
 use hexagen_codegen::interface;
-use hexagen_codegen::ir::{Machine, Program};
+use hexagen_codegen::ir::{Escape, Machine, Program};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
 use std::cell::RefCell;
@@ -219,6 +219,17 @@ impl Subject for Interpreted<'_> {
     }
 }
 
+/// Cases of `steps` steps from arbitrary states, with the model's answers.
+///
+/// # Errors
+/// When no model can be built.
+pub fn record_states(generated: &Generated, steps: u64, seed: u64) -> Result<Vec<Case>, String> {
+    let interface = &generated.interface;
+    let program = generated.graph.program();
+    let formats = formats(&interface.formats);
+    cases::record(&interface.spec_toml, &formats, program, steps, seed)
+}
+
 /// As [`compare`], from arbitrary states.
 ///
 /// # Errors
@@ -229,20 +240,28 @@ pub fn compare_states(
     steps: u64,
     seed: u64,
 ) -> Result<(), String> {
-    let interface = &generated.interface;
+    let cases = record_states(generated, steps, seed)?;
+    compare_cases(generated, program, &cases)
+}
+
+/// Compares the interpreted `program` with the recorded cases.
+///
+/// # Errors
+/// What differs, or which value left its proven interval.
+pub fn compare_cases(
+    generated: &Generated,
+    program: &Program,
+    cases: &[Case],
+) -> Result<(), String> {
+    compare_set_points(program, cases)?;
     let escaped = RefCell::new(None);
-    let space = Space {
-        ranges: &states::ranges(program),
-        constants: &states::constants(generated.graph.program()),
-    };
     let subject = Interpreted::new(
         program,
-        interface.calibration_samples,
-        interface.precharge_periods,
+        generated.interface.calibration_samples,
+        generated.interface.precharge_periods,
         &escaped,
     );
-    let formats = formats(&interface.formats);
-    let result = verify_states(&interface.spec_toml, &formats, space, subject, steps, seed);
+    let result = cases::replay(cases, &names(program), subject);
     match (escaped.into_inner(), result) {
         (Some(place), result) => Err(format!(
             "left its interval: {place}\n{}",
@@ -250,6 +269,49 @@ pub fn compare_states(
         )),
         (None, result) => result,
     }
+}
+
+/// The words that the setters make, which steps show only through their effects.
+fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
+    let mut machine = Machine::of_program(program);
+    for Case {
+        set,
+        set_point_words: [current, bus, reciprocal],
+        ..
+    } in cases
+    {
+        let mut call = |name, word| {
+            let escape = |escape: Escape| format!("left its interval: {}", escape.place);
+            machine.set(name, &[word]).map_err(escape)
+        };
+        if let Some(counts) = set.bus {
+            call("set_bus", counts.into())?;
+        }
+        if set.is_torque {
+            call("set_torque", set.bits)?;
+        } else {
+            call("set_current", set.bits)?;
+        }
+        for (word, found) in program.params.iter().zip(&machine.params) {
+            let expected = match word.name.as_str() {
+                "j" => current,
+                "v_bus" => bus,
+                "ratio" => reciprocal,
+                _ => continue,
+            };
+            if found != expected {
+                let name = &word.name;
+                return Err(format!("{set:?}: {name} = {found}, {expected} (model)"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Names of the state words.
+fn names(program: &Program) -> Vec<&str> {
+    let words = program.states.iter();
+    words.map(|word| word.name.as_str()).collect()
 }
 
 /// The format table in the types of the hardware boundary.
@@ -295,15 +357,10 @@ pub fn compare(
 ) -> Result<Report, String> {
     let interface = &generated.interface;
     let escaped = RefCell::new(None);
-    let names: Vec<&str> = program
-        .states
-        .iter()
-        .map(|word| word.name.as_str())
-        .collect();
     let result = verify_subject(
         &interface.spec_toml,
         &formats(&interface.formats),
-        &names,
+        &names(program),
         || {
             Interpreted::new(
                 program,

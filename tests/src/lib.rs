@@ -2,6 +2,8 @@
 //! planted faults, and what the bit-for-bit test is extended by: the interpreter as a subject, and
 //! arbitrary states.
 
+pub mod cases;
+pub mod edges;
 pub mod faults;
 pub mod interpreter;
 pub mod library;

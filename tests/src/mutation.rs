@@ -3,10 +3,40 @@
 
 use std::ops::Range;
 
+/// Drives whose text faults are planted in, a motor's name with settings: together they have every
+/// stage of a step.
+pub const MUTATED: &[(&str, &[(&str, &str)])] = &[
+    (
+        "trivedi-keshri-660w",
+        &[("saturation", "torque_priority"), ("hall_capture", "timer")],
+    ),
+    (
+        "hoverboard-hub",
+        &[
+            ("modulation", "pair"),
+            ("saturation", "nearest"),
+            ("emf", "filtered"),
+            ("advance", "1.5"),
+            ("v_bus", "measured"),
+            ("stall_timeout", "100ms"),
+            ("start_up", "short"),
+        ],
+    ),
+    (
+        "estun-emj-04apb22",
+        &[
+            ("saturation", "keep_angle"),
+            ("emf", "model"),
+            ("reference", "proportional"),
+            ("adc_inverted", "on"),
+        ],
+    ),
+];
+
 /// A mutated module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mutant {
-    /// Line and change.
+    /// Change, and line or table entry.
     pub what: String,
     /// The module's text.
     pub text: String,
@@ -70,8 +100,9 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
             let Edit { range, new } = &edits[(2 * number + 1) * edits.len() / (2 * wanted)];
             let line = text[..range.start].matches('\n').count();
             let old_line = text.lines().nth(line).unwrap_or_default().trim();
+            let place = table_entry(text, range.start).unwrap_or_else(|| format!("`{old_line}`"));
             found.push(Mutant {
-                what: format!("{kind}: `{old_line}`"),
+                what: format!("{kind}: {place}"),
                 text: format!("{}{new}{}", &text[..range.start], &text[range.end..]),
             });
         }
@@ -139,6 +170,17 @@ fn constants(text: &str, code: &[Range<usize>], wrong: impl Fn(i64) -> i64) -> V
         })
     });
     sites.collect()
+}
+
+/// Name and index of the table entry at this place, if there is a table.
+fn table_entry(text: &str, at: usize) -> Option<String> {
+    let declaration = text[..at].rfind("static ")?;
+    let (head, entries) = text[declaration..at].split_once("] = [")?;
+    if entries.contains(';') {
+        return None;
+    }
+    let name = head.strip_prefix("static ")?.split(':').next()?;
+    Some(format!("{name}[{}]", entries.matches(',').count()))
 }
 
 fn table_entries(text: &str, code: &[Range<usize>]) -> Vec<Edit> {
@@ -267,6 +309,20 @@ mod tests {
                     .join("|")
             })
             .collect()
+    }
+
+    #[test]
+    fn table_entries_are_told_by_name() {
+        let all = mutants(TEXT, 9);
+        let told = all.iter().map(|mutant| mutant.what.as_str());
+        let entries: Vec<&str> = told.filter(|what| what.contains("TABLE")).collect();
+        assert_eq!(
+            entries,
+            [
+                "table entry one more: TABLE[0]",
+                "table entry one more: TABLE[1]"
+            ]
+        );
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub struct Axis {
 /// Stands for a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
-/// The options of the drive. The product of all is the space that interpreter and model are compared in.
+/// The options of the drive: those of the controller, then those of the inverter.
 pub const AXES: &[Axis] = &[
     Axis {
         name: "modulation",
@@ -157,14 +157,12 @@ pub const AXES: &[Axis] = &[
 /// One value per axis, as indices into [`AXES`].
 pub type Choice = Vec<usize>;
 
-/// The number of elements of the full product.
-pub fn product_len() -> usize {
-    AXES.iter().map(|axis| axis.values.len()).product()
-}
+/// The last so many axes are the inverter's; those before them are options of the controller.
+pub const INVERTER_AXES: usize = 3;
 
-/// Element `index` of the full product; the last axis turns fastest.
-pub fn product_element(mut index: usize) -> Choice {
-    let mut choice: Choice = AXES
+/// Values of the axes, by the number of their values: the last axis turns fastest.
+fn digits(axes: &[Axis], mut index: usize) -> Choice {
+    let mut choice: Choice = axes
         .iter()
         .rev()
         .map(|axis| {
@@ -175,6 +173,34 @@ pub fn product_element(mut index: usize) -> Choice {
         .collect();
     choice.reverse();
     choice
+}
+
+fn combinations(axes: &[Axis]) -> usize {
+    axes.iter().map(|axis| axis.values.len()).product()
+}
+
+/// The number of elements of the full product of the controller's options.
+pub fn product_len() -> usize {
+    combinations(&AXES[..AXES.len() - INVERTER_AXES])
+}
+
+/// Element `index` of the full product of the controller's options. The inverter's axes take a
+/// combination each, in turn by the sum of the element's values, so that each of their combinations
+/// meets every value of every other axis.
+pub fn product_element(index: usize) -> Choice {
+    let (controller, inverter) = AXES.split_at(AXES.len() - INVERTER_AXES);
+    let mut choice = digits(controller, index);
+    let turn = choice.iter().sum::<usize>() % combinations(inverter);
+    choice.extend(digits(inverter, turn));
+    choice
+}
+
+/// Number of the combination of the inverter's axes in a choice.
+pub fn inverter_combination(choice: &[usize]) -> usize {
+    let axes = AXES.iter().zip(choice).skip(AXES.len() - INVERTER_AXES);
+    axes.fold(0, |number, (axis, value)| {
+        number * axis.values.len() + value
+    })
 }
 
 /// The choice with the first value of every axis but those named: `[("emf", "model")]`.

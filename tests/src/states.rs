@@ -1,129 +1,25 @@
-//! The bit-for-bit test from arbitrary states: every state word is set to some value of its proven
-//! interval, so that one step reaches what streams of plausible inputs reach in years.
+//! Arbitrary states: every state word is set to some value of its proven interval, so that one step
+//! reaches what streams of plausible inputs reach in years.
 //!
 //! Values come from the whole interval, from its ends, from small numbers, and from the program's
-//! own constants and their neighbours, so that comparisons are met at equality.
+//! own constants and their neighbours, so that comparisons are met at equality. Half of the states
+//! is moved to an edge: to one side of where the step's result jumps.
 
+use crate::edges::{self, Watched};
 use fastrand::Rng;
-use hexagen::{Format, Sample};
+use hexagen::Sample;
 use hexagen_codegen::ir::Program;
-use hexagen_reference::verify::Subject;
-use hexagen_reference::{BitTrue, Bus, FormatTable, HallCapture, Spec};
-use std::fmt::Write as _;
-
-/// Steps from one arbitrary state, the first of which is the one that matters.
-const STEPS_PER_STATE: u64 = 2;
-
-/// What a state can be, as data that also a compiled test can hold.
-#[derive(Clone, Copy, Debug)]
-pub struct Space<'a> {
-    /// Proven intervals of the state words, in order.
-    pub ranges: &'a [(i32, i32)],
-    /// Constants of the program.
-    pub constants: &'a [i32],
-}
-
-/// The proven intervals of the state words.
-pub fn ranges(program: &Program) -> Vec<(i32, i32)> {
-    let words = program.states.iter();
-    words
-        .map(|word| (word.interval.low as i32, word.interval.high as i32))
-        .collect()
-}
-
-/// The values of the constants.
-pub fn constants(program: &Program) -> Vec<i32> {
-    program
-        .constants
-        .iter()
-        .map(|constant| constant.raw)
-        .collect()
-}
-
-/// Compares subject and model over `steps` steps from arbitrary states.
-///
-/// # Errors
-/// What differs.
-pub fn verify_states<S: Subject>(
-    spec: &str,
-    formats: &[Format],
-    space: Space<'_>,
-    mut subject: S,
-    steps: u64,
-    seed: u64,
-) -> Result<(), String> {
-    let spec = Spec::from_toml(spec).map_err(|error| error.to_string())?;
-    let formats = FormatTable::new(formats);
-    let mut model = BitTrue::new(&spec, &formats).map_err(|error| error.to_string())?;
-    let names = model.state_names();
-    let count_bits = formats
-        .frac_bits("current")
-        .map_err(|error| error.to_string())?;
-    let mut states = States {
-        random: Rng::with_seed(seed),
-        names: &names,
-        space,
-        count_bits,
-        adc_max: (1 << spec.inverter.adc_bits) - 1,
-        inverted: spec.inverter.adc_gain < 0.0,
-        trip: (spec.inverter.trip_current / spec.inverter.adc_gain.abs()) as i64,
-        codes: spec.motor.hall_codes,
-        age_max: spec.inverter.age_max,
-        timer: spec.inverter.hall_capture == HallCapture::Timer,
-    };
-    let mut words = vec![0; names.len()];
-    let (mut found, mut expected) = (words.clone(), words.clone());
-    for step in 0..steps.div_ceil(STEPS_PER_STATE) {
-        if step % 4 == 0 {
-            let bits = states.set_point(spec.inverter.max_current * 65_536.0);
-            model.set_current(bits);
-            subject.set_current(bits);
-        } else if step % 4 == 2 {
-            let most = spec.inverter.max_current * spec.motor.torque_constant * 65_536.0;
-            let bits = states.set_point(most);
-            model.set_torque(bits);
-            subject.set_torque(bits);
-        }
-        if spec.inverter.bus == Bus::Measured {
-            let counts = states.bus_counts();
-            model.set_bus(counts);
-            subject.set_bus(counts);
-        }
-        let mut sample = states.fill(&mut words);
-        model.set_state_words(&words);
-        subject.set_state_words(&words);
-        for _ in 0..STEPS_PER_STATE {
-            let (legs, wanted) = (subject.step(&sample), model.step(&sample));
-            subject.state_words(&mut found);
-            model.state_words(&mut expected);
-            if legs != wanted || found != expected || subject.fault() != model.fault() {
-                let mut text = format!(
-                    "state {step} of seed {seed}, {sample:?}\n  {legs:?}\n  {wanted:?} (model)\n"
-                );
-                for (index, name) in names.iter().enumerate() {
-                    let mark = if found[index] == expected[index] {
-                        ""
-                    } else {
-                        "  <--"
-                    };
-                    let (from, is, should) = (words[index], found[index], expected[index]);
-                    writeln!(text, "  {name:<16} {from:>12} {is:>12} {should:>12}{mark}")
-                        .expect("a string takes all");
-                }
-                return Err(text);
-            }
-            words.copy_from_slice(&expected);
-            sample.hall_ticks = sample.hall_ticks.saturating_add(1);
-        }
-    }
-    Ok(())
-}
+use hexagen_reference::{BitTrue, HallCapture, Spec};
 
 /// Generator of states and of the samples that go with them.
-struct States<'a> {
+#[derive(Debug)]
+pub struct States<'a> {
     random: Rng,
     names: &'a [&'static str],
-    space: Space<'a>,
+    /// Proven intervals of the state words.
+    ranges: Vec<(i32, i32)>,
+    /// Constants of the program.
+    constants: Vec<i32>,
     count_bits: u32,
     adc_max: i64,
     inverted: bool,
@@ -131,24 +27,66 @@ struct States<'a> {
     trip: i64,
     codes: [u8; 6],
     age_max: u32,
+    /// Ticks of the Hall timer per period.
+    ticks: i32,
     timer: bool,
+    /// Bus voltage, volt.
+    v_bus: f64,
 }
 
-impl States<'_> {
-    fn set_point(&mut self, most: f64) -> i32 {
+impl<'a> States<'a> {
+    /// States of a drive: its specification, fraction bits of a current, names of its state words,
+    /// and its program.
+    pub fn new(
+        spec: &Spec,
+        count_bits: u32,
+        names: &'a [&'static str],
+        program: &Program,
+        seed: u64,
+    ) -> Self {
+        let inverter = &spec.inverter;
+        let words = program.states.iter();
+        let constants = program.constants.iter();
+        Self {
+            random: Rng::with_seed(seed),
+            names,
+            ranges: words
+                .map(|word| (word.interval.low as i32, word.interval.high as i32))
+                .collect(),
+            constants: constants.map(|constant| constant.raw).collect(),
+            count_bits,
+            adc_max: (1 << inverter.adc_bits) - 1,
+            inverted: inverter.adc_gain < 0.0,
+            trip: (inverter.trip_current / inverter.adc_gain.abs()) as i64,
+            codes: spec.motor.hall_codes,
+            age_max: inverter.age_max,
+            ticks: inverter.ticks as i32,
+            timer: inverter.hall_capture == HallCapture::Timer,
+            v_bus: inverter.v_bus,
+        }
+    }
+
+    /// A set-point, bits of an `I16F16`; `most` is the greatest that the drive follows.
+    pub fn set_point(&mut self, most: f64) -> i32 {
         match self.random.u8(..8) {
             0 => 0,
-            1 => self.random.i32(-3..=3),
+            1 => {
+                let most = 1 << self.random.u32(..8);
+                self.random.i32(-most..=most)
+            }
             2 => self.random.i32(..),
             3 => most as i32 - self.random.i32(-2..=2),
             _ => ((self.random.f64() * 2.0 - 1.0) * most) as i32,
         }
     }
 
-    fn bus_counts(&mut self) -> u16 {
+    /// A bus voltage, ADC counts.
+    pub fn bus_counts(&mut self) -> u16 {
         match self.random.u8(..4) {
             0 => self.random.u16(..),
             1 => self.random.u16(4090..4100),
+            // As low as it can be told.
+            2 => 0,
             _ => self.random.u16(..4096),
         }
     }
@@ -171,15 +109,16 @@ impl States<'_> {
         value.clamp(low, high)
     }
 
-    /// A constant of the program or a neighbour of it, of either sign.
+    /// A constant of the program (or that by a power of two) or a neighbour of it, of either sign.
     fn constant(&mut self) -> i64 {
-        let index = self.random.usize(..self.space.constants.len());
-        let near = i64::from(self.space.constants[index]) + self.random.i64(-1..=1);
+        let index = self.random.usize(..self.constants.len());
+        let shift = [0, 0, 1, 8][self.random.usize(..4)];
+        let near = (i64::from(self.constants[index]) >> shift) + self.random.i64(-1..=1);
         if self.random.bool() { near } else { -near }
     }
 
     /// Fills in a state; returns a sample for it.
-    fn fill(&mut self, words: &mut [i32]) -> Sample {
+    pub fn fill(&mut self, words: &mut [i32]) -> Sample {
         let mut sample = Sample {
             hall: match self.random.u8(..64) {
                 0 => 0,
@@ -190,8 +129,21 @@ impl States<'_> {
             ..Sample::default()
         };
         for (index, word) in words.iter_mut().enumerate() {
-            let (low, high) = self.space.ranges[index];
-            *word = self.word(i64::from(low), i64::from(high)) as i32;
+            let (low, high) = self.ranges[index];
+            let (low, high) = (i64::from(low), i64::from(high));
+            *word = match self.names[index] {
+                "age_prev" => self.age().clamp(low, high),
+                _ => self.word(low, high),
+            } as i32;
+        }
+        // Without an edge the angle goes on.
+        if self.random.bool()
+            && let Some(place) = self.place("sector_prev")
+            && let Some(code) = (words[place] as usize)
+                .checked_sub(1)
+                .and_then(|sector| self.codes.get(sector))
+        {
+            sample.hall = *code;
         }
         // Phases that are equal or opposite put maxima and differences on their ties.
         for index in 0..words.len() {
@@ -202,15 +154,93 @@ impl States<'_> {
             {
                 let suffix = &self.names[index][a.len() + 2..];
                 if let Some(other) = self.place(&format!("{a}_a{suffix}")) {
-                    let (low, high) = self.space.ranges[index];
+                    let (low, high) = self.ranges[index];
                     let sign = if self.random.bool() { 1 } else { -1 };
                     words[index] = (sign * words[other]).clamp(low, high);
                 }
             }
         }
-        self.fill_currents(words, &mut sample);
+        let is_slow = self.random.u8(..16) == 0;
+        self.fill_currents(words, &mut sample, is_slow);
+        if is_slow {
+            self.slow_down(words);
+        }
+        match self.random.u8(..16) {
+            0 | 1 => self.take_half_a_turn(words, sample),
+            2 => self.end_sector(words),
+            _ => {}
+        }
         self.respect_invariants(words);
         sample
+    }
+
+    /// A rotor that has been in its sector for half of its last turn, or nearly: it is lost then.
+    fn take_half_a_turn(&mut self, words: &mut [i32], sample: Sample) {
+        let Some(place) = self.place("age_prev") else {
+            return;
+        };
+        let age = if self.timer {
+            i32::from(sample.hall_ticks)
+        } else {
+            words[place].saturating_add(self.ticks)
+        };
+        // Six equal intervals, the last of which takes the remainder.
+        let last = age.saturating_mul(3) - 5 * (age / 2) + self.random.i32(-1..=1);
+        for (name, interval) in [
+            ("t1", age / 2),
+            ("t2", age / 2),
+            ("t3", age / 2),
+            ("t4", age / 2),
+            ("t5", age / 2),
+            ("t6", last),
+        ] {
+            if let Some(place) = self.place(name) {
+                let (low, high) = self.ranges[place];
+                words[place] = interval.clamp(low, high);
+            }
+        }
+    }
+
+    /// A rotor whose angle, some ticks ahead, is at the end of its sector to the last bit.
+    fn end_sector(&mut self, words: &mut [i32]) {
+        let places = ["age_prev", "omega", "edges"].map(|name| self.place(name));
+        let [Some(age_prev), Some(omega), Some(edges)] = places else {
+            return;
+        };
+        let sector = ((1_i64 << 32) / 6) as i32 + self.random.i32(0..=1);
+        let ahead = self.random.i32(0..8);
+        let most = self.age_max as i32;
+        let speed_max = self.ranges[omega].1;
+        let age = (0..256)
+            .map(|_| self.random.i32(1..=most))
+            .find(|age| sector % (age + ahead) == 0 && sector / (age + ahead) <= speed_max);
+        if let Some(age) = age {
+            words[omega] = sector / (age + ahead);
+            words[edges] = 2;
+            words[age_prev] = (age - self.ticks).max(0);
+            // The last turn was slow enough for the rotor not to be lost.
+            for name in ["t1", "t2", "t3", "t4", "t5", "t6"] {
+                if let Some(place) = self.place(name) {
+                    words[place] = age;
+                }
+            }
+        }
+    }
+
+    /// A slow rotor without current: the voltages are those of a small EMF.
+    fn slow_down(&mut self, words: &mut [i32]) {
+        let bits = self.random.u32(1..24);
+        for name in ["i_a_prev", "i_b_prev", "v_a_prev", "v_b_prev"] {
+            if let Some(place) = self.place(name) {
+                let small = self.random.i32(-(1 << bits)..=1 << bits);
+                let (low, high) = self.ranges[place];
+                words[place] = if name.starts_with('i') {
+                    0
+                } else {
+                    small.clamp(low, high)
+                };
+            }
+        }
     }
 
     fn place(&self, name: &str) -> Option<usize> {
@@ -221,7 +251,10 @@ impl States<'_> {
         let most = i64::from(self.age_max);
         let age = match self.random.u8(..4) {
             0 => most + self.random.i64(-2..=3),
-            1 => self.random.i64(0..4),
+            1 => {
+                let most = 1 << self.random.u32(..8);
+                self.random.i64(0..=most)
+            }
             2 if self.timer => self.random.i64(0..65_536),
             _ => self.random.i64(0..=most),
         };
@@ -229,7 +262,8 @@ impl States<'_> {
     }
 
     /// Currents of any value, by the offsets; most of them below the trip level.
-    fn fill_currents(&mut self, words: &mut [i32], sample: &mut Sample) {
+    /// `is_slow` leaves no current.
+    fn fill_currents(&mut self, words: &mut [i32], sample: &mut Sample, is_slow: bool) {
         let span = self.adc_max << self.count_bits;
         let trip = (self.trip << self.count_bits) + 1;
         let mut currents = [0; 2];
@@ -247,6 +281,9 @@ impl States<'_> {
             if third.abs() <= trip || attempt == 0 && self.random.u8(..16) == 0 {
                 break;
             }
+        }
+        if is_slow {
+            currents = [0; 2];
         }
         for (phase, name) in ["a", "b"].into_iter().enumerate() {
             let current = if self.inverted {
@@ -266,6 +303,7 @@ impl States<'_> {
             let count = match self.random.u8(..64) {
                 0 => self.random.i64(0..65_536),
                 1 => self.adc_max + 1,
+                2 => self.adc_max,
                 _ => count,
             };
             let count = count.clamp(0, 65_535) as u16;
@@ -282,7 +320,7 @@ impl States<'_> {
                     1 => self.random.i64(-3..=3),
                     _ => self.random.i64(-trip..=trip) / 8,
                 };
-                let (low, high) = self.space.ranges[place];
+                let (low, high) = self.ranges[place];
                 let before = (currents[phase] - change).clamp(i64::from(low), i64::from(high));
                 words[place] = before as i32;
             }
@@ -311,11 +349,11 @@ impl States<'_> {
         let forward = self.random.bool();
         set("direction", &|_| if forward { 1 } else { -1 });
         // A sum of calibration has room for the samples to come.
+        let samples = i64::from(set("countdown", &|word| word).max(1));
+        let room = samples.saturating_mul(self.adc_max);
         for name in ["sum_a", "sum_b"] {
-            let most = self.names.iter().position(|known| *known == name);
-            let most = most.map_or(0, |place| {
-                i64::from(self.space.ranges[place].1) - STEPS_PER_STATE as i64 * self.adc_max
-            });
+            let place = self.names.iter().position(|known| *known == name);
+            let most = place.map_or(0, |place| i64::from(self.ranges[place].1) - room);
             set(name, &|word| word.min(most.max(0) as i32));
         }
         // The speed is zero while it is unknown; the turn is the sum of its intervals.
@@ -329,6 +367,64 @@ impl States<'_> {
             set(name, &|word| {
                 if off == number as i32 + 1 { 0 } else { word }
             });
+        }
+    }
+
+    /// Whether a word has many values, and the invariants leave it free.
+    fn is_free(&self, index: usize, word: i32) -> bool {
+        let (least, most) = self.ranges[index];
+        let name = self.names[index];
+        let bound = [
+            "sum_a",
+            "sum_b",
+            "countdown",
+            "t1",
+            "t2",
+            "t3",
+            "t4",
+            "t5",
+            "t6",
+            "rev",
+        ];
+        // These are zero where there is nothing to tell.
+        let is_zero = word == 0 && (name == "omega" || name.starts_with("t_"));
+        i64::from(most) - i64::from(least) >= 1 << 10 && !bound.contains(&name) && !is_zero
+    }
+
+    /// Moves one word of half of the states to where what is watched changes, on either side of it.
+    pub fn seek_edge(&mut self, model: &mut BitTrue, words: &mut [i32], sample: Sample) {
+        if self.random.bool() {
+            return;
+        }
+        let free: Vec<usize> = (0..words.len())
+            .filter(|&index| self.is_free(index, words[index]))
+            .collect();
+        let mut index = free[self.random.usize(..free.len())];
+        let watched = match self.random.u8(..10) {
+            0..=2 => Watched::Compare(self.random.usize(..3)),
+            3 => Watched::Reach,
+            4 => Watched::Torque,
+            5 | 6 => {
+                // Only a known speed moves the sector away from that of the Hall code.
+                let omega = free.iter().find(|&&index| self.names[index] == "omega");
+                index = *omega.unwrap_or(&index);
+                Watched::Sector
+            }
+            7 => Watched::Corner { v_bus: self.v_bus },
+            8 => Watched::Word(self.random.usize(..words.len())),
+            _ => Watched::All,
+        };
+        let (least, most) = self.ranges[index];
+        let ends = [words[index], self.word(least.into(), most.into()) as i32];
+        let upper_side = self.random.bool();
+        words[index] = edges::seek(ends, upper_side, |word| {
+            words[index] = word;
+            watched.measure(model, words, &sample)
+        });
+        if self.random.u8(..4) == 0 {
+            let bits = self.random.u32(..20);
+            let way = self.random.i32(-(1 << bits)..=1 << bits);
+            words[index] = words[index].saturating_add(way).clamp(least, most);
         }
     }
 }

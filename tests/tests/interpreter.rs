@@ -3,10 +3,11 @@
 use hexagen_tests::interpreter::{compare, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{
-    default_choice, describe, drive_toml, generate_toml, product_element, product_len,
+    AXES, INVERTER_AXES, default_choice, describe, drive_toml, generate_toml, inverter_combination,
+    product_element, product_len,
 };
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Steps of each element of the full product; the seeds differ, so all streams take part.
 const PRODUCT_STEPS: u64 = 1_500;
@@ -19,6 +20,8 @@ struct Tally {
     /// Codes of the diagnostics that refused a drive, with the number of drives and the first one.
     refused: BTreeMap<String, (usize, String)>,
     failures: Vec<String>,
+    /// Combination of the inverter's options, with option and value that it met.
+    met: BTreeSet<(usize, usize, usize)>,
 }
 
 impl Tally {
@@ -36,6 +39,9 @@ impl Tally {
             }
             Ok((_, generated)) => {
                 tally.compared = 1;
+                let met = choice[..AXES.len() - INVERTER_AXES].iter().enumerate();
+                let inverter = inverter_combination(choice);
+                tally.met = met.map(|(axis, &value)| (inverter, axis, value)).collect();
                 let program = generated.graph.program();
                 let compared = compare(&generated, program, steps, seed).and_then(|report| {
                     compare_states(&generated, program, steps / 4, seed).map(|()| report)
@@ -53,6 +59,7 @@ impl Tally {
         self.compared += other.compared;
         self.steps += other.steps;
         self.failures.extend(other.failures);
+        self.met.extend(other.met);
         for (code, (count, example)) in other.refused {
             let entry = self.refused.entry(code).or_insert((0, example));
             entry.0 += count;
@@ -94,6 +101,9 @@ fn default_drive_of_the_paper_motor() {
         .unwrap_or_else(|what| panic!("{what}"));
 }
 
+/// All combinations of the controller's options. The stall time-out, the sign of the currents and
+/// the start-up are the inverter's: their eight combinations take turns, and each meets every value of
+/// every other option in some drive that is compared.
 #[test]
 fn full_product_of_options_on_the_paper_motor() {
     let paper = motor(PAPER_MOTOR);
@@ -102,6 +112,11 @@ fn full_product_of_options_on_the_paper_motor() {
         .map(|index| Tally::of(&paper, &product_element(index), PRODUCT_STEPS, index as u64))
         .reduce(Tally::default, Tally::add);
     tally.check("full product");
+    let values = AXES[..AXES.len() - INVERTER_AXES]
+        .iter()
+        .map(|axis| axis.values.len())
+        .sum::<usize>();
+    assert_eq!(tally.met.len(), 8 * values);
     assert_eq!(
         tally.refused.keys().collect::<Vec<_>>(),
         ["OptionWithoutEffect"],

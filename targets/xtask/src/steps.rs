@@ -69,19 +69,7 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "--steps",
         &steps,
     ];
-    let faults = [
-        "test",
-        "-p",
-        "hexagen-tests",
-        "--test",
-        "faults_in_ir",
-        "--test",
-        "faults_in_rust",
-    ];
-    vec![
-        step("planted faults", &faults),
-        step("verification", &verify),
-    ]
+    vec![step("verification", &verify)]
 }
 
 /// Rewrites recorded expectations.

@@ -1,0 +1,173 @@
+//! The bit-for-bit test from arbitrary states: states with the model's answers, recorded once and
+//! compared with any number of subjects.
+
+use crate::states::States;
+use hexagen::{Fault, Format, Legs, Sample};
+use hexagen_codegen::ir::Program;
+use hexagen_reference::verify::Subject;
+use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
+use std::fmt::Write as _;
+
+/// Steps from one arbitrary state, the first of which is the one that matters.
+const STEPS_PER_STATE: usize = 2;
+
+/// A state with what is set and sampled in it, and what the model makes of it.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What is set before the first step.
+    pub set: Set,
+    /// Set-point words that the model makes of it: current, bus voltage, its reciprocal.
+    pub set_point_words: [i32; 3],
+    words: Vec<i32>,
+    sample: Sample,
+    answers: [Answer; STEPS_PER_STATE],
+}
+
+/// What firmware tells a drive from outside the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Set {
+    /// Set-point, bits of an `I16F16`.
+    pub bits: i32,
+    /// It is a torque, else a current.
+    pub is_torque: bool,
+    /// Bus voltage, ADC counts, where it is measured.
+    pub bus: Option<u16>,
+}
+
+impl Set {
+    fn apply<S: Subject>(self, subject: &mut S) {
+        if let Some(counts) = self.bus {
+            subject.set_bus(counts);
+        }
+        if self.is_torque {
+            subject.set_torque(self.bits);
+        } else {
+            subject.set_current(self.bits);
+        }
+    }
+}
+
+/// What a step leaves behind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Answer {
+    legs: Legs,
+    fault: Fault,
+    words: Vec<i32>,
+}
+
+/// The cases of `steps` steps from arbitrary states of a drive, for any number of subjects: its
+/// specification, its formats and the generated program.
+///
+/// # Errors
+/// When no model can be built.
+pub fn record(
+    spec: &str,
+    formats: &[Format],
+    program: &Program,
+    steps: u64,
+    seed: u64,
+) -> Result<Vec<Case>, String> {
+    let spec = Spec::from_toml(spec).map_err(|error| error.to_string())?;
+    let formats = FormatTable::new(formats);
+    let mut model = BitTrue::new(&spec, &formats).map_err(|error| error.to_string())?;
+    let names = model.state_names();
+    let count_bits = formats
+        .frac_bits("current")
+        .map_err(|error| error.to_string())?;
+    let mut states = States::new(&spec, count_bits, &names, program, seed);
+    let most_current = spec.inverter.max_current * 65_536.0;
+    let most_torque = most_current * spec.motor.torque_constant;
+    let mut cases = vec![];
+    for number in 0..steps.div_ceil(STEPS_PER_STATE as u64) {
+        let is_torque = number % 2 == 1;
+        let most = if is_torque { most_torque } else { most_current };
+        let set = Set {
+            bits: states.set_point(most),
+            is_torque,
+            bus: (spec.inverter.bus == Bus::Measured).then(|| states.bus_counts()),
+        };
+        if let Some(counts) = set.bus {
+            model.set_bus(counts);
+        }
+        if is_torque {
+            model.set_torque(set.bits);
+        } else {
+            model.set_current(set.bits);
+        }
+        let mut case = Case {
+            set,
+            set_point_words: model.set_point_words().map(|word| word as i32),
+            words: vec![0; names.len()],
+            sample: Sample::default(),
+            answers: Default::default(),
+        };
+        case.sample = states.fill(&mut case.words);
+        states.seek_edge(&mut model, &mut case.words, case.sample);
+        model.set_state_words(&case.words);
+        let mut sample = case.sample;
+        for answer in &mut case.answers {
+            *answer = Answer {
+                legs: model.step(&sample),
+                fault: model.fault(),
+                words: vec![0; names.len()],
+            };
+            model.state_words(&mut answer.words);
+            sample = next(sample);
+        }
+        cases.push(case);
+    }
+    Ok(cases)
+}
+
+/// The sample of the next period.
+fn next(sample: Sample) -> Sample {
+    Sample {
+        hall_ticks: sample.hall_ticks.saturating_add(1),
+        ..sample
+    }
+}
+
+/// Compares the subject with what was recorded; `names` are those of the state words.
+///
+/// # Errors
+/// What differs.
+pub fn replay<S: Subject>(cases: &[Case], names: &[&str], mut subject: S) -> Result<(), String> {
+    let mut found = Answer::default();
+    found.words.resize(names.len(), 0);
+    for (number, case) in cases.iter().enumerate() {
+        case.set.apply(&mut subject);
+        subject.set_state_words(&case.words);
+        let mut sample = case.sample;
+        for answer in &case.answers {
+            found.legs = subject.step(&sample);
+            found.fault = subject.fault();
+            subject.state_words(&mut found.words);
+            if found != *answer {
+                return Err(difference(number, case, names, sample, &found, answer));
+            }
+            sample = next(sample);
+        }
+    }
+    Ok(())
+}
+
+fn difference(
+    number: usize,
+    case: &Case,
+    names: &[&str],
+    sample: Sample,
+    found: &Answer,
+    expected: &Answer,
+) -> String {
+    let mut text = format!(
+        "state {number}, {sample:?}\n  {:?} {:?}\n  {:?} {:?} (model)\n",
+        found.legs, found.fault, expected.legs, expected.fault
+    );
+    for (index, name) in names.iter().enumerate() {
+        let (from, is, should) = (case.words[index], found.words[index], expected.words[index]);
+        let mark = if is == should { "" } else { "  <--" };
+        writeln!(text, "  {name:<16} {from:>12} {is:>12} {should:>12}{mark}")
+            .expect("a string takes all");
+    }
+    text
+}
