@@ -36,7 +36,7 @@ pub fn stable_range(spec: &Spec) -> Option<StableRange> {
 }
 
 /// The kinds of controllers, with the options that not all of them take.
-pub(crate) const KINDS: [(&str, &[&str]); 3] = [
+pub const KINDS: [(&str, &[&str]); 3] = [
     ("fcs-mpc", &["candidates", "off_leg"]),
     ("pdcc", &["modulation", "saturation"]),
     (
