@@ -7,9 +7,11 @@ pub mod fcs_mpc;
 mod interface;
 pub mod pdcc;
 pub mod pi_pwm;
+mod whole_vectors;
 
 pub use current_loop::{EmfSource, LoopOptions, Reference, StableRange};
 pub use interface::{Law, interface};
+pub use whole_vectors::OffLegModel;
 
 use crate::spec::Spec;
 use current_loop::{LinearLoop, LoopDesign};
@@ -70,6 +72,11 @@ impl ControllerSpec {
             Self::Pdcc(options) => &options.common,
             Self::PiPwm(options) => &options.common,
         }
+    }
+
+    /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
+    pub fn modulates(&self) -> bool {
+        matches!(self, Self::Pdcc(_) | Self::PiPwm(_))
     }
 
     /// The name that the specification calls it by.

@@ -2,9 +2,9 @@
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
 use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
-use crate::controllers::fcs_mpc::{Candidates, OffLegModel};
+use crate::controllers::fcs_mpc::Candidates;
 use crate::controllers::pdcc::Modulation;
-use crate::controllers::{ControllerSpec, EmfSource, Reference};
+use crate::controllers::{ControllerSpec, EmfSource, OffLegModel, Reference};
 use crate::design::Discretisation;
 use crate::lower::LimitRule;
 use std::fmt::{Debug, Display};

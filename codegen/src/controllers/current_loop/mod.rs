@@ -253,13 +253,13 @@ impl CurrentLoop<'_, '_> {
         })
     }
 
-    /// Step 12: closes the step. `v_cmd` are the commanded voltages, `applied` the terminals of a command that
-    /// may turn a leg off.
+    /// Step 12: closes the step. `v_cmd` are the commanded voltages; `applied` are the terminals instead, where a
+    /// command may turn a leg off whose real voltage counts.
     pub fn remember(
         &mut self,
         front: &Front,
         command: &Command,
-        v_cmd: [Value; 2],
+        v_cmd: Option<[Value; 2]>,
         applied: Option<Applied>,
         mut remembered: Remembered,
     ) {
@@ -279,23 +279,28 @@ impl CurrentLoop<'_, '_> {
             }
             remembered.push((off, "off_cmd_next", applied.off));
         }
-        if let Some(words) = words.v_cmd {
+        if let (Some(words), Some(v_cmd)) = (words.v_cmd, v_cmd) {
             remembered.push((words[0], "v_a_cmd_next", v_cmd[0]));
             remembered.push((words[1], "v_b_cmd_next", v_cmd[1]));
         }
         if let Some(v_prev) = words.v_prev {
             let volts = match (front.now, applied, front.e) {
-                (Some(now), ..) => now,
+                (Some(now), ..) => Some(now),
                 (None, Some(applied), Some(e)) => {
                     let off_leg = self.off_leg(front);
                     let names = ["v_a_applied", "v_b_applied"];
-                    self.lowering
-                        .applied_voltage(names, applied, &front.currents, e, &off_leg)
+                    let currents = &front.currents;
+                    Some(
+                        self.lowering
+                            .applied_voltage(names, applied, currents, e, &off_leg),
+                    )
                 }
                 _ => v_cmd,
             };
-            remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
-            remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
+            if let Some(volts) = volts {
+                remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
+                remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
+            }
         }
         if let (Some(e_prev), Some(e)) = (words.e_prev, front.e) {
             remembered.push((e_prev[0], "e_a_prev_next", e[0]));

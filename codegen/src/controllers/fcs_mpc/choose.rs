@@ -4,9 +4,9 @@
 //! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
 //! the sign of a line voltage, so three scores remain.
 
-use super::lower::{unless_lost, zero_vectors};
 use super::{Candidates, FcsMpcSpec};
 use crate::controllers::current_loop::{CurrentLoop, Front};
+use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
 use crate::ir::{Comparison, Value};

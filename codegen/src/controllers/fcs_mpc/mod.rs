@@ -6,7 +6,7 @@ mod options;
 
 pub use lower::lower;
 pub(crate) use options::check_options;
-pub use options::{Candidates, FcsMpcSpec, OffLegModel};
+pub use options::{Candidates, FcsMpcSpec};
 
 use crate::controllers::Law;
 use crate::controllers::current_loop::LoopDesign;

@@ -2,6 +2,7 @@
 
 use crate::controllers::LoopOptions;
 use crate::controllers::current_loop::{Surroundings, read_common};
+use crate::controllers::whole_vectors::{OffLegModel, read_off_leg};
 use crate::diagnostics::Collector;
 use crate::spec::check::reader::Reader;
 
@@ -14,15 +15,6 @@ pub enum Candidates {
     ThreePhase,
     /// V0 to V6 and V12 to V61 always.
     All,
-}
-
-/// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OffLegModel {
-    /// Where its diodes or its EMF put it.
-    Physical,
-    /// Midway, as Table 2's vectors have it.
-    Nominal,
 }
 
 /// Options of finite-control-set model predictive control.
@@ -65,16 +57,7 @@ pub(crate) fn check_options(
             ],
         )
         .unwrap_or(Candidates::Table2);
-    let off_leg = reader
-        .word(
-            errors,
-            "off_leg",
-            &[
-                ("physical", OffLegModel::Physical),
-                ("nominal", OffLegModel::Nominal),
-            ],
-        )
-        .unwrap_or(OffLegModel::Physical);
+    let off_leg = read_off_leg(reader, errors);
     let without_sectors = candidates == Candidates::ThreePhase;
     Some(FcsMpcSpec {
         candidates,

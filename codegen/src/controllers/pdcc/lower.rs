@@ -35,6 +35,6 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
                 (command, Some(applied))
             }
         };
-        step.remember(&front, &command, limited.u, applied, vec![]);
+        step.remember(&front, &command, Some(limited.u), applied, vec![]);
     })
 }

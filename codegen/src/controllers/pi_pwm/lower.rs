@@ -95,6 +95,6 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             ));
         }
         let command = l.modulate(limited, front.bus);
-        step.remember(&front, &command, limited.u, None, remembered);
+        step.remember(&front, &command, Some(limited.u), None, remembered);
     })
 }

@@ -1,0 +1,194 @@
+//! One whole voltage vector per period: the vectors' legs, and what a step keeps of the vector that it chose.
+//!
+//! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
+//! leg a, b or c off.
+
+use super::current_loop::{CurrentLoop, Front, Remembered};
+use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
+use crate::diagnostics::Collector;
+use crate::ir::{Comparison, TableId, Value};
+use crate::lower::{Applied, Command, Lowering};
+use crate::spec::BusSource;
+use crate::spec::check::reader::Reader;
+
+/// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OffLegModel {
+    /// Where its diodes or its EMF put it.
+    Physical,
+    /// Midway, as Table 2's vectors have it.
+    Nominal,
+}
+
+/// Reads the option `off_leg`; physical by default.
+pub(super) fn read_off_leg(reader: &Reader, errors: &mut Collector) -> OffLegModel {
+    reader
+        .word(
+            errors,
+            "off_leg",
+            &[
+                ("physical", OffLegModel::Physical),
+                ("nominal", OffLegModel::Nominal),
+            ],
+        )
+        .unwrap_or(OffLegModel::Physical)
+}
+
+/// Legs of vectors 0 to 15: high (1), low (-1) or off (0).
+pub(super) fn vector_legs() -> [LegSigns; 16] {
+    let mut legs = [[-1; 3]; 16];
+    legs[1..7].copy_from_slice(&THREE_PHASE);
+    legs[7..13].copy_from_slice(&TWO_PHASE);
+    for phase in 0..3 {
+        legs[13 + phase][phase] = 0;
+    }
+    legs
+}
+
+/// Zero-sum voltages of a leg pattern in sixths of the bus; an off leg sits midway.
+pub(super) fn sixths(legs: LegSigns) -> LegSigns {
+    // Terminals in halves of the bus; v_x = t_x - mean, times 6: 3 t_x - (t_a + t_b + t_c).
+    let high = legs.contains(&1);
+    let terminals = legs.map(|sign| if high { sign + 1 } else { 0 });
+    let sum: i32 = terminals.iter().sum();
+    terminals.map(|terminal| 3 * terminal - sum)
+}
+
+/// The zero vector of a sector's pair, sectors 0 to 6: both legs of the pair low, the third off.
+pub(super) fn zero_vectors() -> Vec<i32> {
+    std::iter::once(0)
+        .chain(OFF_PHASE.iter().map(|phase| 13 + phase))
+        .collect()
+}
+
+/// `value` where the sector is known, else vector 0.
+pub(super) fn unless_lost(l: &mut Lowering<'_>, sector: Value, vector: Value) -> Value {
+    let zero = l.zero();
+    let known = l.b.compare(Comparison::NotEqual, sector, zero);
+    let zero = l.zero();
+    let vector = l.b.select(known, vector, zero);
+    l.b.name("vector", vector)
+}
+
+impl CurrentLoop<'_, '_> {
+    /// Drives the legs of the chosen vector and closes the step.
+    pub(super) fn apply_vector(&mut self, front: &Front, vector: Value, remembered: Remembered) {
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "drive_legs",
+            &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
+        );
+        let command = command(l, vector);
+        let v_cmd = (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, vector));
+        let applied = self.needs.off_leg.then(|| terminals(l, front, vector));
+        self.remember(front, &command, v_cmd, applied, remembered);
+    }
+}
+
+/// A table over the vectors.
+fn over_vectors(
+    l: &mut Lowering<'_>,
+    name: &str,
+    doc: &str,
+    entry: impl Fn(LegSigns) -> i32,
+) -> TableId {
+    let values = vector_legs().into_iter().map(entry).collect();
+    l.b.program.table(name, values, &[doc.to_owned()])
+}
+
+fn command(l: &mut Lowering<'_>, vector: Value) -> Command {
+    let top = l.spec.inverter.timer_period as i32;
+    let compares = [0, 1, 2].map(|x| {
+        let name = ["vector_compare_a", "vector_compare_b", "vector_compare_c"][x];
+        let doc = "Compare value of the leg by vector: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
+        let table = over_vectors(l, name, doc, |legs| if legs[x] == 1 { top } else { 0 });
+        l.b.lookup(table, vector)
+    });
+    let legs = [0, 1, 2].map(|x| {
+        let name = ["vector_leg_a", "vector_leg_b", "vector_leg_c"][x];
+        let doc = "State of the leg by vector: 0 pulsed, 1 low, 2 off.";
+        let table = over_vectors(l, name, doc, |legs| match legs[x] {
+            1 => 0,
+            -1 => 1,
+            _ => 2,
+        });
+        l.b.lookup(table, vector)
+    });
+    for x in 0..3 {
+        l.b.name(
+            ["compare_a_chosen", "compare_b_chosen", "compare_c_chosen"][x],
+            compares[x],
+        );
+        l.b.name(["leg_a_chosen", "leg_b_chosen", "leg_c_chosen"][x], legs[x]);
+    }
+    Command { compares, legs }
+}
+
+/// The zero-sum voltage that the chosen vector stands for, phases a and b.
+fn voltage(l: &mut Lowering<'_>, word: u32, front: &Front, vector: Value) -> [Value; 2] {
+    let k_sixth = l.coefficient(
+        "k_sixth",
+        1.0 / 6.0,
+        word,
+        "The unit of vector voltages: a sixth of the bus.",
+        "1/6",
+    );
+    let sixth = match l.spec.inverter.bus {
+        BusSource::Fixed => {
+            let product = l.rounded_product(k_sixth, l.nominal_bus());
+            l.number(
+                "sixth_of_bus",
+                product,
+                "A sixth of the bus, words of voltage.",
+            )
+        }
+        BusSource::Measured { .. } => {
+            let product = l.times(k_sixth, front.bus.volts);
+            l.b.name("sixth_of_bus", product)
+        }
+    };
+    [0, 1].map(|x| {
+        let name = ["vector_sixths_a", "vector_sixths_b"][x];
+        let doc = "Phase voltage of the vector, sixths of the bus.";
+        let table = over_vectors(l, name, doc, |legs| sixths(legs)[x]);
+        let share = l.b.lookup(table, vector);
+        let volts = l.b.mul(share, sixth, 0);
+        l.b.name(["v_a_chosen", "v_b_chosen"][x], volts)
+    })
+}
+
+/// The terminals that the chosen vector drives, and which leg it turns off.
+fn terminals(l: &mut Lowering<'_>, front: &Front, vector: Value) -> Applied {
+    let terminals = [0, 1, 2].map(|x| {
+        let name = ["vector_high_a", "vector_high_b", "vector_high_c"][x];
+        let doc = "1 where the vector turns the leg's upper switch on.";
+        let table = over_vectors(l, name, doc, |legs| i32::from(legs[x] == 1));
+        let high = l.b.lookup(table, vector);
+        let volts = l.b.mul(high, front.bus.volts, 0);
+        l.b.name(["t_a_chosen", "t_b_chosen", "t_c_chosen"][x], volts)
+    });
+    let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
+    let table = over_vectors(l, "vector_off", doc, |legs| {
+        legs.iter()
+            .position(|&sign| sign == 0)
+            .map_or(0, |phase| phase as i32 + 1)
+    });
+    let off = l.b.lookup(table, vector);
+    l.b.name("off_chosen", off);
+    Applied { terminals, off }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{sixths, vector_legs};
+
+    #[test]
+    fn vectors_have_their_voltages() {
+        let legs = vector_legs();
+        assert_eq!(sixths(legs[0]), [0; 3]);
+        assert_eq!(sixths(legs[3]), [4, -2, -2]);
+        assert_eq!(sixths(legs[4]), [2, 2, -4]);
+        assert_eq!(sixths(legs[8]), [3, -3, 0]);
+        assert_eq!(sixths(legs[13]), [0; 3]);
+    }
+}
