@@ -15,7 +15,15 @@ const RATIO_BITS: u32 = 28;
 pub struct SetPointWords {
     /// K times the current set-point, words of voltage.
     pub j: ParamId,
-    bus: Option<[ParamId; 2]>,
+    bus: Option<BusWords>,
+}
+
+/// Words of a measured bus.
+#[derive(Clone, Copy, Debug)]
+struct BusWords {
+    volts: ParamId,
+    /// For a modulator, whose duties are shares of the bus.
+    ratio: Option<ParamId>,
 }
 
 impl SetPointWords {
@@ -34,22 +42,24 @@ impl SetPointWords {
                 let nominal = i64::from(spec.inverter.timer_period) << scale.voltage_bits;
                 let word = |volts: f64| round_half_up(volts * scale.voltage()) as i64;
                 let (low, high) = (word(min), word(max));
-                let ratio =
-                    |volts: i64| (i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1));
-                let ratios = Interval::new(ratio(high) as i64, ratio(low) as i64);
                 let volts = program.param(
                     "v_bus",
                     nominal as i32,
                     Interval::new(low, high),
                     "Bus voltage, words of voltage.",
                 );
-                let ratio = program.param(
-                    "ratio",
-                    1 << RATIO_BITS,
-                    ratios,
-                    "Nominal over measured bus voltage.",
-                );
-                Some([volts, ratio])
+                let ratio = spec.controller.modulates().then(|| {
+                    let ratio = |volts: i64| {
+                        ((i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1))) as i64
+                    };
+                    program.param(
+                        "ratio",
+                        1 << RATIO_BITS,
+                        Interval::new(ratio(high), ratio(low)),
+                        "Nominal over measured bus voltage.",
+                    )
+                });
+                Some(BusWords { volts, ratio })
             }
         };
         Self { j, bus }
@@ -68,20 +78,19 @@ impl Lowering<'_> {
                 );
                 Bus { volts, ratio: None }
             }
-            Some([volts, ratio]) => {
-                self.format(
-                    "ratio",
-                    32,
-                    RATIO_BITS as i32,
-                    Rounding::Floor,
-                    "nominal over measured bus voltage",
-                );
+            Some(BusWords { volts, ratio }) => {
                 let volts = self.b.param(volts);
-                let ratio = self.b.param(ratio);
-                Bus {
-                    volts,
-                    ratio: Some((ratio, RATIO_BITS)),
-                }
+                let ratio = ratio.map(|ratio| {
+                    self.format(
+                        "ratio",
+                        32,
+                        RATIO_BITS as i32,
+                        Rounding::Floor,
+                        "nominal over measured bus voltage",
+                    );
+                    (self.b.param(ratio), RATIO_BITS)
+                });
+                Bus { volts, ratio }
             }
         }
     }
@@ -142,7 +151,7 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
         ),
     ];
     if let (
-        Some(params),
+        Some(words),
         BusSource::Measured {
             gain,
             adc_bits,
@@ -151,7 +160,7 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
         },
     ) = (words.bus, spec.inverter.bus)
     {
-        functions.push(set_bus(lowering, params, gain, adc_bits, [min, max]));
+        functions.push(set_bus(lowering, words, gain, adc_bits, [min, max]));
     }
     functions
 }
@@ -198,14 +207,13 @@ fn set_j(
 
 fn set_bus(
     lowering: &mut Lowering<'_>,
-    [volts, ratio]: [ParamId; 2],
+    words: BusWords,
     gain: f64,
     adc_bits: u32,
     [min, max]: [f64; 2],
 ) -> Function {
     let nominal = lowering.nominal_bus();
     let limits = [lowering.volts_word(min), lowering.volts_word(max)];
-    let ratio_max = lowering.b.program.params[ratio.index()].interval.high;
     let k_bus = lowering.coefficient(
         "k_bus",
         gain * lowering.scale.voltage(),
@@ -213,15 +221,15 @@ fn set_bus(
         "Bus-voltage ADC count to words of voltage.",
         &format!("{} per count", engineering(gain, "V")),
     );
-    let mut b = FunctionBuilder::new(
-        lowering.b.program,
-        "set_bus",
-        &["Tells the bus voltage; the only division of the set-point path is here."],
-    );
-    b.stage(
-        "set_bus",
-        &["Bus voltage from its ADC count, and the ratio that scales voltages to timer counts."],
-    );
+    let [doc, stage_doc] = match words.ratio {
+        Some(_) => [
+            "Tells the bus voltage; the only division of the set-point path is here.",
+            "Bus voltage from its ADC count, and the ratio that scales voltages to timer counts.",
+        ],
+        None => ["Tells the bus voltage.", "Bus voltage from its ADC count."],
+    };
+    let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &[doc]);
+    b.stage("set_bus", &[stage_doc]);
     let counts = b.input(
         "counts",
         Interval::new(0, i64::from(u16::MAX)),
@@ -250,21 +258,24 @@ fn set_bus(
     });
     let clamped = b.clamp(measured, low, high);
     b.name("v_bus_new", clamped);
-    let nominal = b.program.constant(
-        "v_bus_nominal",
-        nominal as i32,
-        &["Nominal bus voltage, words of voltage: the timer period.".to_owned()],
-    );
-    let nominal = b.constant(nominal);
-    let most = b.program.constant(
-        "ratio_max",
-        ratio_max as i32,
-        &["Nominal over least bus voltage.".to_owned()],
-    );
-    let most = b.constant(most);
-    let quotient = b.divide(nominal, RATIO_BITS, clamped, most);
-    b.name("ratio_new", quotient);
-    b.set_param(volts, clamped);
-    b.set_param(ratio, quotient);
+    b.set_param(words.volts, clamped);
+    if let Some(ratio) = words.ratio {
+        let nominal = b.program.constant(
+            "v_bus_nominal",
+            nominal as i32,
+            &["Nominal bus voltage, words of voltage: the timer period.".to_owned()],
+        );
+        let nominal = b.constant(nominal);
+        let most = b.program.params[ratio.index()].interval.high;
+        let most = b.program.constant(
+            "ratio_max",
+            most as i32,
+            &["Nominal over least bus voltage.".to_owned()],
+        );
+        let most = b.constant(most);
+        let quotient = b.divide(nominal, RATIO_BITS, clamped, most);
+        b.name("ratio_new", quotient);
+        b.set_param(ratio, quotient);
+    }
     b.finish()
 }
