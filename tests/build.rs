@@ -1,5 +1,5 @@
-//! Generates the drives that the tests compile: the covering array over motors and options, and
-//! drives with planted faults.
+//! Generates the drives that the tests compile: a covering array over motors and options for each
+//! kind of controller, and drives with planted faults.
 
 #[expect(dead_code, reason = "shared with the tests, which use the rest")]
 #[path = "src/library.rs"]
@@ -14,7 +14,8 @@ mod pairwise;
 
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use library::Motor;
-use options::{AXES, describe, drive_toml, generate_toml};
+use options::{Kind, generate_toml, kinds};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -25,7 +26,7 @@ fn main() {
     println!("cargo:rerun-if-changed={}", library::FOLDER);
     let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let motors = library::motors();
-    write_covering_array(&out_dir, &motors);
+    write_covering_arrays(&out_dir, &motors);
     write_mutants(&out_dir);
 }
 
@@ -33,19 +34,15 @@ fn main() {
 fn write_mutants(out_dir: &Path) {
     let (mut text, mut list) = (String::new(), String::new());
     let mut number = 0;
-    for (drive, (motor, settings)) in mutation::MUTATED.iter().enumerate() {
-        let toml = drive_toml(
-            &library::motor(motor),
-            &options::choice_of(settings),
-            Some("Mutant"),
-        );
+    for (place, drive) in mutation::MUTATED.iter().enumerate() {
+        let toml = drive.toml(Some("Mutant"));
         let module = emit(&toml, "Mutant").expect("the drive generates");
         for mutant in mutation::mutants(&module, 1) {
             let (what, module) = (mutant.what, mutant.text);
             writeln!(text, "mod mutant_{number:02} {{\n{module}\n}}").expect("a string takes all");
             writeln!(
                 list,
-                "    ({drive}, {what:?}, is_noticed::<mutant_{number:02}::Mutant>),"
+                "    ({place}, {what:?}, is_noticed::<mutant_{number:02}::Mutant>),"
             )
             .expect("a string takes all");
             number += 1;
@@ -69,43 +66,94 @@ fn emit(toml: &str, name: &str) -> Option<String> {
     Some(format_rust(&tokens))
 }
 
-/// Every pair of option values, and every motor with every option value.
-fn write_covering_array(out_dir: &Path, motors: &[Motor]) {
-    let mut lengths: Vec<usize> = AXES.iter().map(|axis| axis.values.len()).collect();
-    lengths.push(motors.len());
-    let toml = |row: &[usize], name: Option<&str>| {
-        let (motor, choice) = row.split_last().expect("the motor's axis");
-        drive_toml(&motors[*motor], choice, name)
-    };
-    let covering = pairwise::cover(&lengths, |row| generate_toml(&toml(row, None)).is_ok());
-    let mut text = String::new();
-    let mut list = String::new();
-    for (number, row) in covering.rows.iter().enumerate() {
-        let name = format!("Row{number:02}");
-        let module = emit(&toml(row, Some(&name)), &name).expect("an accepted row generates");
-        text.push_str(&module);
-        let (motor, choice) = row.split_last().expect("the motor's axis");
-        let what = format!("{name} {} {}", motors[*motor].name, describe(choice));
-        writeln!(list, "    ({what:?}, verify::<{name}>),").expect("a string takes all");
+/// The covering arrays of all kinds of controllers.
+fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
+    let (mut modules, mut rows, mut refused) = (String::new(), String::new(), String::new());
+    for kind in kinds() {
+        let array = CoveringArray::of(&kind, motors);
+        modules.push_str(&array.modules);
+        rows.push_str(&array.rows);
+        refused.push_str(&array.refused);
     }
-    let axis_name = |axis: usize| AXES.get(axis).map_or("motor", |axis| axis.name);
-    let value_name = |axis: usize, value: usize| match AXES.get(axis) {
-        Some(axis) => axis.values[value].0,
-        None => &motors[value].name,
-    };
-    let open: Vec<String> = covering
-        .open
-        .iter()
-        .map(|&((a, x), (b, y))| {
-            let (one, two) = (value_name(a, x), value_name(b, y));
-            format!("{}={one} {}={two}", axis_name(a), axis_name(b))
-        })
-        .collect();
     let tail = format!(
-        "/// What each row is, and its comparison with the model over so many steps from a seed.\n\
-         pub const ROWS: &[(&str, Verify)] = &[\n{list}];\n\
-         /// Pairs of values that the generator refuses.\n\
-         pub const REFUSED_PAIRS: &[&str] = &{open:?};\n"
+        "/// Kind of controller, what the row is, and its comparison with the model over so many steps\n\
+         /// from a seed.\n\
+         pub const ROWS: &[(&str, &str, Verify)] = &[\n{rows}];\n\
+         /// What no row has, and the codes of the diagnostics that refuse it.\n\
+         pub const REFUSED: &[(&str, &str)] = &[\n{refused}];\n"
     );
-    fs::write(out_dir.join("covering_array.rs"), text + &tail).expect("OUT_DIR can be written");
+    fs::write(out_dir.join("covering_array.rs"), modules + &tail).expect("OUT_DIR can be written");
+}
+
+/// Text of a kind's drives: every pair of option values, and every motor with every option value.
+#[derive(Default)]
+struct CoveringArray {
+    modules: String,
+    rows: String,
+    refused: String,
+}
+
+impl CoveringArray {
+    fn of(kind: &Kind, motors: &[Motor]) -> Self {
+        let mut array = Self::default();
+        let first = kind.choice_of(&[]);
+        // A motor that cannot have the controller is in no pair.
+        let (able, unable): (Vec<&Motor>, Vec<&Motor>) = motors
+            .iter()
+            .partition(|motor| refusal(&kind.drive_toml(motor, &first, None)).is_empty());
+        for motor in unable {
+            let codes = refusal(&kind.drive_toml(motor, &first, None));
+            array.refuse(&format!("{} motor={}", kind.name, motor.name), &codes);
+        }
+        let toml = |row: &[usize], name: Option<&str>| {
+            let (motor, choice) = row.split_last().expect("the motor's axis");
+            kind.drive_toml(able[*motor], choice, name)
+        };
+        let mut lengths: Vec<usize> = kind.axes.iter().map(|axis| axis.values.len()).collect();
+        lengths.push(able.len());
+        let covering = pairwise::cover(&lengths, |row| generate_toml(&toml(row, None)).is_ok());
+        for (number, row) in covering.rows.iter().enumerate() {
+            let name = format!("{}{number:02}", type_name(kind));
+            let module = emit(&toml(row, Some(&name)), &name).expect("an accepted row generates");
+            array.modules.push_str(&module);
+            let (motor, choice) = row.split_last().expect("the motor's axis");
+            let what = format!("{name} {} {}", able[*motor].name, kind.describe(choice));
+            writeln!(
+                array.rows,
+                "    ({:?}, {what:?}, verify::<{name}>),",
+                kind.name
+            )
+            .expect("a string takes all");
+        }
+        let setting = |(axis, value): (usize, usize)| match kind.axes.get(axis) {
+            Some(axis) => format!("{}={}", axis.name, axis.values[value].0),
+            None => format!("motor={}", able[value].name),
+        };
+        for &(one, two) in &covering.open {
+            let mut row = vec![0; lengths.len()];
+            (row[one.0], row[two.0]) = (one.1, two.1);
+            let what = format!("{} {} {}", kind.name, setting(one), setting(two));
+            array.refuse(&what, &refusal(&toml(&row, None)));
+        }
+        array
+    }
+
+    fn refuse(&mut self, what: &str, codes: &str) {
+        writeln!(self.refused, "    ({what:?}, {codes:?}),").expect("a string takes all");
+    }
+}
+
+/// `FcsMpc`
+fn type_name(kind: &Kind) -> String {
+    let words = kind.name.split('-');
+    words
+        .map(|word| word[..1].to_uppercase() + &word[1..])
+        .collect()
+}
+
+/// Codes of the diagnostics that refuse a drive; empty where it is accepted.
+fn refusal(toml: &str) -> String {
+    let codes = generate_toml(toml).err().into_iter().flatten();
+    let codes: BTreeSet<String> = codes.map(|error| error.code.to_string()).collect();
+    codes.into_iter().collect::<Vec<_>>().join(" ")
 }

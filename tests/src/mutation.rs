@@ -1,18 +1,20 @@
 //! Faults planted in the text of an emitted module: a wrong constant, shift, sign, rounding or
 //! comparison, at sites spread over the whole step.
 
+use crate::options::Drive;
 use std::ops::Range;
 
-/// Drives whose text faults are planted in, a motor's name with settings: together they have every
-/// stage of a step.
-pub const MUTATED: &[(&str, &[(&str, &str)])] = &[
-    (
-        "trivedi-keshri-660w",
-        &[("saturation", "torque_priority"), ("hall_capture", "timer")],
-    ),
-    (
-        "hoverboard-hub",
-        &[
+/// Drives whose text faults are planted in: together they have every stage of a step.
+pub const MUTATED: &[Drive] = &[
+    Drive {
+        kind: "pdcc",
+        motor: "trivedi-keshri-660w",
+        settings: &[("saturation", "torque_priority"), ("hall_capture", "timer")],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "hoverboard-hub",
+        settings: &[
             ("modulation", "pair"),
             ("saturation", "nearest"),
             ("emf", "filtered"),
@@ -21,16 +23,17 @@ pub const MUTATED: &[(&str, &[(&str, &str)])] = &[
             ("stall_timeout", "100ms"),
             ("start_up", "short"),
         ],
-    ),
-    (
-        "estun-emj-04apb22",
-        &[
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "estun-emj-04apb22",
+        settings: &[
             ("saturation", "keep_angle"),
             ("emf", "model"),
             ("reference", "proportional"),
             ("adc_inverted", "on"),
         ],
-    ),
+    },
 ];
 
 /// A mutated module.

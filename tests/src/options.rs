@@ -1,70 +1,132 @@
-//! Every option of a deadbeat drive with the values that are tested: the axes of the full product
-//! and of the covering array.
+//! Every option of a drive with the values that are tested, by kind of controller: the axes of the
+//! full products and of the covering arrays.
+//!
+//! Which kinds there are and which options they take says the generator's own table: a new kind has
+//! its axes at once.
 
-use crate::library::Motor;
+use crate::library::{Motor, motor};
+use hexagen_codegen::controllers::KINDS;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{Spec, check, parse_toml};
-use toml_edit::{DocumentMut, Item};
+use toml_edit::{DocumentMut, Item, Table};
 
 /// What an option value sets: section, field, TOML value.
 type Setting = (&'static str, &'static str, &'static str);
 
+/// A value of an option: a short name, and the fields that it sets.
+type Value = (&'static str, &'static [Setting]);
+
+/// An option with values, as it is written down here.
+type Row = (&'static str, &'static [Value]);
+
 /// One option and its values.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Axis {
     /// Name of the option.
     pub name: &'static str,
-    /// Values: a short name, and the fields that it sets.
-    pub values: &'static [(&'static str, &'static [Setting])],
+    /// Its values.
+    pub values: Vec<Value>,
 }
+
+/// A kind of controller.
+#[derive(Clone, Debug)]
+pub struct Kind {
+    /// Its name in a specification.
+    pub name: &'static str,
+    /// The options of the controller, then those of the inverter.
+    pub axes: Vec<Axis>,
+}
+
+/// One value per axis of a kind, as indices.
+pub type Choice = Vec<usize>;
 
 /// Stands for a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
-/// The options of the drive: those of the controller, then those of the inverter.
-pub const AXES: &[Axis] = &[
-    Axis {
-        name: "modulation",
-        values: &[
+/// Values that a kind does not have in this version: kind, option, value.
+const UNAVAILABLE: &[(&str, &str, &str)] = &[("pi-pwm", "modulation", "pair")];
+
+/// Options that not all kinds take, the default value first, or the one that has most to compute.
+const OWN: &[Row] = &[
+    (
+        "modulation",
+        &[
             (
                 "three_phase",
                 &[("controller", "modulation", "\"three_phase\"")],
             ),
             ("pair", &[("controller", "modulation", "\"pair\"")]),
         ],
-    },
-    Axis {
-        name: "saturation",
-        values: &[
+    ),
+    (
+        "saturation",
+        &[
+            (
+                "torque_priority",
+                &[("controller", "saturation", "\"torque_priority\"")],
+            ),
             (
                 "keep_angle",
                 &[("controller", "saturation", "\"keep_angle\"")],
             ),
             ("nearest", &[("controller", "saturation", "\"nearest\"")]),
-            (
-                "torque_priority",
-                &[("controller", "saturation", "\"torque_priority\"")],
-            ),
         ],
-    },
-    Axis {
-        name: "emf",
-        values: &[
-            ("estimated", &[("controller", "emf", "\"estimated\"")]),
+    ),
+    (
+        "candidates",
+        &[
+            ("table2", &[("controller", "candidates", "\"table2\"")]),
             (
-                "filtered",
+                "three_phase",
+                &[("controller", "candidates", "\"three_phase\"")],
+            ),
+            ("all", &[("controller", "candidates", "\"all\"")]),
+        ],
+    ),
+    (
+        "off_leg",
+        &[
+            ("physical", &[("controller", "off_leg", "\"physical\"")]),
+            ("nominal", &[("controller", "off_leg", "\"nominal\"")]),
+        ],
+    ),
+    (
+        "feed_forward",
+        &[
+            ("on", &[("controller", "feed_forward", "\"on\"")]),
+            ("off", &[("controller", "feed_forward", "\"off\"")]),
+        ],
+    ),
+    (
+        "tuning",
+        &[
+            ("default", &[]),
+            (
+                "slow",
                 &[
-                    ("controller", "emf", "\"estimated\""),
-                    ("controller", "emf_filter", "0.6"),
+                    ("controller", "bandwidth", "\"700 Hz\""),
+                    ("controller", "integral_time", "\"0.5 ms\""),
                 ],
             ),
+        ],
+    ),
+];
+
+/// Options that all kinds take.
+const SHARED: &[Row] = &[
+    (
+        "emf",
+        &[
+            // Not stated: a PI loop without feed-forward has no say in it.
+            ("estimated", &[]),
+            ("filtered", &[("controller", "emf_filter", "0.6")]),
             ("model", &[("controller", "emf", "\"model\"")]),
         ],
-    },
-    Axis {
-        name: "reference",
-        values: &[
+    ),
+    (
+        "reference",
+        &[
             (
                 "quasi_square",
                 &[("controller", "reference", "\"quasi_square\"")],
@@ -74,46 +136,46 @@ pub const AXES: &[Axis] = &[
                 &[("controller", "reference", "\"proportional\"")],
             ),
         ],
-    },
-    Axis {
-        name: "advance",
-        values: &[
+    ),
+    (
+        "advance",
+        &[
             ("0", &[("controller", "advance", "0")]),
             ("1.5", &[("controller", "advance", "1.5")]),
             ("2", &[("controller", "advance", "2")]),
         ],
-    },
-    Axis {
-        name: "delay",
-        values: &[
+    ),
+    (
+        "delay",
+        &[
             ("1", &[("controller", "delay", "1")]),
             ("0", &[("controller", "delay", "0")]),
         ],
-    },
-    Axis {
-        name: "discretisation",
-        values: &[
+    ),
+    (
+        "discretisation",
+        &[
             ("exact", &[("controller", "discretisation", "\"exact\"")]),
             ("euler", &[("controller", "discretisation", "\"euler\"")]),
         ],
-    },
-    Axis {
-        name: "word",
-        values: &[
+    ),
+    (
+        "word",
+        &[
             ("32", &[("controller", "word", "32")]),
             ("16", &[("controller", "word", "16")]),
         ],
-    },
-    Axis {
-        name: "hall_capture",
-        values: &[
+    ),
+    (
+        "hall_capture",
+        &[
             ("sampled", &[("controller", "hall_capture", "\"sampled\"")]),
             ("timer", &[("controller", "hall_capture", "\"timer\"")]),
         ],
-    },
-    Axis {
-        name: "v_bus",
-        values: &[
+    ),
+    (
+        "v_bus",
+        &[
             ("fixed", &[]),
             (
                 "measured",
@@ -124,24 +186,28 @@ pub const AXES: &[Axis] = &[
                 ],
             ),
         ],
-    },
-    Axis {
-        name: "stall_timeout",
-        values: &[
+    ),
+];
+
+/// Options of the inverter that no other option depends on.
+const INVERTER: &[Row] = &[
+    (
+        "stall_timeout",
+        &[
             ("none", &[]),
             ("100ms", &[("inverter", "stall_timeout", "\"100 ms\"")]),
         ],
-    },
-    Axis {
-        name: "adc_inverted",
-        values: &[
+    ),
+    (
+        "adc_inverted",
+        &[
             ("off", &[]),
             ("on", &[("inverter", "adc_inverted", "\"on\"")]),
         ],
-    },
-    Axis {
-        name: "start_up",
-        values: &[
+    ),
+    (
+        "start_up",
+        &[
             ("plain", &[]),
             (
                 "short",
@@ -150,15 +216,182 @@ pub const AXES: &[Axis] = &[
                     ("inverter", "precharge", "\"0 ms\""),
                 ],
             ),
+            // Short enough for many a start-up.
+            (
+                "brief",
+                &[
+                    ("inverter", "calibration_samples", "16"),
+                    ("inverter", "precharge", "\"0.2 ms\""),
+                ],
+            ),
         ],
-    },
+    ),
 ];
 
-/// One value per axis, as indices into [`AXES`].
-pub type Choice = Vec<usize>;
+/// A drive of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Drive {
+    /// Kind of controller.
+    pub kind: &'static str,
+    /// Name of the motor.
+    pub motor: &'static str,
+    /// Options that have not the first value of their axis.
+    pub settings: &'static [(&'static str, &'static str)],
+}
 
-/// The last so many axes are the inverter's; those before them are options of the controller.
-pub const INVERTER_AXES: usize = 3;
+impl Drive {
+    /// Its motor's file with its options, and another type name if one is given.
+    pub fn toml(&self, type_name: Option<&str>) -> String {
+        let kind = kind(self.kind);
+        kind.drive_toml(
+            &motor(self.motor),
+            &kind.choice_of(self.settings),
+            type_name,
+        )
+    }
+}
+
+/// All kinds of controllers.
+pub fn kinds() -> Vec<Kind> {
+    KINDS.iter().map(|(name, _)| kind(name)).collect()
+}
+
+/// The kind of this name.
+///
+/// # Panics
+/// When there is none.
+pub fn kind(name: &str) -> Kind {
+    let known = KINDS.iter().find(|(known, _)| *known == name);
+    let (name, own) = known.expect("a kind of controller");
+    let is_taken = |row: &&Row| {
+        let mut settings = row.1.iter().flat_map(|(_, settings)| *settings);
+        settings.all(|(_, field, _)| own.contains(field))
+    };
+    let axes = OWN.iter().filter(is_taken).chain(SHARED).chain(INVERTER);
+    Kind {
+        name,
+        axes: axes.map(|row| axis(name, row)).collect(),
+    }
+}
+
+fn axis(kind: &str, (name, values): &Row) -> Axis {
+    let is_available = |value: &&Value| !UNAVAILABLE.contains(&(kind, *name, value.0));
+    Axis {
+        name,
+        values: values.iter().filter(is_available).copied().collect(),
+    }
+}
+
+/// Options that no axis sets, but some kind takes.
+pub fn untested_options() -> Vec<&'static str> {
+    let rows = OWN.iter().flat_map(|(_, values)| *values);
+    let settings: Vec<&Setting> = rows.flat_map(|(_, settings)| *settings).collect();
+    let is_set = |option: &&str| settings.iter().any(|(_, field, _)| field == option);
+    let options = KINDS.iter().flat_map(|(_, own)| *own).copied();
+    options.filter(|option| !is_set(option)).collect()
+}
+
+impl Kind {
+    /// Axes of the controller's own and shared options.
+    fn controller(&self) -> &[Axis] {
+        &self.axes[..self.axes.len() - INVERTER.len()]
+    }
+
+    fn inverter(&self) -> &[Axis] {
+        &self.axes[self.axes.len() - INVERTER.len()..]
+    }
+
+    /// The number of elements of the full product of the controller's options.
+    pub fn product_len(&self) -> usize {
+        combinations(self.controller())
+    }
+
+    /// Element `index` of the full product of the controller's options. The inverter's axes take a
+    /// combination each, by a hash of the index, so that each of their combinations meets every value
+    /// of every other axis.
+    pub fn product_element(&self, index: usize) -> Choice {
+        let mut choice = digits(self.controller(), index);
+        // Knuth's multiplicative hash; its upper bits are the mixed ones.
+        let hash = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+        let turn = hash as usize % combinations(self.inverter());
+        choice.extend(digits(self.inverter(), turn));
+        choice
+    }
+
+    /// Number of the combination of the inverter's axes in a choice, with every value of another
+    /// axis that it meets there (number of the axis, and of the value).
+    pub fn meetings(&self, choice: &[usize]) -> Vec<(usize, usize, usize)> {
+        let (controller, inverter) = choice.split_at(self.controller().len());
+        let axes = self.inverter().iter().zip(inverter);
+        let combination = axes.fold(0, |number, (axis, value)| {
+            number * axis.values.len() + value
+        });
+        let values = controller.iter().enumerate();
+        values
+            .map(|(axis, &value)| (combination, axis, value))
+            .collect()
+    }
+
+    /// The number of all meetings.
+    pub fn meetings_len(&self) -> usize {
+        let axes = self.controller().iter();
+        combinations(self.inverter()) * axes.map(|axis| axis.values.len()).sum::<usize>()
+    }
+
+    /// The choice with the first value of every axis but those named: `[("emf", "model")]`.
+    ///
+    /// # Panics
+    /// When there is no such axis or value.
+    pub fn choice_of(&self, settings: &[(&str, &str)]) -> Choice {
+        let mut choice = vec![0; self.axes.len()];
+        for (name, value) in settings {
+            let found = self.axes.iter().position(|axis| axis.name == *name);
+            let axis = found.expect("an axis of this name");
+            let mut values = self.axes[axis].values.iter();
+            choice[axis] = values
+                .position(|(known, _)| known == value)
+                .expect("a value of this name");
+        }
+        choice
+    }
+
+    /// `pdcc: modulation=pair saturation=nearest …`
+    pub fn describe(&self, choice: &[usize]) -> String {
+        let axes = self.axes.iter().zip(choice);
+        let values = axes.map(|(axis, &value)| format!("{}={}", axis.name, axis.values[value].0));
+        format!("{}: {}", self.name, values.collect::<Vec<_>>().join(" "))
+    }
+
+    /// The motor's file with this controller, the options set and the type name replaced.
+    ///
+    /// # Panics
+    /// When the motor file is no TOML or has no bus voltage.
+    pub fn drive_toml(&self, motor: &Motor, choice: &[usize], type_name: Option<&str>) -> String {
+        let mut document: DocumentMut = motor.text.parse().expect("a TOML file");
+        let text = |value: &str| -> Item {
+            format!("x = {value}")
+                .parse::<DocumentMut>()
+                .expect("a TOML value")["x"]
+                .clone()
+        };
+        let bus_range = document_bus(&document) * 1.6;
+        document["controller"] = Item::Table(Table::new());
+        document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
+        for (axis, &value) in self.axes.iter().zip(choice) {
+            for (section, field, setting) in axis.values[value].1 {
+                document[section][field] = if *setting == BUS_RANGE {
+                    text(&format!("\"{bus_range} V\""))
+                } else {
+                    text(setting)
+                };
+            }
+        }
+        if let Some(name) = type_name {
+            document["motor"]["name"] = text(&format!("\"{name}\""));
+        }
+        document.to_string()
+    }
+}
 
 /// Values of the axes, by the number of their values: the last axis turns fastest.
 fn digits(axes: &[Axis], mut index: usize) -> Choice {
@@ -177,103 +410,6 @@ fn digits(axes: &[Axis], mut index: usize) -> Choice {
 
 fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
-}
-
-/// The number of elements of the full product of the controller's options.
-pub fn product_len() -> usize {
-    combinations(&AXES[..AXES.len() - INVERTER_AXES])
-}
-
-/// Element `index` of the full product of the controller's options. The inverter's axes take a
-/// combination each, in turn by the sum of the element's values, so that each of their combinations
-/// meets every value of every other axis.
-pub fn product_element(index: usize) -> Choice {
-    let (controller, inverter) = AXES.split_at(AXES.len() - INVERTER_AXES);
-    let mut choice = digits(controller, index);
-    let turn = choice.iter().sum::<usize>() % combinations(inverter);
-    choice.extend(digits(inverter, turn));
-    choice
-}
-
-/// Number of the combination of the inverter's axes in a choice.
-pub fn inverter_combination(choice: &[usize]) -> usize {
-    let axes = AXES.iter().zip(choice).skip(AXES.len() - INVERTER_AXES);
-    axes.fold(0, |number, (axis, value)| {
-        number * axis.values.len() + value
-    })
-}
-
-/// The choice with the first value of every axis but those named: `[("emf", "model")]`.
-///
-/// # Panics
-/// When there is no such axis or value.
-pub fn choice_of(settings: &[(&str, &str)]) -> Choice {
-    let mut choice = default_choice();
-    for (name, value) in settings {
-        let axis = AXES
-            .iter()
-            .position(|axis| axis.name == *name)
-            .expect("an axis of this name");
-        choice[axis] = AXES[axis]
-            .values
-            .iter()
-            .position(|(known, _)| known == value)
-            .expect("a value of this name");
-    }
-    choice
-}
-
-/// The drive with all options at their defaults.
-pub fn default_choice() -> Choice {
-    AXES.iter()
-        .map(|axis| {
-            let default = match axis.name {
-                "saturation" => "torque_priority",
-                _ => axis.values[0].0,
-            };
-            axis.values
-                .iter()
-                .position(|(name, _)| *name == default)
-                .unwrap_or(0)
-        })
-        .collect()
-}
-
-/// `modulation=pair saturation=nearest …`
-pub fn describe(choice: &[usize]) -> String {
-    let values = AXES
-        .iter()
-        .zip(choice)
-        .map(|(axis, &value)| format!("{}={}", axis.name, axis.values[value].0));
-    values.collect::<Vec<_>>().join(" ")
-}
-
-/// The motor's file with the options set and the type name replaced.
-///
-/// # Panics
-/// When the motor file is no TOML or has no inverter.
-pub fn drive_toml(motor: &Motor, choice: &[usize], type_name: Option<&str>) -> String {
-    let mut document: DocumentMut = motor.text.parse().expect("a TOML file");
-    let text = |value: &str| -> Item {
-        format!("x = {value}")
-            .parse::<DocumentMut>()
-            .expect("a TOML value")["x"]
-            .clone()
-    };
-    let bus_range = document_bus(&document) * 1.6;
-    for (axis, &value) in AXES.iter().zip(choice) {
-        for (section, field, setting) in axis.values[value].1 {
-            document[section][field] = if *setting == BUS_RANGE {
-                text(&format!("\"{bus_range} V\""))
-            } else {
-                text(setting)
-            };
-        }
-    }
-    if let Some(name) = type_name {
-        document["motor"]["name"] = text(&format!("\"{name}\""));
-    }
-    document.to_string()
 }
 
 /// The bus voltage of a motor file, volt.

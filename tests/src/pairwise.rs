@@ -1,9 +1,10 @@
 //! A covering array: few rows in which every pair of values of any two axes occurs.
 //!
-//! Greedy and deterministic. Rows are grown around a pair that is still open, each further value
-//! being the one that closes most open pairs; rows that are refused are tried again in another order.
+//! Greedy and deterministic. First a row is sought for every pair, so that it is known which pairs no
+//! row can have. Then rows are grown around a pair that is still open, each further value being the
+//! one that closes most open pairs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Attempts at a row around one open pair.
 const ATTEMPTS: usize = 40;
@@ -22,32 +23,52 @@ pub struct Covering {
 
 /// Covers all pairs of axes with so many values each by rows that `accepts` takes.
 pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering {
-    let mut open: BTreeSet<Pair> = BTreeSet::new();
-    for a in 0..lengths.len() {
-        for b in a + 1..lengths.len() {
-            for x in 0..lengths[a] {
-                open.extend((0..lengths[b]).map(|y| ((a, x), (b, y))));
-            }
-        }
-    }
-    let mut covering = Covering::default();
     let mut order = Shuffle(1);
-    while let Some(&pair) = open.first() {
-        let row = (0..ATTEMPTS)
-            .filter_map(|_| {
-                let row = grow(pair, lengths, &open, &mut order);
-                accepts(&row).then_some(row)
-            })
-            .max_by_key(|row| gain(row, &open));
-        if let Some(row) = row {
-            open.retain(|pair| !covers(&row, *pair));
-            covering.rows.push(row);
+    let mut witnesses: BTreeMap<Pair, Vec<usize>> = BTreeMap::new();
+    let mut covering = Covering::default();
+    for pair in pairs(lengths) {
+        if witnesses.contains_key(&pair) {
+            continue;
+        }
+        let mut rows = (0..ATTEMPTS).map(|_| with_pair(order.row(lengths), pair));
+        if let Some(row) = rows.find(|row| accepts(row)) {
+            let known = pairs(lengths)
+                .into_iter()
+                .filter(|pair| covers(&row, *pair));
+            witnesses.extend(known.map(|pair| (pair, row.clone())));
         } else {
-            open.remove(&pair);
             covering.open.push(pair);
         }
     }
+    let mut open: BTreeSet<Pair> = witnesses.keys().copied().collect();
+    while let Some(pair) = open.first() {
+        let grown = (0..ATTEMPTS).map(|_| grow(*pair, lengths, &open, &covering.open, &mut order));
+        let row = grown
+            .filter(|row| accepts(row))
+            .max_by_key(|row| gain(row, &open))
+            .unwrap_or_else(|| witnesses[pair].clone());
+        open.retain(|pair| !covers(&row, *pair));
+        covering.rows.push(row);
+    }
     covering
+}
+
+/// All pairs, the first axes first.
+fn pairs(lengths: &[usize]) -> Vec<Pair> {
+    let mut pairs = vec![];
+    for a in 0..lengths.len() {
+        for b in a + 1..lengths.len() {
+            for x in 0..lengths[a] {
+                pairs.extend((0..lengths[b]).map(|y| ((a, x), (b, y))));
+            }
+        }
+    }
+    pairs
+}
+
+fn with_pair(mut row: Vec<usize>, ((a, x), (b, y)): Pair) -> Vec<usize> {
+    (row[a], row[b]) = (x, y);
+    row
 }
 
 fn covers(row: &[usize], ((a, x), (b, y)): Pair) -> bool {
@@ -58,10 +79,12 @@ fn gain(row: &[usize], open: &BTreeSet<Pair>) -> usize {
     open.iter().filter(|pair| covers(row, **pair)).count()
 }
 
+/// A row with the pair and none of the forbidden ones, if it can be helped.
 fn grow(
     ((a, x), (b, y)): Pair,
     lengths: &[usize],
     open: &BTreeSet<Pair>,
+    forbidden: &[Pair],
     order: &mut Shuffle,
 ) -> Vec<usize> {
     let mut row: Vec<Option<usize>> = vec![None; lengths.len()];
@@ -70,16 +93,22 @@ fn grow(
         if row[axis].is_some() {
             continue;
         }
-        let closes = |value: usize| {
+        let made = |value: usize| {
             let others = row.iter().enumerate();
             let pairs = others.filter_map(|(other, taken)| {
                 let (one, two) = ((axis, value), (other, (*taken)?));
                 Some(if axis < other { (one, two) } else { (two, one) })
             });
-            pairs.filter(|pair| open.contains(pair)).count()
+            pairs.collect::<Vec<Pair>>()
+        };
+        let worth = |value: usize| {
+            let pairs = made(value);
+            let is_allowed = !pairs.iter().any(|pair| forbidden.contains(pair));
+            let closed = pairs.iter().filter(|pair| open.contains(pair)).count();
+            (is_allowed, closed)
         };
         let values = order.of(lengths[axis]);
-        row[axis] = values.into_iter().max_by_key(|&value| closes(value));
+        row[axis] = values.into_iter().max_by_key(|&value| worth(value));
     }
     row.into_iter().map(|value| value.unwrap_or(0)).collect()
 }
@@ -88,17 +117,26 @@ fn grow(
 struct Shuffle(u64);
 
 impl Shuffle {
+    /// A number below `end`.
+    fn below(&mut self, end: usize) -> usize {
+        // Knuth's MMIX generator; the upper bits are the random ones.
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % end
+    }
+
     fn of(&mut self, length: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..length).collect();
         for last in (1..length).rev() {
-            // Knuth's MMIX generator; the upper bits are the random ones.
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            order.swap(last, (self.0 >> 33) as usize % (last + 1));
+            order.swap(last, self.below(last + 1));
         }
         order
+    }
+
+    fn row(&mut self, lengths: &[usize]) -> Vec<usize> {
+        lengths.iter().map(|&length| self.below(length)).collect()
     }
 }
 
@@ -109,9 +147,11 @@ mod tests {
     #[test]
     fn every_pair_is_in_a_row_or_told() {
         let lengths = [3, 2, 4, 2, 3];
-        let forbidden = |row: &[usize]| row[0] == 2 && row[2] == 3;
+        // One pair, and a value that allows but one other.
+        let forbidden = |row: &[usize]| row[0] == 2 && row[2] == 3 || row[4] == 1 && row[2] != 2;
         let covering = cover(&lengths, |row| !forbidden(row));
-        assert_eq!(covering.open, [((0, 2), (2, 3))]);
+        let open = [0, 1, 3].map(|value| ((2, value), (4, 1)));
+        assert_eq!(covering.open, [&[((0, 2), (2, 3))][..], &open].concat());
         assert!(covering.rows.len() < 20, "{} rows", covering.rows.len());
         assert!(!covering.rows.iter().any(|row| forbidden(row)));
         for a in 0..lengths.len() {

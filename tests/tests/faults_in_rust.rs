@@ -5,9 +5,8 @@ use hexagen::Drive;
 use hexagen_reference::verify::{Compiled, verify};
 use hexagen_tests::cases::{Case, replay};
 use hexagen_tests::interpreter::record_states;
-use hexagen_tests::library::motor;
 use hexagen_tests::mutation::MUTATED;
-use hexagen_tests::options::{choice_of, drive_toml, generate_toml};
+use hexagen_tests::options::generate_toml;
 use rayon::prelude::*;
 
 /// Whether a drive differs from the model.
@@ -63,9 +62,8 @@ fn is_noticed<D: Drive>(cases: &[Case]) -> bool {
 fn every_planted_fault_is_noticed() {
     let cases: Vec<Vec<Case>> = MUTATED
         .iter()
-        .map(|(name, settings)| {
-            let toml = drive_toml(&motor(name), &choice_of(settings), None);
-            let (_, generated) = generate_toml(&toml).expect("the drive generates");
+        .map(|drive| {
+            let (_, generated) = generate_toml(&drive.toml(None)).expect("the drive generates");
             record_states(&generated, STEPS, 1).expect("the drive has a model")
         })
         .collect();

@@ -1,9 +1,9 @@
 //! Planted faults that change no output and no state, each with its reason.
 
-const PAPER: &str = "trivedi-keshri-660w";
-const HOVERBOARD: &str = "hoverboard-hub";
-const ESTUN: &str = "estun-emj-04apb22";
-const TEKNIC: &str = "teknic-m2310p";
+const PAPER: &str = "pdcc trivedi-keshri-660w";
+const HOVERBOARD: &str = "pdcc hoverboard-hub";
+const ESTUN: &str = "pdcc estun-emj-04apb22";
+const TEKNIC: &str = "pdcc teknic-m2310p";
 
 /// Faults without effect for the same reason: all of `what` at all of `places`.
 pub struct Equivalent {

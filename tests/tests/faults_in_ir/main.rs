@@ -6,20 +6,24 @@ use equivalent::EQUIVALENT;
 use hexagen_codegen::ir::Program;
 use hexagen_tests::faults::{Fault, faults};
 use hexagen_tests::interpreter::{compare, compare_cases, record_states};
-use hexagen_tests::library::motor;
-use hexagen_tests::options::{choice_of, drive_toml, generate_toml};
+use hexagen_tests::options::{Drive, generate_toml};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Steps of each kind within which a fault must show.
 const STEPS: u64 = 40_000;
 
-/// Together these have every stage of a step.
-const DRIVES: &[(&str, &[(&str, &str)])] = &[
-    ("trivedi-keshri-660w", &[("saturation", "torque_priority")]),
-    (
-        "hoverboard-hub",
-        &[
+/// Together these have every stage of a step of every kind of controller.
+const DRIVES: &[Drive] = &[
+    Drive {
+        kind: "pdcc",
+        motor: "trivedi-keshri-660w",
+        settings: &[("saturation", "torque_priority")],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "hoverboard-hub",
+        settings: &[
             ("modulation", "pair"),
             ("saturation", "nearest"),
             ("emf", "filtered"),
@@ -28,10 +32,11 @@ const DRIVES: &[(&str, &[(&str, &str)])] = &[
             ("stall_timeout", "100ms"),
             ("start_up", "short"),
         ],
-    ),
-    (
-        "estun-emj-04apb22",
-        &[
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "estun-emj-04apb22",
+        settings: &[
             ("saturation", "keep_angle"),
             ("emf", "model"),
             ("reference", "proportional"),
@@ -39,10 +44,11 @@ const DRIVES: &[(&str, &[(&str, &str)])] = &[
             ("adc_inverted", "on"),
             ("start_up", "short"),
         ],
-    ),
-    (
-        "teknic-m2310p",
-        &[
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "teknic-m2310p",
+        settings: &[
             ("modulation", "pair"),
             ("saturation", "keep_angle"),
             ("delay", "0"),
@@ -50,13 +56,12 @@ const DRIVES: &[(&str, &[(&str, &str)])] = &[
             ("discretisation", "euler"),
             ("start_up", "short"),
         ],
-    ),
+    },
 ];
 
 /// Names of the unnoticed faults of a drive; the number of all.
-fn plant(name: &str, settings: &[(&str, &str)]) -> (Vec<String>, usize) {
-    let toml = drive_toml(&motor(name), &choice_of(settings), None);
-    let (_, generated) = generate_toml(&toml).expect("the drive generates");
+fn plant(drive: &Drive) -> (Vec<String>, usize) {
+    let (_, generated) = generate_toml(&drive.toml(None)).expect("the drive generates");
     let program = generated.graph.program();
     let cases = record_states(&generated, STEPS, 1).expect("the drive has a model");
     // Most faults show at once.
@@ -67,7 +72,12 @@ fn plant(name: &str, settings: &[(&str, &str)]) -> (Vec<String>, usize) {
             || compare_cases(&generated, program, &cases).is_err()
             || compare(&generated, program, STEPS, 1).is_err()
     };
-    assert!(!noticed(program), "{name} differs without a fault");
+    assert!(
+        !noticed(program),
+        "{} {} differs without a fault",
+        drive.kind,
+        drive.motor
+    );
     let all: Vec<Fault> = faults(program).collect();
     let unnoticed = all
         .par_iter()
@@ -80,9 +90,10 @@ fn plant(name: &str, settings: &[(&str, &str)]) -> (Vec<String>, usize) {
 #[test]
 fn every_planted_fault_is_noticed() {
     let mut wrong: Vec<String> = vec![];
-    for (name, settings) in DRIVES {
+    for drive in DRIVES {
+        let name = &format!("{} {}", drive.kind, drive.motor)[..];
         let mut listed: BTreeMap<String, &str> = BTreeMap::new();
-        for row in EQUIVALENT.iter().filter(|row| row.drives.contains(name)) {
+        for row in EQUIVALENT.iter().filter(|row| row.drives.contains(&name)) {
             for (place, what) in row.faults() {
                 let fault = format!("{place}: {what}");
                 if listed.insert(fault, row.because).is_some() {
@@ -90,7 +101,7 @@ fn every_planted_fault_is_noticed() {
                 }
             }
         }
-        let (unnoticed, planted) = plant(name, settings);
+        let (unnoticed, planted) = plant(drive);
         println!(
             "{name}: {planted} faults, {} of them equivalent",
             unnoticed.len()
