@@ -2,7 +2,7 @@
 
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
 use crate::controllers::{
-    ControllerSpec, EmfSource, LoopOptions, StableRange, fcs_mpc, interface, pdcc, pi_pwm,
+    ControllerSpec, EmfSource, LoopOptions, StableRange, fcs_mpc, interface, pdcc, phcc, pi_pwm,
 };
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
@@ -32,6 +32,7 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
         match &spec.controller {
             ControllerSpec::FcsMpc(options) => fcs_mpc::lower(spec, options, &design, scale),
             ControllerSpec::Pdcc(options) => pdcc::lower(spec, options, &design, scale),
+            ControllerSpec::Phcc(options) => phcc::lower(spec, options, &design, scale),
             ControllerSpec::PiPwm(options) => pi_pwm::lower(spec, options, &design, scale),
         }
     })
@@ -49,6 +50,10 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
                 design: &rounded,
             };
             pdcc::law(check_stability(spec, common, &linear, origins, &mut errors))
+        }
+        ControllerSpec::Phcc(options) => {
+            check_stride(spec, &design, origins, &mut errors);
+            phcc::law(spec, options, &design)
         }
         ControllerSpec::PiPwm(options) => {
             let linear = pi_pwm::PiLoop {
@@ -73,6 +78,7 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
         let at = origins.at("controller.kind");
         errors.push(catalogue::vector_too_strong(
             at,
+            spec.controller.kind(),
             stride,
             motor.rated_current,
             inverter.t_s * motor.rated_current / stride,
@@ -208,11 +214,19 @@ kind = "pdcc"
             .into_iter()
             .map(|rule| format!("pi-pwm:saturation={rule}"))
             .chain(["pi-pwm:feed_forward=off".to_owned()]);
+        let ph = [
+            "phcc",
+            "phcc:table=printed",
+            "phcc:off_leg=nominal",
+            "phcc:candidates=three_phase",
+        ]
+        .map(str::to_owned);
         let mut generated = 0;
-        for kind in fcs.chain(pi) {
+        for kind in fcs.chain(pi).chain(ph) {
             for emf in common {
                 for rest in rest {
-                    let variant = format!("{kind},{emf},{rest}");
+                    let joint = if kind.contains(':') { ',' } else { ':' };
+                    let variant = format!("{kind}{joint}{emf},{rest}");
                     let mut ast = parse_toml(MOTOR, "motor.toml").expect("the motor parses");
                     apply_variant(&mut ast, &variant).expect("the variant parses");
                     let Ok((spec, origins)) = check(&ast) else {

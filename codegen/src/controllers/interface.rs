@@ -17,6 +17,8 @@ pub struct Law {
     pub notes: Vec<String>,
     /// Range of R and L in which a linear loop is stable.
     pub stable: Option<StableRange>,
+    /// Tables of the method.
+    pub constants: Vec<PublicConstant>,
 }
 
 /// Builds the interface of a scaled controller.
@@ -28,7 +30,7 @@ pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -
         header: header(spec, design, scaled),
         spec_toml: spec.to_toml(),
         formats: scaled.formats.clone(),
-        constants: constants(spec, design, law.stable),
+        constants: constants(spec, design, law),
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
         calibration_samples: 1 << inverter.calibration_log2,
@@ -219,7 +221,7 @@ fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> Public
     }
 }
 
-fn constants(spec: &Spec, design: &LoopDesign, stable: Option<StableRange>) -> Vec<PublicConstant> {
+fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let v_bus = inverter.v_bus;
     let three: Vec<Vector2<f64>> = THREE_PHASE
@@ -268,7 +270,8 @@ fn constants(spec: &Spec, design: &LoopDesign, stable: Option<StableRange>) -> V
             ],
         ),
     ];
-    if let Some(stable) = stable {
+    list.extend(law.constants.iter().cloned());
+    if let Some(stable) = law.stable {
         list.extend([
             PublicConstant {
                 name: "STABLE_INDUCTANCE".to_owned(),

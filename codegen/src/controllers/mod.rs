@@ -6,6 +6,7 @@ pub mod current_loop;
 pub mod fcs_mpc;
 mod interface;
 pub mod pdcc;
+pub mod phcc;
 pub mod pi_pwm;
 mod whole_vectors;
 
@@ -21,7 +22,7 @@ use current_loop::{LinearLoop, LoopDesign};
 pub fn stable_range(spec: &Spec) -> Option<StableRange> {
     let design = &LoopDesign::new(spec, spec.controller.common());
     match &spec.controller {
-        ControllerSpec::FcsMpc(_) => None,
+        ControllerSpec::FcsMpc(_) | ControllerSpec::Phcc(_) => None,
         ControllerSpec::Pdcc(pdcc) => {
             let options = &pdcc.common;
             Some(pdcc::DeadbeatLoop { options, design }.stable_range(spec))
@@ -38,9 +39,10 @@ pub fn stable_range(spec: &Spec) -> Option<StableRange> {
 }
 
 /// The kinds of controllers, with the options that not all of them take.
-pub const KINDS: [(&str, &[&str]); 3] = [
+pub const KINDS: [(&str, &[&str]); 4] = [
     ("fcs-mpc", &["candidates", "off_leg"]),
     ("pdcc", &["modulation", "saturation"]),
+    ("phcc", &["band", "candidates", "off_leg", "table"]),
     (
         "pi-pwm",
         &[
@@ -60,6 +62,8 @@ pub enum ControllerSpec {
     FcsMpc(fcs_mpc::FcsMpcSpec),
     /// Predictive deadbeat current control.
     Pdcc(pdcc::PdccSpec),
+    /// Predictive hysteresis current control.
+    Phcc(phcc::PhccSpec),
     /// PI control with pulse-width modulation.
     PiPwm(pi_pwm::PiPwmSpec),
 }
@@ -70,6 +74,7 @@ impl ControllerSpec {
         match self {
             Self::FcsMpc(options) => &options.common,
             Self::Pdcc(options) => &options.common,
+            Self::Phcc(options) => &options.common,
             Self::PiPwm(options) => &options.common,
         }
     }
@@ -84,6 +89,7 @@ impl ControllerSpec {
         match self {
             Self::FcsMpc(_) => "fcs-mpc",
             Self::Pdcc(_) => "pdcc",
+            Self::Phcc(_) => "phcc",
             Self::PiPwm(_) => "pi-pwm",
         }
     }

@@ -104,8 +104,8 @@ codes! {
     DeadTime = 315,
     /// The ADC offset leaves no room.
     AdcOffset = 316,
-    /// A controller that does not exist in this version.
-    ControllerUnavailable = 401,
+    /// A controller that does not exist.
+    UnknownController = 401,
     /// An option of a controller that does not exist in this version.
     OptionUnavailable = 402,
     /// An option of another controller.
@@ -116,6 +116,10 @@ codes! {
     Variant = 405,
     /// One voltage vector moves the current by more than the rated current.
     VectorTooStrong = 406,
+    /// A hysteresis band that cannot work.
+    Band = 407,
+    /// A switching table that cannot be read.
+    SwitchingTable = 408,
     /// The inductance may lie outside the loop's stable range.
     InductanceOutsideStableRange = 501,
     /// The resistance may lie outside the loop's stable range.

@@ -4,6 +4,7 @@
 use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 use crate::controllers::fcs_mpc::Candidates;
 use crate::controllers::pdcc::Modulation;
+use crate::controllers::phcc::{PhccCandidates, SwitchingTable};
 use crate::controllers::{ControllerSpec, EmfSource, OffLegModel, Reference};
 use crate::design::Discretisation;
 use crate::lower::LimitRule;
@@ -92,13 +93,7 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
                     Candidates::All => "all",
                 },
             );
-            text.word(
-                "off_leg",
-                match options.off_leg {
-                    OffLegModel::Physical => "physical",
-                    OffLegModel::Nominal => "nominal",
-                },
-            );
+            text.word("off_leg", off_leg(options.off_leg));
         }
         ControllerSpec::Pdcc(options) => {
             text.word(
@@ -109,6 +104,22 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
                 },
             );
             text.word("saturation", saturation(options.saturation));
+        }
+        ControllerSpec::Phcc(options) => {
+            match options.table {
+                SwitchingTable::Derived => text.word("table", "derived"),
+                SwitchingTable::Printed => text.word("table", "printed"),
+                SwitchingTable::Given(numbers) => text.number("table", numbers),
+            }
+            text.number("band", options.band);
+            text.word(
+                "candidates",
+                match options.candidates {
+                    PhccCandidates::Table2 => "table2",
+                    PhccCandidates::ThreePhase => "three_phase",
+                },
+            );
+            text.word("off_leg", off_leg(options.off_leg));
         }
         ControllerSpec::PiPwm(options) => {
             text.number("bandwidth", options.bandwidth);
@@ -121,6 +132,13 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
         }
     }
     write_common(text, controller);
+}
+
+fn off_leg(model: OffLegModel) -> &'static str {
+    match model {
+        OffLegModel::Physical => "physical",
+        OffLegModel::Nominal => "nominal",
+    }
 }
 
 fn saturation(rule: LimitRule) -> &'static str {

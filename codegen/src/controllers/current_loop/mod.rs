@@ -70,6 +70,10 @@ pub struct Front {
     pub mode: Value,
     /// Sector in force, with its advance.
     pub sector: Value,
+    /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
+    pub direction: Option<Value>,
+    /// Set-point as a voltage word.
+    pub set_point: Value,
     /// Flag, and the new words of the commutation; where the law follows it.
     pub commutation: Option<[Value; 3]>,
     /// Reference as voltage words, phases a, b.
@@ -150,6 +154,8 @@ impl CurrentLoop<'_, '_> {
             currents,
             mode,
             sector,
+            direction,
+            set_point: j,
             commutation,
             reference,
             third,

@@ -24,5 +24,6 @@ pub fn law(spec: &Spec, design: &LoopDesign) -> Law {
             format!("One three-phase vector moves the current by at most {} per period.", engineering(stride, "A")),
         ],
         stable: None,
+        constants: vec![],
     }
 }

@@ -18,5 +18,6 @@ pub fn law(stable: StableRange) -> Law {
         title: "Predictive deadbeat current controller",
         notes: vec![],
         stable: Some(stable),
+        constants: vec![],
     }
 }

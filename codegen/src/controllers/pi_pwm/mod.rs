@@ -32,5 +32,6 @@ pub fn law(spec: &Spec, options: &PiPwmSpec, stable: StableRange) -> Law {
             "with the same time.".to_owned(),
         ],
         stable: Some(stable),
+        constants: vec![],
     }
 }

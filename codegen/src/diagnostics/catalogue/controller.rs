@@ -1,31 +1,18 @@
 //! Texts about the choice of controller and its options.
 
+use super::Part;
 use super::structure::did_you_mean;
 use crate::diagnostics::{Code, Diagnostic, Location, engineering, list};
 
-/// A controller that this version does not have; `planned`: it is a known method.
-pub fn controller_unavailable(
-    at: &Location,
-    given: &str,
-    planned: bool,
-    available: &[&str],
-) -> Diagnostic {
-    let what = if planned {
-        "is not available in this version"
-    } else {
-        "is unknown"
-    };
-    let suggestion = if planned {
-        String::new()
-    } else {
-        did_you_mean(given, available)
-    };
+/// A controller that does not exist.
+pub fn unknown_controller(at: &Location, given: &str, available: &[&str]) -> Diagnostic {
     Diagnostic::new(
-        Code::ControllerUnavailable,
+        Code::UnknownController,
         at,
         format!(
-            "`controller`: `{given}` {what}; choose {}{suggestion}",
-            list(available, "or")
+            "`controller`: `{given}` is unknown; choose {}{}",
+            list(available, "or"),
+            did_you_mean(given, available)
         ),
     )
 }
@@ -75,12 +62,18 @@ pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
 
 /// One vector moves the current by `stride` ampere in a period; `t_s`: the period at which it would be
 /// the `rated` current.
-pub fn vector_too_strong(at: &Location, stride: f64, rated: f64, t_s: f64) -> Diagnostic {
+pub fn vector_too_strong(
+    at: &Location,
+    kind: &str,
+    stride: f64,
+    rated: f64,
+    t_s: f64,
+) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,
         at,
         format!(
-            "`kind`: fcs-mpc applies one vector for a whole period, which moves the current of this motor by {}, more \
+            "`kind`: {kind} applies one vector for a whole period, which moves the current of this motor by {}, more \
              than its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, whose \
              modulator divides the period",
             engineering(stride, "A"),
@@ -106,6 +99,36 @@ pub fn option_without_effect(
         format!("`{option}`: {given} has no effect with `{other}`: {why}; remove one of the two"),
     )
     .with_note(other_at, format!("`{other}`"))
+}
+
+/// A hysteresis band that is as wide as the current.
+pub fn band_above_rated(band: &Part, rated: &Part) -> Diagnostic {
+    Diagnostic::new(
+        Code::Band,
+        &band.location,
+        format!(
+            "`band`: {} is not below the rated current of {}, so that the current would never be told to change; choose a tenth of the rated current or less",
+            band.given, rated.given
+        ),
+    )
+    .with_note(&rated.location, format!("`{}`: {}", rated.field, rated.given))
+}
+
+/// A switching table of the wrong length, or with an entry (position from 1, number) that is no vector.
+pub fn switching_table(at: &Location, length: usize, wrong: Option<(usize, i64)>) -> Diagnostic {
+    let what = match wrong {
+        Some((position, number)) => {
+            format!("entry {position} is {number}, and vectors are numbered 0 to 15")
+        }
+        None => format!("{length} entries"),
+    };
+    Diagnostic::new(
+        Code::SwitchingTable,
+        at,
+        format!(
+            "`table`: {what}; list 48 vector numbers: for S1 to S6 first otherwise, then in commutation, each for the wishes (alpha, beta) = 00, 01, 10, 11; or write `derived`"
+        ),
+    )
 }
 
 /// A controller variant (`pdcc:modulation=pair`) that cannot be read.

@@ -4,24 +4,13 @@ use super::inverter::Inverter;
 use super::motor::Motor;
 use super::reader::Reader;
 use crate::controllers::current_loop::{OPTIONS, Surroundings};
-use crate::controllers::{ControllerSpec, KINDS, fcs_mpc, pdcc, pi_pwm};
+use crate::controllers::{ControllerSpec, KINDS, fcs_mpc, pdcc, phcc, pi_pwm};
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::HallCapture;
 use crate::spec::ast::{Field, Section, Value};
 
-/// Known methods that this version does not have.
-const PLANNED: [&str; 1] = ["phcc"];
-
-/// Options that only planned methods take, or that are planned for the ones named.
-const PLANNED_OPTIONS: [&str; 7] = [
-    "horizon",
-    "modulated",
-    "zero",
-    "table",
-    "band",
-    "six_step",
-    "integral",
-];
+/// Options that are known and that this version does not have.
+const PLANNED_OPTIONS: [&str; 5] = ["horizon", "modulated", "zero", "six_step", "integral"];
 
 /// The controller with its options, and how Hall edges reach it.
 pub(super) fn read(
@@ -67,6 +56,7 @@ pub(super) fn read(
         "fcs-mpc" => {
             fcs_mpc::check_options(&reader, &surroundings, errors).map(ControllerSpec::FcsMpc)
         }
+        "phcc" => phcc::check_options(&reader, &surroundings, errors).map(ControllerSpec::Phcc),
         "pi-pwm" => {
             pi_pwm::check_options(&reader, &surroundings, errors).map(ControllerSpec::PiPwm)
         }
@@ -112,11 +102,8 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
         .find(|kind| *kind == name);
     if known.is_none() {
         let available = KINDS.map(|(kind, _)| kind);
-        let planned = PLANNED.contains(&name.as_str());
         let at = &field.location;
-        errors.push(catalogue::controller_unavailable(
-            at, &given, planned, &available,
-        ));
+        errors.push(catalogue::unknown_controller(at, &given, &available));
     }
     known
 }

@@ -20,7 +20,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
         },
-        controller: phcc { band: 0.5 A },
+        controller: phcc { table: [0, 7, 16] },
     }
 }
 

@@ -1,0 +1,182 @@
+//! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
+
+use super::options::PhccSpec;
+use super::switching_table;
+use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
+use crate::diagnostics::engineering;
+use crate::ir::{Comparison, Interval, StateId, Value};
+use crate::lower::{Lowering, Scale};
+use crate::scaling::Lowered;
+use crate::spec::Spec;
+
+/// Lowers the controller at a scale.
+pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
+    lower_with(spec, scale, design.k_di, |lowering, set_point| {
+        let mut step = CurrentLoop {
+            lowering,
+            options: &options.common,
+            design,
+            needs: Needs {
+                commutation: true,
+                off_leg: options.floating(),
+                emf: if options.common.delay == 1 {
+                    EmfUse::Prediction
+                } else {
+                    EmfUse::None
+                },
+            },
+        };
+        let front = step.front(set_point);
+        let flag = Interval::new(0, 1);
+        let memory = ["h_a", "h_b"].map(|name| {
+            let doc = "Wish of the axis: 1 its component shall rise, 0 fall.";
+            step.lowering.state(name, 0, flag, doc)
+        });
+        let q = step.predicted_error(&front);
+        let wishes = compare_with_bands(step.lowering, options, design, q, memory);
+        let vector = look_up(step.lowering, options, &front, wishes);
+        let remembered = vec![
+            (memory[0], "h_a_next", wishes[0]),
+            (memory[1], "h_b_next", wishes[1]),
+        ];
+        step.apply_vector(&front, vector, remembered);
+    })
+}
+
+impl CurrentLoop<'_, '_> {
+    /// K (i_ref - i(k+1)) of phases a, b, words of voltage; with delay 0 K (i_ref - i).
+    fn predicted_error(&mut self, front: &Front) -> [Value; 2] {
+        let delayed = self.options.delay == 1;
+        let hold = if delayed {
+            self.design.k_di * self.design.plant.pole
+        } else {
+            self.design.k_di
+        };
+        let word = self.options.word;
+        let l = &mut *self.lowering;
+        let per_word = l.scale.voltage() / l.scale.current();
+        let k_hold = l.coefficient(
+            "k_hold",
+            hold * per_word,
+            word,
+            "What is left of the present current when the vector takes effect, as the voltage K i.",
+            &format!(
+                "{} = {}",
+                if delayed { "K a" } else { "K" },
+                engineering(hold, "V/A")
+            ),
+        );
+        let doc: &[&str] = if delayed {
+            &[
+                "Error of the current predicted for the end of this period, as a voltage: K (i_ref - i(k+1)) with",
+                "i(k+1) = a i + b (v_now - e_now) of (7).",
+            ]
+        } else {
+            &["Error of the current, as a voltage: K (i_ref - i)."]
+        };
+        l.b.stage("predict_error", doc);
+        [0, 1].map(|x| {
+            let held = l.times(k_hold, front.currents.phases[x]);
+            let open = l.b.sub(front.reference[x], held);
+            let error = match (front.now, front.e_now) {
+                (Some(now), Some(e_now)) => {
+                    let driving = l.b.sub(now[x], e_now[x]);
+                    l.b.sub(open, driving)
+                }
+                _ => open,
+            };
+            l.b.name(["q_a", "q_b"][x], error)
+        })
+    }
+}
+
+/// The wishes of the two axes.
+fn compare_with_bands(
+    l: &mut Lowering<'_>,
+    options: &PhccSpec,
+    design: &LoopDesign,
+    q: [Value; 2],
+    memory: [StateId; 2],
+) -> [Value; 2] {
+    l.b.stage(
+        "compare_with_bands",
+        &[
+            "Each axis asks for a rise (1) or a fall (0) of its component once the error leaves the band, and keeps asking.",
+            "Beta is taken times the square root of 3: (b - c) = 2 b + a.",
+        ],
+    );
+    let twice = l.b.shift_left(q[1], 1);
+    let beta = l.b.add(twice, q[0]);
+    l.b.name("q_beta", beta);
+    let band = design.k_di * options.band;
+    [0, 1].map(|x| {
+        let volts = if x == 0 { band } else { 3.0_f64.sqrt() * band };
+        let raw = l.volts_word(volts);
+        let name = ["band_alpha", "band_beta"][x];
+        let doc = format!(
+            "Half width of the band as a voltage: {} for {}.",
+            engineering(volts, "V"),
+            engineering(options.band, "A")
+        );
+        let error = [q[0], beta][x];
+        let top = l.number(name, raw, &doc);
+        let above = l.b.compare(Comparison::Less, top, error);
+        l.b.name(["above_alpha", "above_beta"][x], above);
+        let top = l.number(name, raw, &doc);
+        let bottom = l.b.neg(top);
+        let below = l.b.compare(Comparison::Less, error, bottom);
+        let before = l.b.state(memory[x]);
+        let zero = l.zero();
+        let kept = l.b.select(below, zero, before);
+        let one = l.b.literal(1);
+        let wish = l.b.select(above, one, kept);
+        l.b.name(["wish_alpha", "wish_beta"][x], wish)
+    })
+}
+
+/// The vector that the switching table holds for sector, commutation and wishes.
+fn look_up(
+    l: &mut Lowering<'_>,
+    options: &PhccSpec,
+    front: &Front,
+    [alpha, beta]: [Value; 2],
+) -> Value {
+    let table = switching_table(options, l.spec.motor.emf_shape);
+    let table = l.b.program.table(
+        "switching",
+        table,
+        &[
+            "Vector by 64 set + 8 sector + 4 commutating + 2 alpha + beta; sets: 0 motoring forward, 1 motoring backward,".to_owned(),
+            "2 braking. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
+        ],
+    );
+    l.b.stage(
+        "look_up_vector",
+        &["The switching table: rows by quadrant of torque and speed, sector and commutation, columns by the wishes."],
+    );
+    let zero = l.zero();
+    let negative = l.b.compare(Comparison::Less, front.set_point, zero);
+    l.b.name("is_negative", negative);
+    let direction = front.direction.unwrap_or(front.set_point);
+    let zero = l.zero();
+    let backward = l.b.compare(Comparison::Less, direction, zero);
+    l.b.name("is_backward", backward);
+    let both = l.b.and(negative, backward);
+    let either = l.b.or(negative, backward);
+    let (second, third) = (l.b.literal(64), l.b.literal(128));
+    let motoring_backward = l.b.select(both, second, third);
+    let zero = l.zero();
+    let set = l.b.select(either, motoring_backward, zero);
+    l.b.name("set", set);
+    let sector = l.b.shift_left(front.sector, 3);
+    let row = l.b.add(set, sector);
+    let commutating = front.commutation.map_or(alpha, |[_, word, _]| word);
+    let commutating = l.b.shift_left(commutating, 2);
+    let row = l.b.add(row, commutating);
+    let alpha = l.b.shift_left(alpha, 1);
+    let wishes = l.b.add(alpha, beta);
+    let index = l.b.add(row, wishes);
+    l.b.name("entry", index);
+    let vector = l.b.lookup(table, index);
+    l.b.name("vector", vector)
+}
