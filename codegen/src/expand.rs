@@ -133,6 +133,7 @@ fn exemplary_interface() -> Interface {
             spec_toml: String::new(),
             formats: vec![],
             constants: vec![],
+            delay: 1,
             timer_capture: false,
             measured_bus: false,
             calibration_samples: 1,

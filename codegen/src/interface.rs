@@ -86,6 +86,8 @@ pub struct Interface {
     pub formats: Vec<FormatEntry>,
     /// Associated constants.
     pub constants: Vec<PublicConstant>,
+    /// Periods after which a command takes effect.
+    pub delay: u32,
     /// Whether `step` takes `hall_ticks`.
     pub timer_capture: bool,
     /// Whether `set_bus` exists as an inherent method.

@@ -1,10 +1,12 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
-use super::current_loop::{LoopDesign, StableRange};
+use super::current_loop::{LoopDesign, OPTIONS, StableRange};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
-use crate::diagnostics::{engineering, percent, rpm};
+use crate::diagnostics::{engineering, percent, rpm, significant};
 use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::scaling::Scaled;
+use crate::spec::schema::Kind;
+use crate::spec::units::Dimension;
 use crate::spec::{BusSource, HallCapture, Spec};
 use nalgebra::Vector2;
 
@@ -31,6 +33,7 @@ pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -
         spec_toml: spec.to_toml(),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law),
+        delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
         calibration_samples: 1 << inverter.calibration_log2,
@@ -119,16 +122,34 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
     doc
 }
 
-/// The options as the normalised specification writes them.
+/// The options of the normalised specification, with units.
 fn variant(spec: &Spec) -> String {
     let text = spec.to_toml();
     let options = text.split("[controller]\n").nth(1).unwrap_or_default();
     let pairs: Vec<String> = options
         .lines()
-        .filter(|line| !line.starts_with("kind"))
-        .map(|line| line.replace('"', ""))
+        .filter_map(|line| line.split_once(" = "))
+        .filter(|(name, _)| *name != "kind")
+        .map(|(name, value)| format!("{name} = {}", readable(name, value)))
         .collect();
     pairs.join(", ")
+}
+
+/// The value of an option as a person writes it.
+fn readable(name: &str, value: &str) -> String {
+    let rule = OPTIONS.iter().find(|rule| rule.name == name);
+    match (rule.map(|rule| rule.kind), value.parse::<f64>()) {
+        (Some(Kind::Quantity { dimensions, .. }), Ok(number)) => match dimensions {
+            [Dimension::Current, ..] => engineering(number, "A"),
+            [Dimension::Frequency, ..] => engineering(number, "Hz"),
+            [Dimension::Time, ..] => engineering(number, "s"),
+            [Dimension::Periods, ..] if number == 1.0 => "1 period".to_owned(),
+            [Dimension::Periods, ..] => format!("{} periods", significant(number)),
+            _ => significant(number),
+        },
+        (_, Ok(number)) => significant(number),
+        (_, Err(_)) => value.trim_matches('"').to_owned(),
+    }
 }
 
 fn header(spec: &Spec, design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
@@ -264,9 +285,14 @@ fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant>
             "SVM_COEFFICIENTS",
             &svm,
             vec![
-                "Coefficients of (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
+                "Coefficients of the paper's (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
                 String::new(),
-                "The step reaches the same times by min/max injection, which needs none of them.".to_owned(),
+                if spec.controller.modulates() {
+                    "The step reaches the same times by min/max injection, which needs none of them."
+                } else {
+                    "The step applies whole vectors and modulates none: these times are for comparison."
+                }
+                .to_owned(),
             ],
         ),
     ];

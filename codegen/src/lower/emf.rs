@@ -5,6 +5,7 @@ use super::Lowering;
 use super::number::round_half_up;
 use super::rotor::Rotor;
 use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
+use crate::diagnostics::engineering;
 use crate::interface::Rounding;
 use crate::ir::{Interval, TableId, Value};
 
@@ -206,11 +207,13 @@ impl Lowering<'_> {
                 None | Some(0) => change,
                 Some(shift) => self.b.shift_right(change, shift),
             };
-            let doc =
-                "Largest EMF that is believed: one and a half times that of the greatest speed.";
+            let doc = format!(
+                "Largest EMF that is believed, {}: one and a half times that of the greatest speed.",
+                engineering(e_limit, "V")
+            );
             let (low, high) = (
-                self.number("e_min", -limit, doc),
-                self.number("e_max", limit, doc),
+                self.number("e_min", -limit, &doc),
+                self.number("e_max", limit, &doc),
             );
             let e = self.b.clamp(volts, low, high);
             self.b.name(names[x], e)
@@ -262,7 +265,7 @@ impl Lowering<'_> {
             self.b.program.table("corner_a", corner(0), &doc("a")),
             self.b.program.table("corner_b", corner(1), &doc("b")),
         ];
-        self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as the voltage that would carry it within one period: K i_ref."]);
+        self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there."]);
         [0, 1].map(|x| {
             let sign = self.b.lookup(tables[x], sector);
             let volts = self.b.mul(sign, set_point, 0);

@@ -3,6 +3,7 @@
 use super::measure::Currents;
 use super::{Bus, Coefficient, Limited, Lowering};
 use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN, SECTOR_CURRENT};
+use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 
 /// Compare values and leg states of phases a, b, c.
@@ -166,12 +167,12 @@ impl Lowering<'_> {
         let back = self.b.neg(turned);
         let sign = self.b.select(braking, back, turned);
         let outgoing = self.b.mul(sign, outgoing, 0);
-        let threshold = self.ampere_word(threshold);
-        let limit = self.number(
-            "i_comm",
-            threshold,
-            "Outgoing current at which a commutation ends, words of current.",
+        let doc = format!(
+            "Outgoing current at which a commutation ends: {}, words of current.",
+            engineering(threshold, "A")
         );
+        let threshold = self.ampere_word(threshold);
+        let limit = self.number("i_comm", threshold, &doc);
         let decayed = self.b.compare(Comparison::LessEqual, outgoing, limit);
         let age = self.b.state(words.age);
         let doc = "Periods after which a commutation is taken as ended.";

@@ -2,6 +2,7 @@
 
 use super::number::round_half_up;
 use super::{Bus, Coefficient, Lowering, Scale, round_down};
+use crate::controllers::ControllerSpec;
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
@@ -13,9 +14,17 @@ const RATIO_BITS: u32 = 28;
 /// Set-point words of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct SetPointWords {
-    /// K times the current set-point, words of voltage.
+    /// The current set-point times its gain, words of voltage.
     pub j: ParamId,
     bus: Option<BusWords>,
+}
+
+/// Symbol and formula of the gain that makes a voltage of a current set-point.
+fn gain(spec: &Spec) -> (&'static str, &'static str) {
+    match spec.controller {
+        ControllerSpec::PiPwm(_) => ("k_p", "k_p = 2 pi f L"),
+        _ => ("K", "K = 1/b"),
+    }
 }
 
 /// Words of a measured bus.
@@ -27,15 +36,14 @@ struct BusWords {
 }
 
 impl SetPointWords {
-    /// Declares the words; `stiffness` is K in V/A.
+    /// Declares the words; `stiffness` is the set-point's gain in V/A.
     pub fn new(program: &mut Program, spec: &Spec, scale: Scale, stiffness: f64) -> Self {
         let most = (spec.inverter.max_current * stiffness * scale.voltage()).ceil() as i64 + 1;
-        let j = program.param(
-            "j",
-            0,
-            Interval::symmetric(most),
-            "Set-point as the voltage K i_ref, words of voltage.",
+        let doc = format!(
+            "Set-point as the voltage {} i_ref, words of voltage.",
+            gain(spec).0
         );
+        let j = program.param("j", 0, Interval::symmetric(most), &doc);
         let bus = match spec.inverter.bus {
             BusSource::Fixed => None,
             BusSource::Measured { min, max, .. } => {
@@ -74,7 +82,10 @@ impl Lowering<'_> {
                 let volts = self.number(
                     "v_bus",
                     self.nominal_bus(),
-                    "Bus voltage, words of voltage: the timer period.",
+                    &format!(
+                        "Bus voltage, {}: the timer period in words of voltage.",
+                        engineering(self.spec.inverter.v_bus, "V")
+                    ),
                 );
                 Bus { volts, ratio: None }
             }
@@ -103,19 +114,22 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
     let voltage = lowering.scale.voltage();
     let k_t = spec.torque_constant();
     let current = stiffness * voltage / 65536.0;
+    let (symbol, formula) = gain(spec);
     let k_set = lowering.coefficient(
         "k_set",
         current,
         32,
-        "Set-point in amperes (16 fraction bits) to words of voltage: K = 1/b.",
-        &format!("K = {}", engineering(stiffness, "V/A")),
+        &format!("Set-point in amperes (16 fraction bits) to words of voltage: {formula}."),
+        &format!("{symbol} = {}", engineering(stiffness, "V/A")),
     );
     let k_torque = lowering.coefficient(
         "k_torque",
         current / k_t,
         32,
-        "Set-point in newton metres (16 fraction bits) to words of voltage: K/k_t.",
-        &format!("K/k_t with k_t = {}", engineering(k_t, "Nm/A")),
+        &format!(
+            "Set-point in newton metres (16 fraction bits) to words of voltage: {symbol}/k_t."
+        ),
+        &format!("{symbol}/k_t with k_t = {}", engineering(k_t, "Nm/A")),
     );
     let most = spec.inverter.max_current;
     let limits = [
@@ -181,10 +195,7 @@ fn set_j(
     };
     let doc = format!("Sets the {quantity}; saturates at {physical} to both sides.");
     let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc]);
-    b.stage(
-        name,
-        &["Clamps the set-point and turns it into the voltage K i_ref."],
-    );
+    b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
     let high_doc = [format!("{meaning}: {physical}, 16 fraction bits.")];
     let high = b.program.constant(limit, bits, &high_doc);

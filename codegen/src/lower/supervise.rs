@@ -3,6 +3,7 @@
 use super::Lowering;
 use super::measure::{Currents, Hall};
 use super::modulate::Command;
+use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 
 /// Operating modes as the state word `mode` holds them.
@@ -70,7 +71,10 @@ impl Lowering<'_> {
         let limit = self.number(
             "i_trip",
             trip,
-            "Trip level of the phase currents, words of current.",
+            &format!(
+                "Trip level of the phase currents: {}, words of current.",
+                engineering(self.spec.inverter.trip_current, "A")
+            ),
         );
         let over_current = self.b.compare(Comparison::Less, limit, peak);
         self.b.name("over_current", over_current);

@@ -6,7 +6,7 @@ use crate::diagnostics::engineering;
 use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
-use crate::spec::Spec;
+use crate::spec::{BusSource, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -81,10 +81,18 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             l.b.name(["drive_a", "drive_b"][x], drive);
             let change = l.times(k_i, drive);
             let sum = l.b.add(sums[x], change);
-            let doc = "Largest integral part: the bus.";
+            let doc = format!(
+                "Largest integral part, of either sign: the {}bus, {}, words of voltage.",
+                if spec.inverter.bus == BusSource::Fixed {
+                    ""
+                } else {
+                    "greatest "
+                },
+                engineering(spec.inverter.greatest_bus(), "V"),
+            );
             let (low, high) = (
-                l.number("integral_min", -bound, doc),
-                l.number("integral_max", bound, doc),
+                l.number("integral_min", -bound, &doc),
+                l.number("integral_max", bound, &doc),
             );
             let held = l.b.clamp(sum, low, high);
             l.b.name(["integral_a_now", "integral_b_now"][x], held);

@@ -394,10 +394,16 @@ impl Types<'_> {
     }
 
     fn step_docs(&self) -> TokenStream {
+        let effect = match self.interface.delay {
+            0 => "The command takes effect at once, in the period that the measurements begin.",
+            _ => {
+                "The command takes effect with the next period, while its own step computes the one after."
+            }
+        };
         let mut lines = vec![
             "Runs one control period: takes the measurements of its start, returns the inverter's command.".to_owned(),
             String::new(),
-            "The command takes effect as many periods later as `delay` in [`Drive::SPEC`] says.".to_owned(),
+            effect.to_owned(),
             String::new(),
         ];
         lines.extend(
