@@ -123,7 +123,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector.
+    /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector; and
+    /// the phase that goes off in the sector.
     pub fn commutation(
         &mut self,
         words: PairModulation,
@@ -131,7 +132,7 @@ impl Lowering<'_> {
         currents: &Currents,
         threshold: f64,
         timeout: u32,
-    ) -> [Value; 3] {
+    ) -> ([Value; 3], Value) {
         let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
         let phases = self.b.program.table(
             "off_phase",
@@ -196,11 +197,11 @@ impl Lowering<'_> {
         let (one, zero) = (self.b.literal(1), self.zero());
         let word = self.b.select(commutating, one, zero);
         self.b.name("commutating_now", word);
-        [commutating, word, age]
+        ([commutating, word, age], phase)
     }
 
     /// The value of the phase numbered 0 to 2 by `phase`.
-    fn of_phase(&mut self, phase: Value, values: [Value; 3]) -> Value {
+    pub fn of_phase(&mut self, phase: Value, values: [Value; 3]) -> Value {
         let zero = self.zero();
         let is_a = self.b.compare(Comparison::Equal, phase, zero);
         let one = self.b.literal(1);
@@ -380,7 +381,7 @@ impl Lowering<'_> {
             ],
         );
         let threshold = self.ampere_word(threshold);
-        let e_c = self.third_phase("e_c_last", e[0], e[1]);
+        let e_c = self.third_phase("e_c_now", e[0], e[1]);
         let one = self.b.literal(1);
         let off_a = self.b.compare(Comparison::Equal, applied.off, one);
         self.b.name("off_a", off_a);

@@ -1,20 +1,29 @@
 //! The EMF as the step sees it: estimated from the last period, or modelled (step 8).
+//!
+//! An estimate needs the voltage that was applied. Where a leg floated, that voltage was taken from the
+//! leg's own EMF, so its estimate would only integrate noise; the motor's geometry says what it is.
 
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EmfSource};
 use crate::diagnostics::engineering;
-use crate::ir::Value;
-use crate::lower::{Currents, Rotor, product_bound, round_down};
+use crate::ir::{Comparison, Value};
+use crate::lower::{Coefficient, Currents, Rotor, product_bound, round_down};
 
 type Pair = Option<[Value; 2]>;
 
+/// What the limit of an estimate with floating legs is.
+const BELIEVED: &str = "Largest EMF that is believed: the largest bus voltage.";
+
 impl CurrentLoop<'_, '_> {
-    /// EMF over the target period and over the present one; none where the law needs none.
+    /// EMF over the target period and over the present one; none where the law needs none. `outgoing` is
+    /// the phase that goes off in the sector, 0 to 2.
     pub(super) fn emf(
         &mut self,
         words: &Words,
         currents: &Currents,
         rotor: Option<&Rotor>,
+        third: Coefficient,
+        outgoing: Option<Value>,
     ) -> (Pair, Pair) {
         if self.needs.emf == EmfUse::None {
             return (None, None);
@@ -29,18 +38,24 @@ impl CurrentLoop<'_, '_> {
         } else {
             // An estimate is taken as constant over both periods.
             let e = self.estimate_emf(words, currents);
+            let e = self.meet_emf(words, third, outgoing, e);
             (Some(e), Some(e))
         }
     }
 
-    /// Largest zero-sum phase EMF that an estimate can reach, words of voltage: the applied voltage, the
-    /// believed current change and the resistive drop at their limits.
+    /// Largest zero-sum phase EMF of a step, words of voltage. An estimate has the applied voltage, the
+    /// believed current change and the resistive drop at their limits; where a leg may float, what
+    /// [`Self::meet_emf`] makes of estimates up to the bus.
     pub(super) fn e_bound(&mut self) -> i64 {
         let (design, options) = (self.design, self.options);
         if options.emf == EmfSource::Model {
             return self.lowering.volts_word(design.e_limit);
         }
         let scale = self.lowering.scale;
+        if self.needs.off_leg {
+            let bus = self.lowering.bus_interval().high;
+            return bus + 2 * product_bound(1.0 / 3.0, options.word, 2 * bus);
+        }
         let di_max = self.di_max();
         let volts_per_word = scale.voltage() / scale.current();
         let change = product_bound(design.k_di * volts_per_word, options.word, di_max);
@@ -56,7 +71,12 @@ impl CurrentLoop<'_, '_> {
     fn estimate_emf(&mut self, words: &Words, currents: &Currents) -> [Value; 2] {
         let (options, design) = (*self.options, self.design);
         let di_max = self.di_max();
-        let e_bound = self.e_bound();
+        let floats = words.off_prev.is_some();
+        let e_bound = if floats {
+            self.lowering.bus_interval().high
+        } else {
+            self.e_bound()
+        };
         let l = &mut *self.lowering;
         let per_word = l.scale.voltage() / l.scale.current();
         let physical = engineering(design.k_di, "V/A");
@@ -110,25 +130,123 @@ impl CurrentLoop<'_, '_> {
             let drop = l.times(k_r, previous);
             let rest = l.b.sub(applied, rise);
             let seen = l.b.sub(rest, drop);
-            let names = ["e_a", "e_b"];
-            match (filter, words.e_prev) {
+            let names = if floats {
+                ["e_a_believed", "e_b_believed"]
+            } else {
+                ["e_a", "e_b"]
+            };
+            let news = match (filter, words.e_prev) {
                 (Some(filter), Some(e_prev)) => {
                     l.b.name(["e_a_seen", "e_b_seen"][x], seen);
                     let old = l.b.state(e_prev[x]);
                     let news = l.b.sub(seen, old);
                     let part = l.times(filter, news);
-                    let filtered = l.b.add(old, part);
-                    // A weighted mean never leaves the interval of its parts; the clamp is for the proof.
-                    let doc = "Largest EMF that an estimate can reach, words of voltage.";
-                    let (low, high) = (
-                        l.number("e_min", -e_bound, doc),
-                        l.number("e_max", e_bound, doc),
-                    );
-                    let held = l.b.clamp(filtered, low, high);
-                    l.b.name(names[x], held)
+                    l.b.add(old, part)
                 }
-                _ => l.b.name(names[x], seen),
-            }
+                _ if floats => l.b.name(["e_a_seen", "e_b_seen"][x], seen),
+                _ => return l.b.name(names[x], seen),
+            };
+            let doc = if floats {
+                BELIEVED
+            } else {
+                // A weighted mean never leaves the interval of its parts; the clamp is for the proof.
+                "Largest EMF that an estimate can reach, words of voltage."
+            };
+            let (low, high) = (
+                l.number("e_min", -e_bound, doc),
+                l.number("e_max", e_bound, doc),
+            );
+            let held = l.b.clamp(news, low, high);
+            l.b.name(names[x], held)
         })
+    }
+
+    /// Gives a leg that floated the EMF that the motor's geometry says; the difference of the other two stays.
+    fn meet_emf(
+        &mut self,
+        words: &Words,
+        third: Coefficient,
+        outgoing: Option<Value>,
+        e: [Value; 2],
+    ) -> [Value; 2] {
+        let (Some(off_prev), Some(i_prev), Some(outgoing)) =
+            (words.off_prev, words.i_prev, outgoing)
+        else {
+            return e;
+        };
+        let threshold = self.options.commutation_threshold;
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "find_floated_leg",
+            &["Whether a leg was off in the period that just ended."],
+        );
+        let off = l.b.state(off_prev);
+        let zero = l.zero();
+        let floated = l.b.compare(Comparison::NotEqual, off, zero);
+        l.b.name("floated", floated);
+        l.b.guarded_stage(
+            "meet_emf",
+            floated,
+            false,
+            &[
+                "A leg that floated shows nothing of its own EMF, only the difference of the other two is seen. In the",
+                "sector in which the phase is off its EMF crosses zero, so zero is its mean; on entry of the next sector",
+                "it has met that of the phase that goes off then. With current in its diode its voltage was known.",
+            ],
+        );
+        let one = l.b.literal(1);
+        let off_a = l.b.compare(Comparison::Equal, off, one);
+        l.b.name("floated_a", off_a);
+        let two = l.b.literal(2);
+        let off_b = l.b.compare(Comparison::Equal, off, two);
+        l.b.name("floated_b", off_b);
+        let bus = l.bus_interval().high;
+        let sum = l.b.add(e[0], e[1]);
+        let e_c = l.b.neg(sum);
+        let (low, high) = (
+            l.number("e_min", -bus, BELIEVED),
+            l.number("e_max", bus, BELIEVED),
+        );
+        let e_c = l.b.clamp(e_c, low, high);
+        l.b.name("e_c_believed", e_c);
+        let phases = [e[0], e[1], e_c];
+        let own = l.pick(off_a, off_b, phases);
+        l.b.name("e_floated", own);
+        let other = l.of_phase(outgoing, phases);
+        l.b.name("e_outgoing", other);
+        let i_prev = i_prev.map(|word| l.b.state(word));
+        let i_c = l.third_phase("i_c_prev", i_prev[0], i_prev[1]);
+        let current = l.pick(off_a, off_b, [i_prev[0], i_prev[1], i_c]);
+        let current = l.b.abs(current);
+        l.b.name("i_floated", current);
+        let threshold = l.ampere_word(threshold);
+        let doc = "Current above which an off leg's diode conducts, words of current.";
+        let limit = l.number("i_comm", threshold, doc);
+        let conducted = l.b.compare(Comparison::Less, limit, current);
+        l.b.name("conducted", conducted);
+        let way = l.b.sub(other, own);
+        let way = l.times(third, way);
+        let zero = l.zero();
+        let met = l.b.select(conducted, zero, way);
+        // Legs count from 1, phases from 0.
+        let one = l.b.literal(1);
+        let outgoing_leg = l.b.add(outgoing, one);
+        let crossing = l.b.compare(Comparison::Equal, outgoing_leg, off);
+        l.b.name("crossing", crossing);
+        let back = l.b.neg(own);
+        let back = l.b.shift_right(back, 1);
+        let half = l.b.select(crossing, back, met);
+        l.b.name("half_way", half);
+        let twice = l.b.shift_left(half, 1);
+        l.b.name("whole_way", twice);
+        let down = l.b.neg(half);
+        l.b.name("half_back", down);
+        let flags = [off_a, off_b];
+        let moved = [0, 1].map(|x| {
+            let way = l.b.select(flags[x], twice, down);
+            let moved = l.b.add(e[x], way);
+            l.b.name(["e_a_met", "e_b_met"][x], moved)
+        });
+        l.b.join([("e_a", moved[0], e[0]), ("e_b", moved[1], e[1])])
     }
 }

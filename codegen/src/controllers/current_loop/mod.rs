@@ -120,18 +120,19 @@ impl CurrentLoop<'_, '_> {
             }
             _ => hall.sector,
         };
-        let commutation = match (words.pair, direction) {
+        let (commutation, outgoing) = match (words.pair, direction) {
             (Some(pair), Some(direction)) => {
                 let inputs = [sector, direction, j];
-                Some(l.commutation(
+                let (words, outgoing) = l.commutation(
                     pair,
                     inputs,
                     &currents,
                     options.commutation_threshold,
                     options.commutation_timeout,
-                ))
+                );
+                (Some(words), Some(outgoing))
             }
-            _ => None,
+            _ => (None, None),
         };
         let reference = match (&rotor, options.reference) {
             (Some(rotor), Reference::Proportional) => {
@@ -147,8 +148,11 @@ impl CurrentLoop<'_, '_> {
             "1/3",
         );
         let bus = l.read_bus(set_point);
-        let now = self.applied_now(&words, &currents, bus, third);
-        let (e, e_now) = self.emf(&words, &currents, rotor.as_ref());
+        // Read here, in an open stage: the last one of the EMF may be a guarded one.
+        let commanded = self.commanded(&words);
+        let (e, e_now) = self.emf(&words, &currents, rotor.as_ref(), third, outgoing);
+        let off_leg = self.off_leg_of(bus, third);
+        let now = self.applied_now(&words, commanded, &currents, e_now, &off_leg);
         Front {
             words,
             currents,
@@ -168,43 +172,41 @@ impl CurrentLoop<'_, '_> {
 
     /// Where an off leg's terminal sits.
     pub fn off_leg(&self, front: &Front) -> OffLeg {
+        self.off_leg_of(front.bus, front.third)
+    }
+
+    fn off_leg_of(&self, bus: Bus, third: Coefficient) -> OffLeg {
         OffLeg {
-            bus: front.bus,
-            third: front.third,
+            bus,
+            third,
             threshold: self.options.commutation_threshold,
         }
     }
 
-    /// The voltage that the inverter applies in the period that begins now (delay 1).
+    /// The last step's command, where it may have turned a leg off.
+    fn commanded(&mut self, words: &Words) -> Option<Applied> {
+        let b = &mut self.lowering.b;
+        words.t_cmd.map(|(terminals, off)| Applied {
+            terminals: terminals.map(|word| b.state(word)),
+            off: b.state(off),
+        })
+    }
+
+    /// The voltage that the inverter applies in the period that begins now (delay 1), with the EMF of that period.
     fn applied_now(
         &mut self,
         words: &Words,
+        commanded: Option<Applied>,
         currents: &Currents,
-        bus: Bus,
-        third: Coefficient,
+        e_now: Option<[Value; 2]>,
+        off_leg: &OffLeg,
     ) -> Option<[Value; 2]> {
         let l = &mut *self.lowering;
         if let Some(v_cmd) = words.v_cmd {
             return Some(v_cmd.map(|word| l.b.state(word)));
         }
-        let (terminals, off) = words.t_cmd?;
-        let e_prev = words.e_prev?;
-        let applied = Applied {
-            terminals: terminals.map(|word| l.b.state(word)),
-            off: l.b.state(off),
-        };
-        let e = e_prev.map(|word| l.b.state(word));
-        Some(l.applied_voltage(
-            ["v_a_now", "v_b_now"],
-            applied,
-            currents,
-            e,
-            &OffLeg {
-                bus,
-                third,
-                threshold: self.options.commutation_threshold,
-            },
-        ))
+        let names = ["v_a_now", "v_b_now"];
+        Some(l.applied_voltage(names, commanded?, currents, e_now?, off_leg))
     }
 
     /// Step 9: the deadbeat voltage of phases a, b.
@@ -307,6 +309,13 @@ impl CurrentLoop<'_, '_> {
                 remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
                 remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
             }
+        }
+        if let Some(off_prev) = words.off_prev {
+            let off = match (words.t_cmd, applied) {
+                (Some((_, off_cmd)), _) => Some(self.lowering.b.state(off_cmd)),
+                (None, applied) => applied.map(|applied| applied.off),
+            };
+            remembered.extend(off.map(|off| (off_prev, "off_prev_next", off)));
         }
         if let (Some(e_prev), Some(e)) = (words.e_prev, front.e) {
             remembered.push((e_prev[0], "e_a_prev_next", e[0]));

@@ -44,6 +44,8 @@ pub struct Words {
     pub t_cmd: Option<([StateId; 3], StateId)>,
     /// Voltage of the period that ended.
     pub v_prev: Option<[StateId; 2]>,
+    /// The leg that was off in the period that ended.
+    pub off_prev: Option<StateId>,
     /// EMF of the last step.
     pub e_prev: Option<[StateId; 2]>,
 }
@@ -118,9 +120,15 @@ impl CurrentLoop<'_, '_> {
                 )
             })
         });
-        let remembers_e = (needs.off_leg && (options.delay == 1 || estimated))
-            || (estimated && options.emf_filter < 1.0);
-        let e_prev = remembers_e.then(|| {
+        let off_prev = (estimated && needs.off_leg).then(|| {
+            l.state(
+                "off_prev",
+                0,
+                Interval::new(0, 3),
+                "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.",
+            )
+        });
+        let e_prev = (estimated && options.emf_filter < 1.0).then(|| {
             ["e_a_prev", "e_b_prev"].map(|name| {
                 l.state(
                     name,
@@ -139,6 +147,7 @@ impl CurrentLoop<'_, '_> {
             v_cmd,
             t_cmd,
             v_prev,
+            off_prev,
             e_prev,
         }
     }

@@ -7,6 +7,7 @@
 
 mod applied;
 mod constants;
+mod emf;
 mod law;
 mod limit;
 mod rotor;
@@ -303,40 +304,16 @@ impl BitTrue {
             }
         };
 
-        // 7 applied voltage
-        let v_now = match (self.variant.applied_now, self.variant.floating) {
-            (false, _) => [0.0; 2],
-            (true, false) => self.state.v_cmd,
-            (true, true) => {
-                let State {
-                    t_cmd,
-                    off_cmd,
-                    e_prev,
-                    ..
-                } = &self.state;
-                applied::voltage(k, self.v_bus, t_cmd, *off_cmd, &[i[0], i[1], i_c], *e_prev)
-            }
-        };
-
         // 8 EMF
         let (e, e_now) = match self.variant.emf {
             None => ([0.0; 2], [0.0; 2]),
             Some(EmfSource::Estimated) => {
-                let e = [0, 1].map(|x| {
-                    let State {
-                        i_prev,
-                        v_prev,
-                        e_prev,
-                        ..
-                    } = &self.state;
-                    let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
-                    let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
-                    if k.filtered {
-                        e_prev[x] + k.k_filter.mul(e - e_prev[x])
-                    } else {
-                        e
-                    }
-                });
+                let seen = emf::estimate(k, &self.state, i);
+                let e = if self.variant.unseen() {
+                    emf::with_floated(k, &self.state, sector_eff, seen)
+                } else {
+                    seen
+                };
                 (e, e)
             }
             Some(EmfSource::Model) => {
@@ -354,6 +331,16 @@ impl BitTrue {
                     })
                 };
                 (mean(start, end), mean(now, start))
+            }
+        };
+
+        // 7 applied voltage
+        let v_now = match (self.variant.applied_now, self.variant.floating) {
+            (false, _) => [0.0; 2],
+            (true, false) => self.state.v_cmd,
+            (true, true) => {
+                let State { t_cmd, off_cmd, .. } = &self.state;
+                applied::voltage(k, self.v_bus, t_cmd, *off_cmd, &[i[0], i[1], i_c], e_now)
             }
         };
 
@@ -390,6 +377,11 @@ impl BitTrue {
                     &[i[0], i[1], i_c],
                     e,
                 ),
+            };
+            self.state.off_prev = if delayed {
+                self.state.off_cmd
+            } else {
+                command.off
             };
             self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;

@@ -74,6 +74,8 @@ pub struct Ideal {
     timer_period: u16,
     di_max: f64,
     e_max: f64,
+    /// The largest bus voltage.
+    v_largest: f64,
     max_current: f64,
     k_t: f64,
     k_phase: f64,
@@ -114,6 +116,7 @@ impl Ideal {
             di_max: (2.0 * limits.adc_max * gain.abs())
                 .min(2.0 * phase.b * 4.0 / 3.0 * inverter.v_bus_max()?),
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
+            v_largest: inverter.v_bus_max()?,
             max_current: inverter.max_current,
             k_t: motor.torque_constant,
             k_phase: motor.emf_constant,
@@ -238,21 +241,8 @@ impl Ideal {
             }
         };
 
-        // 7 applied voltage
-        let delayed = self.variant.delayed();
-        let [e_a, e_b] = self.state.e_prev;
-        let v_now = match (self.variant.applied_now, self.variant.floating) {
-            (false, _) => Vector2::zeros(),
-            (true, false) => from_ab(self.state.v_cmd[0], self.state.v_cmd[1]),
-            (true, true) => self.applied(
-                &Vector3::from(self.state.t_cmd),
-                self.state.off_cmd,
-                &i_abc,
-                &from_ab(e_a, e_b),
-            ),
-        };
-
         // 8 EMF
+        let delayed = self.variant.delayed();
         let (e, e_now) = match self.variant.emf {
             None => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
@@ -266,8 +256,12 @@ impl Ideal {
                 // v - (i - a i_prev)/b, with i - a i_prev = d + (1 - a) i_prev.
                 let raw = from_ab(self.state.v_prev[0], self.state.v_prev[1])
                     - (d + i_prev * (1.0 - a)) / b;
+                let [e_a, e_b] = self.state.e_prev;
                 let e_prev = from_ab(e_a, e_b);
-                let e = e_prev + (raw - e_prev) * self.variant.options.emf_filter;
+                let mut e = e_prev + (raw - e_prev) * self.variant.options.emf_filter;
+                if self.variant.unseen() {
+                    e = self.with_floated(&e, sector_eff);
+                }
                 // Taken as constant over the present and the target period.
                 (e, e)
             }
@@ -283,6 +277,18 @@ impl Ideal {
                 };
                 (mean(start, theta + target), mean(theta, start))
             }
+        };
+
+        // 7 applied voltage
+        let v_now = match (self.variant.applied_now, self.variant.floating) {
+            (false, _) => Vector2::zeros(),
+            (true, false) => from_ab(self.state.v_cmd[0], self.state.v_cmd[1]),
+            (true, true) => self.applied(
+                &Vector3::from(self.state.t_cmd),
+                self.state.off_cmd,
+                &i_abc,
+                &e_now,
+            ),
         };
 
         // 9 to 11, the controller's own
@@ -317,6 +323,11 @@ impl Ideal {
                 (false, false) => u,
                 (false, true) => self.applied(&command.terminal, command.off, &i_abc, &e),
             });
+            self.state.off_prev = if delayed {
+                self.state.off_cmd
+            } else {
+                command.off
+            };
             self.state.v_cmd = to_ab(&u);
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
@@ -327,6 +338,7 @@ impl Ideal {
             self.state.v_cmd = [0.0; 2];
             self.state.t_cmd = [0.0; 3];
             self.state.off_cmd = None;
+            self.state.off_prev = None;
             self.state.e_prev = [0.0; 2];
             self.state.integral = [0.0; 2];
             self.state.commutating = false;
@@ -392,6 +404,33 @@ impl Ideal {
         } else {
             (state.commutation_age + 1.0).min(timeout)
         };
+    }
+
+    /// The estimate `seen` with what is known of a leg that floated (section 8), of which only the EMF between
+    /// the two others is seen. While its own sector lasts the phase's EMF crosses zero; when another phase
+    /// goes off, the two have met.
+    fn with_floated(&self, seen: &Vector2<f64>, sector_eff: usize) -> Vector2<f64> {
+        let believed = |e: f64| e.clamp(-self.v_largest, self.v_largest);
+        let [e_a, e_b] = to_ab(seen).map(believed);
+        let seen = from_ab(e_a, e_b);
+        let Some(off) = self.state.off_prev else {
+            return seen;
+        };
+        let [i_a, i_b] = self.state.i_prev;
+        let i_prev = [i_a, i_b, -(i_a + i_b)];
+        let e = [e_a, e_b, believed(-(e_a + e_b))];
+        let outgoing = sector::OUT_PHASE[sector_eff];
+        let change = if outgoing == off {
+            -e[off]
+        } else if i_prev[off].abs() > self.end.threshold {
+            return seen;
+        } else {
+            2.0 / 3.0 * (e[outgoing] - e[off])
+        };
+        // Along the phase's own axis the difference of the two others stays.
+        let mut axis = Vector3::zeros();
+        axis[off] = change;
+        seen + clarke(&axis) * 1.5
     }
 
     /// Voltage that a command really applies while the currents are `i` (section 7).

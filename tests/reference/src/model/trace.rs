@@ -68,6 +68,8 @@ pub struct PhysicalState {
     pub off_cmd: Option<usize>,
     /// Voltage applied in the period that ends with the next sample, phases a, b, volt.
     pub v_prev: [f64; 2],
+    /// The leg that was off in the period that ends with the next sample.
+    pub off_prev: Option<usize>,
     /// EMF of the last step, phases a, b, volt.
     pub e_prev: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.

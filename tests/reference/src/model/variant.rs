@@ -74,6 +74,11 @@ impl Variant {
         self.emf == Some(EmfSource::Estimated)
     }
 
+    /// Section 8: a leg that was off may leave a phase's EMF unseen.
+    pub fn unseen(&self) -> bool {
+        self.estimated() && self.floating
+    }
+
     /// Some step needs the voltage that a command really applies (section 7).
     pub fn applied(&self) -> bool {
         self.applied_now || self.estimated()

@@ -44,6 +44,8 @@ pub struct Constants {
     pub t_max_bits: f64,
     pub comm_timeout: f64,
     pub e_max: f64,
+    /// V_LARGEST.
+    pub v_largest: f64,
     pub filtered: bool,
     pub advanced: bool,
     pub k_di: Coefficient,
@@ -179,7 +181,6 @@ impl Constants {
         } = variant;
         let end = commutation.unwrap_or_default();
         let (estimated, filtered) = (variant.estimated(), variant.filtered());
-        let delayed = variant.delayed();
         let advanced = rotor && options.advance > 0.0;
         let gain = reference_gain(spec);
         let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
@@ -234,10 +235,8 @@ impl Constants {
                 (Part::Estimated, estimated),
                 (Part::VoltageCommand, variant.applied_now && !floating),
                 (Part::TerminalCommand, variant.applied_now && floating),
-                (
-                    Part::EmfMemory,
-                    filtered || (floating && (delayed || estimated)),
-                ),
+                (Part::OffMemory, variant.unseen()),
+                (Part::EmfMemory, filtered),
                 (
                     Part::Integral,
                     matches!(spec.controller, Controller::PiPwm(_)),
@@ -263,6 +262,7 @@ impl Constants {
             t_max_bits,
             comm_timeout: f64::from(end.timeout),
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
+            v_largest: bus.map_or(timer_period * two_v, |bus| bus.v_max),
             filtered,
             advanced,
             k_di: scale.only_if(estimated, "k_di", ohm / b)?,

@@ -25,6 +25,7 @@ pub struct State {
     pub t_cmd: [f64; 3],
     pub off_cmd: usize,
     pub v_prev: [f64; 2],
+    pub off_prev: usize,
     pub e_prev: [f64; 2],
     pub integral: [f64; 2],
 }
@@ -39,6 +40,7 @@ pub enum Part {
     Estimated,
     VoltageCommand,
     TerminalCommand,
+    OffMemory,
     EmfMemory,
     Integral,
 }
@@ -191,6 +193,9 @@ macro_rules! for_each_word {
             $show!("v_a_prev", $state.v_prev[0]);
             $show!("v_b_prev", $state.v_prev[1]);
         }
+        if $parts.has(Part::OffMemory) {
+            $show!("off_prev", $state.off_prev);
+        }
         if $parts.has(Part::EmfMemory) {
             $show!("e_a_prev", $state.e_prev[0]);
             $show!("e_b_prev", $state.e_prev[1]);
@@ -237,6 +242,7 @@ impl State {
         self.t_cmd = [0.0; 3];
         self.off_cmd = 0;
         self.v_prev = [0.0; 2];
+        self.off_prev = 0;
         self.e_prev = [0.0; 2];
         self.integral = [0.0; 2];
         self.commutating = false;
@@ -286,6 +292,7 @@ impl State {
             t_cmd: self.t_cmd.map(|word| word * k.volt),
             off_cmd: self.off_cmd.checked_sub(1),
             v_prev: volts(self.v_prev),
+            off_prev: self.off_prev.checked_sub(1),
             e_prev: volts(self.e_prev),
             integral: volts(self.integral),
         }

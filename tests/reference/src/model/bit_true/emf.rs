@@ -1,0 +1,54 @@
+//! The EMF estimated from the last period (section 8).
+
+use super::constants::Constants;
+use super::state::State;
+use crate::exact::halve;
+use crate::model::sector::OUT_PHASE;
+
+/// EMF of phases a, b in the period that ends with the currents `i`, filtered where the variant asks for it.
+#[inline]
+pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+    let State {
+        i_prev,
+        v_prev,
+        e_prev,
+        ..
+    } = state;
+    [0, 1].map(|x| {
+        let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
+        let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
+        if k.filtered {
+            e_prev[x] + k.k_filter.mul(e - e_prev[x])
+        } else {
+            e
+        }
+    })
+}
+
+/// The estimate `seen` with the EMF of a leg that floated replaced by what the sector says of it.
+#[inline]
+pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64; 2]) -> [f64; 2] {
+    let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
+    let [a, b] = seen.map(believed);
+    let Some(off) = state.off_prev.checked_sub(1).filter(|leg| *leg < 3) else {
+        return [a, b];
+    };
+    let e = [a, b, believed(-(a + b))];
+    let [i_a, i_b] = state.i_prev;
+    let i_off = [i_a, i_b, -(i_a + i_b)][off];
+    let outgoing = OUT_PHASE[sector_eff];
+    let half = if outgoing == off {
+        halve(-e[off])
+    } else if i_off.abs() > k.i_comm {
+        0.0
+    } else {
+        k.k_third.mul(e[outgoing] - e[off])
+    };
+    [0, 1].map(|x| {
+        if x == off {
+            e[x] + 2.0 * half
+        } else {
+            e[x] - half
+        }
+    })
+}
