@@ -45,7 +45,14 @@ pub type Choice = Vec<usize>;
 const BUS_RANGE: &str = "\"bus range\"";
 
 /// Values that a kind does not have in this version: kind, option, value.
-const UNAVAILABLE: &[(&str, &str, &str)] = &[("pi-pwm", "modulation", "pair")];
+const UNAVAILABLE: &[(&str, &str, &str)] = &[
+    ("pi-pwm", "modulation", "pair"),
+    ("phcc", "candidates", "all"),
+];
+
+/// A switching table that no derivation gives: every vector occurs.
+const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
+    2, 2, 9, 9, 0, 13, 6, 12, 3, 8, 1, 11, 10, 5, 14, 7, 4, 0, 15, 3, 12, 6, 8, 1, 9, 10, 13, 2, 5, 11, 7, 4]";
 
 /// Options that not all kinds take, the default value first, or the one that has most to compute.
 const OWN: &[Row] = &[
@@ -87,8 +94,24 @@ const OWN: &[Row] = &[
     (
         "off_leg",
         &[
-            ("physical", &[("controller", "off_leg", "\"physical\"")]),
+            // Not stated: without delay PHCC predicts nothing.
+            ("physical", &[]),
             ("nominal", &[("controller", "off_leg", "\"nominal\"")]),
+        ],
+    ),
+    (
+        "table",
+        &[
+            ("derived", &[]),
+            ("printed", &[("controller", "table", "\"printed\"")]),
+            ("given", &[("controller", "table", SWITCHING_TABLE)]),
+        ],
+    ),
+    (
+        "band",
+        &[
+            ("default", &[]),
+            ("narrow", &[("controller", "band", "\"20 mA\"")]),
         ],
     ),
     (

@@ -1,14 +1,16 @@
 //! What the generator writes, versioned: emitted Rust, IR text and data sheets.
 //!
-//! Data sheets of every motor, found by directory; code and IR of four very different ones, and of
-//! the paper's motor in several variants. `INSTA_UPDATE=always cargo test -p hexagen-tests --test
+//! Data sheets of every motor, found by directory; code and IR of four very different ones, of two
+//! for each kind of controller, and of the paper's motor in several variants. `INSTA_UPDATE=always cargo test -p hexagen-tests --test
 //! snapshots` writes all of them anew; a person reads the difference.
 
+use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
+use hexagen_tests::options::kinds;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -17,8 +19,14 @@ use std::path::Path;
 /// library, and a low-speed one with sinusoidal EMF.
 const MOTORS: [&str; 3] = ["estun-emj-04apb22", "velineon-3500", "ipower-gbm2804h"];
 
+/// The kind of controller of the motor files.
+const OWN_KIND: &str = "pdcc";
+
+/// Motors for the kinds besides: the first that takes the kind is kept besides the paper's.
+const MOTORS_OF_KINDS: [&str; 2] = ["velineon-3500", "estun-emj-04apb22"];
+
 /// Variants of the paper's motor: the name in the snapshot's file, and the options.
-const VARIANTS: [(&str, &str); 5] = [
+const VARIANTS: [(&str, &str); 8] = [
     ("pair", "pdcc:modulation=pair"),
     (
         "model-advance",
@@ -33,6 +41,12 @@ const VARIANTS: [(&str, &str); 5] = [
         "pdcc:delay=0,discretisation=euler,saturation=keep_angle",
     ),
     ("word-16", "pdcc:word=16,saturation=keep_angle"),
+    (
+        "fcs-mpc.all",
+        "fcs-mpc:candidates=all,emf=model,reference=proportional",
+    ),
+    ("fcs-mpc.nominal", "fcs-mpc:off_leg=nominal,delay=0,word=16"),
+    ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),
 ];
 
 /// One snapshot: its file name without ending, and its text.
@@ -41,14 +55,22 @@ struct Snapshot {
     text: String,
 }
 
-fn generated(motor: &Motor, variant: Option<&str>) -> Generated {
-    let mut ast =
-        parse_toml(&motor.text, &format!("{}.toml", motor.name)).expect("the motor parses");
-    if let Some(variant) = variant {
-        apply_variant(&mut ast, variant).expect("the variant parses");
+fn try_generate(motor: &Motor, variant: &str) -> Result<Generated, Diagnostics> {
+    let mut ast = parse_toml(&motor.text, &format!("{}.toml", motor.name))?;
+    apply_variant(&mut ast, variant)?;
+    let (spec, origins) = check(&ast)?;
+    generate(&spec, &origins)
+}
+
+fn generated(motor: &Motor, variant: &str) -> Generated {
+    try_generate(motor, variant).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn datasheet_of(name: &str, generated: &Generated) -> Snapshot {
+    Snapshot {
+        name: format!("{name}.datasheet"),
+        text: emit_datasheet(&generated.graph, &generated.interface),
     }
-    let (spec, origins) = check(&ast).unwrap_or_else(|errors| panic!("{errors}"));
-    generate(&spec, &origins).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn code_of(name: &str, generated: &Generated) -> [Snapshot; 2] {
@@ -73,19 +95,27 @@ fn code_of(name: &str, generated: &Generated) -> [Snapshot; 2] {
 fn snapshots() -> Vec<Snapshot> {
     let mut snapshots = vec![];
     for motor in motors() {
-        let generated = generated(&motor, None);
-        let text = emit_datasheet(&generated.graph, &generated.interface);
-        snapshots.push(Snapshot {
-            name: format!("{}.datasheet", motor.name),
-            text,
-        });
+        let generated = generated(&motor, OWN_KIND);
+        snapshots.push(datasheet_of(&motor.name, &generated));
         if motor.name == PAPER_MOTOR || MOTORS.contains(&motor.name.as_str()) {
             snapshots.extend(code_of(&motor.name, &generated));
         }
     }
     let paper = motor(PAPER_MOTOR);
+    for kind in kinds().iter().filter(|kind| kind.name != OWN_KIND) {
+        let others = MOTORS_OF_KINDS.map(motor);
+        let other = others
+            .into_iter()
+            .find(|motor| try_generate(motor, kind.name).is_ok());
+        for motor in [&paper, &other.expect("a motor that takes the kind")] {
+            let generated = generated(motor, kind.name);
+            let name = format!("{}.{}", motor.name, kind.name);
+            snapshots.push(datasheet_of(&name, &generated));
+            snapshots.extend(code_of(&name, &generated));
+        }
+    }
     for (name, variant) in VARIANTS {
-        let generated = generated(&paper, Some(variant));
+        let generated = generated(&paper, variant);
         snapshots.extend(code_of(&format!("{PAPER_MOTOR}.{name}"), &generated));
     }
     snapshots

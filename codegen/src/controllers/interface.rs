@@ -126,13 +126,22 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
 fn variant(spec: &Spec) -> String {
     let text = spec.to_toml();
     let options = text.split("[controller]\n").nth(1).unwrap_or_default();
-    let pairs: Vec<String> = options
-        .lines()
-        .filter_map(|line| line.split_once(" = "))
-        .filter(|(name, _)| *name != "kind")
-        .map(|(name, value)| format!("{name} = {}", readable(name, value)))
+    let pairs = options.lines().filter_map(|line| line.split_once(" = "));
+    let pairs: Vec<(&str, String)> = pairs
+        .map(|(name, value)| (name, readable(name, value)))
         .collect();
-    pairs.join(", ")
+    let is_set = |name: &str, value: &str| pairs.contains(&(name, value.to_owned()));
+    let is_idle = |name: &str| match name {
+        "kind" => true,
+        "emf" => is_set("feed_forward", "off"),
+        "emf_filter" => is_set("feed_forward", "off") || is_set("emf", "model"),
+        _ => false,
+    };
+    let told = pairs.iter().filter(|(name, _)| !is_idle(name));
+    let told: Vec<String> = told
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    told.join(", ")
 }
 
 /// The value of an option as a person writes it.

@@ -129,11 +129,15 @@ impl CurrentLoop<'_, '_> {
             offsets.push(offset);
             lifts.push(lift);
         }
+        let rival = match three_phase {
+            Some(_) => "the three-phase vector",
+            None => "the zero vector",
+        };
         l.b.stage(
             "nearest_pair",
             &[
                 "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
-                "vectors, the least of three, and the zero vector where that is not worse. Ties go to the vector that stands first.",
+                &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
             ],
         );
         // Factors first: their intervals give the shift of all products.
