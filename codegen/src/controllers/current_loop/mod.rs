@@ -149,10 +149,11 @@ impl CurrentLoop<'_, '_> {
         );
         let bus = l.read_bus(set_point);
         // Read here, in an open stage: the last one of the EMF may be a guarded one.
-        let commanded = self.commanded(&words);
+        let commanded = words.v_cmd.map(|word| word.map(|word| l.b.state(word)));
+        let terminals = self.commanded_terminals(&words);
         let (e, e_now) = self.emf(&words, &currents, rotor.as_ref(), third, outgoing);
         let off_leg = self.off_leg_of(bus, third);
-        let now = self.applied_now(&words, commanded, &currents, e_now, &off_leg);
+        let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
             words,
             currents,
@@ -184,7 +185,7 @@ impl CurrentLoop<'_, '_> {
     }
 
     /// The last step's command, where it may have turned a leg off.
-    fn commanded(&mut self, words: &Words) -> Option<Applied> {
+    fn commanded_terminals(&mut self, words: &Words) -> Option<Applied> {
         let b = &mut self.lowering.b;
         words.t_cmd.map(|(terminals, off)| Applied {
             terminals: terminals.map(|word| b.state(word)),
@@ -192,21 +193,21 @@ impl CurrentLoop<'_, '_> {
         })
     }
 
-    /// The voltage that the inverter applies in the period that begins now (delay 1), with the EMF of that period.
+    /// The voltage that a command which may turn a leg off applies in the period that begins now (delay 1),
+    /// with the EMF of that period.
     fn applied_now(
         &mut self,
-        words: &Words,
         commanded: Option<Applied>,
         currents: &Currents,
         e_now: Option<[Value; 2]>,
         off_leg: &OffLeg,
     ) -> Option<[Value; 2]> {
-        let l = &mut *self.lowering;
-        if let Some(v_cmd) = words.v_cmd {
-            return Some(v_cmd.map(|word| l.b.state(word)));
-        }
         let names = ["v_a_now", "v_b_now"];
-        Some(l.applied_voltage(names, commanded?, currents, e_now?, off_leg))
+        let (commanded, e_now) = (commanded?, e_now?);
+        Some(
+            self.lowering
+                .applied_voltage(names, commanded, currents, e_now, off_leg),
+        )
     }
 
     /// Step 9: the deadbeat voltage of phases a, b.
