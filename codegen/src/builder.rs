@@ -3,9 +3,10 @@
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
 use crate::diagnostics::Diagnostics;
-use crate::emit::rust::{Surface, emit_rust, format_rust};
+use crate::emit::rust::{Surface, emit_rust, format_rust, module_name};
 use crate::pipeline::{Generated, generate};
 use crate::spec::{SpecAst, apply_variant, check, parse_toml};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -32,6 +33,10 @@ pub struct Builder {
     out_dir: Option<PathBuf>,
     motors: Vec<Motor>,
     folders: Vec<String>,
+    /// Whether the last motor was given by a folder, whose files take their own controllers.
+    in_folder: bool,
+    /// The first call that belongs to no motor, and its place.
+    misplaced: Option<(String, String)>,
 }
 
 #[derive(Clone, Debug)]
@@ -83,6 +88,40 @@ pub enum BuildError {
         /// The name.
         name: String,
     },
+    /// Two types of one motor have names that differ only in how their words are set apart.
+    #[error(
+        "{motor}: {first} and {second} would both stand in a module `{module}`; tell them apart with `.name(…)`"
+    )]
+    SameModule {
+        /// The motor file.
+        motor: String,
+        /// The type that has the module.
+        first: String,
+        /// The type that would take it, too.
+        second: String,
+        /// The module.
+        module: String,
+    },
+    /// [`Builder::controller`] or [`Builder::name`] follows no motor that it could belong to.
+    #[error("{call} {place}; say it after the `.motor(…)` that it belongs to")]
+    Misplaced {
+        /// The call as it was written.
+        call: String,
+        /// Where it stands.
+        place: String,
+    },
+    /// Two motor files would be written to the same Rust file.
+    #[error("{first} and {second} would both be written to {file}; {remedy}")]
+    SameFile {
+        /// The motor file given first.
+        first: String,
+        /// The motor file given later.
+        second: String,
+        /// Name of the Rust file.
+        file: String,
+        /// What to change.
+        remedy: &'static str,
+    },
     /// A type name is no Rust type name.
     #[error("{motor}: `{name}` is no name for a Rust type; give one with `.name(…)`")]
     BadName {
@@ -130,6 +169,7 @@ impl Builder {
             path: path.into(),
             drives: vec![],
         });
+        self.in_folder = false;
         self
     }
 
@@ -137,15 +177,17 @@ impl Builder {
     #[must_use]
     pub fn motors(mut self, folder: impl Into<String>) -> Self {
         self.folders.push(folder.into());
+        self.in_folder = true;
         self
     }
 
-    /// Adds a controller of the last motor: `pdcc:emf=model,advance=2`.
+    /// Adds a controller of the last [`Self::motor`]: `pdcc:emf=model,advance=2`.
     #[must_use]
     pub fn controller(mut self, variant: impl Into<String>) -> Self {
-        if let Some(motor) = self.motors.last_mut() {
+        let variant = variant.into();
+        if let Some(motor) = self.owner("controller", &variant) {
             motor.drives.push(Wanted {
-                variant: Some(variant.into()),
+                variant: Some(variant),
                 name: None,
             });
         }
@@ -156,31 +198,53 @@ impl Builder {
     /// gives the name, and the variant what follows it: `HubPdccEmfModelAdvance2`.
     #[must_use]
     pub fn name(mut self, name: impl Into<String>) -> Self {
-        if let Some(motor) = self.motors.last_mut() {
+        let name = name.into();
+        if let Some(motor) = self.owner("name", &name) {
             if motor.drives.is_empty() {
                 motor.drives.push(Wanted::default());
             }
             if let Some(wanted) = motor.drives.last_mut() {
-                wanted.name = Some(name.into());
+                wanted.name = Some(name);
             }
         }
         self
+    }
+
+    /// The motor that a call belongs to; remembers the first that belongs to none.
+    fn owner(&mut self, method: &str, argument: &str) -> Option<&mut Motor> {
+        let place = if self.in_folder {
+            let folder = self.folders.last().map_or("", String::as_str);
+            format!("follows `.motors({folder:?})`, whose files take their own controllers")
+        } else if self.motors.is_empty() {
+            "stands before the first motor".to_owned()
+        } else {
+            return self.motors.last_mut();
+        };
+        self.misplaced
+            .get_or_insert((format!("`.{method}({argument:?})`"), place));
+        None
     }
 
     /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Tells
     /// cargo which files to watch.
     ///
     /// # Errors
-    /// All errors of all specifications together, before anything is written; else the first file
-    /// that cannot be read or written.
+    /// A call that belongs to no motor, and motors that would be written to the same file; all errors
+    /// of all specifications together, before anything is written; else the first file that cannot be
+    /// read or written.
     pub fn generate(self) -> Result<Vec<Written>, BuildError> {
+        if let Some((call, place)) = self.misplaced {
+            return Err(BuildError::Misplaced { call, place });
+        }
         let out_dir = self
             .out_dir
             .clone()
             .or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
         let out_dir = out_dir.ok_or(BuildError::NoOutDir)?;
         let (mut sources, mut errors) = (vec![], vec![]);
-        for motor in self.all_motors()? {
+        let motors = self.all_motors()?;
+        check_files(&motors)?;
+        for motor in motors {
             match source_of(&self.root, &motor) {
                 Ok(source) => sources.push((motor.path, source)),
                 Err(BuildError::Specification(more)) => errors.extend(more),
@@ -223,6 +287,34 @@ impl Builder {
         }
         Ok(motors)
     }
+}
+
+/// Name of the Rust file of a motor file: `hub.rs` of `motors/hub.toml`.
+fn file_name(motor: &str) -> PathBuf {
+    let stem = Path::new(motor).file_stem().unwrap_or_default();
+    Path::new(stem).with_extension("rs")
+}
+
+/// Whether each motor has a Rust file of its own. Names that differ only in their case are one file on
+/// some systems.
+fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
+    let mut files: BTreeMap<String, &str> = BTreeMap::new();
+    for motor in motors {
+        let file = file_name(&motor.path).display().to_string();
+        if let Some(first) = files.insert(file.to_lowercase(), &motor.path) {
+            return Err(BuildError::SameFile {
+                first: first.to_owned(),
+                second: motor.path.clone(),
+                file,
+                remedy: if first == motor.path {
+                    "give a motor once, with all its controllers behind it"
+                } else {
+                    "rename one of them, or give each a builder with an `.out_dir(…)` of its own"
+                },
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The Rust file of one motor.
@@ -291,6 +383,15 @@ impl Source {
                 name,
             });
         }
+        let module = module_name(&name);
+        if let Some(first) = self.types.iter().find(|known| module_name(known) == module) {
+            return Err(BuildError::SameModule {
+                motor: motor.to_owned(),
+                first: first.clone(),
+                second: name,
+                module,
+            });
+        }
         let tokens = emit_rust(
             &generated.graph,
             &generated.interface,
@@ -306,8 +407,7 @@ impl Source {
 
     /// Writes beside the file and renames, so that no reader sees half of it.
     fn write(self, out_dir: &Path, motor: String) -> Result<Written, BuildError> {
-        let stem = Path::new(&motor).file_stem().unwrap_or_default();
-        let file = out_dir.join(stem).with_extension("rs");
+        let file = out_dir.join(file_name(&motor));
         let beside = file.with_extension(format!("rs.{}", std::process::id()));
         let failed = |error| BuildError::Io {
             path: file.display().to_string(),
@@ -342,15 +442,4 @@ fn variant_name(variant: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::variant_name;
-
-    #[test]
-    fn variants_name_types() {
-        assert_eq!(
-            variant_name("pdcc:emf=model,advance=1.5"),
-            "PdccEmfModelAdvance1p5"
-        );
-        assert_eq!(variant_name("fcs-mpc"), "FcsMpc");
-    }
-}
+mod tests;

@@ -1,0 +1,109 @@
+//! What the builder refuses.
+
+use super::{BuildError, Builder, variant_name};
+use std::fs;
+
+/// What a builder says of the example motor under two paths.
+fn refusal(test: &str, build: impl FnOnce(Builder) -> Builder) -> String {
+    let folder = std::env::temp_dir().join(format!("hexagen-{test}-{}", std::process::id()));
+    for name in ["front", "rear"] {
+        fs::create_dir_all(folder.join(name)).expect("a temporary folder");
+        fs::write(
+            folder.join(name).join("hub.toml"),
+            include_str!("../example.toml"),
+        )
+        .expect("a motor file");
+    }
+    let builder = Builder::new().root(&folder).out_dir(&folder);
+    let outcome = build(builder).generate();
+    let written = fs::read_dir(&folder).expect("the folder").count() > 2;
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    let error: BuildError = outcome.expect_err("the builder must refuse");
+    assert!(!written, "something was written before the refusal");
+    error.to_string()
+}
+
+#[test]
+fn two_motors_of_one_file_name_are_refused() {
+    assert_eq!(
+        refusal("names", |b| b
+            .motor("front/hub.toml")
+            .motor("rear/hub.toml")),
+        "front/hub.toml and rear/hub.toml would both be written to hub.rs; rename one of them, \
+         or give each a builder with an `.out_dir(…)` of its own"
+    );
+    assert_eq!(
+        refusal("folders", |b| b.motors("front").motors("rear")),
+        "front/hub.toml and rear/hub.toml would both be written to hub.rs; rename one of them, \
+         or give each a builder with an `.out_dir(…)` of its own"
+    );
+    assert_eq!(
+        refusal("twice", |b| b
+            .motor("front/hub.toml")
+            .controller("pdcc")
+            .motor("front/hub.toml")
+            .controller("pi-pwm")),
+        "front/hub.toml and front/hub.toml would both be written to hub.rs; give a motor once, \
+         with all its controllers behind it"
+    );
+}
+
+#[test]
+fn controllers_and_names_without_a_motor_are_refused() {
+    assert_eq!(
+        refusal("early", |b| b.controller("pdcc").motor("front/hub.toml")),
+        "`.controller(\"pdcc\")` stands before the first motor; say it after the `.motor(…)` \
+         that it belongs to"
+    );
+    assert_eq!(
+        refusal("name", |b| b.name("Hub").motor("front/hub.toml")),
+        "`.name(\"Hub\")` stands before the first motor; say it after the `.motor(…)` that it \
+         belongs to"
+    );
+    assert_eq!(
+        refusal("folder", |b| b
+            .motor("rear/hub.toml")
+            .motors("front")
+            .controller("pdcc")),
+        "`.controller(\"pdcc\")` follows `.motors(\"front\")`, whose files take their own \
+         controllers; say it after the `.motor(…)` that it belongs to"
+    );
+}
+
+#[test]
+fn types_of_one_file_have_names_and_modules_of_their_own() {
+    let named = |test, second| {
+        refusal(test, |b| {
+            b.motor("front/hub.toml")
+                .controller("pdcc")
+                .name("HubDrive")
+                .controller("pi-pwm")
+                .name(second)
+        })
+    };
+    assert_eq!(
+        named("types", "HubDrive"),
+        "front/hub.toml: two controllers are named HubDrive; tell them apart with `.name(…)`"
+    );
+    assert_eq!(
+        named("modules", "HUBDrive"),
+        "front/hub.toml: HubDrive and HUBDrive would both stand in a module `hub_drive`; tell \
+         them apart with `.name(…)`"
+    );
+    assert_eq!(
+        refusal("variants", |b| b
+            .motor("front/hub.toml")
+            .controller("pdcc")
+            .controller("pdcc")),
+        "front/hub.toml: two controllers are named TrivediKeshri660wPdcc; tell them apart with `.name(…)`"
+    );
+}
+
+#[test]
+fn variants_name_types() {
+    assert_eq!(
+        variant_name("pdcc:emf=model,advance=1.5"),
+        "PdccEmfModelAdvance1p5"
+    );
+    assert_eq!(variant_name("fcs-mpc"), "FcsMpc");
+}
