@@ -14,20 +14,22 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The variants of the result table, each with both ways of reading Hall edges. The program looks
 /// drives up by their normalised specification, so a variant that is missing here is interpreted.
-const VARIANTS: [&str; 9] = [
+const VARIANTS: [&str; 11] = [
     "pdcc:modulation=three_phase,saturation=nearest,emf=model",
     "pdcc:modulation=pair,saturation=keep_angle,emf=model",
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
     "pdcc:modulation=pair,saturation=torque_priority,advance=1.5,emf=model",
     "pdcc:modulation=three_phase,saturation=nearest,reference=proportional,emf=model",
-    "fcs-mpc:candidates=table2,off_leg=nominal,emf=model",
+    "fcs-mpc:candidates=table2,off_leg=nominal,emf=estimated",
     "fcs-mpc:candidates=table2,off_leg=physical,emf=model",
-    "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model",
+    "phcc:table=derived,off_leg=physical,emf=model",
+    "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest",
+    "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest",
 ];
 
 /// Every motor gets each of these with all options at their defaults, where it can have it.
-const KINDS: [&str; 2] = ["fcs-mpc", "pi-pwm"];
+const KINDS: [&str; 3] = ["fcs-mpc", "phcc", "pi-pwm"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");

@@ -70,7 +70,7 @@ impl Emit {
 }
 
 /// Kinds of controllers that there are.
-pub const KINDS: [&str; 3] = ["fcs-mpc", "pdcc", "pi-pwm"];
+pub const KINDS: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
 
 /// A controller, or all of them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,7 +22,7 @@ const FOLDER: &str = "target/hexagen";
 const VERIFY_STEPS: u64 = 1_000_000;
 
 /// The row whose code and data sheet are shown: the best of three pulsed legs.
-const SHOWN: &str = "three_phase, torque_priority, advance 2, model EMF";
+const SHOWN: &str = "PDCC three_phase, torque_priority, advance 2, model EMF";
 
 /// Options of `report`.
 #[derive(Args, Clone, Debug, Default)]
@@ -59,7 +59,7 @@ pub fn collect(
     notes.extend(planned.iter().filter_map(|row| {
         let (torque, rated) = (row.reach()?, row.timer.rated_torque());
         Some(format!(
-            "PDCC {}: its set-point is limited to max_current = {} A, which gives {} Nm with this reference, {:.0} % of the demand; it is measured at that torque, its limit, too.",
+            "{}: its set-point is limited to max_current = {} A, which gives {} Nm with this reference, {:.0} % of the demand; it is measured at that torque, its limit, too.",
             row.row.label,
             significant(row.timer.spec.inverter.max_current, 3),
             significant(torque, 3),

@@ -130,10 +130,10 @@ impl Planned {
             Some(Record { rpm, trace })
         });
         Ok(Variant {
-            label: format!("PDCC {}", self.row.label),
+            label: self.row.label.to_owned(),
             variant: self.timer.variant.clone(),
             runs,
-            records: records.collect(),
+            records: records.filter(|_| self.row.is_plotted).collect(),
             torque_speed,
             reach: self.reach(),
             same_words,

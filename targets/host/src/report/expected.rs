@@ -138,25 +138,46 @@ pub struct DesignRow {
     pub timer: Expected,
     /// Figures with Hall edges seen at sampling instants, where the document gives any.
     pub sampled: Option<Expected>,
+    /// Whether the page draws its currents, trajectory, torque and spectrum.
+    pub is_plotted: bool,
 }
 
-/// The deadbeat rows of DESIGN.md section 4: the 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
+/// The rows of DESIGN.md section 4 that this version has: the 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
 pub fn design_table() -> Vec<DesignRow> {
     vec![
         DesignRow {
-            label: "three_phase, nearest, model EMF",
+            label: "FCS-MPC table2, nominal, estimated EMF",
+            variant: "fcs-mpc:discretisation=euler,candidates=table2,off_leg=nominal,emf=estimated,hall_capture=timer",
+            timer: Expected {
+                points: two([point(2.93, 60.0, 13.0), point(2.76, 106.0, 22.0)]),
+                limit_pct: None,
+            },
+            sampled: None,
+            is_plotted: false,
+        },
+        DesignRow {
+            label: "FCS-MPC table2, physical, model EMF",
+            variant: "fcs-mpc:discretisation=euler,candidates=table2,off_leg=physical,emf=model,hall_capture=timer",
+            timer: expected([point(3.24, 35.0, 6.2), point(3.28, 39.0, 7.9)], 82.0),
+            sampled: None,
+            is_plotted: true,
+        },
+        DesignRow {
+            label: "PDCC three_phase, nearest, model EMF",
             variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=nearest,emf=model,hall_capture=timer",
             timer: expected([point(3.30, 2.3, 0.2), point(3.25, 12.7, 3.4)], 87.0),
             sampled: None,
+            is_plotted: true,
         },
         DesignRow {
-            label: "pair, keep_angle, model EMF",
+            label: "PDCC pair, keep_angle, model EMF",
             variant: "pdcc:discretisation=euler,modulation=pair,saturation=keep_angle,emf=model,hall_capture=timer",
             timer: expected([point(3.29, 10.0, 1.2), point(3.19, 28.0, 7.5)], 73.0),
             sampled: None,
+            is_plotted: false,
         },
         DesignRow {
-            label: "three_phase, torque_priority, advance 2, model EMF",
+            label: "PDCC three_phase, torque_priority, advance 2, model EMF",
             variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=torque_priority,advance=2,emf=model,hall_capture=timer",
             timer: expected(
                 [point(3.30, 1.8, 0.07), point(3.30, 1.8, 0.29)],
@@ -170,24 +191,27 @@ pub fn design_table() -> Vec<DesignRow> {
                 }],
                 limit_pct: None,
             }),
+            is_plotted: true,
         },
         DesignRow {
-            label: "three_phase, torque_priority, advance 2, estimated EMF",
+            label: "PDCC three_phase, torque_priority, advance 2, estimated EMF",
             variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated,hall_capture=timer",
             timer: Expected {
                 points: vec![at(1500.0, Some(3.30), Some(6.9), None)],
                 limit_pct: Some(105.0.into()),
             },
             sampled: None,
+            is_plotted: false,
         },
         DesignRow {
-            label: "pair, torque_priority, advance 1.5, model EMF",
+            label: "PDCC pair, torque_priority, advance 1.5, model EMF",
             variant: "pdcc:discretisation=euler,modulation=pair,saturation=torque_priority,advance=1.5,emf=model,hall_capture=timer",
             timer: expected([point(3.30, 9.3, 0.4), point(3.30, 4.9, 0.5)], 108.0),
             sampled: None,
+            is_plotted: false,
         },
         DesignRow {
-            label: "three_phase, nearest, proportional, model EMF",
+            label: "PDCC three_phase, nearest, proportional, model EMF",
             variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=nearest,reference=proportional,emf=model,hall_capture=timer",
             timer: expected([point(3.30, 0.13, 0.01), point(3.30, 0.5, 0.06)], 117.0),
             sampled: Some(Expected {
@@ -198,6 +222,28 @@ pub fn design_table() -> Vec<DesignRow> {
                 }],
                 limit_pct: None,
             }),
+            is_plotted: true,
+        },
+        DesignRow {
+            label: "PHCC derived table, physical, model EMF",
+            variant: "phcc:discretisation=euler,table=derived,off_leg=physical,emf=model,hall_capture=timer",
+            timer: expected([point(3.47, 53.0, 7.2), point(3.24, 39.0, 6.5)], 78.0),
+            sampled: None,
+            is_plotted: true,
+        },
+        DesignRow {
+            label: "PI-PWM 800 Hz, Ti 0.5 ms",
+            variant: "pi-pwm:discretisation=euler,feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest,hall_capture=timer",
+            timer: expected([point(3.32, 11.0, 1.8), point(3.09, 21.0, 6.0)], 53.0),
+            sampled: None,
+            is_plotted: false,
+        },
+        DesignRow {
+            label: "PI-PWM 1 kHz, feed-forward, model EMF",
+            variant: "pi-pwm:discretisation=euler,feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest,hall_capture=timer",
+            timer: expected([point(3.29, 3.1, 0.4), point(3.12, 11.0, 2.8)], 60.0),
+            sampled: None,
+            is_plotted: true,
         },
     ]
 }
@@ -217,15 +263,19 @@ fn at(rpm: f64, mean: Option<f64>, pp: Option<f64>, rms: Option<f64>) -> Expecte
 
 /// Figures at 400 and 1500 rpm and the limit.
 fn expected(points: [ExpectedPoint; 2], limit: impl Into<Band>) -> Expected {
-    let speeds = [400.0, 1500.0];
     Expected {
-        points: points
-            .into_iter()
-            .zip(speeds)
-            .map(|(point, rpm)| ExpectedPoint { rpm, ..point })
-            .collect(),
+        points: two(points),
         limit_pct: Some(limit.into()),
     }
+}
+
+/// Figures at 400 and 1500 rpm.
+fn two(points: [ExpectedPoint; 2]) -> Vec<ExpectedPoint> {
+    points
+        .into_iter()
+        .zip([400.0, 1500.0])
+        .map(|(point, rpm)| ExpectedPoint { rpm, ..point })
+        .collect()
 }
 
 #[cfg(test)]
@@ -251,7 +301,7 @@ mod tests {
 
     #[test]
     fn speeds_that_were_angular_find_their_expectation() {
-        let row = &design_table()[0].timer;
+        let row = &design_table()[1].timer;
         let rated = 209.439_510_239_319_5 * 30.0 / std::f64::consts::PI;
         for rpm in [0.75 * rated, 1500.0, 1_499.999_999] {
             assert!(row.at(rpm).is_some(), "{rpm}");
