@@ -74,7 +74,7 @@ pub enum Fault {
     /// Not tripped.
     #[default]
     None = 0,
-    /// An ADC count lay outside the converter's range.
+    /// A current converter was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,
     /// A phase current exceeded the trip level.
     OverCurrent = 2,
@@ -82,6 +82,8 @@ pub enum Fault {
     Hall = 3,
     /// No Hall edge within the stall time-out while a current was demanded.
     Stall = 4,
+    /// A calibrated current offset was too far from its nominal value.
+    Offset = 5,
 }
 
 impl Fault {
@@ -102,6 +104,7 @@ impl Fault {
             2 => Self::OverCurrent,
             3 => Self::Hall,
             4 => Self::Stall,
+            5 => Self::Offset,
             _ => Self::None,
         }
     }

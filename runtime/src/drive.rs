@@ -30,11 +30,14 @@ pub trait Drive {
     fn set_torque(&self, torque: I16F16);
     /// Tells the bus voltage as an ADC count. Does nothing for drives with `v_bus: fixed`.
     fn set_bus(&self, counts: u16);
-    /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
+    /// Clears a trip and all control state; keeps calibrated offsets and the set-point, which drives the
+    /// motor at once unless it is zero. Ignored while calibration or pre-charge runs.
     fn reset(&mut self);
-    /// Starts current-offset calibration: all legs off, the motor at rest.
+    /// Starts current-offset calibration: all legs off, the motor at rest. Ignored when tripped. An offset that
+    /// is too far from its nominal value trips the drive with [`Fault::Offset`].
     fn calibrate(&mut self);
-    /// Starts bootstrap pre-charge: all lower switches on.
+    /// Starts bootstrap pre-charge: all lower switches on, the motor at rest. Ignored when tripped or
+    /// calibrating, which ends in pre-charge by itself.
     fn precharge(&mut self);
     /// Why the drive is tripped, or [`Fault::None`].
     fn fault(&self) -> Fault;

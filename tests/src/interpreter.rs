@@ -166,6 +166,10 @@ impl Subject for Interpreted<'_> {
     }
 
     fn reset(&mut self) {
+        let mode = self.machine.state[self.words.mode];
+        if mode == 1 || mode == 2 {
+            return;
+        }
         let offsets = self.words.offsets;
         for (index, word) in self.program.states.iter().enumerate() {
             if !offsets.contains(&index) {
@@ -191,10 +195,11 @@ impl Subject for Interpreted<'_> {
     }
 
     fn precharge(&mut self) {
-        if !self.is_tripped() && self.precharge_periods > 0 {
-            let Words {
-                mode, countdown, ..
-            } = self.words;
+        let Words {
+            mode, countdown, ..
+        } = self.words;
+        let may_start = matches!(self.machine.state[mode], 0 | 2);
+        if may_start && self.precharge_periods > 0 {
             self.machine.state[mode] = 2;
             self.machine.state[countdown] = self.precharge_periods;
         }
@@ -206,6 +211,7 @@ impl Subject for Interpreted<'_> {
             2 => Fault::OverCurrent,
             3 => Fault::Hall,
             4 => Fault::Stall,
+            5 => Fault::Offset,
             _ => Fault::None,
         }
     }

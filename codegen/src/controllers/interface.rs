@@ -109,13 +109,14 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
         String::new(),
         "# Safe states".to_owned(),
         String::new(),
-        "Each of these turns all legs off until `reset()`: an ADC count outside the converter's range, a phase current".to_owned(),
+        "Each of these turns all legs off until `reset()`: a current converter at an end of its range, a phase current".to_owned(),
         if inverter.stall_periods > 0 {
             format!("above the trip level, a Hall code of 000 or 111, {} periods without a Hall edge under current demand.", inverter.stall_periods)
         } else {
             "above the trip level, a Hall code of 000 or 111.".to_owned()
         },
-        format!("`calibrate()` averages {} samples with all legs off, at rest; `precharge()` holds all lower switches on for", 1 << inverter.calibration_log2),
+        format!("`calibrate()` averages {} samples with all legs off, at rest, and trips if an offset is more than {} from nominal.", 1 << inverter.calibration_log2, engineering(f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(), "A")),
+        "`precharge()` holds all lower switches on for".to_owned(),
         format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
         format!("One volt over one period changes a phase current by {}.", engineering(design.plant.gain, "A")),
     ]);

@@ -8,8 +8,8 @@ use crate::ir::{Comparison, Interval, StateId, Value};
 pub struct Currents {
     /// ADC counts of phases a and b, limited to the converter's range.
     pub counts: [Value; 2],
-    /// Flag: a count lay outside the range; `None` where every 16-bit word is in range.
-    pub out_of_range: Option<Value>,
+    /// Flag: a converter is at an end of its range.
+    pub out_of_range: Value,
     /// Currents of phases a, b, c.
     pub phases: [Value; 3],
 }
@@ -38,7 +38,7 @@ impl Lowering<'_> {
             &[
                 "Phase currents from ADC counts less offset; the third from Kirchhoff's law.",
                 "",
-                "A count outside the converter's range is limited to it and trips the drive.",
+                "A converter at an end of its range (count 0, the largest, or more) says nothing of the current: it trips the drive.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));
@@ -46,24 +46,26 @@ impl Lowering<'_> {
             self.b.input("adc_a", word, "Phase-a current, ADC count."),
             self.b.input("adc_b", word, "Phase-b current, ADC count."),
         ];
-        let (counts, out_of_range) = if bits == 16 {
-            (raw, None)
+        let top = (1 << bits) - 1;
+        let doc = "Largest count of the phase-current converters.";
+        let ends = raw.map(|count| {
+            let zero = self.zero();
+            let bottom = self.b.compare(Comparison::Equal, count, zero);
+            let limit = self.number("adc_max", top, doc);
+            let ceiling = self.b.compare(Comparison::LessEqual, limit, count);
+            self.b.or(bottom, ceiling)
+        });
+        let out_of_range = self.b.or(ends[0], ends[1]);
+        self.b.name("out_of_range", out_of_range);
+        let counts = if bits == 16 {
+            raw
         } else {
-            let top = (1 << bits) - 1;
-            let doc = "Largest count of the phase-current converters.";
-            let outside = raw.map(|count| {
-                let limit = self.number("adc_max", top, doc);
-                self.b.compare(Comparison::Less, limit, count)
-            });
-            let either = self.b.or(outside[0], outside[1]);
-            self.b.name("out_of_range", either);
             let names = ["count_a", "count_b"];
-            let limited = [0, 1].map(|x| {
+            [0, 1].map(|x| {
                 let limit = self.number("adc_max", top, doc);
                 let count = self.b.min(raw[x], limit);
                 self.b.name(names[x], count)
-            });
-            (limited, Some(either))
+            })
         };
         let names = ["i_a", "i_b"];
         let [a, b] = [0, 1].map(|x| {

@@ -44,7 +44,7 @@ impl Lowering<'_> {
         let sum_range = Interval::new(0, top << inverter.calibration_log2);
         SupervisorWords {
             mode: self.state("mode", 0, Interval::new(0, 3), "0 run, 1 calibrate, 2 pre-charge, 3 tripped."),
-            fault: self.state("fault", 0, Interval::new(0, 4), "What tripped the drive: 0 nothing, 1 ADC range, 2 over-current, 3 Hall code, 4 stall."),
+            fault: self.state("fault", 0, Interval::new(0, 5), "What tripped the drive: 0 nothing, 1 ADC range, 2 over-current, 3 Hall code, 4 stall, 5 current offset."),
             countdown: self.state("countdown", 0, Interval::new(0, i64::from(u16::MAX)), "Periods left in calibration or pre-charge."),
             sums: ["sum_a", "sum_b"].map(|name| self.state(name, 0, sum_range, "Sum of calibration samples, ADC counts.")),
             offsets: ["offset_a", "offset_b"].map(|name| self.state(name, offset, offset_range, "Offset at zero current, words of current.")),
@@ -64,6 +64,7 @@ impl Lowering<'_> {
         set_point: Value,
     ) -> Value {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
+        let mode = self.b.state(words.mode);
         let trip = self.ampere_word(self.spec.inverter.trip_current);
         let [a, b, c] = currents.phases.map(|current| self.b.abs(current));
         let pair = self.b.max(a, b);
@@ -82,30 +83,32 @@ impl Lowering<'_> {
         let no_hall = self.b.compare(Comparison::Equal, hall.code, zero);
         self.b.name("no_hall", no_hall);
         let mut any = self.b.or(over_current, no_hall);
-        if let Some(outside) = currents.out_of_range {
-            any = self.b.or(outside, any);
-        }
+        any = self.b.or(currents.out_of_range, any);
         if let Some(stall_count) = words.stall_count {
-            let stalled = self.stalled(stall_count, hall, set_point);
+            let stalled = self.stalled(stall_count, hall, [mode, set_point]);
             any = self.b.or(stalled, any);
         }
         self.b.name("faulty", any);
-        let mode = self.b.state(words.mode);
         let fault = self.b.state(words.fault);
         let zero = self.zero();
         let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
         self.b.name("sequencing", sequencing);
-        let sequenced = self.sequence(words, currents, mode, sequencing);
+        let sequenced = self.sequence(words, currents, [mode, fault], sequencing);
         self.latch(
             words,
             currents.out_of_range,
             [over_current, no_hall],
             any,
-            [sequenced, fault],
+            sequenced,
         )
     }
 
-    fn stalled(&mut self, stall_count: StateId, hall: &Hall, set_point: Value) -> Value {
+    fn stalled(
+        &mut self,
+        stall_count: StateId,
+        hall: &Hall,
+        [mode, set_point]: [Value; 2],
+    ) -> Value {
         let periods = i64::from(self.spec.inverter.stall_periods);
         let doc = "Periods without a Hall edge that count as a stall.";
         let count = self.b.state(stall_count);
@@ -115,6 +118,9 @@ impl Lowering<'_> {
         let counted = self.b.min(more, limit);
         let zero = self.zero();
         let idle = self.b.compare(Comparison::Equal, set_point, zero);
+        let zero = self.zero();
+        let resting = self.b.compare(Comparison::NotEqual, mode, zero);
+        let idle = self.b.or(idle, resting);
         let restart = self.b.or(hall.edge, idle);
         let zero = self.zero();
         let count = self.b.select(restart, zero, counted);
@@ -124,14 +130,14 @@ impl Lowering<'_> {
         self.b.compare(Comparison::Equal, count, limit)
     }
 
-    /// Calibration and pre-charge; returns the mode behind them.
+    /// Calibration and pre-charge; returns mode and fault behind them.
     fn sequence(
         &mut self,
         words: SupervisorWords,
         currents: &Currents,
-        mode: Value,
+        [mode, fault]: [Value; 2],
         running: Value,
-    ) -> Value {
+    ) -> [Value; 2] {
         let inverter = self.spec.inverter.clone();
         let countdown = self.b.state(words.countdown);
         let sums = words.sums.map(|sum| self.b.state(sum));
@@ -142,7 +148,7 @@ impl Lowering<'_> {
             true,
             &[
                 "Start-up: offset calibration averages the ADC counts with all legs off, pre-charge then holds all",
-                "lower switches on; a tripped drive stays tripped.",
+                "lower switches on; a tripped drive stays tripped. An offset too far from its nominal value trips the drive.",
             ],
         );
         let one = self.b.literal(1);
@@ -157,11 +163,9 @@ impl Lowering<'_> {
         let calibrating = self.b.compare(Comparison::Equal, mode, calibrate);
         self.b.name("calibrating", calibrating);
         let calibrated = self.b.and(calibrating, done);
-        self.b.name("calibrated", calibrated);
+        self.b.name("calibration_ends", calibrated);
         let top = i64::from((1_u32 << inverter.adc_bits) - 1) << inverter.calibration_log2;
-        let mut new_sums = vec![];
-        let mut new_offsets = vec![];
-        for x in 0..2 {
+        let new_sums = [0, 1].map(|x| {
             let sum = self.b.add(sums[x], currents.counts[x]);
             // The countdown ends the sum before this limit; it is here for the proof.
             let limit = self.number(
@@ -171,7 +175,16 @@ impl Lowering<'_> {
             );
             let sum = self.b.min(sum, limit);
             let sum = self.b.select(calibrating, sum, sums[x]);
-            self.b.name(["sum_a_now", "sum_b_now"][x], sum);
+            self.b.name(["sum_a_now", "sum_b_now"][x], sum)
+        });
+        let bad_offset = self.offset_is_bad(new_sums);
+        let failed = self.b.and(calibrated, bad_offset);
+        self.b.name("calibration_failed", failed);
+        let good_offset = self.b.not(bad_offset);
+        let calibrated = self.b.and(calibrated, good_offset);
+        self.b.name("calibrated", calibrated);
+        let new_offsets = [0, 1].map(|x| {
+            let sum = new_sums[x];
             let (bits, log2) = (self.scale.current_bits, inverter.calibration_log2);
             let mean = if bits >= log2 {
                 self.b.shift_left(sum, bits - log2)
@@ -179,10 +192,8 @@ impl Lowering<'_> {
                 self.b.shift_right(sum, log2 - bits)
             };
             let offset = self.b.select(calibrated, mean, offsets[x]);
-            self.b.name(["offset_a_now", "offset_b_now"][x], offset);
-            new_sums.push(sum);
-            new_offsets.push(offset);
-        }
+            self.b.name(["offset_a_now", "offset_b_now"][x], offset)
+        });
         let precharge = self.b.literal(Mode::Precharge as i32);
         let precharging = self.b.compare(Comparison::Equal, mode, precharge);
         self.b.name("precharging", precharging);
@@ -196,7 +207,12 @@ impl Lowering<'_> {
             let ready = self.b.or(calibrated, charged);
             self.b.select(ready, run, mode)
         };
+        let tripped = self.b.literal(Mode::Tripped as i32);
+        let next_mode = self.b.select(failed, tripped, next_mode);
         self.b.name("mode_advanced", next_mode);
+        let bad_offset = self.b.literal(5);
+        let next_fault = self.b.select(failed, bad_offset, fault);
+        self.b.name("fault_advanced", next_fault);
         let periods = self.number(
             "precharge_periods",
             i64::from(inverter.precharge_periods),
@@ -208,24 +224,54 @@ impl Lowering<'_> {
         self.b.name("countdown_advanced", next_countdown);
         let joined = self.b.join([
             ("mode_sequenced", next_mode, mode),
+            ("fault_sequenced", next_fault, fault),
             ("countdown_next", next_countdown, countdown),
             ("sum_a_next", new_sums[0], sums[0]),
             ("sum_b_next", new_sums[1], sums[1]),
             ("offset_a_next", new_offsets[0], offsets[0]),
             ("offset_b_next", new_offsets[1], offsets[1]),
         ]);
-        self.b.set_state(words.countdown, joined[1]);
-        self.b.set_state(words.sums[0], joined[2]);
-        self.b.set_state(words.sums[1], joined[3]);
-        self.b.set_state(words.offsets[0], joined[4]);
-        self.b.set_state(words.offsets[1], joined[5]);
-        joined[0]
+        self.b.set_state(words.countdown, joined[2]);
+        self.b.set_state(words.sums[0], joined[3]);
+        self.b.set_state(words.sums[1], joined[4]);
+        self.b.set_state(words.offsets[0], joined[5]);
+        self.b.set_state(words.offsets[1], joined[6]);
+        [joined[0], joined[1]]
+    }
+
+    /// Flag: the mean of calibration samples is too far from the nominal offset.
+    fn offset_is_bad(&mut self, sums: [Value; 2]) -> Value {
+        let inverter = &self.spec.inverter;
+        let log2 = inverter.calibration_log2;
+        let nominal = i64::from(inverter.adc_offset) << log2;
+        let tolerance = i64::from(inverter.offset_tolerance) << log2;
+        let doc = format!(
+            "Greatest distance of the sum of calibration samples from its nominal value: {} counts ({}) each.",
+            inverter.offset_tolerance,
+            engineering(
+                f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(),
+                "A"
+            )
+        );
+        let far = sums.map(|sum| {
+            let expected = self.number(
+                "calibration_sum_nominal",
+                nominal,
+                "Sum of calibration samples that are all at the nominal offset.",
+            );
+            let distance = self.b.sub(sum, expected);
+            let distance = self.b.abs(distance);
+            let limit = self.number("calibration_sum_tolerance", tolerance, &doc);
+            self.b.compare(Comparison::Less, limit, distance)
+        });
+        let either = self.b.or(far[0], far[1]);
+        self.b.name("offset_is_bad", either)
     }
 
     fn latch(
         &mut self,
         words: SupervisorWords,
-        out_of_range: Option<Value>,
+        out_of_range: Value,
         [over_current, no_hall]: [Value; 2],
         faulty: Value,
         [mode, fault]: [Value; 2],
@@ -240,10 +286,8 @@ impl Lowering<'_> {
         let mut cause = self.b.select(no_hall, hall, stall);
         let code = self.b.literal(2);
         cause = self.b.select(over_current, code, cause);
-        if let Some(outside) = out_of_range {
-            let code = self.b.literal(1);
-            cause = self.b.select(outside, code, cause);
-        }
+        let code = self.b.literal(1);
+        cause = self.b.select(out_of_range, code, cause);
         let tripped = self.b.literal(Mode::Tripped as i32);
         let already = self.b.compare(Comparison::Equal, mode, tripped);
         let latched = self.b.select(already, fault, cause);

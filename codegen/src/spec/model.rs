@@ -154,6 +154,8 @@ pub struct InverterSpec {
     pub adc_gain: f64,
     /// Count at zero current.
     pub adc_offset: u32,
+    /// Greatest distance of a calibrated offset from `adc_offset`, counts.
+    pub offset_tolerance: u32,
     /// Current that trips the drive, ampere.
     pub trip_current: f64,
     /// Largest set-point, ampere.

@@ -61,6 +61,7 @@ impl Spec {
         text.number("adc_bits", inverter.adc_bits);
         text.number("adc_gain", inverter.adc_gain);
         text.number("adc_offset", inverter.adc_offset);
+        text.number("offset_tolerance", inverter.offset_tolerance);
         text.number("trip_current", inverter.trip_current);
         text.number("max_current", inverter.max_current);
         text.word(
@@ -242,6 +243,7 @@ mod tests {
                 adc_bits: 12,
                 adc_gain: 0.019_531_25,
                 adc_offset: 2048,
+                offset_tolerance: 102,
                 trip_current: 38.0,
                 max_current: 20.0,
                 hall_capture: HallCapture::Timer { ticks: 50 },
@@ -289,6 +291,7 @@ timer_period = 1800
 adc_bits = 12
 adc_gain = 0.01953125
 adc_offset = 2048
+offset_tolerance = 102
 trip_current = 38.0
 max_current = 20.0
 hall_capture = "timer"

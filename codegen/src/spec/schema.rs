@@ -168,6 +168,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     ),
     integer("adc_offset", 0, 65535, "2048"),
     word("adc_inverted", "off"),
+    quantity("offset_tolerance", &[D::Current], 1e-5, 2e4, "2 A"),
     quantity("trip_current", &[D::Current], 0.01, 2e4, "38 A"),
     quantity("max_current", &[D::Current], 0.01, 2e4, "20 A"),
     quantity("hall_timer_clock", &[D::Frequency], 1e3, 1e9, "1 MHz"),

@@ -87,6 +87,8 @@ pub struct Inverter {
     pub adc_gain: f64,
     /// Count at zero current.
     pub adc_offset: u32,
+    /// Greatest distance of a calibrated offset from `adc_offset`, counts.
+    pub offset_tolerance: u32,
     /// Trip level of the phase currents, ampere.
     pub trip_current: f64,
     /// Largest current set-point, ampere.

@@ -48,6 +48,7 @@ impl Shape {
             (Self::Fault, 2) => quote!(Fault::OverCurrent.word()),
             (Self::Fault, 3) => quote!(Fault::Hall.word()),
             (Self::Fault, 4) => quote!(Fault::Stall.word()),
+            (Self::Fault, 5) => quote!(Fault::Offset.word()),
             (Self::Leg, 0) => quote!(LegState::Pulsed),
             (Self::Leg, 1) => quote!(LegState::Low),
             (Self::Leg, _) => quote!(LegState::Off),

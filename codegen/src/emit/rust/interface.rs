@@ -201,7 +201,9 @@ impl Types<'_> {
                 const INITIAL: Self = Self { #(#initial),* };
 
                 fn reset(&mut self) {
-                    *self = Self { #(#kept: self.#kept,)* ..Self::INITIAL };
+                    if self.mode() == mode::RUN || self.mode() == mode::TRIPPED {
+                        *self = Self { #(#kept: self.#kept,)* ..Self::INITIAL };
+                    }
                 }
 
                 fn calibrate(&mut self) {
@@ -211,7 +213,8 @@ impl Types<'_> {
                 }
 
                 fn precharge(&mut self) {
-                    if self.mode() != mode::TRIPPED && #periods != 0 {
+                    let may_start = self.mode() == mode::RUN || self.mode() == mode::PRECHARGE;
+                    if may_start && #periods != 0 {
                         #(#precharge)*
                     }
                 }

@@ -40,11 +40,16 @@ pub(super) struct Adc {
     pub gain: f64,
     pub inverted: bool,
     pub offset: u32,
+    /// Greatest distance of a calibrated offset from `offset`, counts.
+    pub offset_tolerance: u32,
     /// Greatest current that both signs can show, ampere, a count of slack included.
     pub reach: f64,
     /// `adc_range` or `adc_gain` as written.
     pub part: Part,
 }
+
+/// Tolerance of a calibrated offset where none is given, share of the range to either side.
+const OFFSET_TOLERANCE: f64 = 0.05;
 
 /// Pre-charge time where none is given, second.
 const PRECHARGE: f64 = 1e-3;
@@ -212,14 +217,51 @@ fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
         None => gain?.si,
     };
     let reach = gain * f64::from(offset.min(full - offset));
+    let offset_tolerance = read_offset_tolerance(reader, gain, full, errors)?;
     Some(Adc {
         bits,
         gain,
         inverted: inverted.unwrap_or(false),
         offset,
+        offset_tolerance,
         reach,
         part,
     })
+}
+
+/// Whole counts; by default 5 % of the range to either side.
+fn read_offset_tolerance(
+    reader: &Reader,
+    gain: f64,
+    full: u32,
+    errors: &mut Collector,
+) -> Option<u32> {
+    let most = full / 4;
+    let half_range = f64::from(full / 2);
+    let given = reader.plain_quantity(errors, "offset_tolerance");
+    if given.is_none() && reader.field("offset_tolerance").is_some() {
+        return None;
+    }
+    let counts = given
+        .as_ref()
+        .map_or(OFFSET_TOLERANCE * half_range, |given| given.si / gain)
+        .round();
+    if let Some(given) = &given
+        && !(1.0..=f64::from(most)).contains(&counts)
+    {
+        errors.push(catalogue::out_of_limits(
+            &given.part.location,
+            "offset_tolerance",
+            &given.part.given,
+            &format!("{}, one ADC count", engineering(gain, "A")),
+            &format!(
+                "{}, half of the range",
+                engineering(gain * f64::from(most), "A")
+            ),
+        ));
+        return None;
+    }
+    Some(counts as u32)
 }
 
 fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
@@ -291,6 +333,7 @@ pub(super) fn finish(
         adc_bits: adc.bits,
         adc_gain: if adc.inverted { -adc.gain } else { adc.gain },
         adc_offset: adc.offset,
+        offset_tolerance: adc.offset_tolerance,
         trip_current,
         max_current,
         hall_capture: capture?,

@@ -164,6 +164,10 @@ impl Subject for Interpreted<'_> {
     }
 
     fn reset(&mut self) {
+        let mode = self.word(self.words.mode);
+        if mode == Mode::Calibrate as i32 || mode == Mode::Precharge as i32 {
+            return;
+        }
         let offsets = self.words.offsets;
         for (index, word) in self.program.states.iter().enumerate() {
             if !offsets.contains(&index) {
@@ -183,7 +187,9 @@ impl Subject for Interpreted<'_> {
     }
 
     fn precharge(&mut self) {
-        if !self.is_tripped() && self.precharge_periods > 0 {
+        let mode = self.word(self.words.mode);
+        let may_start = mode == Mode::Run as i32 || mode == Mode::Precharge as i32;
+        if may_start && self.precharge_periods > 0 {
             self.set_word(self.words.mode, Mode::Precharge as i32);
             self.set_word(self.words.countdown, self.precharge_periods);
         }

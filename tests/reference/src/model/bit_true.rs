@@ -132,12 +132,15 @@ impl BitTrue {
         [self.j, self.v_bus, self.ratio]
     }
 
-    /// Clears a trip and all control state; keeps the offsets and the set-point.
+    /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
+    /// calibration or pre-charge runs.
     pub fn reset(&mut self) {
-        self.state = State {
-            offset: self.state.offset,
-            ..State::default()
-        };
+        if self.state.supervisor.may_reset() {
+            self.state = State {
+                offset: self.state.offset,
+                ..State::default()
+            };
+        }
     }
 
     /// Starts current-offset calibration.

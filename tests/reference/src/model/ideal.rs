@@ -153,12 +153,15 @@ impl Ideal {
         }
     }
 
-    /// Clears a trip and all control state; keeps the offsets and the set-point.
+    /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
+    /// calibration or pre-charge runs.
     pub fn reset(&mut self) {
-        self.state = PhysicalState {
-            offset: self.state.offset,
-            ..PhysicalState::default()
-        };
+        if self.state.supervisor.may_reset() {
+            self.state = PhysicalState {
+                offset: self.state.offset,
+                ..PhysicalState::default()
+            };
+        }
     }
 
     /// Starts current-offset calibration.

@@ -38,6 +38,7 @@ pub fn fault_from_word(word: i32) -> Fault {
         2 => Fault::OverCurrent,
         3 => Fault::Hall,
         4 => Fault::Stall,
+        5 => Fault::Offset,
         _ => Fault::None,
     }
 }
@@ -46,6 +47,9 @@ pub fn fault_from_word(word: i32) -> Fault {
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub adc_max: f64,
+    /// Count at zero current, and how far a calibrated one may be from it.
+    pub adc_offset: f64,
+    pub offset_tolerance: f64,
     pub i_trip: f64,
     pub calibration_samples: f64,
     pub precharge_periods: f64,
@@ -63,6 +67,8 @@ impl Limits {
             })?;
         Ok(Self {
             adc_max: f64::from((1u32 << inverter.adc_bits) - 1),
+            adc_offset: f64::from(inverter.adc_offset),
+            offset_tolerance: f64::from(inverter.offset_tolerance),
             i_trip,
             calibration_samples: f64::from(samples),
             precharge_periods: f64::from(inverter.precharge_periods),
@@ -106,9 +112,15 @@ impl Supervisor {
         }
     }
 
-    /// Starts the bootstrap pre-charge; ignored when tripped.
+    /// Whether a reset takes effect: start-up goes on to its end.
+    pub fn may_reset(&self) -> bool {
+        matches!(self.mode, Mode::Run | Mode::Tripped)
+    }
+
+    /// Starts the bootstrap pre-charge; ignored when tripped or calibrating.
     pub fn precharge(&mut self, limits: &Limits) {
-        if self.mode != Mode::Tripped && limits.precharge_periods > 0.0 {
+        let may_start = matches!(self.mode, Mode::Run | Mode::Precharge);
+        if may_start && limits.precharge_periods > 0.0 {
             self.mode = Mode::Precharge;
             self.countdown = limits.precharge_periods;
         }
@@ -119,14 +131,18 @@ impl Supervisor {
     #[inline]
     pub fn step(&mut self, limits: &Limits, seen: &Observation) -> bool {
         if limits.stall_periods > 0.0 {
-            self.stall_count = if seen.edge || !seen.demand {
+            self.stall_count = if seen.edge || !seen.demand || self.mode != Mode::Run {
                 0.0
             } else {
                 (self.stall_count + 1.0).min(limits.stall_periods)
             };
         }
         let i_max = seen.i[0].abs().max(seen.i[1].abs()).max(seen.i[2].abs());
-        let fault_now = if seen.adc[0] > limits.adc_max || seen.adc[1] > limits.adc_max {
+        let fault_now = if seen
+            .adc
+            .iter()
+            .any(|&adc| adc == 0.0 || adc >= limits.adc_max)
+        {
             Fault::AdcRange
         } else if i_max > limits.i_trip {
             Fault::OverCurrent
@@ -148,7 +164,14 @@ impl Supervisor {
                     *sum += adc.min(limits.adc_max);
                 }
                 self.countdown = (self.countdown - 1.0).max(0.0);
-                if self.countdown == 0.0 {
+                let samples = limits.calibration_samples;
+                let is_far = |sum: &f64| {
+                    (sum - limits.adc_offset * samples).abs() > limits.offset_tolerance * samples
+                };
+                if self.countdown == 0.0 && self.sum.iter().any(is_far) {
+                    self.mode = Mode::Tripped;
+                    self.fault = Fault::Offset;
+                } else if self.countdown == 0.0 {
                     calibrated = true;
                     self.countdown = limits.precharge_periods;
                     self.mode = if limits.precharge_periods > 0.0 {

@@ -33,6 +33,7 @@ timer_period = 1800
 adc_bits = 12
 adc_gain = 0.01953125
 adc_offset = 2048
+offset_tolerance = 102
 trip_current = 39.0
 max_current = 30.0
 hall_capture = "timer"
