@@ -1,0 +1,181 @@
+//! What a drive does with input that must not be believed, and how start-up runs: one scenario each, on the
+//! step that firmware calls.
+
+use hexagen::fixed::types::I16F16;
+use hexagen::{Fault, LegState, Legs};
+
+hexagen::controller! {
+    /// Twelve bits over 40 A, offset 2048, tolerance 2 A (102 counts); trip at 38 A.
+    pub Guarded {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_torque: 3.3 Nm,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            offset_tolerance: 2 A,
+            calibration_samples: 16,
+            precharge: 200 us,
+            stall_timeout: 1 ms,
+        },
+        controller: pdcc,
+    }
+}
+
+const ZERO: u16 = 2048;
+const HALL: u8 = 0b101;
+
+fn quiet(drive: &mut Guarded, periods: usize) -> Legs {
+    (0..periods).fold(Legs::OFF, |_, _| drive.step(ZERO, ZERO, HALL))
+}
+
+#[test]
+fn a_converter_at_an_end_of_its_range_trips_at_once() {
+    for count in [0, 4095, 4096, u16::MAX] {
+        for on_a in [true, false] {
+            let mut drive = Guarded::new();
+            quiet(&mut drive, 3);
+            let (a, b) = if on_a { (count, ZERO) } else { (ZERO, count) };
+            let legs = drive.step(a, b, HALL);
+            assert_eq!(drive.fault(), Fault::AdcRange, "{count}");
+            assert_eq!(legs, Legs::OFF);
+            assert_eq!(quiet(&mut drive, 100), Legs::OFF, "the trip is latched");
+        }
+    }
+}
+
+#[test]
+fn over_current_trips_by_either_phase_and_by_the_third() {
+    // 38 A are 1945.6 counts; i_c = -(i_a + i_b).
+    for (a, b) in [
+        (ZERO + 1946, ZERO),
+        (ZERO, ZERO - 1946),
+        (ZERO + 980, ZERO + 980),
+    ] {
+        let mut drive = Guarded::new();
+        assert_eq!(drive.step(a, b, HALL), Legs::OFF);
+        assert_eq!(drive.fault(), Fault::OverCurrent);
+    }
+    let mut drive = Guarded::new();
+    drive.step(ZERO + 1940, ZERO, HALL);
+    assert_eq!(drive.fault(), Fault::None);
+}
+
+#[test]
+fn impossible_hall_codes_trip() {
+    for hall in [0, 7, 0b1000, 0b1111] {
+        let mut drive = Guarded::new();
+        assert_eq!(drive.step(ZERO, ZERO, hall), Legs::OFF);
+        assert_eq!(drive.fault(), Fault::Hall);
+    }
+}
+
+#[test]
+fn calibration_averages_then_charges_then_runs() {
+    let mut drive = Guarded::new();
+    drive.calibrate();
+    for period in 0..16 {
+        let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
+        // The last sample's step is the first of pre-charge.
+        let state = if period < 15 {
+            LegState::Off
+        } else {
+            LegState::Low
+        };
+        assert_eq!(legs.state, [state; 3]);
+        assert!(!drive.is_running());
+    }
+    for period in 0..4 {
+        let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
+        let charging = period < 3;
+        assert_eq!(drive.is_running(), !charging, "{period}");
+        if charging {
+            assert_eq!(legs.state, [LegState::Low; 3]);
+        }
+    }
+    // The new zero is 2148 and 1998 counts: no current, so the legs stand at half.
+    let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
+    assert_eq!(legs.compare, [900; 3]);
+}
+
+#[test]
+fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
+    for (a, b, fault) in [
+        (ZERO + 102, ZERO - 102, Fault::None),
+        (ZERO + 103, ZERO, Fault::Offset),
+        (ZERO, ZERO - 103, Fault::Offset),
+        (3990, ZERO, Fault::Offset),
+    ] {
+        let mut drive = Guarded::new();
+        drive.calibrate();
+        for _ in 0..16 {
+            drive.step(a, b, HALL);
+        }
+        assert_eq!(drive.fault(), fault, "{a} {b}");
+        drive.reset();
+        if fault != Fault::None {
+            assert_eq!(quiet(&mut drive, 1).compare, [900; 3], "the old zero holds");
+        }
+    }
+}
+
+#[test]
+fn start_up_is_not_cut_short() {
+    let mut drive = Guarded::new();
+    drive.calibrate();
+    quiet(&mut drive, 3);
+    drive.reset();
+    drive.precharge();
+    assert_eq!(quiet(&mut drive, 12), Legs::OFF, "calibration went on");
+    quiet(&mut drive, 1);
+    drive.reset();
+    assert!(!drive.is_running(), "pre-charge went on");
+    assert_eq!(quiet(&mut drive, 2).state, [LegState::Low; 3]);
+    drive.calibrate();
+    assert_eq!(
+        quiet(&mut drive, 1),
+        Legs::OFF,
+        "a calibration may begin in pre-charge"
+    );
+}
+
+#[test]
+fn a_tripped_drive_obeys_reset_only() {
+    let mut drive = Guarded::new();
+    drive.set_current(I16F16::from_num(10));
+    drive.step(ZERO, ZERO, 0);
+    drive.calibrate();
+    drive.precharge();
+    assert_eq!(quiet(&mut drive, 40), Legs::OFF);
+    assert_eq!(drive.fault(), Fault::Hall);
+    drive.reset();
+    assert_eq!(drive.fault(), Fault::None);
+    assert!(drive.is_running());
+}
+
+#[test]
+fn a_stall_is_counted_under_demand_while_running() {
+    let mut drive = Guarded::new();
+    quiet(&mut drive, 100);
+    assert_eq!(drive.fault(), Fault::None, "no demand, no stall");
+    drive.set_current(I16F16::from_num(1));
+    drive.calibrate();
+    quiet(&mut drive, 16 + 3);
+    assert_eq!(drive.fault(), Fault::None, "start-up is no stall");
+    // 1 ms are 20 periods, the first of which ends the pre-charge.
+    quiet(&mut drive, 20);
+    assert_eq!(drive.fault(), Fault::None);
+    quiet(&mut drive, 1);
+    assert_eq!(drive.fault(), Fault::Stall);
+}
