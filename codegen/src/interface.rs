@@ -59,14 +59,17 @@ pub enum Rounding {
 /// One row of the format table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormatEntry {
-    /// Signal or coefficient.
+    /// Signals, coefficient or table.
     pub name: String,
-    /// Bits of its word.
+    /// Bits of two's complement that hold it: of signals, every one that outlives a call; of a
+    /// coefficient or table, its values.
     pub storage_bits: u32,
     /// Fraction bits relative to its base; for coefficients the shift of `mul`.
     pub frac_bits: i32,
     /// Rounding.
     pub rounding: Rounding,
+    /// Equal parts of a turn, of a table.
+    pub segments: Option<u32>,
     /// Base and range in words: "timer counts of 26.67 mV, +-512 V".
     pub meaning: String,
 }

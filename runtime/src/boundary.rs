@@ -133,17 +133,22 @@ pub enum Rounding {
     RoundHalfUp,
 }
 
-/// The fixed-point format of one named signal or coefficient of a drive.
+/// The fixed-point format of a kind of signals (`current`, `voltage`, …), a coefficient or a table of
+/// a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// Name of the signal or coefficient.
+    /// Name of the signals, coefficient or table.
     pub name: &'static str,
-    /// Bits of the word that holds it.
+    /// Bits of two's complement that hold it: of signals, every one that outlives a call (within a
+    /// step all are 32-bit words); of a coefficient or table, its values.
     pub storage_bits: u8,
-    /// Fraction bits relative to the signal's base (negative: the ulp is larger than the base).
+    /// Fraction bits relative to the signals' base (negative: the ulp is larger than the base); of a
+    /// coefficient, the bits that its products are shifted by.
     pub frac_bits: i8,
     /// Rounding of results into this format.
     pub rounding: Rounding,
+    /// Equal parts of a turn that the table has; 0 for what is no table.
+    pub segments: u8,
 }
 
 impl Format {
@@ -160,6 +165,13 @@ impl Format {
             storage_bits,
             frac_bits,
             rounding,
+            segments: 0,
         }
+    }
+
+    /// The same for a table over so many equal parts of a turn.
+    #[must_use]
+    pub const fn over(self, segments: u8) -> Self {
+        Self { segments, ..self }
     }
 }

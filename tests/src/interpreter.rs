@@ -333,6 +333,9 @@ pub fn formats(table: &[interface::FormatEntry]) -> Vec<Format> {
             interface::Rounding::Floor => Rounding::Floor,
             interface::Rounding::RoundHalfUp => Rounding::RoundHalfUp,
         },
+        segments: entry.segments.map_or(0, |segments| {
+            u8::try_from(segments).expect("a table's segments")
+        }),
     };
     table.iter().map(convert).collect()
 }

@@ -125,7 +125,13 @@ fn decimal(bits: i32, frac_bits: u32) -> String {
 
 fn formats(sheet: &mut Sheet, interface: &Interface) {
     sheet.heading(2, "Formats");
-    sheet.table(["signal or coefficient", "format", "rounding", "meaning"]);
+    sheet.line("Of signals, bits that hold every one that outlives a call; within a step all are 32-bit words.\n");
+    sheet.table([
+        "signal, coefficient or table",
+        "format",
+        "rounding",
+        "meaning",
+    ]);
     for entry in &interface.formats {
         let rounding = match entry.rounding {
             Rounding::Floor => "floor",

@@ -5,3 +5,6 @@
 
 pub mod datasheet;
 pub mod rust;
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ use super::number::round_half_up;
 use super::rotor::Rotor;
 use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
 use crate::diagnostics::engineering;
-use crate::interface::Rounding;
+use crate::interface::{FormatEntry, Rounding};
 use crate::ir::{Interval, TableId, Value};
 
 /// A third of a turn: phase b lags phase a by it.
@@ -56,18 +56,14 @@ impl Lowering<'_> {
             ];
             self.b.program.table(&format!("{name}_c{power}"), words, &lines)
         });
-        self.format(name, 32, frac_bits as i32, Rounding::RoundHalfUp, doc);
-        let count = match name {
-            "flux" => "flux_segments",
-            _ => "shape_segments",
-        };
-        self.format(
-            count,
-            32,
-            segments as i32,
-            Rounding::Floor,
-            "segments of a turn in the table (a count, not bits)",
-        );
+        self.formats.push(FormatEntry {
+            name: name.to_owned(),
+            storage_bits: 32,
+            frac_bits: frac_bits as i32,
+            rounding: Rounding::RoundHalfUp,
+            segments: Some(segments),
+            meaning: format!("{doc}; a parabola over each of {segments} segments of a turn"),
+        });
         PeriodicTable {
             coefficients,
             segments,

@@ -343,11 +343,9 @@ impl Lowering<'_> {
         if shift > 31 {
             self.misfits.push("emf_product".to_owned());
         }
-        self.format(
+        self.product_format(
             "emf_product",
-            32,
-            shift as i32,
-            Rounding::Floor,
+            shift,
             "products of EMF and voltage in torque priority",
         );
         shift

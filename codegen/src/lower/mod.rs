@@ -101,7 +101,8 @@ impl<'p> Lowering<'p> {
         );
         lowering.format(
             "voltage",
-            word,
+            // Whatever the word of the arithmetic: what is multiplied by 16-bit coefficients is wider.
+            32,
             scale.voltage_bits as i32,
             Rounding::RoundHalfUp,
             &format!("voltages, base one timer count of {volt} (nominal bus)"),
@@ -124,9 +125,17 @@ impl<'p> Lowering<'p> {
                 storage_bits,
                 frac_bits,
                 rounding,
+                segments: None,
                 meaning: meaning.to_owned(),
             });
         }
+    }
+
+    /// Notes the format of products of two voltages that are shifted right by so many bits.
+    pub fn product_format(&mut self, name: &str, shift: u32, meaning: &str) {
+        let frac_bits = 2 * self.scale.voltage_bits as i32 - shift as i32;
+        let meaning = format!("{meaning}, base one squared timer count of voltage");
+        self.format(name, 32, frac_bits, Rounding::Floor, &meaning);
     }
 
     /// Adds a state word.

@@ -37,6 +37,14 @@ pub enum Error {
         /// What would be acceptable.
         expected: &'static str,
     },
+    /// A table of the format table has a number of segments that no table has.
+    #[error("table `{name}` has {segments} segments: expected 12, 24, 48 or 96")]
+    Segments {
+        /// The entry's name.
+        name: &'static str,
+        /// Its segments.
+        segments: u8,
+    },
     /// A coefficient does not fit its word.
     #[error("coefficient `{name}` is {raw}, wider than a 32-bit word")]
     Range {

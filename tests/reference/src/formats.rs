@@ -41,19 +41,30 @@ impl FormatTable {
         })
     }
 
-    /// Number of segments of a table: the `frac_bits` of the entry of this name.
+    /// The shift of a product of two voltages: what the fraction bits of the factors exceed the
+    /// product's by.
+    ///
+    /// # Errors
+    /// When there is no such format, or the product has more fraction bits than its factors.
+    pub fn product_shift(&self, name: &'static str) -> Result<u32, Error> {
+        let factors = 2 * i32::from(self.get("voltage")?.frac_bits);
+        let frac_bits = i32::from(self.get(name)?.frac_bits);
+        u32::try_from(factors - frac_bits).map_err(|_| Error::Format {
+            name,
+            frac_bits,
+            expected: "expected at most twice the voltage's",
+        })
+    }
+
+    /// Number of segments of a table.
     ///
     /// # Errors
     /// When there is no such entry or the number is none of 12, 24, 48, 96.
     pub fn segments(&self, name: &'static str) -> Result<u32, Error> {
-        let segments = self.frac_bits(name)?;
+        let segments = self.get(name)?.segments;
         match segments {
-            12 | 24 | 48 | 96 => Ok(segments),
-            _ => Err(Error::Format {
-                name,
-                frac_bits: segments as i32,
-                expected: "expected 12, 24, 48 or 96 segments",
-            }),
+            12 | 24 | 48 | 96 => Ok(u32::from(segments)),
+            _ => Err(Error::Segments { name, segments }),
         }
     }
 }

@@ -8,7 +8,6 @@ use super::{Candidates, FcsMpcSpec};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
 use crate::diagnostics::engineering;
-use crate::interface::Rounding;
 use crate::ir::{Comparison, Value};
 use crate::lower::Lowering;
 
@@ -182,13 +181,7 @@ impl CurrentLoop<'_, '_> {
         if shift > 31 {
             l.misfits.push("score".to_owned());
         }
-        l.format(
-            "score",
-            32,
-            shift as i32,
-            Rounding::Floor,
-            "products of two voltages in scores",
-        );
+        l.product_format("score", shift, "products of two voltages in scores");
         let mut best: Option<Candidate> = None;
         for (order, (first, second)) in factors.into_iter().enumerate() {
             let aside = l.b.mul_floor(first.0, first.1, shift);

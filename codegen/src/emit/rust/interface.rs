@@ -247,7 +247,11 @@ impl Types<'_> {
                 Rounding::Floor => quote!(Rounding::Floor),
                 Rounding::RoundHalfUp => quote!(Rounding::RoundHalfUp),
             };
-            quote!(Format::new(#name, #storage_bits, #frac_bits, #rounding))
+            let segments = entry.segments.map(|segments| {
+                let segments = number(i64::from(segments));
+                quote!(.over(#segments))
+            });
+            quote!(Format::new(#name, #storage_bits, #frac_bits, #rounding)#segments)
         });
         let words = &self.program.states;
         let state_names = words.iter().map(|word| &word.name);

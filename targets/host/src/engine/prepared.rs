@@ -237,6 +237,7 @@ fn format_table(interface: &Interface) -> Vec<Format> {
             interface::Rounding::Floor => hexagen::Rounding::Floor,
             interface::Rounding::RoundHalfUp => hexagen::Rounding::RoundHalfUp,
         },
+        segments: entry.segments.unwrap_or(0) as u8,
     };
     interface.formats.iter().map(convert).collect()
 }

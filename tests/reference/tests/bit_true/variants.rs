@@ -260,7 +260,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_filter", shift(options.emf_filter)),
         ("k_third", shift(1.0 / 3.0)),
         ("k_sixth", shift(1.0 / 6.0)),
-        ("score", 30),
+        ("score", 2 * f_v - 30),
         ("k_p", shift(ohm * gain)),
         ("k_i", shift(integral_share)),
         ("k_set", shift(scale * gain / w / 65_536.0)),
@@ -274,9 +274,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("scale", 30),
         ("shape", shift(peak)),
         ("flux", shift(linkage)),
-        ("emf_product", (e_max.log2().ceil() as i32).max(0)),
-        ("flux_segments", 48),
-        ("shape_segments", 48),
+        ("emf_product", 2 * f_v - (e_max.log2().ceil() as i32).max(0)),
     ];
     let formats: Vec<Format> = entries
         .into_iter()
@@ -285,6 +283,11 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
             storage_bits: 32,
             frac_bits: i8::try_from(frac_bits).expect("fraction bits"),
             rounding: Rounding::RoundHalfUp,
+            segments: if matches!(name, "shape" | "flux") {
+                48
+            } else {
+                0
+            },
         })
         .collect();
     Vec::leak(formats)

@@ -137,6 +137,15 @@ impl<'a> Scale<'a> {
         }
     }
 
+    /// The shift of a product of two voltages; 0 where the variant does not use it.
+    pub fn product_if(&self, used: bool, name: &'static str) -> Result<Shift, Error> {
+        if used {
+            Ok(Shift::new(self.formats.product_shift(name)?))
+        } else {
+            Ok(Shift::default())
+        }
+    }
+
     /// Fraction bits of a format; 0 where the variant does not use it.
     pub fn bits_if(&self, used: bool, name: &'static str) -> Result<u32, Error> {
         if used {
@@ -207,7 +216,7 @@ impl Constants {
                     expected: "expected at least the voltage's",
                 });
             }
-            let segments = formats.segments("flux_segments")?;
+            let segments = formats.segments("flux")?;
             let table = Table::new(segments, bits, |theta| {
                 linkage * emf_shape.zero_sum_integral(theta)
             });
@@ -218,7 +227,7 @@ impl Constants {
         let torque_ratio = motor.torque_constant / motor.emf_constant;
         let (shape, shape_product) = if options.reference == Reference::Proportional {
             let bits = formats.frac_bits("shape")?;
-            let table = Table::new(formats.segments("shape_segments")?, bits, |theta| {
+            let table = Table::new(formats.segments("shape")?, bits, |theta| {
                 2.0 / 3.0 * torque_ratio * emf_shape.zero_sum(theta)
                     / emf_shape.alpha_beta(theta).norm_squared()
             });
@@ -283,10 +292,10 @@ impl Constants {
             // Only pulses narrower than the period depend on the measured bus.
             ratio_bits: scale.bits_if(bus.is_some() && saturation.is_some(), "ratio")?,
             scale_bits: scale.bits_if(saturation == Some(Saturation::KeepAngle), "scale")?,
-            emf_product: Shift::new(scale.bits_if(
+            emf_product: scale.product_if(
                 saturation == Some(Saturation::TorquePriority),
                 "emf_product",
-            )?),
+            )?,
             bus,
             flux,
             flux_to_voltage,

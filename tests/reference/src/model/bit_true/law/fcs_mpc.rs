@@ -34,7 +34,7 @@ impl FcsMpc {
             remembers: scale.variant.applied(),
             deadbeat: Deadbeat::new(scale)?,
             k_sixth: scale.only_if(!floating && scale.variant.applied(), "k_sixth", 1.0 / 6.0)?,
-            score: Shift::new(scale.bits_if(floating, "score")?),
+            score: scale.product_if(floating, "score")?,
             i_comm_volts: round_half_up(threshold * scale.two_v),
         })
     }
