@@ -110,6 +110,11 @@ fn check_stability(
     let stable = linear.stable_range(spec);
     if radius >= 1.0 {
         let (field, default, remedy) = match &spec.controller {
+            ControllerSpec::PiPwm(pi) if pi_pwm::is_stable_with_winding_time(spec, pi) => (
+                "integral_time",
+                engineering(pi.integral_time, "s"),
+                "choose a longer one, such as the default L/R",
+            ),
             ControllerSpec::PiPwm(pi) => (
                 "bandwidth",
                 engineering(pi.bandwidth, "Hz"),
@@ -205,11 +210,12 @@ kind = "pdcc"
             "delay=1,word=16",
             "delay=1,reference=proportional",
         ];
-        let fcs = ["table2", "three_phase", "all"]
+        let fcs = ["table2", "all"]
             .into_iter()
             .flat_map(|set| {
                 ["physical", "nominal"].map(|off| format!("fcs-mpc:candidates={set},off_leg={off}"))
-            });
+            })
+            .chain(["fcs-mpc:candidates=three_phase".to_owned()]);
         let pi = ["keep_angle", "nearest", "torque_priority"]
             .into_iter()
             .map(|rule| format!("pi-pwm:saturation={rule}"))

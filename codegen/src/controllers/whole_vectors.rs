@@ -5,7 +5,7 @@
 
 use super::current_loop::{CurrentLoop, Front, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
-use crate::diagnostics::Collector;
+use crate::diagnostics::{Collector, catalogue};
 use crate::ir::{Comparison, TableId, Value};
 use crate::lower::{Applied, Command, Lowering};
 use crate::spec::BusSource;
@@ -20,18 +20,33 @@ pub enum OffLegModel {
     Nominal,
 }
 
-/// Reads the option `off_leg`; physical by default.
-pub(super) fn read_off_leg(reader: &Reader, errors: &mut Collector) -> OffLegModel {
-    reader
-        .word(
-            errors,
+/// Reads the option `off_leg`; physical by default. `three_phase` says that all candidates drive all legs.
+pub(super) fn read_off_leg(
+    reader: &Reader,
+    three_phase: bool,
+    errors: &mut Collector,
+) -> OffLegModel {
+    let given = reader.word(
+        errors,
+        "off_leg",
+        &[
+            ("physical", OffLegModel::Physical),
+            ("nominal", OffLegModel::Nominal),
+        ],
+    );
+    if three_phase && let (Some(_), Some(field)) = (given, reader.field("off_leg")) {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
             "off_leg",
-            &[
-                ("physical", OffLegModel::Physical),
-                ("nominal", OffLegModel::Nominal),
-            ],
-        )
-        .unwrap_or(OffLegModel::Physical)
+            &field.value.to_string(),
+            reader
+                .field("candidates")
+                .map_or(reader.location(), |field| &field.location),
+            "candidates: three_phase",
+            "these vectors turn no leg off",
+        ));
+    }
+    given.unwrap_or(OffLegModel::Physical)
 }
 
 /// Legs of vectors 0 to 15: high (1), low (-1) or off (0).

@@ -164,7 +164,7 @@ pub(crate) fn read_common(
             &advance.part.given,
             reader.field("reference").map_or(reader.location(), |field| &field.location),
             "reference: proportional",
-            "advance moves sectors and commutations, and with `modulation: three_phase` this reference has neither",
+            "advance moves sectors and commutations, and where no leg is turned off this reference has neither",
         ));
     }
     Some(LoopOptions {

@@ -57,8 +57,8 @@ pub(crate) fn check_options(
             ],
         )
         .unwrap_or(Candidates::Table2);
-    let off_leg = read_off_leg(reader, errors);
     let without_sectors = candidates == Candidates::ThreePhase;
+    let off_leg = read_off_leg(reader, without_sectors, errors);
     Some(FcsMpcSpec {
         candidates,
         off_leg,

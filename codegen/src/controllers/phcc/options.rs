@@ -88,7 +88,8 @@ pub(crate) fn check_options(
             "it says among which vectors the derivation chooses",
         ));
     }
-    let off_leg = read_off_leg(reader, errors);
+    let three_phase = candidates == PhccCandidates::ThreePhase;
+    let off_leg = read_off_leg(reader, three_phase, errors);
     let given = reader.plain_quantity(errors, "band");
     let common = read_common(reader, surroundings, false, errors)?;
     if common.delay == 0 {

@@ -7,7 +7,7 @@ mod stability;
 pub use lower::lower;
 pub use options::PiPwmSpec;
 pub(crate) use options::check_options;
-pub use stability::PiLoop;
+pub use stability::{PiLoop, is_stable_with_winding_time};
 
 use crate::controllers::{Law, StableRange};
 use crate::diagnostics::engineering;

@@ -6,6 +6,20 @@ use crate::design::DiscretePlant;
 use crate::spec::Spec;
 use nalgebra::DVector;
 
+/// Whether the loop would be stable with the default integral time, L/R.
+pub fn is_stable_with_winding_time(spec: &Spec, options: &PiPwmSpec) -> bool {
+    let integral_time = spec.motor.inductance / spec.motor.resistance;
+    let linear = PiLoop {
+        options: &PiPwmSpec {
+            integral_time,
+            ..*options
+        },
+        design: &LoopDesign::new(spec, &options.common),
+        spec,
+    };
+    linear.spectral_radius(spec, 1.0, 1.0) < 1.0
+}
+
 /// The PI loop; state i, i_prev, v_now, v_prev, e_prev, integral.
 #[derive(Clone, Copy, Debug)]
 pub struct PiLoop<'d> {
