@@ -177,12 +177,28 @@ fn header(spec: &Spec, design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
             engineering(design.di_max, "A"),
         ),
         (
-            "one word of current",
-            engineering(1.0 / scale.current(), "A"),
+            "one ADC count of current, g",
+            engineering(scale.ampere_per_count, "A"),
         ),
         (
-            "one word of voltage",
-            engineering(1.0 / scale.voltage(), "V"),
+            "one timer count of voltage, w",
+            engineering(scale.volt_per_count, "V"),
+        ),
+        (
+            "one word of current, g 2^-f_i",
+            format!(
+                "{}, f_i = {}",
+                engineering(1.0 / scale.current(), "A"),
+                scale.current_bits
+            ),
+        ),
+        (
+            "one word of voltage, w 2^-f_v",
+            format!(
+                "{}, f_v = {}",
+                engineering(1.0 / scale.voltage(), "V"),
+                scale.voltage_bits
+            ),
         ),
     ];
     let mut lines = vec![

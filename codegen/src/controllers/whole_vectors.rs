@@ -151,11 +151,7 @@ fn voltage(l: &mut Lowering<'_>, word: u32, front: &Front, vector: Value) -> [Va
     let sixth = match l.spec.inverter.bus {
         BusSource::Fixed => {
             let product = l.rounded_product(k_sixth, l.nominal_bus());
-            l.number(
-                "sixth_of_bus",
-                product,
-                "A sixth of the bus, words of voltage.",
-            )
+            l.voltage("sixth_of_bus", product, "A sixth of the bus")
         }
         BusSource::Measured { .. } => {
             let product = l.times(k_sixth, front.bus.volts);

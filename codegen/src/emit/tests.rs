@@ -1,5 +1,6 @@
 //! What emitted text says of a drive holds for its program.
 
+use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Interface};
 use crate::ir::{Interval, Program};
 use crate::pipeline::{Generated, generate};
@@ -93,4 +94,98 @@ fn sixteen_bit_words_are_of_currents_and_coefficients() {
     let bits = ["current", "k_di", "voltage", "k_set"];
     let bits = bits.map(|name| format(&interface, name).storage_bits);
     assert_eq!(bits, [16, 16, 32, 32]);
+}
+
+/// The value that a coefficient's documentation says: `K g/w 2^(f_v - f_i) = 0.2045 words …; …`, or
+/// `1/3; …`.
+fn said(line: &str) -> Option<f64> {
+    let formula = line.split(';').next()?;
+    let value = formula.rsplit(" = ").next()?;
+    let value = value.split(' ').next()?;
+    match value.split_once('/') {
+        Some((over, under)) => Some(over.parse::<f64>().ok()? / under.parse::<f64>().ok()?),
+        None => value.parse().ok(),
+    }
+}
+
+#[test]
+fn coefficients_say_the_value_that_their_word_holds() {
+    for variant in VARIANTS {
+        let Generated {
+            graph, interface, ..
+        } = drive(variant);
+        let mut checked = 0;
+        for constant in &graph.program().constants {
+            let own = constant.doc.last();
+            let Some(line) = own.filter(|line| line.contains("relative error")) else {
+                continue;
+            };
+            checked += 1;
+            let format = format(&interface, &constant.name);
+            let held = f64::from(constant.raw) / f64::from(format.frac_bits).exp2();
+            let agrees = said(line).is_some_and(|said| (said / held - 1.0).abs() < 1e-3);
+            assert!(agrees, "{variant}: `{}` is {held}: {line}", constant.name);
+        }
+        assert!(checked > 2, "{variant}: {checked} coefficients");
+    }
+}
+
+#[test]
+fn limits_say_their_value_in_units() {
+    let mut checked = 0;
+    for variant in VARIANTS {
+        let drive = drive(variant);
+        let frac_bits = |name| f64::from(format(&drive.interface, name).frac_bits).exp2();
+        // The example's 40 A over 2048 counts, and 48 V over 1800.
+        let words = [
+            (
+                "words of current",
+                frac_bits("current") * 2048.0 / 40.0,
+                "A",
+            ),
+            (
+                "words of voltage",
+                frac_bits("voltage") * 1800.0 / 48.0,
+                "V",
+            ),
+        ];
+        for constant in &drive.graph.program().constants {
+            let doc = constant.doc.join(" ");
+            if doc.contains("relative error") {
+                continue;
+            }
+            for (kind, per_unit, unit) in words {
+                if !doc.contains(kind) {
+                    continue;
+                }
+                checked += 1;
+                let value = engineering(f64::from(constant.raw) / per_unit, unit);
+                let counts = doc.contains("timer counts, words of voltage");
+                assert!(counts || doc.contains(&value), "{value}: {doc}");
+            }
+        }
+    }
+    assert!(checked > 30, "{checked} limits");
+}
+
+#[test]
+fn errors_of_tables_have_units() {
+    for (variant, table, unit) in [
+        (
+            "pdcc:emf=model,advance=2",
+            "flux_c0",
+            " timer counts of voltage (",
+        ),
+        (
+            "pdcc:reference=proportional,emf=model",
+            "shape_c0",
+            " A per ampere of set-point off.",
+        ),
+    ] {
+        let graph = drive(variant).graph;
+        let mut tables = graph.program().tables.iter();
+        let table = tables.find(|known| known.name == table).expect("a table");
+        let error = table.doc.last().expect("an error");
+        assert!(error.contains(unit), "{error}");
+    }
 }

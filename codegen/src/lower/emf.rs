@@ -43,7 +43,7 @@ impl Lowering<'_> {
         name: &'static str,
         fit: &Parabolas,
         frac_bits: u32,
-        doc: &str,
+        [doc, error]: [&str; 2],
     ) -> PeriodicTable {
         let scale = f64::from(frac_bits).exp2();
         let segments = fit.coefficients.len() as u32;
@@ -52,7 +52,7 @@ impl Lowering<'_> {
             let lines = [
                 format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from 0 to 1."),
                 String::new(),
-                format!("{frac_bits} fraction bits; the parabolas are at most {:.1e} off.", fit.error),
+                format!("{frac_bits} fraction bits; the parabolas are at most {error} off."),
             ];
             self.b.program.table(&format!("{name}_c{power}"), words, &lines)
         });
@@ -126,7 +126,12 @@ impl Lowering<'_> {
         // Two values and a slope must fit one word together: 2^29 for each.
         let frac_bits = (29.0 - fit.magnitude().log2()).floor().clamp(0.0, 28.0) as u32;
         let doc = "Flux linkage of phase a over the period, in timer counts of bus voltage, over the electrical angle";
-        let table = self.periodic_table("flux", &fit, frac_bits, doc);
+        let error = format!(
+            "{:.1e} timer counts of voltage ({})",
+            fit.error,
+            engineering(fit.error * self.scale.volt_per_count, "V")
+        );
+        let table = self.periodic_table("flux", &fit, frac_bits, [doc, &error]);
         FluxModel { table, frac_bits }
     }
 
@@ -203,13 +208,11 @@ impl Lowering<'_> {
                 None | Some(0) => change,
                 Some(shift) => self.b.shift_right(change, shift),
             };
-            let doc = format!(
-                "Largest EMF that is believed, {}: one and a half times that of the greatest speed.",
-                engineering(e_limit, "V")
-            );
+            let doc =
+                "Largest EMF that is believed, one and a half times that of the greatest speed";
             let (low, high) = (
-                self.number("e_min", -limit, &doc),
-                self.number("e_max", limit, &doc),
+                self.voltage("e_min", -limit, doc),
+                self.voltage("e_max", limit, doc),
             );
             let e = self.b.clamp(volts, low, high);
             self.b.name(names[x], e)
@@ -230,7 +233,8 @@ impl Lowering<'_> {
         );
         let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
         let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
-        let table = self.periodic_table("shape", &fit, SHAPE_BITS, doc);
+        let error = format!("{:.1e} A per ampere of set-point", fit.error);
+        let table = self.periodic_table("shape", &fit, SHAPE_BITS, [doc, &error]);
         self.b.stage(
             "reference_proportional",
             &["Reference parallel to the EMF at the end of the target period: constant torque at least copper loss."],

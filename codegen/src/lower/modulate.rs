@@ -3,7 +3,6 @@
 use super::measure::Currents;
 use super::{Bus, Coefficient, Limited, Lowering};
 use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN, SECTOR_CURRENT};
-use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 
 /// Compare values and leg states of phases a, b, c.
@@ -73,7 +72,10 @@ impl Lowering<'_> {
         let offset = self.number(
             "half_period",
             half + (1 << (bits - 1)),
-            "Half the timer period, and half a count to round.",
+            &format!(
+                "Half the timer period, and half a count to round: {} timer counts, words of voltage.",
+                f64::midpoint(f64::from(self.spec.inverter.timer_period), 1.0)
+            ),
         );
         let lifted = self.b.add(scaled, offset);
         self.counts(name, lifted)
@@ -168,12 +170,9 @@ impl Lowering<'_> {
         let back = self.b.neg(turned);
         let sign = self.b.select(braking, back, turned);
         let outgoing = self.b.mul(sign, outgoing, 0);
-        let doc = format!(
-            "Outgoing current at which a commutation ends: {}, words of current.",
-            engineering(threshold, "A")
-        );
+        let doc = "Outgoing current at which a commutation ends";
         let threshold = self.ampere_word(threshold);
-        let limit = self.number("i_comm", threshold, &doc);
+        let limit = self.current("i_comm", threshold, doc);
         let decayed = self.b.compare(Comparison::LessEqual, outgoing, limit);
         let age = self.b.state(words.age);
         let doc = "Periods after which a commutation is taken as ended.";
@@ -404,10 +403,10 @@ impl Lowering<'_> {
         let floating = self.b.add(floating, half_e);
         let zero = self.zero();
         let floating = self.b.clamp(floating, zero, bus.volts);
-        let doc = "Current above which an off leg's diode conducts, words of current.";
-        let limit = self.number("i_comm", threshold, doc);
+        let doc = "Current above which an off leg's diode conducts";
+        let limit = self.current("i_comm", threshold, doc);
         let inward = self.b.compare(Comparison::Less, limit, i_off);
-        let limit = self.number("i_comm", threshold, doc);
+        let limit = self.current("i_comm", threshold, doc);
         let negative = self.b.neg(limit);
         let outward = self.b.compare(Comparison::Less, i_off, negative);
         let clamped = self.b.select(outward, bus.volts, floating);

@@ -1,6 +1,11 @@
-//! Real numbers into words: coefficients with their shift.
+//! Real numbers into words: coefficients with their shift, limits with their unit.
+//!
+//! Documentation says every number twice, in the units of physics and in those of its word: with g the
+//! ampere of an ADC count, w the volt of a timer count at the nominal bus, f_i and f_v the fraction bits
+//! of currents and voltages, a word of current is g 2^-f_i ampere and a word of voltage w 2^-f_v volt.
 
 use super::Lowering;
+use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{ConstantId, Value};
 
@@ -49,10 +54,11 @@ pub struct Coefficient {
 }
 
 impl Lowering<'_> {
-    /// Rounds `value` (words per word) to a coefficient of at most `word` bits and a shift of at most `word`.
+    /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift of at most
+    /// `word`. `physical` says the value: "1 - a = 0.0302".
     ///
     /// With a 32-bit word a shift of 32 is as good as any larger one: the coefficient's half ulp times a
-    /// full-scale signal is a quarter ulp of the product. `physical` says the value in SI units.
+    /// full-scale signal is a quarter ulp of the product.
     pub fn coefficient(
         &mut self,
         name: &'static str,
@@ -61,24 +67,74 @@ impl Lowering<'_> {
         doc: &str,
         physical: &str,
     ) -> Coefficient {
+        self.rounded(name, value, word, [doc, physical], None)
+    }
+
+    /// As [`Self::coefficient`], for a quantity with a unit: `physical` says its value in SI units, "K = 4.468
+    /// V/A", and `scaled` by which formula `value` comes of it and what unit that has.
+    pub fn scaled_coefficient(
+        &mut self,
+        name: &'static str,
+        value: f64,
+        word: u32,
+        [doc, physical]: [&str; 2],
+        [formula, unit]: [&str; 2],
+    ) -> Coefficient {
+        let scaled = format!("{formula} = {} {unit}", significant(value));
+        self.rounded(name, value, word, [doc, physical], Some(&scaled))
+    }
+
+    /// A coefficient that makes a voltage of a current: `symbol` in V/A, shown in `unit`.
+    pub fn impedance(
+        &mut self,
+        name: &'static str,
+        ohm: f64,
+        word: u32,
+        doc: &str,
+        [symbol, unit]: [&str; 2],
+    ) -> Coefficient {
+        self.scaled_coefficient(
+            name,
+            ohm * (self.scale.voltage() / self.scale.current()),
+            word,
+            [doc, &format!("{symbol} = {}", engineering(ohm, unit))],
+            [
+                &format!("{symbol} g/w 2^(f_v - f_i)"),
+                "words of voltage per word of current",
+            ],
+        )
+    }
+
+    fn rounded(
+        &mut self,
+        name: &'static str,
+        value: f64,
+        word: u32,
+        [doc, physical]: [&str; 2],
+        scaled: Option<&str>,
+    ) -> Coefficient {
         let rounded = round_coefficient(value, word);
         if rounded.is_none() {
             self.misfits.push(name.to_owned());
         }
         let (raw, shift) = rounded.unwrap_or((0, 0));
         let error = f64::from(raw) / f64::from(shift).exp2() / value - 1.0;
-        let lines = [
-            doc.to_owned(),
-            String::new(),
-            format!("{physical}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."),
-        ];
+        let mut lines = vec![doc.to_owned(), String::new()];
+        lines.extend(scaled.is_some().then(|| format!("{physical}.")));
+        let own = scaled.unwrap_or(physical);
+        lines.push(format!(
+            "{own}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."
+        ));
         let id = self.b.program.constant(name, raw, &lines);
         self.format(
             name,
             word,
             shift as i32,
             Rounding::RoundHalfUp,
-            &format!("{physical}; product rounded at this shift"),
+            &match scaled {
+                Some(scaled) => format!("{physical}; {scaled}; product rounded at this shift"),
+                None => format!("{physical}; product rounded at this shift"),
+            },
         );
         Coefficient { id, shift }
     }
@@ -99,7 +155,20 @@ impl Lowering<'_> {
         }
     }
 
-    /// A named integer constant.
+    /// A named current, words of current; `doc` says what it is, its value in ampere follows.
+    pub fn current(&mut self, name: &str, raw: i64, doc: &str) -> Value {
+        let ampere = engineering(raw as f64 / self.scale.current(), "A");
+        self.number(name, raw, &format!("{doc}: {ampere}, words of current."))
+    }
+
+    /// A named voltage, words of voltage; `doc` says what it is, its value in volt follows.
+    pub fn voltage(&mut self, name: &str, raw: i64, doc: &str) -> Value {
+        let volt = engineering(raw as f64 / self.scale.voltage(), "V");
+        self.number(name, raw, &format!("{doc}: {volt}, words of voltage."))
+    }
+
+    /// A named integer constant; `doc` says what it counts. Currents and voltages have functions of their
+    /// own.
     pub fn number(&mut self, name: &str, raw: i64, doc: &str) -> Value {
         let id = self.b.program.constant(name, raw as i32, &[doc.to_owned()]);
         if i64::from(raw as i32) != raw && !self.misfits.iter().any(|known| known == name) {

@@ -3,7 +3,7 @@
 use super::number::round_half_up;
 use super::{Bus, Coefficient, Lowering, Scale, round_down};
 use crate::controllers::ControllerSpec;
-use crate::diagnostics::engineering;
+use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
 use crate::spec::{BusSource, Spec};
@@ -115,21 +115,37 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
     let k_t = spec.torque_constant();
     let current = stiffness * voltage / 65536.0;
     let (symbol, formula) = gain(spec);
-    let k_set = lowering.coefficient(
+    let k_set = lowering.scaled_coefficient(
         "k_set",
         current,
         32,
-        &format!("Set-point in amperes (16 fraction bits) to words of voltage: {formula}."),
-        &format!("{symbol} = {}", engineering(stiffness, "V/A")),
+        [
+            &format!("Set-point in amperes (16 fraction bits) to words of voltage: {formula}."),
+            &format!("{symbol} = {}", engineering(stiffness, "V/A")),
+        ],
+        [
+            &format!("{symbol}/w 2^(f_v - 16)"),
+            "words of voltage per bit of the set-point, 2^-16 A",
+        ],
     );
-    let k_torque = lowering.coefficient(
+    let k_torque = lowering.scaled_coefficient(
         "k_torque",
         current / k_t,
         32,
-        &format!(
-            "Set-point in newton metres (16 fraction bits) to words of voltage: {symbol}/k_t."
-        ),
-        &format!("{symbol}/k_t with k_t = {}", engineering(k_t, "Nm/A")),
+        [
+            &format!(
+                "Set-point in newton metres (16 fraction bits) to words of voltage: {symbol}/k_t."
+            ),
+            &format!(
+                "{symbol}/k_t = {} with k_t = {}",
+                engineering(stiffness / k_t, "V/Nm"),
+                engineering(k_t, "Nm/A")
+            ),
+        ],
+        [
+            &format!("{symbol}/k_t/w 2^(f_v - 16)"),
+            "words of voltage per bit of the set-point, 2^-16 Nm",
+        ],
     );
     let most = spec.inverter.max_current;
     let limits = [
@@ -224,13 +240,17 @@ fn set_bus(
     [min, max]: [f64; 2],
 ) -> Function {
     let nominal = lowering.nominal_bus();
+    let v_bus = lowering.spec.inverter.v_bus;
     let limits = [lowering.volts_word(min), lowering.volts_word(max)];
-    let k_bus = lowering.coefficient(
+    let k_bus = lowering.scaled_coefficient(
         "k_bus",
         gain * lowering.scale.voltage(),
         32,
-        "Bus-voltage ADC count to words of voltage.",
-        &format!("{} per count", engineering(gain, "V")),
+        [
+            "Bus-voltage ADC count to words of voltage.",
+            &format!("u = {} per count", engineering(gain, "V")),
+        ],
+        ["u/w 2^f_v", "words of voltage per count"],
     );
     let [doc, stage_doc] = match words.ratio {
         Some(_) => [
@@ -262,7 +282,8 @@ fn set_bus(
             names[k],
             limits[k] as i32,
             &[format!(
-                "{meaning} bus voltage that is taken, words of voltage."
+                "{meaning} bus voltage that is taken: {}, words of voltage.",
+                engineering([min, max][k], "V")
             )],
         );
         b.constant(id)
@@ -274,14 +295,20 @@ fn set_bus(
         let nominal = b.program.constant(
             "v_bus_nominal",
             nominal as i32,
-            &["Nominal bus voltage, words of voltage: the timer period.".to_owned()],
+            &[format!(
+                "Nominal bus voltage, {}: the timer period in words of voltage.",
+                engineering(v_bus, "V")
+            )],
         );
         let nominal = b.constant(nominal);
         let most = b.program.params[ratio.index()].interval.high;
         let most = b.program.constant(
             "ratio_max",
             most as i32,
-            &["Nominal over least bus voltage.".to_owned()],
+            &[format!(
+                "Nominal over least bus voltage: {}, {RATIO_BITS} fraction bits.",
+                significant(v_bus / min)
+            )],
         );
         let most = b.constant(most);
         let quotient = b.divide(nominal, RATIO_BITS, clamped, most);

@@ -308,7 +308,10 @@ impl Lowering<'_> {
         command: &Command,
         remembered: &[(StateId, &str, Value)],
     ) {
-        self.b.stage("check_mode", &["Whether the drive may run."]);
+        self.b.stage(
+            "find_rest",
+            &["Whether the drive rests: it calibrates, pre-charges or is tripped, and controls no current."],
+        );
         let zero = self.zero();
         let resting = self.b.compare(Comparison::NotEqual, mode, zero);
         self.b.name("resting", resting);

@@ -5,14 +5,13 @@
 
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EmfSource};
-use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Value};
 use crate::lower::{Coefficient, Currents, Rotor, product_bound, round_down};
 
 type Pair = Option<[Value; 2]>;
 
 /// What the limit of an estimate with floating legs is.
-const BELIEVED: &str = "Largest EMF that is believed: the largest bus voltage.";
+const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
 
 impl CurrentLoop<'_, '_> {
     /// EMF over the target period and over the present one; none where the law needs none. `outgoing` is
@@ -78,21 +77,19 @@ impl CurrentLoop<'_, '_> {
             self.e_bound()
         };
         let l = &mut *self.lowering;
-        let per_word = l.scale.voltage() / l.scale.current();
-        let physical = engineering(design.k_di, "V/A");
-        let k_di = l.coefficient(
+        let k_di = l.impedance(
             "k_di",
-            design.k_di * per_word,
+            design.k_di,
             options.word,
             "K = 1/b: voltage over one period per change of current.",
-            &format!("K = {physical}"),
+            ["K", "V/A"],
         );
-        let k_r = l.coefficient(
+        let k_r = l.impedance(
             "k_r",
-            design.k_r * per_word,
+            design.k_r,
             options.word,
             "(1 - a)/b = R: resistive drop.",
-            &format!("R = {}", engineering(design.k_r, "ohm")),
+            ["R", "ohm"],
         );
         let filter = (options.emf_filter < 1.0).then(|| {
             l.coefficient(
@@ -117,11 +114,10 @@ impl CurrentLoop<'_, '_> {
         [0, 1].map(|x| {
             let previous = l.b.state(i_prev[x]);
             let change = l.b.sub(currents.phases[x], previous);
-            let doc =
-                "Limit of the change of current in one period that is believed, words of current.";
+            let doc = "Limit of the change of current in one period that is believed";
             let (low, high) = (
-                l.number("di_min", -di_max, doc),
-                l.number("di_max", di_max, doc),
+                l.current("di_min", -di_max, doc),
+                l.current("di_max", di_max, doc),
             );
             let change = l.b.clamp(change, low, high);
             l.b.name(["di_a", "di_b"][x], change);
@@ -150,11 +146,11 @@ impl CurrentLoop<'_, '_> {
                 BELIEVED
             } else {
                 // A weighted mean never leaves the interval of its parts; the clamp is for the proof.
-                "Largest EMF that an estimate can reach, words of voltage."
+                "Largest EMF that an estimate can reach"
             };
             let (low, high) = (
-                l.number("e_min", -e_bound, doc),
-                l.number("e_max", e_bound, doc),
+                l.voltage("e_min", -e_bound, doc),
+                l.voltage("e_max", e_bound, doc),
             );
             let held = l.b.clamp(news, low, high);
             l.b.name(names[x], held)
@@ -204,8 +200,8 @@ impl CurrentLoop<'_, '_> {
         let sum = l.b.add(e[0], e[1]);
         let e_c = l.b.neg(sum);
         let (low, high) = (
-            l.number("e_min", -bus, BELIEVED),
-            l.number("e_max", bus, BELIEVED),
+            l.voltage("e_min", -bus, BELIEVED),
+            l.voltage("e_max", bus, BELIEVED),
         );
         let e_c = l.b.clamp(e_c, low, high);
         l.b.name("e_c_believed", e_c);
@@ -220,8 +216,8 @@ impl CurrentLoop<'_, '_> {
         let current = l.b.abs(current);
         l.b.name("i_floated", current);
         let threshold = l.ampere_word(threshold);
-        let doc = "Current above which an off leg's diode conducts, words of current.";
-        let limit = l.number("i_comm", threshold, doc);
+        let doc = "Current above which an off leg's diode conducts";
+        let limit = l.current("i_comm", threshold, doc);
         let conducted = l.b.compare(Comparison::Less, limit, current);
         l.b.name("conducted", conducted);
         let way = l.b.sub(other, own);

@@ -13,7 +13,6 @@ pub(crate) use options::{OPTIONS, Surroundings, read_common, read_saturation};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
-use crate::diagnostics::engineering;
 use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Scale};
@@ -215,14 +214,13 @@ impl CurrentLoop<'_, '_> {
         let (reference, currents, now) = (front.reference, &front.currents, front.now);
         let (options, design) = (*self.options, self.design);
         let l = &mut *self.lowering;
-        let per_word = l.scale.voltage() / l.scale.current();
         let power = if options.delay == 1 { "K a^2" } else { "K a" };
-        let k_hold = l.coefficient(
+        let k_hold = l.impedance(
             "k_hold",
-            design.k_hold * per_word,
+            design.k_hold,
             options.word,
             "What the present current still contributes when the voltage takes effect.",
-            &format!("{power} = {}", engineering(design.k_hold, "V/A")),
+            [power, "V/A"],
         );
         let k_decay = (options.delay == 1).then(|| {
             l.coefficient(

@@ -7,7 +7,6 @@
 use super::{Candidates, FcsMpcSpec};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
-use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Value};
 use crate::lower::Lowering;
 
@@ -94,10 +93,7 @@ impl CurrentLoop<'_, '_> {
         let h_c = l.third_phase("h_c", h[0], h[1]);
         let h = [h[0], h[1], h_c];
         let limit = l.volts_word(threshold_volts);
-        let doc = format!(
-            "Predicted current above which an off leg's diode conducts, as K a i: {}.",
-            engineering(threshold_volts, "V")
-        );
+        let doc = "Predicted current above which an off leg's diode conducts, as the voltage K a i";
         let bus = front.bus.volts;
         let half = l.b.shift_right(bus, 1);
         l.b.name("half_bus_off", half);
@@ -105,10 +101,10 @@ impl CurrentLoop<'_, '_> {
         let mut offsets = vec![];
         let mut lifts = vec![];
         for x in 0..3 {
-            let bound = l.number("i_comm_volts", limit, &doc);
+            let bound = l.voltage("i_comm_volts", limit, doc);
             let inward = l.b.compare(Comparison::Less, bound, h[x]);
             l.b.name(["a_inward", "b_inward", "c_inward"][x], inward);
-            let bound = l.number("i_comm_volts", limit, &doc);
+            let bound = l.voltage("i_comm_volts", limit, doc);
             let negative = l.b.neg(bound);
             let outward = l.b.compare(Comparison::Less, h[x], negative);
             l.b.name(["a_outward", "b_outward", "c_outward"][x], outward);

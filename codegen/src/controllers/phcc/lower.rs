@@ -54,17 +54,12 @@ impl CurrentLoop<'_, '_> {
         };
         let word = self.options.word;
         let l = &mut *self.lowering;
-        let per_word = l.scale.voltage() / l.scale.current();
-        let k_hold = l.coefficient(
+        let k_hold = l.impedance(
             "k_hold",
-            hold * per_word,
+            hold,
             word,
             "What is left of the present current when the vector takes effect, as the voltage K i.",
-            &format!(
-                "{} = {}",
-                if delayed { "K a" } else { "K" },
-                engineering(hold, "V/A")
-            ),
+            [if delayed { "K a" } else { "K" }, "V/A"],
         );
         let doc: &[&str] = if delayed {
             &[
@@ -114,15 +109,14 @@ fn compare_with_bands(
         let raw = l.volts_word(volts);
         let name = ["band_alpha", "band_beta"][x];
         let doc = format!(
-            "Half width of the band as a voltage: {} for {}.",
-            engineering(volts, "V"),
+            "Half width of the band of {} as a voltage",
             engineering(options.band, "A")
         );
         let error = [q[0], beta][x];
-        let top = l.number(name, raw, &doc);
+        let top = l.voltage(name, raw, &doc);
         let above = l.b.compare(Comparison::Less, top, error);
         l.b.name(["above_alpha", "above_beta"][x], above);
-        let top = l.number(name, raw, &doc);
+        let top = l.voltage(name, raw, &doc);
         let bottom = l.b.neg(top);
         let below = l.b.compare(Comparison::Less, error, bottom);
         let before = l.b.state(memory[x]);

@@ -2,7 +2,6 @@
 
 use super::PiPwmSpec;
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
-use crate::diagnostics::engineering;
 use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
@@ -34,13 +33,12 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             l.state(name, 0, Interval::symmetric(bound), doc)
         });
         let word = options.common.word;
-        let per_word = l.scale.voltage() / l.scale.current();
-        let k_p = l.coefficient(
+        let k_p = l.impedance(
             "k_p",
-            gain * per_word,
+            gain,
             word,
             "Proportional gain 2 pi f L.",
-            &format!("k_p = {}", engineering(gain, "V/A")),
+            ["k_p", "V/A"],
         );
         let share = options.integral_share(spec);
         let k_i = l.coefficient(
@@ -82,17 +80,16 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             let change = l.times(k_i, drive);
             let sum = l.b.add(sums[x], change);
             let doc = format!(
-                "Largest integral part, of either sign: the {}bus, {}, words of voltage.",
+                "Largest integral part, the {}bus",
                 if spec.inverter.bus == BusSource::Fixed {
                     ""
                 } else {
                     "greatest "
                 },
-                engineering(spec.inverter.greatest_bus(), "V"),
             );
             let (low, high) = (
-                l.number("integral_min", -bound, &doc),
-                l.number("integral_max", bound, &doc),
+                l.voltage("integral_min", -bound, &doc),
+                l.voltage("integral_max", bound, &doc),
             );
             let held = l.b.clamp(sum, low, high);
             l.b.name(["integral_a_now", "integral_b_now"][x], held);
