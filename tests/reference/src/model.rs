@@ -11,6 +11,7 @@ mod hall;
 mod ideal;
 mod sector;
 mod supervision;
+mod switching;
 mod trace;
 mod variant;
 mod vectors;

@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 pub use controller::{
     Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, FeedForward,
-    LoopOptions, Modulation, OffLeg, Pdcc, PiPwm, Reference, Saturation,
+    LoopOptions, Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation, SwitchingTable,
 };
 
 /// A whole normalised specification.
@@ -160,6 +160,7 @@ impl Spec {
         match &self.controller {
             Controller::Pdcc(pdcc) => pdcc.loop_options(),
             Controller::FcsMpc(fcs_mpc) => fcs_mpc.loop_options(),
+            Controller::Phcc(phcc) => phcc.loop_options(),
             Controller::PiPwm(pi_pwm) => pi_pwm.loop_options(),
         }
     }
@@ -173,6 +174,11 @@ impl Spec {
                 ..
             })
             | Controller::FcsMpc(FcsMpc {
+                commutation_threshold,
+                commutation_timeout,
+                ..
+            })
+            | Controller::Phcc(Phcc {
                 commutation_threshold,
                 commutation_timeout,
                 ..
@@ -265,6 +271,28 @@ impl Spec {
                 threshold,
                 "expected 0 or more",
             ));
+        }
+        if let Controller::Phcc(phcc) = &self.controller {
+            if !(phcc.band.is_finite() && phcc.band >= 0.0) {
+                return Err(Error::field(
+                    "controller.band",
+                    phcc.band,
+                    "expected 0 or more",
+                ));
+            }
+            let is_known = match phcc.table {
+                SwitchingTable::Derived => phcc.candidates != Candidates::All,
+                SwitchingTable::Printed | SwitchingTable::Given(_) => {
+                    phcc.candidates == Candidates::Table2
+                }
+            };
+            if !is_known {
+                return Err(Error::field(
+                    "controller.candidates",
+                    format!("{:?}", phcc.candidates),
+                    "expected table2, or three_phase with table = derived",
+                ));
+            }
         }
         if let Controller::PiPwm(pi_pwm) = &self.controller {
             for (field, value) in [

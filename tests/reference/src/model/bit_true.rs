@@ -51,7 +51,7 @@ pub struct BitTrue {
 pub struct Course {
     /// Where the deadbeat voltage lay.
     pub reach: Reach,
-    /// A commutation is under way (pair modulation).
+    /// A commutation is under way (where it is followed).
     pub commutating: bool,
     /// Angle per period, angle words (2^32 per turn), signed; 0 while the angle is not timed.
     pub step_angle: f64,
@@ -360,6 +360,9 @@ impl BitTrue {
             sector_eff,
             commutating: self.state.commutating,
             integral: self.state.integral,
+            set_point: self.j,
+            direction: self.state.timing.direction,
+            rises: self.state.rises,
         });
         let command = match self.state.supervisor.mode {
             Mode::Run => decision.command,
@@ -391,6 +394,7 @@ impl BitTrue {
             self.state.off_cmd = command.off;
             self.state.e_prev = e;
             self.state.integral = decision.integral;
+            self.state.rises = decision.rises;
         } else {
             self.state.stop();
         }

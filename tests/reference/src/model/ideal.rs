@@ -308,6 +308,9 @@ impl Ideal {
             sector_eff,
             commutating: self.state.commutating,
             integral: from_ab(s_a, s_b),
+            set_point: self.current,
+            direction: self.state.timing.direction,
+            rises: self.state.rises,
         });
         let command = match self.state.supervisor.mode {
             Mode::Run => decision.command,
@@ -336,6 +339,7 @@ impl Ideal {
             self.state.off_cmd = command.off;
             self.state.e_prev = to_ab(&e);
             self.state.integral = decision.integral;
+            self.state.rises = decision.rises;
         } else {
             self.state.v_prev = [0.0; 2];
             self.state.v_cmd = [0.0; 2];
@@ -344,6 +348,7 @@ impl Ideal {
             self.state.off_prev = None;
             self.state.e_prev = [0.0; 2];
             self.state.integral = [0.0; 2];
+            self.state.rises = [false; 2];
             self.state.commutating = false;
             self.state.commutation_age = 0.0;
         }

@@ -13,7 +13,7 @@ pub struct Trace {
     pub e: [f64; 2],
     /// Voltage applied in the period that starts now, volt (0 where the variant has no use for it).
     pub v_now: [f64; 2],
-    /// Demanded voltage before limiting, volt.
+    /// Demanded voltage before limiting, volt (PHCC: 1/b times the predicted error).
     pub u_unsat: [f64; 2],
     /// The same after limiting, or that of the chosen vector, volt.
     pub u: [f64; 2],
@@ -23,11 +23,11 @@ pub struct Trace {
     pub step_angle: f64,
     /// Sector that reference and commutation follow.
     pub sector_eff: usize,
-    /// A commutation is under way (pair modulation).
+    /// A commutation is under way (where it is followed).
     pub commutating: bool,
-    /// Where the demanded voltage lay (FCS-MPC: inside).
+    /// Where the demanded voltage lay (controllers of whole vectors: inside).
     pub reach: Reach,
-    /// Number of the chosen vector (FCS-MPC; 0 for the other controllers and out of control).
+    /// Number of the chosen vector (0 out of control and for controllers that pulse).
     pub vector: usize,
     /// The drive is in control (neither tripped nor starting).
     pub run: bool,
@@ -74,4 +74,6 @@ pub struct PhysicalState {
     pub e_prev: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
+    /// Whether the components along a and across it are to rise (PHCC).
+    pub rises: [bool; 2],
 }

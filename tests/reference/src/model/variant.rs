@@ -37,6 +37,16 @@ impl Variant {
                 let pairs = fcs_mpc.candidates != Candidates::ThreePhase;
                 (pairs, pairs && fcs_mpc.off_leg == OffLeg::Physical, None)
             }
+            Controller::Phcc(phcc) => {
+                // Without a delay nothing is predicted.
+                predicts = options.delay == 1;
+                if !predicts {
+                    emf = None;
+                }
+                let physical =
+                    phcc.candidates == Candidates::Table2 && phcc.off_leg == OffLeg::Physical;
+                (true, predicts && physical, None)
+            }
             Controller::PiPwm(pi_pwm) => {
                 predicts = false;
                 if pi_pwm.feed_forward == FeedForward::Off {
@@ -88,7 +98,9 @@ impl Variant {
 /// Voltage per ampere of the current reference: 1/b, or the proportional gain of a PI controller.
 pub fn reference_gain(spec: &Spec) -> f64 {
     match &spec.controller {
-        Controller::Pdcc(_) | Controller::FcsMpc(_) => 1.0 / crate::DiscretePhase::new(spec).b,
+        Controller::Pdcc(_) | Controller::FcsMpc(_) | Controller::Phcc(_) => {
+            1.0 / crate::DiscretePhase::new(spec).b
+        }
         Controller::PiPwm(pi_pwm) => {
             std::f64::consts::TAU * pi_pwm.bandwidth * spec.motor.inductance
         }

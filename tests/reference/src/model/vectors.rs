@@ -1,4 +1,5 @@
-//! The voltage vectors of FCS-MPC: their numbers, legs and candidate lists.
+//! The voltage vectors that a controller may apply for a whole period: their numbers, legs and FCS-MPC's
+//! candidate lists.
 
 use super::sector::OUT_PHASE;
 use crate::Candidates;

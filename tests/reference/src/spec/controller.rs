@@ -10,6 +10,8 @@ pub enum Controller {
     Pdcc(Pdcc),
     /// Finite-control-set model predictive control.
     FcsMpc(FcsMpc),
+    /// Predictive hysteresis current control.
+    Phcc(Phcc),
     /// PI control with pulse-width modulation.
     PiPwm(PiPwm),
 }
@@ -111,6 +113,24 @@ options! {
 }
 
 options! {
+    /// Options of predictive hysteresis current control.
+    Phcc {
+        /// Where the switching table comes from.
+        table: SwitchingTable,
+        /// Error that a component may have before its wish turns, ampere.
+        band: f64,
+        /// The vectors that a derived table has (`All`: none).
+        candidates: Candidates,
+        /// Where a leg that is off is taken to sit.
+        off_leg: OffLeg,
+        /// Outgoing current that ends a commutation, ampere.
+        commutation_threshold: f64,
+        /// Periods after which a commutation is taken as ended.
+        commutation_timeout: u32,
+    }
+}
+
+options! {
     /// Options of PI control with pulse-width modulation.
     PiPwm {
         /// Bandwidth of the proportional loop, hertz: the gain is 2 pi times it times the inductance.
@@ -124,7 +144,7 @@ options! {
     }
 }
 
-/// The vectors that FCS-MPC tries.
+/// The vectors that FCS-MPC tries and that a switching table has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Candidates {
@@ -132,11 +152,11 @@ pub enum Candidates {
     Table2,
     /// Those of three switched legs.
     ThreePhase,
-    /// All of both.
+    /// All of both (FCS-MPC only).
     All,
 }
 
-/// Where FCS-MPC takes a leg that is off to sit.
+/// Where a controller of whole vectors takes a leg that is off to sit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffLeg {
@@ -144,6 +164,51 @@ pub enum OffLeg {
     Physical,
     /// In the middle of the two others.
     Nominal,
+}
+
+/// The switching table of PHCC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "TableText")]
+pub enum SwitchingTable {
+    /// From the vectors' geometry.
+    Derived,
+    /// The paper's row of sector 1, turned with the sector.
+    Printed,
+    /// Vector numbers for motoring forward: of each sector first the four otherwise, then the four in
+    /// commutation, each in the order of H_a, H_b (0 first).
+    Given([u8; 48]),
+}
+
+/// As it is written.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum TableText {
+    Word(String),
+    Numbers(Vec<u8>),
+}
+
+impl TryFrom<TableText> for SwitchingTable {
+    type Error = String;
+
+    fn try_from(text: TableText) -> Result<Self, String> {
+        match text {
+            TableText::Word(word) if word == "derived" => Ok(Self::Derived),
+            TableText::Word(word) if word == "printed" => Ok(Self::Printed),
+            TableText::Numbers(numbers) if numbers.iter().all(|number| *number < 16) => numbers
+                .try_into()
+                .map(Self::Given)
+                .map_err(|numbers: Vec<u8>| {
+                    format!(
+                        "controller.table has {} numbers, expected 48",
+                        numbers.len()
+                    )
+                }),
+            _ => Err(
+                "controller.table: expected derived, printed or 48 numbers of vectors, 0 to 15"
+                    .into(),
+            ),
+        }
+    }
 }
 
 /// Whether the PI controller adds the EMF to its voltage.

@@ -20,7 +20,7 @@ pub struct Report {
     pub limited: u64,
     /// Of these, steps past the reach along the EMF (torque priority).
     pub past_reach: u64,
-    /// Steps in control with a commutation under way (pair modulation).
+    /// Steps in control with a commutation under way (where it is followed).
     pub commutating: u64,
     /// Steps in control with an interpolated rotor angle.
     pub timed: u64,

@@ -2,6 +2,7 @@
 
 mod fcs_mpc;
 mod models_agree;
+mod phcc;
 mod pi_pwm;
 mod variants;
 mod verification;

@@ -122,12 +122,17 @@ commutation_timeout = 8
     variants
 }
 
-/// A spread of the options of FCS-MPC and PI-PWM, on both motors.
+/// A spread of the options of FCS-MPC, PHCC and PI-PWM, on both motors.
 pub fn others() -> Vec<Variant> {
-    const KINDS: [(&str, &[&str], &[&str]); 2] = [
+    const KINDS: [(&str, &[&str], &[&str]); 3] = [
         (
             "fcs-mpc",
             &["table2", "three_phase", "all"],
+            &["physical", "nominal"],
+        ),
+        (
+            "phcc",
+            &["derived", "three_phase", "printed"],
             &["physical", "nominal"],
         ),
         (
@@ -153,16 +158,21 @@ pub fn others() -> Vec<Variant> {
                 let discretisation = ["exact", "euler"][index % 7 % 2];
                 let capture = ["sampled", "timer"][index % 11 % 2];
                 let bus = ["fixed", "measured"][index % 13 % 2];
-                let own = if kind == "fcs-mpc" {
-                    format!(
-                        "candidates = \"{first}\"\noff_leg = \"{second}\"\n\
-                         commutation_threshold = 0.1\ncommutation_timeout = 8"
-                    )
-                } else {
-                    format!(
+                let choosing = format!(
+                    "off_leg = \"{second}\"\ncommutation_threshold = 0.1\ncommutation_timeout = 8"
+                );
+                let own = match (kind, first) {
+                    ("fcs-mpc", _) => format!("candidates = \"{first}\"\n{choosing}"),
+                    ("phcc", "three_phase") => format!(
+                        "table = \"derived\"\ncandidates = \"three_phase\"\nband = 0.1\n{choosing}"
+                    ),
+                    ("phcc", _) => format!(
+                        "table = \"{first}\"\ncandidates = \"table2\"\nband = 0.1\n{choosing}"
+                    ),
+                    _ => format!(
                         "saturation = \"{first}\"\nfeed_forward = \"{second}\"\n\
                          bandwidth = 1000.0\nintegral_time = 0.0016"
-                    )
+                    ),
                 };
                 let options = format!(
                     r#"
@@ -235,14 +245,14 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     // Scores of FCS-MPC are sums of up to twelve voltages.
     let f_v = match spec.controller {
         Controller::FcsMpc(_) => f_v - 4,
-        Controller::Pdcc(_) | Controller::PiPwm(_) => f_v,
+        Controller::Pdcc(_) | Controller::Phcc(_) | Controller::PiPwm(_) => f_v,
     };
     let (gain, integral_share) = match &spec.controller {
         Controller::PiPwm(pi) => (
             TAU * pi.bandwidth * motor.inductance,
             inverter.t_s / pi.integral_time,
         ),
-        Controller::Pdcc(_) | Controller::FcsMpc(_) => (1.0 / b, 1.0),
+        _ => (1.0 / b, 1.0),
     };
     let scale = 2f64.powi(f_v);
     let ohm = g / w * 2f64.powi(f_v - f_i);
@@ -303,22 +313,27 @@ pub fn commutates(variant: &Variant) -> bool {
     match &variant.spec.controller {
         Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::Pair,
         Controller::FcsMpc(fcs_mpc) => fcs_mpc.candidates != Candidates::ThreePhase,
+        Controller::Phcc(_) => true,
         Controller::PiPwm(_) => false,
     }
 }
 
 /// Whether a voltage can lie outside of what the variant can make.
 pub fn saturates(variant: &Variant) -> bool {
-    !matches!(variant.spec.controller, Controller::FcsMpc(_))
+    !matches!(
+        variant.spec.controller,
+        Controller::FcsMpc(_) | Controller::Phcc(_)
+    )
 }
 
 /// Whether the variant interpolates the rotor's angle.
 pub fn has_rotor(variant: &Variant) -> bool {
     let options = variant.spec.loop_options();
-    let needs_emf = !matches!(
-        &variant.spec.controller,
-        Controller::PiPwm(pi_pwm) if pi_pwm.feed_forward == FeedForward::Off
-    );
+    let needs_emf = match &variant.spec.controller {
+        Controller::PiPwm(pi_pwm) => pi_pwm.feed_forward == FeedForward::On,
+        Controller::Phcc(_) => options.delay == 1,
+        Controller::Pdcc(_) | Controller::FcsMpc(_) => true,
+    };
     needs_emf && options.emf == EmfSource::Model
         || options.advance > 0.0
         || options.reference == Reference::Proportional

@@ -250,6 +250,10 @@ impl Constants {
                     Part::Integral,
                     matches!(spec.controller, Controller::PiPwm(_)),
                 ),
+                (
+                    Part::Hysteresis,
+                    matches!(spec.controller, Controller::Phcc(_)),
+                ),
             ]),
             ampere: g / two_i,
             volt: w / two_v,

@@ -3,8 +3,10 @@
 mod deadbeat;
 mod fcs_mpc;
 mod pdcc;
+mod phcc;
 mod pi_pwm;
 mod pulses;
+mod whole;
 
 use super::constants::{Constants, Scale};
 use crate::exact::Coefficient;
@@ -29,6 +31,12 @@ pub struct Inputs<'a> {
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: [f64; 2],
+    /// The set-point word itself.
+    pub set_point: f64,
+    /// Sense of rotation, 1 or -1.
+    pub direction: f64,
+    /// `h_a`, `h_b` (PHCC).
+    pub rises: [bool; 2],
 }
 
 /// What a controller decides.
@@ -38,11 +46,13 @@ pub struct Decision {
     /// Limited to what the inverter can do; becomes `v_x_cmd`.
     pub u: [f64; 2],
     pub reach: Reach,
-    /// Number of the chosen vector (FCS-MPC).
+    /// Number of the chosen vector (controllers of whole vectors).
     pub vector: usize,
     pub command: Command,
     /// `integral_x` (PI).
     pub integral: [f64; 2],
+    /// `h_a`, `h_b` (PHCC).
+    pub rises: [bool; 2],
 }
 
 /// A command to the inverter and the terminal voltages that it stands for.
@@ -71,6 +81,7 @@ impl Command {
 pub enum Law {
     Pdcc(pdcc::Pdcc),
     FcsMpc(fcs_mpc::FcsMpc),
+    Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
 }
 
@@ -79,6 +90,9 @@ impl Law {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(options, scale)?),
             Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(options, scale)?),
+            Controller::Phcc(options) => {
+                Self::Phcc(Box::new(phcc::Phcc::new(spec, options, scale)?))
+            }
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options, scale)?),
         })
     }
@@ -88,6 +102,7 @@ impl Law {
         match self {
             Self::Pdcc(law) => law.decide(now),
             Self::FcsMpc(law) => law.decide(now),
+            Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),
         }
     }

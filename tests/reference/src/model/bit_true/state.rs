@@ -28,6 +28,7 @@ pub struct State {
     pub off_prev: usize,
     pub e_prev: [f64; 2],
     pub integral: [f64; 2],
+    pub rises: [bool; 2],
 }
 
 /// A group of state words that not every variant has.
@@ -43,6 +44,7 @@ pub enum Part {
     OffMemory,
     EmfMemory,
     Integral,
+    Hysteresis,
 }
 
 /// The groups that a variant has.
@@ -204,6 +206,10 @@ macro_rules! for_each_word {
             $show!("integral_a", $state.integral[0]);
             $show!("integral_b", $state.integral[1]);
         }
+        if $parts.has(Part::Hysteresis) {
+            $show!("h_a", $state.rises[0]);
+            $show!("h_b", $state.rises[1]);
+        }
     };
 }
 
@@ -245,6 +251,7 @@ impl State {
         self.off_prev = 0;
         self.e_prev = [0.0; 2];
         self.integral = [0.0; 2];
+        self.rises = [false; 2];
         self.commutating = false;
         self.commutation_age = 0.0;
     }
@@ -295,6 +302,7 @@ impl State {
             off_prev: self.off_prev.checked_sub(1),
             e_prev: volts(self.e_prev),
             integral: volts(self.integral),
+            rises: self.rises,
         }
     }
 }

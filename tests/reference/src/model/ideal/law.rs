@@ -3,8 +3,10 @@
 mod deadbeat;
 mod fcs_mpc;
 mod pdcc;
+mod phcc;
 mod pi_pwm;
 mod pulses;
+mod whole;
 
 use super::Duties;
 use crate::model::Reach;
@@ -27,6 +29,12 @@ pub struct Inputs {
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: Vector2<f64>,
+    /// The current set-point itself, ampere.
+    pub set_point: f64,
+    /// Sense of rotation, 1 or -1.
+    pub direction: f64,
+    /// Whether the components are to rise (PHCC).
+    pub rises: [bool; 2],
 }
 
 /// What a controller decides; voltages of the zero-sum phases.
@@ -36,11 +44,13 @@ pub struct Decision {
     /// Limited to what the inverter can do.
     pub u: Vector2<f64>,
     pub reach: Reach,
-    /// Number of the chosen vector (FCS-MPC).
+    /// Number of the chosen vector (controllers of whole vectors).
     pub vector: usize,
     pub command: Command,
     /// Integral part of the voltage (PI), phases a, b.
     pub integral: [f64; 2],
+    /// Whether the components are to rise (PHCC).
+    pub rises: [bool; 2],
 }
 
 /// What the inverter does in one period.
@@ -64,10 +74,11 @@ impl Command {
 }
 
 /// A controller's own part of the step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Law {
     Pdcc(crate::Pdcc),
     FcsMpc(crate::FcsMpc),
+    Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
 }
 
@@ -76,6 +87,7 @@ impl Law {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(*options),
             Controller::FcsMpc(options) => Self::FcsMpc(*options),
+            Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
         })
     }
@@ -84,6 +96,7 @@ impl Law {
         match self {
             Self::Pdcc(options) => pdcc::decide(options, now),
             Self::FcsMpc(options) => fcs_mpc::decide(options, now),
+            Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),
         }
     }

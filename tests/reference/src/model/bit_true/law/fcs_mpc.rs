@@ -2,23 +2,21 @@
 //! after the other.
 
 use super::deadbeat::Deadbeat;
-use super::{Command, Decision, Inputs};
-use crate::exact::{Coefficient, Shift, floor, halve, round_half_up};
+use super::whole::{self, Sixth};
+use super::{Decision, Inputs};
+use crate::exact::{Shift, floor, halve, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error};
-use hexagen::Legs;
 
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     candidates: Candidates,
     /// Pairs are allowed and their off leg sits where current or EMF put it.
     floating: bool,
-    /// The vector's voltage is needed in a later step.
-    remembers: bool,
     deadbeat: Deadbeat,
-    k_sixth: Coefficient,
+    sixth: Sixth,
     score: Shift,
     i_comm_volts: f64,
 }
@@ -31,9 +29,8 @@ impl FcsMpc {
         Ok(Self {
             candidates: options.candidates,
             floating,
-            remembers: scale.variant.applied(),
             deadbeat: Deadbeat::new(scale)?,
-            k_sixth: scale.only_if(!floating && scale.variant.applied(), "k_sixth", 1.0 / 6.0)?,
+            sixth: Sixth::new(scale)?,
             score: scale.product_if(floating, "score")?,
             i_comm_volts: round_half_up(threshold * scale.two_v),
         })
@@ -54,44 +51,21 @@ impl FcsMpc {
                 (vector, least) = (other, score);
             }
         }
-        // 11
-        let legs = vectors::LEGS[vector];
-        let terminal = legs.map(|leg| if leg > 0 { now.v_bus } else { 0.0 });
-        let compare = legs.map(|leg| {
-            if leg > 0 {
-                now.k.timer_period as u16
-            } else {
-                0
-            }
-        });
-        let command = Command {
-            legs: Legs {
-                compare,
-                state: vectors::states(vector),
-            },
-            terminal,
-            off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
-        };
         // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
         let u = if self.floating {
             choice.voltage(vector)
         } else {
-            // Without a use for the voltage there is no coefficient, and only the trace shows it.
-            let sixth = if self.remembers {
-                self.k_sixth.mul(now.v_bus)
-            } else {
-                floor(now.v_bus / 6.0)
-            };
-            let [a, b, _] = vectors::sixths(vector);
-            [a * sixth, b * sixth]
+            self.sixth.voltage(now, vector)
         };
         Decision {
             u_unsat,
             u,
             reach: Reach::Inside,
             vector,
-            command,
+            // 11
+            command: whole::command(now, vector),
             integral: now.integral,
+            rises: now.rises,
         }
     }
 }

@@ -38,6 +38,7 @@ impl Pdcc {
             vector: 0,
             command,
             integral: now.integral,
+            rises: now.rises,
         }
     }
 }

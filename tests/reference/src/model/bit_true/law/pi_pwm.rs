@@ -44,6 +44,7 @@ impl PiPwm {
             vector: 0,
             command: pulses::three(now, u, false),
             integral,
+            rises: now.rises,
         }
     }
 }

@@ -1,8 +1,7 @@
 //! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by trying.
 
-use super::{Command, Decision, Inputs, deadbeat};
+use super::{Decision, Inputs, deadbeat, whole};
 use crate::model::Reach;
-use crate::model::ideal::Duties;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
 use crate::{Candidates, FcsMpc, OffLeg};
@@ -24,21 +23,14 @@ pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
             (vector, least) = (other, found);
         }
     }
-    let duties = Duties {
-        duty: vectors::LEGS[vector].map(|leg| if leg > 0 { 1.0 } else { 0.0 }),
-        state: vectors::states(vector),
-    };
     Decision {
         u_unsat,
         u: voltage(options, now, vector),
         reach: Reach::Inside,
         vector,
-        command: Command {
-            duties,
-            terminal: Vector3::from(duties.duty) * now.v_bus,
-            off: vectors::off_leg(vector),
-        },
+        command: whole::command(now, vector),
         integral: [0.0; 2],
+        rises: now.rises,
     }
 }
 
@@ -47,7 +39,7 @@ fn voltage(options: &FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
     let floats =
         options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase;
     let Some(off) = vectors::off_leg(vector).filter(|_| floats) else {
-        return clarke(&Vector3::from(vectors::sixths(vector))) * (now.v_bus / 6.0);
+        return whole::voltage(now, vector);
     };
     let mut terminal =
         Vector3::from(vectors::LEGS[vector].map(|leg| if leg > 0 { now.v_bus } else { 0.0 }));

@@ -25,5 +25,6 @@ pub fn decide(options: &Pdcc, now: &Inputs) -> Decision {
         vector: 0,
         command,
         integral: to_ab(&now.integral),
+        rises: now.rises,
     }
 }

@@ -45,6 +45,7 @@ impl PiPwm {
             vector: 0,
             command: pulses::three(now, &limited.u),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
+            rises: now.rises,
         }
     }
 }

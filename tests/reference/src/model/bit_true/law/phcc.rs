@@ -1,0 +1,68 @@
+//! PHCC: the predicted error's components against their bands, and the vector that a table has for both wishes.
+
+use super::whole::{self, Sixth};
+use super::{Decision, Inputs};
+use crate::exact::{Coefficient, round_half_up};
+use crate::model::Reach;
+use crate::model::bit_true::constants::Scale;
+use crate::model::switching::{self, Switching};
+use crate::{Error, Spec};
+
+#[derive(Clone, Debug)]
+pub struct Phcc {
+    delayed: bool,
+    k_hold: Coefficient,
+    sixth: Sixth,
+    /// BAND_A, BAND_B.
+    bands: [f64; 2],
+    switching: Switching,
+}
+
+impl Phcc {
+    pub fn new(spec: &Spec, options: &crate::Phcc, scale: &Scale) -> Result<Self, Error> {
+        let (a, b) = (scale.phase.a, scale.phase.b);
+        let delayed = scale.variant.delayed();
+        let held = if delayed { a } else { 1.0 };
+        let band = options.band / b / scale.w * scale.two_v;
+        Ok(Self {
+            delayed,
+            k_hold: scale.coefficient("k_hold", scale.ohm * held / b)?,
+            sixth: Sixth::new(scale)?,
+            bands: [band, 3f64.sqrt() * band].map(round_half_up),
+            switching: Switching::new(spec, options)?,
+        })
+    }
+
+    #[inline]
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        // 9
+        let q = [0, 1].map(|x| {
+            let held = now.j[x] - self.k_hold.mul(now.i[x]);
+            if self.delayed {
+                held - (now.v_now[x] - now.e_now[x])
+            } else {
+                held
+            }
+        });
+        // 10; sqrt(3) times the component across a is b less c, c being minus the sum of a and b.
+        let [band_a, band_b] = self.bands;
+        let rises = [
+            switching::wish(q[0], band_a, now.rises[0]),
+            switching::wish(2.0 * q[1] + q[0], band_b, now.rises[1]),
+        ];
+        let set = switching::Set::of(now.direction, now.set_point);
+        let vector = self
+            .switching
+            .vector(set, now.sector_eff, now.commutating, rises);
+        // 11, 12
+        Decision {
+            u_unsat: q,
+            u: self.sixth.voltage(now, vector),
+            reach: Reach::Inside,
+            vector,
+            command: whole::command(now, vector),
+            integral: now.integral,
+            rises,
+        }
+    }
+}

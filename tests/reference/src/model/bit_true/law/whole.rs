@@ -1,0 +1,51 @@
+//! One vector for a whole period: its legs, and its voltage as it is kept (sections 11 and 12 of FCS-MPC).
+
+use super::{Command, Inputs};
+use crate::Error;
+use crate::exact::{Coefficient, floor};
+use crate::model::bit_true::constants::Scale;
+use crate::model::vectors;
+use hexagen::Legs;
+
+/// The command of a vector.
+#[inline]
+pub fn command(now: &Inputs, vector: usize) -> Command {
+    let legs = vectors::LEGS[vector];
+    let on = now.k.timer_period as u16;
+    Command {
+        legs: Legs {
+            compare: legs.map(|leg| if leg > 0 { on } else { 0 }),
+            state: vectors::states(vector),
+        },
+        terminal: legs.map(|leg| if leg > 0 { now.v_bus } else { 0.0 }),
+        off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
+    }
+}
+
+/// A sixth of the bus, the unit of the vectors' phase voltages where no leg floats.
+#[derive(Clone, Debug)]
+pub struct Sixth {
+    /// None without a use for the voltage: only the trace shows it then.
+    k_sixth: Option<Coefficient>,
+}
+
+impl Sixth {
+    pub fn new(scale: &Scale) -> Result<Self, Error> {
+        let is_kept = !scale.variant.floating && scale.variant.applied();
+        let k_sixth = is_kept.then(|| scale.coefficient("k_sixth", 1.0 / 6.0));
+        Ok(Self {
+            k_sixth: k_sixth.transpose()?,
+        })
+    }
+
+    /// Phase voltages a, b of a vector.
+    #[inline]
+    pub fn voltage(&self, now: &Inputs, vector: usize) -> [f64; 2] {
+        let sixth = match &self.k_sixth {
+            Some(k_sixth) => k_sixth.mul(now.v_bus),
+            None => floor(now.v_bus / 6.0),
+        };
+        let [a, b, _] = vectors::sixths(vector);
+        [a * sixth, b * sixth]
+    }
+}

@@ -1,0 +1,41 @@
+//! PHCC: the predicted error's components against their bands, and the vector that a table has for both wishes.
+
+use super::{Decision, Inputs, deadbeat, whole};
+use crate::model::Reach;
+use crate::model::ideal::vector::to_ab;
+use crate::model::switching::{self, Switching};
+use crate::{Error, Spec};
+
+#[derive(Clone, Debug)]
+pub struct Phcc {
+    /// Ampere.
+    band: f64,
+    switching: Switching,
+}
+
+impl Phcc {
+    pub fn new(spec: &Spec, options: &crate::Phcc) -> Result<Self, Error> {
+        Ok(Self {
+            band: options.band,
+            switching: Switching::new(spec, options)?,
+        })
+    }
+
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        let error = now.i_ref - deadbeat::current_then(now);
+        let rises = [0, 1].map(|axis| switching::wish(error[axis], self.band, now.rises[axis]));
+        let set = switching::Set::of(now.direction, now.set_point);
+        let vector = self
+            .switching
+            .vector(set, now.sector_eff, now.commutating, rises);
+        Decision {
+            u_unsat: error / now.phase.b,
+            u: whole::voltage(now, vector),
+            reach: Reach::Inside,
+            vector,
+            command: whole::command(now, vector),
+            integral: to_ab(&now.integral),
+            rises,
+        }
+    }
+}

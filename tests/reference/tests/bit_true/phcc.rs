@@ -1,0 +1,321 @@
+//! PHCC: wishes keep their memory within the band, and the table's vectors move the current as wished.
+
+use crate::variants::{self, Variant};
+use hexagen::Sample;
+use hexagen_reference::verify::{Action, Context, Stimulus};
+use hexagen_reference::{
+    BitTrue, Candidates, Controller, DiscretePhase, Ideal, Mode, OffLeg, Phcc, Spec, SwitchingTable,
+};
+
+/// Phases of the conducting pair in sectors 1 to 6, plus and minus, and the third one.
+const PAIRS: [[usize; 3]; 6] = [
+    [2, 1, 0],
+    [0, 1, 2],
+    [0, 2, 1],
+    [1, 2, 0],
+    [1, 0, 2],
+    [2, 0, 1],
+];
+/// The vectors' legs as the paper names them, by number.
+const LEGS: [&str; 16] = [
+    "---", "--+", "+-+", "+--", "++-", "-+-", "-++", "0-+", "+-0", "+0-", "0+-", "-+0", "-0+",
+    "0--", "-0-", "--0",
+];
+
+fn phcc() -> impl Iterator<Item = (Variant, Phcc)> {
+    variants::others().into_iter().filter_map(|variant| {
+        let Controller::Phcc(options) = variant.spec.controller else {
+            return None;
+        };
+        Some((variant, options))
+    })
+}
+
+/// The number of a vector by its legs.
+fn vector(legs: [char; 3]) -> usize {
+    let text: String = legs.iter().collect();
+    let found = LEGS.iter().position(|known| *known == text);
+    found.expect("a vector")
+}
+
+/// The first variant on the motor (its name's beginning) with these options and no angle, delay 0.
+fn plain(motor: &str, table: SwitchingTable, candidates: Candidates) -> (Variant, Phcc) {
+    let mut found = phcc().filter(|(variant, options)| {
+        variant.name.starts_with(motor)
+            && options.table == table
+            && options.candidates == candidates
+            && options.delay == 0
+            && options.off_leg == OffLeg::Physical
+            && !variants::has_rotor(variant)
+    });
+    found.next().expect("such a variant")
+}
+
+/// Counts of phases a and b for currents in ampere.
+fn sample(spec: &Spec, sector: usize, currents: [f64; 2]) -> Sample {
+    let count = |current: f64| {
+        let counts = f64::from(spec.inverter.adc_offset) + current / spec.inverter.adc_gain;
+        counts.round() as u16
+    };
+    Sample {
+        adc_a: count(currents[0]),
+        adc_b: count(currents[1]),
+        hall: spec.motor.hall_codes[sector - 1],
+        hall_ticks: 0,
+    }
+}
+
+/// Vector of both models in a sector when both components are off by as much as the signs of `wishes` say.
+/// The drive has come from the sector before where it turns (1, -1) or stood still (0).
+fn chosen(
+    variant: &Variant,
+    sector: usize,
+    turning: isize,
+    current: f64,
+    wishes: [f64; 2],
+) -> usize {
+    let spec = &variant.spec;
+    let mut bit_true = BitTrue::new(spec, &variants::table(variant)).expect("a model");
+    let mut ideal = Ideal::new(spec).expect("a model");
+    let bits = (current * 65_536.0) as i32;
+    bit_true.set_current(bits);
+    ideal.set_current(bits);
+    let [plus, minus, _] = PAIRS[sector - 1];
+    let mut currents = [0.0; 3];
+    currents[plus] = current;
+    currents[minus] = -current;
+    // A current short of its reference by this much, above either band, asks for a rise.
+    let step = spec.inverter.max_current / 10.0;
+    currents[0] -= wishes[0] * step;
+    currents[1] -= step * (wishes[1] * 3f64.sqrt() - wishes[0]) / 2.0;
+    if turning != 0 {
+        let before = (sector as isize - 1 - turning).rem_euclid(6) as usize + 1;
+        let first = sample(spec, before, [0.0; 2]);
+        bit_true.step(&first);
+        ideal.step(&first);
+    }
+    let last = sample(spec, sector, [currents[0], currents[1]]);
+    let legs = bit_true.step(&last);
+    let duties = ideal.step(&last);
+    assert_eq!(bit_true.mode(), Mode::Run);
+    assert_eq!(bit_true.trace().commutating, turning != 0);
+    assert_eq!(legs, duties.to_legs(spec.inverter.timer_period as u16));
+    assert_eq!(bit_true.trace().vector, ideal.trace().vector);
+    ideal.trace().vector
+}
+
+/// alpha, beta of a vector of three driven legs or of a pair, in buses.
+fn alpha_beta(vector: usize) -> [f64; 2] {
+    let [a, b, c] = [0, 1, 2].map(|x| match LEGS[vector].as_bytes()[x] {
+        b'+' => 0.5,
+        b'-' => -0.5,
+        _ => 0.0,
+    });
+    [(2.0 * a - b - c) / 3.0, (b - c) / 3f64.sqrt()]
+}
+
+#[test]
+fn at_standstill_the_pair_follows_the_wish_along_its_line() {
+    // Standing, with the set-point against the remembered sense: braking, no EMF in the design.
+    for motor in ["660 W", "servo"] {
+        let (variant, _) = plain(motor, SwitchingTable::Derived, Candidates::Table2);
+        let current = -0.4 * variant.spec.inverter.max_current;
+        for sector in 1..=6 {
+            let [plus, minus, third] = PAIRS[sector - 1];
+            let mut legs = ['0'; 3];
+            (legs[plus], legs[minus]) = ('+', '-');
+            let pair = vector(legs);
+            (legs[plus], legs[minus]) = ('-', '+');
+            let reverse = vector(legs);
+            (legs[plus], legs[minus], legs[third]) = ('-', '-', '0');
+            let zero = vector(legs);
+            let [c_a, c_b] = alpha_beta(pair);
+            for wishes in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                // Along the line the wish is strong, weak or strong against it.
+                let along = (c_a * wishes[0] + c_b * wishes[1]) * 3f64.sqrt();
+                let expected = match along {
+                    _ if along > 0.9 => pair,
+                    _ if along < -0.9 => reverse,
+                    _ => zero,
+                };
+                assert_eq!(chosen(&variant, sector, 0, current, wishes), expected);
+            }
+        }
+    }
+}
+
+/// What moves the current in mid-sector or at its beginning, by vector: v - e.
+fn drive(vector: usize, sector: usize, early: bool, shape: fn(f64) -> f64) -> [f64; 2] {
+    let theta = (sector as f64 - 1.0) * 60.0 - if early { 21.0 } else { 0.0 };
+    let e = [0.0, 120.0, 240.0].map(|lag| 0.375 * shape(theta - lag));
+    let [v_a, v_b] = alpha_beta(vector);
+    [
+        v_a - (2.0 * e[0] - e[1] - e[2]) / 3.0,
+        v_b - (e[1] - e[2]) / 3f64.sqrt(),
+    ]
+}
+
+fn trapezoid(degrees: f64) -> f64 {
+    let x = (degrees + 180.0).rem_euclid(360.0) - 180.0;
+    (x.abs().min(180.0 - x.abs()) / 30.0).min(1.0).copysign(x)
+}
+
+#[test]
+fn motoring_vectors_come_nearest_to_a_quarter_bus_as_wished() {
+    let (variant, _) = plain("660 W", SwitchingTable::Derived, Candidates::ThreePhase);
+    let current = 0.4 * variant.spec.inverter.max_current;
+    for sector in 1..=6 {
+        for turning in [0, 1] {
+            for wishes in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                let found = chosen(&variant, sector, turning, current, wishes);
+                let miss = |vector: usize| {
+                    let [a, b] = drive(vector, sector, turning != 0, trapezoid);
+                    (a - 0.25 * wishes[0]).powi(2) + (b - 0.25 * wishes[1]).powi(2)
+                };
+                let least = (0..7).map(miss).fold(f64::MAX, f64::min);
+                assert!(found < 7 && miss(found) <= least + 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn backward_is_the_mirror_image_of_forward() {
+    for (table, candidates) in [
+        (SwitchingTable::Derived, Candidates::Table2),
+        (SwitchingTable::Derived, Candidates::ThreePhase),
+        (SwitchingTable::Printed, Candidates::Table2),
+    ] {
+        for motor in ["660 W", "servo"] {
+            let (variant, _) = plain(motor, table, candidates);
+            let current = 0.4 * variant.spec.inverter.max_current;
+            for sector in 1..=6 {
+                for wishes in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                    let forward = chosen(&variant, sector, 1, current, wishes);
+                    let mut legs: Vec<char> = LEGS[forward].chars().collect();
+                    legs.swap(1, 2);
+                    let image = [1, 6, 5, 4, 3, 2][sector - 1];
+                    let backward = chosen(&variant, image, -1, -current, [wishes[0], -wishes[1]]);
+                    assert_eq!(backward, vector([legs[0], legs[1], legs[2]]));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_printed_row_turns_with_the_sector() {
+    let (variant, _) = plain("660 W", SwitchingTable::Printed, Candidates::Table2);
+    let current = 0.4 * variant.spec.inverter.max_current;
+    for sector in 1..=6 {
+        let next = sector % 6 + 1;
+        let pair = |first: usize| 6 + first;
+        let before = (sector + 4) % 6 + 1;
+        for (turning, wishes, expected) in [
+            (1, [1.0, 1.0], next),
+            (1, [1.0, -1.0], sector),
+            (1, [-1.0, 1.0], next),
+            (1, [-1.0, -1.0], 0),
+            (0, [1.0, 1.0], pair(sector)),
+            (0, [1.0, -1.0], pair(before)),
+            (0, [-1.0, 1.0], pair(sector)),
+            (0, [-1.0, -1.0], 0),
+        ] {
+            assert_eq!(chosen(&variant, sector, turning, current, wishes), expected);
+        }
+    }
+}
+
+#[test]
+fn a_table_of_numbers_is_read_in_the_order_of_sector_commutation_and_wishes() {
+    let (variant, _) = plain("servo", SwitchingTable::Printed, Candidates::Table2);
+    let numbers: Vec<usize> = (0..48).map(|place| (place * 7 + place / 16) % 16).collect();
+    let text = variant.toml.replace("\"printed\"", &format!("{numbers:?}"));
+    let given = Variant {
+        spec: Spec::from_toml(&text).expect("a specification"),
+        ..variant
+    };
+    let current = 0.4 * given.spec.inverter.max_current;
+    let mut place = 0;
+    for sector in 1..=6 {
+        for turning in [0, 1] {
+            for wishes in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                let found = chosen(&given, sector, turning, current, wishes);
+                assert_eq!(found, numbers[place], "place {place}");
+                place += 1;
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_are_no_table_are_refused() {
+    let (variant, _) = plain("servo", SwitchingTable::Printed, Candidates::Table2);
+    let with = |table: &str| Spec::from_toml(&variant.toml.replace("\"printed\"", table));
+    assert!(with(&format!("{:?}", [15; 48])).is_ok());
+    assert!(with(&format!("{:?}", [15; 47])).is_err());
+    assert!(with(&format!("{:?}", [16; 48])).is_err());
+    assert!(with("\"paper\"").is_err());
+    let pairs = variant.toml.replace("\"table2\"", "\"all\"");
+    assert!(Spec::from_toml(&pairs).is_err());
+    let band = variant.toml.replace("band = 0.1", "band = -0.1");
+    assert!(Spec::from_toml(&band).is_err());
+}
+
+/// The wishes of the step, by the words of the state.
+fn wishes(model: &BitTrue) -> [bool; 2] {
+    let names = model.state_names();
+    let mut words = vec![0; names.len()];
+    model.state_words(&mut words);
+    let [h_a, h_b] = words[words.len() - 2..] else {
+        panic!("two words")
+    };
+    assert!(names.ends_with(&["h_a", "h_b"]));
+    [h_a, h_b].map(|word| word == 1)
+}
+
+#[test]
+fn a_wish_holds_within_the_band() {
+    let mut held = 0;
+    for (seed, (variant, options)) in (0..).zip(phcc()) {
+        let mut model = BitTrue::new(&variant.spec, &variants::table(&variant)).expect("a model");
+        let mut stimulus = Stimulus::new(&variant.spec, seed).expect("a stimulus");
+        let DiscretePhase { b, .. } = DiscretePhase::new(&variant.spec);
+        for _ in 0..1000 {
+            let context = Context {
+                offset: model.offset_counts(),
+                tripped: model.mode() == Mode::Tripped,
+            };
+            let (action, sample) = stimulus.next(&context);
+            match action {
+                Some(Action::SetCurrent(bits)) => model.set_current(bits),
+                Some(Action::SetTorque(bits)) => model.set_torque(bits),
+                Some(Action::SetBus(counts)) => model.set_bus(counts),
+                Some(Action::Reset) => model.reset(),
+                _ => {}
+            }
+            let before = wishes(&model);
+            stimulus.respond(&model.step(&sample));
+            let after = wishes(&model);
+            let trace = model.trace();
+            if !trace.run {
+                assert_eq!(after, [false; 2]);
+                continue;
+            }
+            let [q_a, q_b] = trace.u_unsat;
+            let errors = [q_a, (q_a + 2.0 * q_b) / 3f64.sqrt()].map(|q| q * b);
+            for axis in 0..2 {
+                let (error, edge) = (errors[axis], 1e-3 * options.band);
+                if error > options.band + edge {
+                    assert!(after[axis]);
+                } else if error < -options.band - edge {
+                    assert!(!after[axis]);
+                } else if error.abs() < options.band - edge {
+                    assert_eq!(after[axis], before[axis]);
+                    held += 1;
+                }
+            }
+        }
+    }
+    assert!(held > 1000, "{held}");
+}
