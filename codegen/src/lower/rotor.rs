@@ -49,9 +49,9 @@ impl Lowering<'_> {
     pub fn direction_word(&mut self) -> StateId {
         self.state(
             "direction",
-            1,
+            0,
             Interval::new(-1, 1),
-            "Direction of the last Hall edge: 1 forward, -1 backward.",
+            "Direction of the last Hall edge: 1 forward, -1 backward, 0 before the first.",
         )
     }
 

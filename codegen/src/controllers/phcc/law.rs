@@ -8,7 +8,12 @@ use crate::diagnostics::engineering;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::spec::Spec;
 
-const SETS: [&str; 3] = ["motoring forward", "motoring backward", "braking"];
+const SETS: [&str; 4] = [
+    "motoring forward",
+    "motoring backward",
+    "braking forward",
+    "braking backward",
+];
 
 /// Name of a vector number.
 fn name(vector: i32) -> String {
@@ -65,7 +70,7 @@ pub fn law(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Law {
             },
             doc: vec![
                 "Vector by 64 set + 8 sector + 4 commutating + 2 alpha + beta; sets: 0 motoring forward, 1 motoring backward, 2".to_owned(),
-                "braking. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b or c off.".to_owned(),
+                "braking forward, 3 braking backward. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b or c off.".to_owned(),
             ],
         }],
     }

@@ -141,26 +141,31 @@ fn look_up(
         table,
         &[
             "Vector by 64 set + 8 sector + 4 commutating + 2 alpha + beta; sets: 0 motoring forward, 1 motoring backward,".to_owned(),
-            "2 braking. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
+            "2 braking forward, 3 braking backward. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );
     l.b.stage(
         "look_up_vector",
         &["The switching table: rows by quadrant of torque and speed, sector and commutation, columns by the wishes."],
     );
+    let direction = front.direction.unwrap_or(front.set_point);
     let zero = l.zero();
     let negative = l.b.compare(Comparison::Less, front.set_point, zero);
     l.b.name("is_negative", negative);
-    let direction = front.direction.unwrap_or(front.set_point);
+    let positive = l.b.not(negative);
+    let zero = l.zero();
+    let forward = l.b.compare(Comparison::Less, zero, direction);
     let zero = l.zero();
     let backward = l.b.compare(Comparison::Less, direction, zero);
     l.b.name("is_backward", backward);
-    let both = l.b.and(negative, backward);
-    let either = l.b.or(negative, backward);
-    let (second, third) = (l.b.literal(64), l.b.literal(128));
-    let motoring_backward = l.b.select(both, second, third);
-    let zero = l.zero();
-    let set = l.b.select(either, motoring_backward, zero);
+    let with_forward = l.b.and(positive, forward);
+    let with_backward = l.b.and(negative, backward);
+    let motoring = l.b.or(with_forward, with_backward);
+    let (none, braking) = (l.zero(), l.b.literal(128));
+    let quadrant = l.b.select(motoring, none, braking);
+    let (reverse, none) = (l.b.literal(64), l.zero());
+    let side = l.b.select(backward, reverse, none);
+    let set = l.b.add(quadrant, side);
     l.b.name("set", set);
     let sector = l.b.shift_left(front.sector, 3);
     let row = l.b.add(set, sector);

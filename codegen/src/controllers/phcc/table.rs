@@ -8,21 +8,36 @@ use crate::spec::EmfShape;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
-/// Sets of rows: motoring forward, motoring backward, braking.
-const SETS: usize = 3;
+/// Sets of rows: motoring forward and backward, braking forward and backward.
+const SETS: usize = 4;
 
-/// Index of a sector's first entry and a set's first entry.
+/// Entries of a sector, and of a set.
 const PER_SECTOR: usize = 8;
 const PER_SET: usize = 64;
 
-/// Design point of the motoring rows: share of the bus that the pair's EMF takes, and the weight of a wish.
-const MOTORING: (f64, f64) = (0.75, 0.25);
+/// What a set is designed for. Voltages in units of the bus.
+struct Design {
+    /// EMF across the sector's pair at its centre, and the weight of a wish, where three legs are switched.
+    switched: (f64, f64),
+    /// The same where a pair conducts.
+    conducting: (f64, f64),
+    /// Angle behind the sector's beginning for which commutation rows are designed, radians.
+    entry: f64,
+}
 
-/// Design point of the braking rows, which serve any speed.
-const BRAKING: (f64, f64) = (0.0, 0.35);
+/// Three quarters of the bus for the EMF; commutations early in the sector.
+const MOTORING: Design = Design {
+    switched: (0.75, 0.25),
+    conducting: (0.75, 0.25),
+    entry: TAU / 40.0,
+};
 
-/// Angle behind a sector's beginning for which commutation rows are designed, radians.
-const ENTRY: f64 = TAU / 40.0;
+/// Any speed: at rest only the reverse of a pair brakes, so its zero is never chosen.
+const BRAKING: Design = Design {
+    switched: (0.3, 0.4),
+    conducting: (0.0, 0.9),
+    entry: TAU / 12.0,
+};
 
 /// Differences that count as none.
 const TIE: f64 = 1e-9;
@@ -33,8 +48,9 @@ type Rows = [[[u8; 4]; 2]; 6];
 /// The table of a drive: 3 sets of 64, each sector 0 to 7, commutating, 2 H_a + H_b.
 pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
     let derived = |design| derive(options.candidates, shape, design);
+    let braking = derived(&BRAKING);
     let forward = match options.table {
-        SwitchingTable::Derived => derived(MOTORING),
+        SwitchingTable::Derived => derived(&MOTORING),
         SwitchingTable::Printed => printed(),
         SwitchingTable::Given(numbers) => std::array::from_fn(|k| {
             std::array::from_fn(|state| {
@@ -43,10 +59,8 @@ pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
         }),
     };
     let mut table = vec![0; SETS * PER_SET];
-    for (set, rows) in [forward, mirrored(&forward), derived(BRAKING)]
-        .iter()
-        .enumerate()
-    {
+    let sets = [forward, mirrored(&forward), braking, mirrored(&braking)];
+    for (set, rows) in sets.iter().enumerate() {
         for (k, states) in rows.iter().enumerate() {
             let start = PER_SET * set + PER_SECTOR * (k + 1);
             for (offset, &vector) in states.iter().flatten().enumerate() {
@@ -63,7 +77,7 @@ fn direction(wish: usize) -> Vector2<f64> {
     Vector2::new(sign(2), sign(1))
 }
 
-fn derive(candidates: PhccCandidates, shape: EmfShape, (share, weight): (f64, f64)) -> Rows {
+fn derive(candidates: PhccCandidates, shape: EmfShape, design: &Design) -> Rows {
     std::array::from_fn(|k| {
         let start = (60.0 * k as f64 - 30.0).to_radians();
         let centre = start + TAU / 12.0;
@@ -76,16 +90,18 @@ fn derive(candidates: PhccCandidates, shape: EmfShape, (share, weight): (f64, f6
             .sum();
         let emf = |theta: f64| {
             let [a, b, c] = phases(theta);
-            clarke(a, b, c) * (share / line)
+            clarke(a, b, c) * (design.switched.0 / line)
         };
-        let three_phase = |theta: f64, wish| nearest(emf(theta) + weight * direction(wish));
+        let three_phase =
+            |theta: f64, wish| nearest(emf(theta) + design.switched.1 * direction(wish));
         [0, 1].map(|commutating| {
             std::array::from_fn(|wish| {
                 if commutating == 1 {
-                    three_phase(start + ENTRY, wish)
+                    three_phase(start + design.entry, wish)
                 } else if candidates == PhccCandidates::ThreePhase {
                     three_phase(centre, wish)
                 } else {
+                    let (share, weight) = design.conducting;
                     along_pair(k, share, weight * direction(wish))
                 }
             })
@@ -162,7 +178,7 @@ mod tests {
 
     #[test]
     fn motoring_rows_are_those_of_the_vectors_geometry() {
-        let rows = derive(PhccCandidates::Table2, TRAPEZOID, MOTORING);
+        let rows = derive(PhccCandidates::Table2, TRAPEZOID, &MOTORING);
         // S1: c+ b-, a off. V12 lowers beta; V61 and V23 would put current into leg a.
         assert_eq!(rows[0], [[7, 13, 7, 13], [1, 6, 2, 0]]);
         assert_eq!(rows[1], [[8, 15, 8, 8], [2, 0, 2, 3]]);
@@ -170,8 +186,16 @@ mod tests {
     }
 
     #[test]
+    fn braking_rows_reverse_the_pair() {
+        let rows = derive(PhccCandidates::Table2, TRAPEZOID, &BRAKING);
+        assert_eq!(rows[0], [[7, 10, 7, 10], [1, 6, 2, 3]]);
+        assert_eq!(rows[1], [[11, 11, 8, 8], [1, 5, 2, 3]]);
+        assert_eq!(rows[2], [[12, 12, 9, 9], [1, 5, 3, 4]]);
+    }
+
+    #[test]
     fn half_a_turn_reverses_every_wish_and_vector() {
-        for design in [MOTORING, BRAKING] {
+        for design in [&MOTORING, &BRAKING] {
             for candidates in [PhccCandidates::Table2, PhccCandidates::ThreePhase] {
                 for shape in [TRAPEZOID, EmfShape::Sinusoidal] {
                     let rows = derive(candidates, shape, design);

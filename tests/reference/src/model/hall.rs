@@ -49,7 +49,7 @@ pub struct HallTiming {
 impl Default for HallTiming {
     fn default() -> Self {
         Self {
-            direction: 1.0,
+            direction: 0.0,
             age_prev: 0.0,
             edges: 0,
             intervals: [1.0; 6],

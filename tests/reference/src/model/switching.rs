@@ -19,20 +19,24 @@ pub enum Set {
     Forward,
     /// Torque and rotation backward.
     Backward,
-    /// Torque against rotation.
-    Braking,
+    /// Torque against forward rotation, or the sense of rotation is not known yet.
+    BrakingForward,
+    /// Torque against backward rotation.
+    BrakingBackward,
 }
 
 impl Set {
-    /// That of a sense of rotation (1 or -1) and a set-point.
+    /// That of a sense of rotation (1, -1, or 0 while it is unknown) and a set-point.
     #[inline]
     pub fn of(direction: f64, set_point: f64) -> Self {
         if direction > 0.0 && set_point >= 0.0 {
             Self::Forward
         } else if direction < 0.0 && set_point < 0.0 {
             Self::Backward
+        } else if direction < 0.0 {
+            Self::BrakingBackward
         } else {
-            Self::Braking
+            Self::BrakingForward
         }
     }
 }
@@ -57,7 +61,8 @@ type Rows = [[[[usize; 2]; 2]; 2]; 6];
 pub struct Switching {
     forward: Rows,
     backward: Rows,
-    braking: Rows,
+    braking_forward: Rows,
+    braking_backward: Rows,
 }
 
 impl Switching {
@@ -79,10 +84,12 @@ impl Switching {
                 numbers[place].into()
             }),
         };
+        let braking_forward = Design::braking(shape, pairs).rows();
         Ok(Self {
             forward,
             backward: mirrored(&forward),
-            braking: Design::braking(shape, pairs).rows(),
+            braking_forward,
+            braking_backward: mirrored(&braking_forward),
         })
     }
 
@@ -98,7 +105,8 @@ impl Switching {
         let rows = match set {
             Set::Forward => &self.forward,
             Set::Backward => &self.backward,
-            Set::Braking => &self.braking,
+            Set::BrakingForward => &self.braking_forward,
+            Set::BrakingBackward => &self.braking_backward,
         };
         match sector_eff.checked_sub(1) {
             Some(index) => at(rows, index, commutating, rises),
@@ -154,53 +162,55 @@ fn mirrored(set: &Rows) -> Rows {
 /// What a derived set is made for.
 struct Design {
     shape: EmfShape,
-    /// Phase EMF per unit of the shape.
+    /// Phase EMF per unit of the shape and weight of a wish, where three legs are switched.
     amplitude: f64,
-    /// Line EMF of the conducting pair in mid-sector.
-    line_emf: f64,
-    /// Weight of a wish.
     weight: f64,
+    /// Line EMF of the conducting pair and weight of a wish, where only the pair is.
+    line_emf: f64,
+    pair_weight: f64,
+    /// Angle of the commutation rows behind the sector's middle.
+    late: f64,
     /// A leg may be off.
     pairs: bool,
 }
 
 impl Design {
-    /// Three quarters of the bus for the EMF.
+    /// Three quarters of the bus for the EMF; commutations nine degrees after the sector's beginning.
     fn motoring(shape: EmfShape, pairs: bool) -> Self {
-        let line_emf = 0.75;
-        let theta = mid_sector(1);
-        let line = phase(shape, PLUS[1], theta) - phase(shape, MINUS[1], theta);
         Self {
-            shape,
-            amplitude: line_emf / line,
-            line_emf,
+            amplitude: 0.75 / line(shape),
             weight: 0.25,
+            line_emf: 0.75,
+            pair_weight: 0.25,
+            late: PI / 20.0 - FRAC_PI_6,
+            shape,
             pairs,
         }
     }
 
-    /// No EMF in the way.
+    /// Any speed.
     fn braking(shape: EmfShape, pairs: bool) -> Self {
         Self {
-            shape,
-            amplitude: 0.0,
+            amplitude: 0.3 / line(shape),
+            weight: 0.4,
             line_emf: 0.0,
-            weight: 0.35,
+            pair_weight: 0.9,
+            late: 0.0,
+            shape,
             pairs,
         }
     }
 
     fn rows(&self) -> Rows {
         rows(|sector, commutating, rises| {
-            let wish = Vector2::from(rises.map(|rise| if rise { 1.0 } else { -1.0 })) * self.weight;
+            let wish = Vector2::from(rises.map(|rise| if rise { 1.0 } else { -1.0 }));
             let emf = |theta| self.shape.alpha_beta(theta) * self.amplitude;
             if commutating {
-                let early = mid_sector(sector) - FRAC_PI_6 + PI / 20.0;
-                nearest(&(emf(early) + wish))
+                nearest(&(emf(mid_sector(sector) + self.late) + wish * self.weight))
             } else if self.pairs {
                 self.along_the_pair(sector, &wish)
             } else {
-                nearest(&(emf(mid_sector(sector)) + wish))
+                nearest(&(emf(mid_sector(sector)) + wish * self.weight))
             }
         })
     }
@@ -211,7 +221,8 @@ impl Design {
         let pair = FIRST_PAIR - 1 + sector;
         let reverse = FIRST_PAIR + (sector + 2) % 6;
         let zero = FIRST_PAIR_ZERO + OUT_PHASE[sector];
-        let line = self.line_emf + 3f64.sqrt() * alpha_beta(pair).normalize().dot(wish);
+        let line =
+            self.line_emf + 3f64.sqrt() * self.pair_weight * alpha_beta(pair).normalize().dot(wish);
         if line > 0.5 + TIE {
             pair
         } else if line < -0.5 - TIE {
@@ -220,6 +231,12 @@ impl Design {
             zero
         }
     }
+}
+
+/// Line EMF of a sector's pair in its middle, per unit of the phase's.
+fn line(shape: EmfShape) -> f64 {
+    let theta = mid_sector(1);
+    phase(shape, PLUS[1], theta) - phase(shape, MINUS[1], theta)
 }
 
 /// Electrical angle in the middle of a sector (1 to 6), radians.
