@@ -17,9 +17,9 @@ const PER_SET: usize = 64;
 
 /// What a set is designed for. Voltages in units of the bus.
 struct Design {
-    /// EMF across the sector's pair at its centre, and the weight of a wish, where three legs are switched.
+    /// EMF across the sector's pair at its centre, and the weight of a wish, in commutation.
     switched: (f64, f64),
-    /// The same where a pair conducts.
+    /// The same otherwise.
     conducting: (f64, f64),
     /// Angle behind the sector's beginning for which commutation rows are designed, radians.
     entry: f64,
@@ -88,18 +88,16 @@ fn derive(candidates: PhccCandidates, shape: EmfShape, design: &Design) -> Rows 
             .zip(SECTOR_CURRENT[k])
             .map(|(f, sign)| f * f64::from(sign))
             .sum();
-        let emf = |theta: f64| {
+        let three_phase = |theta: f64, (share, weight): (f64, f64), wish| {
             let [a, b, c] = phases(theta);
-            clarke(a, b, c) * (design.switched.0 / line)
+            nearest(clarke(a, b, c) * (share / line) + weight * direction(wish))
         };
-        let three_phase =
-            |theta: f64, wish| nearest(emf(theta) + design.switched.1 * direction(wish));
         [0, 1].map(|commutating| {
             std::array::from_fn(|wish| {
                 if commutating == 1 {
-                    three_phase(start + design.entry, wish)
+                    three_phase(start + design.entry, design.switched, wish)
                 } else if candidates == PhccCandidates::ThreePhase {
-                    three_phase(centre, wish)
+                    three_phase(centre, design.conducting, wish)
                 } else {
                     let (share, weight) = design.conducting;
                     along_pair(k, share, weight * direction(wish))

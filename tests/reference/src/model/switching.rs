@@ -162,10 +162,10 @@ fn mirrored(set: &Rows) -> Rows {
 /// What a derived set is made for.
 struct Design {
     shape: EmfShape,
-    /// Phase EMF per unit of the shape and weight of a wish, where three legs are switched.
+    /// Phase EMF per unit of the shape and weight of a wish, in commutation.
     amplitude: f64,
     weight: f64,
-    /// Line EMF of the conducting pair and weight of a wish, where only the pair is.
+    /// Line EMF of the conducting pair and weight of a wish, otherwise.
     line_emf: f64,
     pair_weight: f64,
     /// Angle of the commutation rows behind the sector's middle.
@@ -204,13 +204,15 @@ impl Design {
     fn rows(&self) -> Rows {
         rows(|sector, commutating, rises| {
             let wish = Vector2::from(rises.map(|rise| if rise { 1.0 } else { -1.0 }));
-            let emf = |theta| self.shape.alpha_beta(theta) * self.amplitude;
+            let emf = |theta| self.shape.alpha_beta(theta);
             if commutating {
-                nearest(&(emf(mid_sector(sector) + self.late) + wish * self.weight))
+                let early = emf(mid_sector(sector) + self.late) * self.amplitude;
+                nearest(&(early + wish * self.weight))
             } else if self.pairs {
                 self.along_the_pair(sector, &wish)
             } else {
-                nearest(&(emf(mid_sector(sector)) + wish * self.weight))
+                let share = self.line_emf / line(self.shape);
+                nearest(&(emf(mid_sector(sector)) * share + wish * self.pair_weight))
             }
         })
     }
