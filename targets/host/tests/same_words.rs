@@ -1,4 +1,8 @@
-//! Fixed and ideal runs on the same ADC words: every merit of every row of the result table.
+//! Fixed and ideal runs on the same ADC words: every merit of every row of the result table that modulates.
+//!
+//! A controller that applies one of a few vectors may decide a near tie either way, and the patterns differ from
+//! there on: of those rows the mean torque is compared. Their single decisions are compared, from the same state,
+//! in the tests of `hexagen-reference`.
 
 use hexagen_host::commands::accuracy::{differences, side_by_side};
 use hexagen_host::engine::{EngineKind, MotorSource, SetPoint, plant_of, prepare, run_of};
@@ -26,7 +30,12 @@ fn fixed_and_ideal_agree_in_every_merit_of_every_row() {
                 let run = run_of(&drive.spec, rpm * TAU / 60.0, TORQUE);
                 let both = side_by_side(&drive, &plant, &run, set_point).expect("runs");
                 let ideal = &both.ideal.merits;
+                let decides =
+                    !row.variant.starts_with("pdcc") && !row.variant.starts_with("pi-pwm");
                 for merit in differences(&both.fixed.merits, ideal, ideal) {
+                    if decides && merit.merit != "mean torque" {
+                        continue;
+                    }
                     assert!(merit.close, "{variant} at {rpm} rpm: {merit:?}");
                     compared += 1;
                 }
@@ -34,7 +43,7 @@ fn fixed_and_ideal_agree_in_every_merit_of_every_row() {
             }
         }
     }
-    assert_eq!(compared, 6 * 2 * 2 * 14);
+    assert_eq!(compared, (8 * 14 + 3) * 2 * 2);
     // A run may round every compare value alike, but all of them only if the two were one model.
-    assert!(different > 12, "only {different} of 24 runs differ at all");
+    assert!(different > 12, "only {different} of 44 runs differ at all");
 }

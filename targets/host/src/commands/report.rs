@@ -166,7 +166,7 @@ fn paper_marks() -> Vec<SpeedMark> {
 }
 
 /// What is known about differences from the design document's table.
-const PAPER_NOTES: [&str; 2] = [
+const PAPER_NOTES: [&str; 4] = [
     "Pair, torque_priority: the expected ripple (9.3 and 4.9 % peak to peak) is that of the nominal \
      reckoning, which takes a pair's vector for Table 2's whatever the third leg does. The ideal \
      model reckoned so gives 9.4 and 4.9 %, and 10.3 and 27.7 % for pair, keep_angle. What runs here \
@@ -174,6 +174,11 @@ const PAPER_NOTES: [&str; 2] = [
      of that ripple.",
     "Proportional: at 400 rpm the ripple that 12-bit converters leave (0.3 %) is more than the 0.13 % \
      of exact currents.",
+    "FCS-MPC, nominal: the expected figures lie between two readings. With the delay predicted, as here, \
+     the torque is not held either, at less ripple; with the delay left out of the prediction the ripple \
+     is larger than expected (`hexagen reproduce` shows that reading).",
+    "PI-PWM: the expected figures are those of the paper's modulation over neighbouring pair vectors, \
+     which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
 ];
 
 /// Runs the command.

@@ -77,7 +77,7 @@ fn all_controllers_are_those_that_there_are() {
         .iter()
         .map(|checked| &checked["controller"])
         .collect();
-    assert_eq!(controllers, ["fcs-mpc", "pdcc", "pi-pwm"]);
+    assert_eq!(controllers, ["fcs-mpc", "pdcc", "phcc", "pi-pwm"]);
 }
 
 #[test]
