@@ -1,18 +1,26 @@
-//! The double buffer through which the main program hands words to the control interrupt.
+//! The double buffer through which words that belong together are handed to the control interrupt.
+//!
+//! On one core an interrupt runs from its begin to its end between two accesses of what it
+//! interrupts. The tests put every operation between every two accesses of every other.
+
+#[cfg(test)]
+mod tests;
 
 use crate::arith::Word;
-use core::sync::atomic::{AtomicI32, AtomicUsize, Ordering, compiler_fence};
+use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
 
-/// `N` words that are replaced as one, seen from an interrupt on the same core.
+/// `N` words that are replaced as one, seen from other contexts of the same core.
 ///
-/// The writer fills the bank that is not in use and then publishes it with one store; an
-/// interrupt that strikes in between still reads the old bank whole. One writer at a time, and
-/// one core: order is kept by the compiler alone, which costs the interrupt no barrier.
+/// A store fills the bank that is not in use and then publishes it, so a read that interrupts it
+/// gets the old words whole. Order is kept by the compiler alone, which costs no barrier.
+///
+/// - Reads: from anywhere.
+/// - Stores: from anywhere; one that interrupts another store of the same buffer has no effect.
+/// - A store may interrupt a read, which gets the old or the new words whole. The next store fills
+///   the bank that the read began with: contexts that can interrupt the reader may store once per
+///   read.
 #[derive(Debug)]
-pub struct DoubleBuffer<const N: usize> {
-    banks: [[AtomicI32; N]; 2],
-    published: AtomicUsize,
-}
+pub struct DoubleBuffer<const N: usize>(Banks<AtomicI32, N>);
 
 impl<const N: usize> DoubleBuffer<N> {
     /// A buffer that holds `words`.
@@ -26,31 +34,94 @@ impl<const N: usize> DoubleBuffer<N> {
             banks[1][word] = AtomicI32::new(words[word].0);
             word += 1;
         }
-        Self {
-            banks,
-            published: AtomicUsize::new(0),
-        }
+        let [first, second] = banks;
+        Self(Banks {
+            first,
+            second,
+            published: AtomicI32::new(FIRST),
+            storing: AtomicI32::new(NO),
+        })
     }
 
     /// The words last published.
     #[inline]
     #[must_use]
     pub fn read(&self) -> [Word; N] {
-        let bank = &self.banks[self.published.load(Ordering::Relaxed) & 1];
-        compiler_fence(Ordering::Acquire);
-        core::array::from_fn(|word| Word(bank[word].load(Ordering::Relaxed)))
+        self.0.read()
     }
 
-    /// Lets `change` replace any of the words, and publishes all of them together.
+    /// Replaces all words together.
     #[inline]
-    pub fn update(&self, change: impl FnOnce(&mut [Word; N])) {
-        let mut words = self.read();
-        change(&mut words);
-        let spare = (self.published.load(Ordering::Relaxed) & 1) ^ 1;
-        for (to, from) in self.banks[spare].iter().zip(words) {
-            to.store(from.0, Ordering::Relaxed);
+    pub fn store(&self, words: [Word; N]) {
+        self.0.store(words);
+    }
+}
+
+/// `published`: the first bank. Any other number is the second.
+const FIRST: i32 = 0;
+const SECOND: i32 = 1;
+/// `storing`: nobody is. Any other number: somebody is.
+const NO: i32 = 0;
+const YES: i32 = 1;
+
+/// A place of a word that several contexts see.
+trait Place {
+    fn load(&self) -> i32;
+    fn store(&self, value: i32);
+}
+
+impl Place for AtomicI32 {
+    #[inline]
+    fn load(&self) -> i32 {
+        self.load(Ordering::Relaxed)
+    }
+
+    #[inline]
+    fn store(&self, value: i32) {
+        self.store(value, Ordering::Relaxed);
+    }
+}
+
+/// The buffer over any kind of place.
+#[derive(Debug)]
+struct Banks<P, const N: usize> {
+    first: [P; N],
+    second: [P; N],
+    published: P,
+    storing: P,
+}
+
+impl<P: Place, const N: usize> Banks<P, N> {
+    #[inline]
+    fn read(&self) -> [Word; N] {
+        let bank = if self.published.load() == FIRST {
+            &self.first
+        } else {
+            &self.second
+        };
+        compiler_fence(Ordering::Acquire);
+        bank.each_ref().map(|place| Word(place.load()))
+    }
+
+    #[inline]
+    fn store(&self, words: [Word; N]) {
+        // An interrupted store would go on filling the bank that this one publishes.
+        if self.storing.load() != NO {
+            return;
+        }
+        self.storing.store(YES);
+        compiler_fence(Ordering::SeqCst);
+        let (spare, number) = if self.published.load() == FIRST {
+            (&self.second, SECOND)
+        } else {
+            (&self.first, FIRST)
+        };
+        for (place, word) in spare.iter().zip(words) {
+            place.store(word.0);
         }
         compiler_fence(Ordering::Release);
-        self.published.store(spare, Ordering::Relaxed);
+        self.published.store(number);
+        compiler_fence(Ordering::Release);
+        self.storing.store(NO);
     }
 }

@@ -9,6 +9,7 @@ pub mod arith;
 mod boundary;
 mod double_buffer;
 mod drive;
+mod shared_word;
 mod word;
 
 pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
@@ -16,3 +17,4 @@ pub use double_buffer::DoubleBuffer;
 pub use drive::Drive;
 pub use fixed;
 pub use hexagen_macros::{controller, verify};
+pub use shared_word::SharedWord;

@@ -3,6 +3,8 @@
 //!
 //! Everything comes from the interface and the verified graph, so it cannot differ from the code.
 
+use super::set_point::shared;
+use crate::diagnostics::list;
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
     Cost, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, Word, live_words,
@@ -175,8 +177,6 @@ fn entries(table: &Table) -> String {
 fn memory(sheet: &mut Sheet, program: &Program) {
     let bytes = |words: &[Word]| -> u32 { words.iter().map(|word| word.storage_bits / 8).sum() };
     let state = bytes(&program.states);
-    // Two banks of words and the number of the one in use.
-    let set_point = 2 * bytes(&program.params) + 4;
     let tables: u32 = program
         .tables
         .iter()
@@ -194,13 +194,19 @@ fn memory(sheet: &mut Sheet, program: &Program) {
         "State: {} words in {state} bytes.",
         program.states.len()
     ));
-    sheet.line(&format!(
-        "Set-point: {}, doubled, in {set_point} bytes.",
-        match program.params.len() {
-            1 => "1 word".to_owned(),
-            count => format!("{count} words"),
-        }
-    ));
+    let set_point: Vec<String> = shared(program)
+        .iter()
+        .map(|shared| match shared.words.as_slice() {
+            [(_, only)] => format!("`{}` in 4 bytes", only.name),
+            // Two banks, the number of the one in use and whether the other is being filled.
+            many => {
+                let names: Vec<&str> = many.iter().map(|(_, word)| word.name.as_str()).collect();
+                let bytes = 8 * many.len() + 8;
+                format!("{}, doubled, in {bytes} bytes", list(&names, "and"))
+            }
+        })
+        .collect();
+    sheet.line(&format!("Set-point: {}.", set_point.join("; ")));
     sheet.line(&format!("Tables, in flash: {tables} bytes."));
     sheet.line(&format!(
         "Stack: at most {} words are alive at once in a step (registers included).\n",

@@ -5,6 +5,7 @@
 
 pub mod datasheet;
 pub mod rust;
+mod set_point;
 
 #[cfg(test)]
 mod tests;

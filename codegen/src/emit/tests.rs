@@ -1,8 +1,9 @@
 //! What emitted text says of a drive holds for its program.
 
 use crate::diagnostics::engineering;
+use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::interface::{FormatEntry, Interface};
-use crate::ir::{Interval, Program};
+use crate::ir::{Interval, Program, verify};
 use crate::pipeline::{Generated, generate};
 use crate::spec::{apply_variant, check, parse_toml};
 
@@ -187,5 +188,29 @@ fn errors_of_tables_have_units() {
         let table = tables.find(|known| known.name == table).expect("a table");
         let error = table.doc.last().expect("an error");
         assert!(error.contains(unit), "{error}");
+    }
+}
+
+/// A setter that replaces one of two words that belong together keeps the other.
+#[test]
+fn what_a_setter_leaves_alone_stays() {
+    let Generated {
+        graph, interface, ..
+    } = drive("pdcc");
+    let mut program = graph.program().clone();
+    let other = program.param("other", 3, Interval::WORD, "Another word.");
+    let set_current = &program.setters[0];
+    let value = set_current.next_params[0].1;
+    program.setters[0].next_params.push((other, value));
+    let graph = verify(program).expect("a program");
+    let text = format_rust(&emit_rust(&graph, &interface, &Surface::public("Hub")));
+    for line in [
+        "current: DoubleBuffer<2>,",
+        "self.current.store([j_new, j_new]);",
+        "let [_, other] = self.words();",
+        "self.current.store([j_new, other]);",
+        "let [j, other] = self.current.read();",
+    ] {
+        assert!(text.contains(line), "{line}:\n{text}");
     }
 }

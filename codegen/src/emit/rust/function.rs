@@ -1,11 +1,12 @@
 //! The step and the setters: stage calls in order, then what they leave behind.
 
+use super::super::set_point::shared;
 use super::expression::Scope;
 use super::groups::Shape;
 use super::names::{docs, loaded, number, snake};
 use super::plan::Context;
 use super::stage::{StageFunction, output};
-use crate::ir::{Function, Op, Program, Value, Word};
+use crate::ir::{Function, Node, Op, Program, Value, Word};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -46,7 +47,7 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
         reads_state: false,
     };
     let keep = keep_state(&context, &stages);
-    let words = param_pattern(program, function);
+    let words = param_pattern(program, function, &[]);
     let count = Literal::usize_unsuffixed(program.params.len());
     let inputs = function.inputs.iter().map(|input| {
         let name = snake(&input.name);
@@ -83,13 +84,12 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     }
 }
 
-/// The set-point words by name; an underscore for one that the function does not read.
-fn param_pattern(program: &Program, function: &Function) -> TokenStream {
+/// The set-point words by name; an underscore for one that the function neither reads nor keeps.
+fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> TokenStream {
     let read = |index: usize| {
-        function
-            .nodes
-            .iter()
-            .any(|node| matches!(node.op, Op::Param(id) if id.index() == index))
+        let mut nodes = function.nodes.iter();
+        kept.contains(&index)
+            || nodes.any(|node| matches!(node.op, Op::Param(id) if id.index() == index))
     };
     let names = program.params.iter().enumerate().map(|(index, word)| {
         let name = snake(&word.name);
@@ -166,35 +166,38 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         context: &context,
         reads_state: true,
     };
-    let slots = program.params.iter().enumerate().map(|(index, word)| {
-        let written = function
-            .next_params
-            .iter()
-            .any(|(param, _)| param.index() == index);
-        let name = slot(word);
-        if written { quote!(#name) } else { quote!(_) }
-    });
-    let writes: Vec<TokenStream> = function
-        .next_params
-        .iter()
-        .map(|&(param, value)| {
-            let slot = slot(&program.params[param.index()]);
-            let value = scope.whole(value);
-            quote!(*#slot = #value)
-        })
-        .collect();
-    let update = match writes.as_slice() {
-        [only] => quote!(#only),
-        many => quote!({ #(#many;)* }),
+    let written = |word: usize| {
+        let mut written = function.next_params.iter();
+        written.find(|(param, _)| param.index() == word)
     };
-    let reads = function
-        .nodes
-        .iter()
-        .any(|node| matches!(node.op, Op::Param(_)))
-        .then(|| {
-            let words = param_pattern(program, function);
-            quote!(let #words = self.words.read();)
+    let mut kept = vec![];
+    let mut stores = TokenStream::new();
+    for shared in shared(program) {
+        let words = shared.words;
+        if words.iter().all(|&(word, _)| written(word).is_none()) {
+            continue;
+        }
+        let values = words.iter().map(|&(word, known)| match written(word) {
+            Some(&(_, value)) => scope.whole(value),
+            // Of words that are replaced together, what this setter leaves alone stays.
+            None => {
+                kept.push(word);
+                let name = snake(&known.name);
+                quote!(#name)
+            }
         });
+        let values: Vec<TokenStream> = values.collect();
+        let name = snake(&shared.name);
+        stores.extend(match values.as_slice() {
+            [only] => quote!(self.#name.store(#only);),
+            many => quote!(self.#name.store([#(#many),*]);),
+        });
+    }
+    let reads_words = |node: &Node| matches!(node.op, Op::Param(_));
+    let reads = (!kept.is_empty() || function.nodes.iter().any(reads_words)).then(|| {
+        let words = param_pattern(program, function, &kept);
+        quote!(let #words = self.words();)
+    });
     let Arguments {
         typed,
         names,
@@ -207,7 +210,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             #conversion
             #reads
             #body
-            self.words.update(|[#(#slots),*]| #update);
+            #stores
         }
     };
     let delegate = quote! {
@@ -226,11 +229,6 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         delegate,
         stages,
     }
-}
-
-/// The place of a set-point word in the buffer, besides the value of its name.
-fn slot(word: &Word) -> proc_macro2::Ident {
-    snake(&format!("{}_word", word.name))
 }
 
 /// The arguments of a setter.

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 pub(super) const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 9] = [
+const SHARED: [&str; 10] = [
     "DoubleBuffer",
     "Drive",
     "Fault",
@@ -25,6 +25,7 @@ const SHARED: [&str; 9] = [
     "Legs",
     "Rounding",
     "Sample",
+    "SharedWord",
     "mode",
 ];
 

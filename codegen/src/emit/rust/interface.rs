@@ -1,9 +1,11 @@
 //! The emitted types: the drive, its two halves, its state, and the trait that all drives share.
 
+use super::super::set_point::{Shared, shared};
 use super::expression::initial;
 use super::function::{Setter, state_word};
 use super::imports::PLACEHOLDER;
 use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type, stored};
+use crate::diagnostics::list;
 use crate::interface::{Interface, PublicConstant, PublicValue, Rounding};
 use crate::ir::{Input, Program, Word};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -30,9 +32,17 @@ impl Types<'_> {
             .iter()
             .map(|(name, kind, _)| quote!(#name: #kind));
         let names = measurements.iter().map(|(name, _, _)| name);
-        let initial = self.program.params.iter().map(|word| {
-            let initial = number(i64::from(word.initial));
-            quote!(Word(#initial))
+        let shared = shared(self.program);
+        let initial = shared.iter().map(|shared| {
+            let name = snake(&shared.name);
+            let words = shared.words.iter().map(|(_, word)| {
+                let initial = number(i64::from(word.initial));
+                quote!(Word(#initial))
+            });
+            match shared.words.len() {
+                1 => quote!(#name: SharedWord::new(#(#words)*)),
+                _ => quote!(#name: DoubleBuffer::new([#(#words),*])),
+            }
         });
         quote! {
             #docs
@@ -52,7 +62,7 @@ impl Types<'_> {
                 #[must_use]
                 pub const fn new() -> Self {
                     Self {
-                        set_point: SetPoint { words: DoubleBuffer::new([#(#initial),*]) },
+                        set_point: SetPoint { #(#initial),* },
                         state: State::INITIAL,
                     }
                 }
@@ -90,25 +100,53 @@ impl Types<'_> {
     /// The half that the main program writes.
     pub(super) fn set_point(&self, setters: &[Setter]) -> TokenStream {
         let methods = setters.iter().map(|setter| &setter.method);
+        let shared = shared(self.program);
+        let docs = docs(&set_point_docs(self.program, &shared));
+        let fields = shared.iter().map(|shared| {
+            let field = snake(&shared.name);
+            let meaning = |word: &Word| format!("{} In `{}`.", word.doc, word.interval);
+            if let [(_, only)] = shared.words.as_slice() {
+                let doc = doc(&meaning(only));
+                return quote!(#doc #field: SharedWord);
+            }
+            let lines = shared.words.iter().enumerate().map(|(index, (_, word))| {
+                doc(&format!("{index}. `{}`: {}", word.name, meaning(word)))
+            });
+            let count = Literal::usize_unsuffixed(shared.words.len());
+            quote!(#(#lines)* #field: DoubleBuffer<#count>)
+        });
         let count = Literal::usize_unsuffixed(self.program.params.len());
+        let reads = shared.iter().filter(|shared| shared.words.len() > 1);
+        let reads = reads.map(|shared| {
+            let field = snake(&shared.name);
+            let names = shared.words.iter().map(|(_, word)| snake(&word.name));
+            quote!(let [#(#names),*] = self.#field.read();)
+        });
         let words = self.program.params.iter().enumerate().map(|(index, word)| {
-            doc(&format!(
-                "{index}. `{}`: {} In `{}`.",
-                word.name, word.doc, word.interval
-            ))
+            let name = snake(&word.name);
+            let single = |shared: &&Shared<'_>| matches!(shared.words.as_slice(), [(only, _)] if *only == index);
+            if shared.iter().any(|shared| single(&shared)) {
+                quote!(self.#name.load())
+            } else {
+                quote!(#name)
+            }
         });
         quote! {
-            /// The set-point of the drive, replaced as a whole between two control periods.
-            ///
-            /// One writer; the control loop may interrupt it at any place.
+            #docs
             #[derive(Debug)]
             pub struct SetPoint {
-                #(#words)*
-                words: DoubleBuffer<#count>,
+                #(#fields),*
             }
 
             impl SetPoint {
                 #(#methods)*
+
+                /// All words, as the control loop takes them.
+                #[inline]
+                fn words(&self) -> [Word; #count] {
+                    #(#reads)*
+                    [#(#words),*]
+                }
             }
         }
     }
@@ -139,7 +177,7 @@ impl Types<'_> {
                 #step_docs
                 #[inline]
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
-                    step(self.state, self.set_point.words.read(), #(#words),*)
+                    step(self.state, self.set_point.words(), #(#words),*)
                 }
 
                 #commands
@@ -423,6 +461,44 @@ impl Types<'_> {
         );
         docs(&lines)
     }
+}
+
+/// Who may call which setter from where.
+fn set_point_docs(program: &Program, shared: &[Shared<'_>]) -> Vec<String> {
+    let mut lines = vec![
+        "What other code tells the control loop, which may interrupt it at any place. All on one core.".to_owned(),
+        String::new(),
+    ];
+    let names = |single: bool| {
+        let setters = program.setters.iter().filter(|setter| {
+            if setter.next_params.is_empty() {
+                return false;
+            }
+            let mut written = setter.next_params.iter().map(|(param, _)| param.index());
+            written.all(|param| {
+                let mut groups = shared.iter();
+                groups.any(|shared| {
+                    (shared.words.len() == 1) == single
+                        && shared.words.iter().any(|&(word, _)| word == param)
+                })
+            })
+        });
+        let names: Vec<&str> = setters.map(|setter| setter.name.as_str()).collect();
+        (!names.is_empty()).then(|| list(&names, "and"))
+    };
+    if let Some(names) = names(true) {
+        lines.push(format!(
+            "From anywhere, interrupts included: {names}; the last call wins, and none disturbs another setter."
+        ));
+    }
+    if let Some(names) = names(false) {
+        lines.extend([
+            String::new(),
+            format!("{names} replaces several words as one. A call that interrupts another call of it has no effect. From an"),
+            "interrupt that can interrupt the control loop: at most once per control period.".to_owned(),
+        ]);
+    }
+    lines
 }
 
 /// What both the drive and its control loop let their owner do, besides stepping.

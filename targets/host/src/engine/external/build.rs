@@ -38,7 +38,7 @@ impl From<io::Error> for BuildError {
 }
 
 /// The runtime's sources.
-const RUNTIME: [(&str, &str); 6] = [
+const RUNTIME: [(&str, &str); 7] = [
     ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
     (
         "arith.rs",
@@ -55,6 +55,10 @@ const RUNTIME: [(&str, &str); 6] = [
     (
         "drive.rs",
         include_str!("../../../../../runtime/src/drive.rs"),
+    ),
+    (
+        "shared_word.rs",
+        include_str!("../../../../../runtime/src/shared_word.rs"),
     ),
     (
         "word.rs",
