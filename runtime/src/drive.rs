@@ -1,18 +1,49 @@
-//! The trait that every generated drive implements.
+//! The traits of generated drives: the whole, and the two halves that firmware splits it into.
 
-use crate::{Fault, Format, Legs, Sample};
+use crate::{Fault, Format, Legs, Sample, Status};
 use fixed::types::I16F16;
 
 /// A generated current controller of one motor, inverter and sampling time.
 ///
 /// Generic firmware code holds any drive through this trait; the inherent methods of the emitted
 /// type do the same with exactly the arguments that it needs.
+///
+/// ```
+/// use hexagen::{Drive, DriveLoop, DriveSetPoint, Fault, Legs, Sample};
+/// use hexagen::fixed::types::I16F16;
+///
+/// /// What the PWM interrupt owns.
+/// fn interrupt(control: &mut impl DriveLoop, sample: &Sample) -> Legs {
+///     control.step(sample)
+/// }
+///
+/// /// What the main program does meanwhile.
+/// fn main_program(set_point: &impl DriveSetPoint) -> Result<(), Fault> {
+///     set_point.set_current(I16F16::from_num(5));
+///     match set_point.status().fault {
+///         Fault::None => Ok(()),
+///         fault => Err(fault),
+///     }
+/// }
+///
+/// fn firmware<D: Drive>(drive: &'static mut D) {
+///     let (set_point, mut control) = drive.split();
+///     let legs = interrupt(&mut control, &Sample::default());
+///     let outcome = main_program(set_point);
+/// }
+/// ```
 pub trait Drive {
+    /// The half that the main program shares with the interrupt.
+    type SetPointHalf: DriveSetPoint;
+    /// The half that the control interrupt owns.
+    type LoopHalf<'drive>: DriveLoop
+    where
+        Self: 'drive;
     /// The type's name as written in the macro call.
     const NAME: &'static str;
     /// The normalised specification: TOML, SI units, defaults filled in.
     const SPEC: &'static str;
-    /// The fixed-point format of every named signal and coefficient.
+    /// The fixed-point format of every kind of signals, coefficient and table.
     const FORMATS: &'static [Format];
     /// Names of the state words, in the order of [`Drive::state_word`].
     const STATE_NAMES: &'static [&'static str];
@@ -21,8 +52,64 @@ pub trait Drive {
     fn new() -> Self
     where
         Self: Sized;
-    /// Runs one control period: reads the sample, returns the command for the inverter.
-    fn step(&mut self, sample: &Sample) -> Legs;
+    /// The two halves: an interrupt owns the control loop, the main program the set-point.
+    fn split(&mut self) -> (&Self::SetPointHalf, Self::LoopHalf<'_>);
+    /// The set-point of a drive that is not split.
+    fn set_point(&self) -> &Self::SetPointHalf;
+    /// State word `index` (see [`Drive::STATE_NAMES`]); 0 past the end. For verification.
+    fn state_word(&self, index: usize) -> i32;
+    /// Overwrites state word `index` with a value inside its range. For verification.
+    fn set_state_word(&mut self, index: usize, value: i32);
+
+    /// See [`DriveLoop::step`].
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        self.split().1.step(sample)
+    }
+    /// See [`DriveSetPoint::set_current`].
+    fn set_current(&self, current: I16F16) {
+        self.set_point().set_current(current);
+    }
+    /// See [`DriveSetPoint::set_torque`].
+    fn set_torque(&self, torque: I16F16) {
+        self.set_point().set_torque(torque);
+    }
+    /// See [`DriveSetPoint::set_bus`].
+    fn set_bus(&self, counts: u16) {
+        self.set_point().set_bus(counts);
+    }
+    /// See [`DriveLoop::reset`].
+    fn reset(&mut self) {
+        self.split().1.reset();
+    }
+    /// See [`DriveLoop::calibrate`].
+    fn calibrate(&mut self) {
+        self.split().1.calibrate();
+    }
+    /// See [`DriveLoop::precharge`].
+    fn precharge(&mut self) {
+        self.split().1.precharge();
+    }
+    /// What the drive is doing, and what tripped it.
+    fn status(&self) -> Status {
+        self.set_point().status()
+    }
+    /// Why the drive is tripped, or [`Fault::None`].
+    fn fault(&self) -> Fault {
+        self.status().fault
+    }
+    /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+    fn is_running(&self) -> bool {
+        self.status().is_running()
+    }
+}
+
+/// The half of a drive that the main program shares with the control interrupt.
+///
+/// `set_current` and `set_torque` may be called from anywhere, interrupts included: the last call
+/// wins. A call of `set_bus` that interrupts another one of the same drive has no effect, and from
+/// an interrupt that can interrupt the control loop it may be called once per control period.
+pub trait DriveSetPoint: Sync {
     /// Sets the current set-point in amperes (peak of the quasi-square wave); saturates at the
     /// largest current of the specification.
     fn set_current(&self, current: I16F16);
@@ -30,21 +117,24 @@ pub trait Drive {
     fn set_torque(&self, torque: I16F16);
     /// Tells the bus voltage as an ADC count. Does nothing for drives with `v_bus: fixed`.
     fn set_bus(&self, counts: u16);
-    /// Clears a trip and all control state; keeps calibrated offsets and the set-point, which drives the
-    /// motor at once unless it is zero. Ignored while calibration or pre-charge runs.
+    /// What the drive is doing, and what tripped it: as its control loop last said, which may go on
+    /// meanwhile.
+    fn status(&self) -> Status;
+}
+
+/// The half of a drive that the control interrupt owns.
+pub trait DriveLoop: Send {
+    /// Runs one control period: reads the sample, returns the command for the inverter, publishes
+    /// the status.
+    fn step(&mut self, sample: &Sample) -> Legs;
+    /// Clears a trip and all control state; keeps calibrated offsets and the set-point. Ignored while
+    /// calibrating and pre-charging.
     fn reset(&mut self);
-    /// Starts current-offset calibration: all legs off, the motor at rest. Ignored when tripped. An offset that
-    /// is too far from its nominal value trips the drive with [`Fault::Offset`].
+    /// Starts current-offset calibration: all legs off, the motor at rest. Ignored when tripped.
     fn calibrate(&mut self);
-    /// Starts bootstrap pre-charge: all lower switches on, the motor at rest. Ignored when tripped or
-    /// calibrating, which ends in pre-charge by itself.
+    /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, while calibrating,
+    /// and where the specification has no pre-charge.
     fn precharge(&mut self);
-    /// Why the drive is tripped, or [`Fault::None`].
-    fn fault(&self) -> Fault;
-    /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
-    fn is_running(&self) -> bool;
-    /// State word `index` (see [`Drive::STATE_NAMES`]); 0 past the end. For verification.
-    fn state_word(&self, index: usize) -> i32;
-    /// Overwrites state word `index` with a value inside its range. For verification.
-    fn set_state_word(&mut self, index: usize, value: i32);
+    /// What the drive is doing, and what tripped it.
+    fn status(&self) -> Status;
 }

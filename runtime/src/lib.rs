@@ -10,11 +10,13 @@ mod boundary;
 mod double_buffer;
 mod drive;
 mod shared_word;
+mod status;
 mod word;
 
 pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
 pub use double_buffer::DoubleBuffer;
-pub use drive::Drive;
+pub use drive::{Drive, DriveLoop, DriveSetPoint};
 pub use fixed;
 pub use hexagen_macros::{controller, verify};
 pub use shared_word::SharedWord;
+pub use status::{Mode, Status};

@@ -206,7 +206,10 @@ fn memory(sheet: &mut Sheet, program: &Program) {
             }
         })
         .collect();
-    sheet.line(&format!("Set-point: {}.", set_point.join("; ")));
+    sheet.line(&format!(
+        "Set-point: {}; status in 4 bytes.",
+        set_point.join("; ")
+    ));
     sheet.line(&format!("Tables, in flash: {tables} bytes."));
     sheet.line(&format!(
         "Stack: at most {} words are alive at once in a step (registers included).\n",

@@ -1,7 +1,9 @@
 //! A crate with several motors, held by generic firmware code: what a right macro call gives.
 
 use fixed::types::I16F16;
-use hexagen::{Drive, Fault, LegState, Sample, controller};
+use hexagen::{
+    Drive, DriveLoop, DriveSetPoint, Fault, LegState, Legs, Mode, Sample, Status, controller,
+};
 
 controller! {
     /// Rear hub, from a file beside the crate's Cargo.toml.
@@ -44,6 +46,24 @@ controller! {
     }
 }
 
+controller! {
+    /// Front hub, whose bus voltage is measured.
+    pub FrontHub {
+        motor: "motors/hub.toml",
+        inverter: {
+            bus_voltage: 48 V,
+            v_bus: measured,
+            bus_adc_bits: 12,
+            bus_adc_range: 80 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+        },
+        controller: pdcc,
+    }
+}
+
 /// Made at compile time.
 static REAR: RearHub = RearHub::new();
 
@@ -81,6 +101,92 @@ fn generic_code_holds_any_drive() {
     REAR.set_current(I16F16::from_num(3));
 }
 
+fn sample(hall: u8) -> Sample {
+    Sample {
+        adc_a: 2048,
+        adc_b: 2048,
+        hall,
+        hall_ticks: 0,
+    }
+}
+
+/// What the control interrupt owns, whatever the motor.
+struct Interrupt<L> {
+    control: L,
+    legs: Legs,
+}
+
+impl<L: DriveLoop> Interrupt<L> {
+    fn strikes(&mut self, hall: u8) {
+        self.legs = self.control.step(&sample(hall));
+    }
+}
+
+/// The main program sets the current and sees what the drive is doing while the interrupt owns the
+/// control loop.
+fn halves<D: Drive>() {
+    let mut drive = D::new();
+    let (set_point, mut control) = drive.split();
+    control.precharge();
+    let mut interrupt = Interrupt {
+        control,
+        legs: Legs::OFF,
+    };
+    assert_eq!(set_point.status().mode, Mode::Precharge, "{}", D::NAME);
+    interrupt.strikes(1);
+    assert_eq!(interrupt.legs, Legs::LOW, "{}", D::NAME);
+    (0..100).for_each(|_| interrupt.strikes(1));
+    assert_eq!(set_point.status(), Status::default(), "{}", D::NAME);
+    set_point.set_current(I16F16::from_num(5));
+    set_point.set_bus(2400);
+    (0..8).for_each(|_| interrupt.strikes(1));
+    assert!(set_point.status().is_running(), "{}", D::NAME);
+    assert!(interrupt.legs.state.contains(&LegState::Pulsed));
+    interrupt.strikes(7);
+    let tripped = Status {
+        mode: Mode::Tripped,
+        fault: Fault::Hall,
+    };
+    assert_eq!(set_point.status(), tripped, "{}", D::NAME);
+    assert_eq!(interrupt.control.status(), tripped, "{}", D::NAME);
+    assert_eq!(interrupt.legs, Legs::OFF, "{}", D::NAME);
+    interrupt.control.reset();
+    interrupt.control.calibrate();
+    interrupt.strikes(1);
+    assert_eq!(set_point.status().mode, Mode::Calibrate, "{}", D::NAME);
+    drop(interrupt);
+    assert_eq!(drive.fault(), Fault::None, "{}", D::NAME);
+}
+
+#[test]
+fn generic_firmware_splits_any_drive() {
+    halves::<RearHub>();
+    halves::<FrontHub>();
+    halves::<Steering>();
+    halves::<motors_of_any_name::DriveLoop>();
+}
+
+/// The halves go where firmware has them: the set-point is shared between contexts, the control loop
+/// moves into one.
+#[test]
+fn the_halves_live_in_contexts_of_their_own() {
+    let mut drive = FrontHub::new();
+    let (set_point, mut control) = drive.split();
+    std::thread::scope(|contexts| {
+        contexts.spawn(|| set_point.set_current(I16F16::from_num(5)));
+        contexts.spawn(|| DriveSetPoint::set_bus(set_point, 2400));
+        contexts.spawn(move || control.step(2048, 2048, 1));
+    });
+    // Both arrived: the current asks for voltage, and the lower bus for longer pulses than the nominal.
+    let mut told = |counts| {
+        drive.set_bus(counts);
+        drive.reset();
+        let compare = drive.step(2048, 2048, 1).compare;
+        compare.iter().max().expect("three legs") - compare.iter().min().expect("three legs")
+    };
+    assert!(told(2000) > told(2400) && told(2400) > 0);
+}
+
 #[test]
 fn drives_know_their_motors() {
     assert_eq!(<RearHub as Drive>::NAME, "RearHub");
@@ -112,8 +218,8 @@ mod motors_of_any_name {
     }
 
     drives! {
-        ControlLoop Default DoubleBuffer Drive Fault Format I16F16 LegState Legs Loop Mode Rounding
-        Sample SetPoint State TrackRotorResults Word
+        ControlLoop Default DoubleBuffer Drive DriveLoop DriveSetPoint Fault Format I16F16 LegState Legs
+        Loop LoopHalf Mode Rounding Sample SetPoint SharedWord State Status TrackRotorResults Word
     }
 }
 

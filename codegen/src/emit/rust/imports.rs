@@ -16,9 +16,11 @@ use std::collections::BTreeSet;
 pub(super) const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 10] = [
+const SHARED: [&str; 13] = [
     "DoubleBuffer",
     "Drive",
+    "DriveLoop",
+    "DriveSetPoint",
     "Fault",
     "Format",
     "LegState",
@@ -26,6 +28,7 @@ const SHARED: [&str; 10] = [
     "Rounding",
     "Sample",
     "SharedWord",
+    "Status",
     "mode",
 ];
 

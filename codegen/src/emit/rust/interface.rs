@@ -1,12 +1,11 @@
-//! The emitted types: the drive, its two halves, its state, and the trait that all drives share.
+//! The emitted types: the drive, its control loop and its state.
 
-use super::super::set_point::{Shared, shared};
+use super::super::set_point::shared;
 use super::expression::initial;
 use super::function::{Setter, state_word};
 use super::imports::PLACEHOLDER;
-use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type, stored};
-use crate::diagnostics::list;
-use crate::interface::{Interface, PublicConstant, PublicValue, Rounding};
+use super::names::{doc, docs, number, screaming, snake, storage_type, stored};
+use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::ir::{Input, Program, Word};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -24,7 +23,7 @@ impl Types<'_> {
     pub(super) fn drive(&self, attributes: &TokenStream, setters: &[Setter]) -> TokenStream {
         let name = format_ident!("{PLACEHOLDER}");
         let setters = setters.iter().map(|setter| &setter.delegate);
-        let commands = commands();
+        let commands = commands(&quote!(self.split().1.publish();));
         let docs = docs(&self.interface.doc);
         let constants = self.interface.constants.iter().map(public_constant);
         let measurements = self.measurements();
@@ -62,7 +61,7 @@ impl Types<'_> {
                 #[must_use]
                 pub const fn new() -> Self {
                     Self {
-                        set_point: SetPoint { #(#initial),* },
+                        set_point: SetPoint { #(#initial,)* status: SharedWord::new(Word(0)) },
                         state: State::INITIAL,
                     }
                 }
@@ -97,60 +96,6 @@ impl Types<'_> {
         }
     }
 
-    /// The half that the main program writes.
-    pub(super) fn set_point(&self, setters: &[Setter]) -> TokenStream {
-        let methods = setters.iter().map(|setter| &setter.method);
-        let shared = shared(self.program);
-        let docs = docs(&set_point_docs(self.program, &shared));
-        let fields = shared.iter().map(|shared| {
-            let field = snake(&shared.name);
-            let meaning = |word: &Word| format!("{} In `{}`.", word.doc, word.interval);
-            if let [(_, only)] = shared.words.as_slice() {
-                let doc = doc(&meaning(only));
-                return quote!(#doc #field: SharedWord);
-            }
-            let lines = shared.words.iter().enumerate().map(|(index, (_, word))| {
-                doc(&format!("{index}. `{}`: {}", word.name, meaning(word)))
-            });
-            let count = Literal::usize_unsuffixed(shared.words.len());
-            quote!(#(#lines)* #field: DoubleBuffer<#count>)
-        });
-        let count = Literal::usize_unsuffixed(self.program.params.len());
-        let reads = shared.iter().filter(|shared| shared.words.len() > 1);
-        let reads = reads.map(|shared| {
-            let field = snake(&shared.name);
-            let names = shared.words.iter().map(|(_, word)| snake(&word.name));
-            quote!(let [#(#names),*] = self.#field.read();)
-        });
-        let words = self.program.params.iter().enumerate().map(|(index, word)| {
-            let name = snake(&word.name);
-            let single = |shared: &&Shared<'_>| matches!(shared.words.as_slice(), [(only, _)] if *only == index);
-            if shared.iter().any(|shared| single(&shared)) {
-                quote!(self.#name.load())
-            } else {
-                quote!(#name)
-            }
-        });
-        quote! {
-            #docs
-            #[derive(Debug)]
-            pub struct SetPoint {
-                #(#fields),*
-            }
-
-            impl SetPoint {
-                #(#methods)*
-
-                /// All words, as the control loop takes them.
-                #[inline]
-                fn words(&self) -> [Word; #count] {
-                    #(#reads)*
-                    [#(#words),*]
-                }
-            }
-        }
-    }
-
     /// The half that the control interrupt owns.
     pub(super) fn control_loop(&self) -> TokenStream {
         let measurements = self.measurements();
@@ -164,7 +109,7 @@ impl Types<'_> {
             quote!(#name.into())
         });
         let step_docs = self.step_docs();
-        let commands = commands();
+        let commands = commands(&quote!(self.publish();));
         quote! {
             /// The half of the drive that the control interrupt owns.
             #[derive(Debug)]
@@ -177,10 +122,18 @@ impl Types<'_> {
                 #step_docs
                 #[inline]
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
-                    step(self.state, self.set_point.words(), #(#words),*)
+                    let legs = step(self.state, self.set_point.words(), #(#words),*);
+                    self.publish();
+                    legs
                 }
 
                 #commands
+
+                /// Says what the drive is doing to those who hold the set-point.
+                #[inline]
+                fn publish(&self) {
+                    self.set_point.status.publish(|| self.state.status());
+                }
             }
         }
     }
@@ -261,125 +214,8 @@ impl Types<'_> {
                     #mode
                 }
 
-                fn fault(&self) -> Fault {
-                    Fault::from_word(#fault)
-                }
-
-                fn is_running(&self) -> bool {
-                    self.mode() == mode::RUN
-                }
-            }
-        }
-    }
-
-    /// The trait that all drives share.
-    pub(super) fn drive_trait(&self) -> TokenStream {
-        let name = format_ident!("{PLACEHOLDER}");
-        let name_text = self.name.to_string();
-        let spec = raw_text(&self.interface.spec_toml);
-        let formats = self.interface.formats.iter().map(|entry| {
-            let name = &entry.name;
-            let storage_bits = number(i64::from(entry.storage_bits));
-            let frac_bits = number(i64::from(entry.frac_bits));
-            let rounding = match entry.rounding {
-                Rounding::Floor => quote!(Rounding::Floor),
-                Rounding::RoundHalfUp => quote!(Rounding::RoundHalfUp),
-            };
-            let segments = entry.segments.map(|segments| {
-                let segments = number(i64::from(segments));
-                quote!(.over(#segments))
-            });
-            quote!(Format::new(#name, #storage_bits, #frac_bits, #rounding)#segments)
-        });
-        let words = &self.program.states;
-        let state_names = words.iter().map(|word| &word.name);
-        let reads = words.iter().enumerate().map(|(index, word)| {
-            let index = Literal::usize_unsuffixed(index);
-            let field = snake(&word.name);
-            let value = if word.storage_bits == 16 {
-                quote!(i32::from(self.state.#field))
-            } else {
-                quote!(self.state.#field.0)
-            };
-            quote!(#index => #value)
-        });
-        let writes = words.iter().enumerate().map(|(index, word)| {
-            let index = Literal::usize_unsuffixed(index);
-            let field = snake(&word.name);
-            let value = stored(word, &quote!(Word(value)));
-            quote!(#index => self.state.#field = #value)
-        });
-        let measurements = self.measurements();
-        let sample = measurements.iter().map(|(name, _, _)| quote!(sample.#name));
-        let set_bus = if self.interface.measured_bus {
-            quote! {
-                fn set_bus(&self, counts: u16) {
-                    self.set_point.set_bus(counts);
-                }
-            }
-        } else {
-            quote!(
-                fn set_bus(&self, _counts: u16) {}
-            )
-        };
-        quote! {
-            impl Drive for #name {
-                const NAME: &'static str = #name_text;
-                const SPEC: &'static str = #spec;
-                const FORMATS: &'static [Format] = &[#(#formats),*];
-                const STATE_NAMES: &'static [&'static str] = &[#(#state_names),*];
-
-                fn new() -> Self {
-                    Self::new()
-                }
-
-                #[inline]
-                fn step(&mut self, sample: &Sample) -> Legs {
-                    self.step(#(#sample),*)
-                }
-
-                fn set_current(&self, current: I16F16) {
-                    self.set_current(current);
-                }
-
-                fn set_torque(&self, torque: I16F16) {
-                    self.set_torque(torque);
-                }
-
-                #set_bus
-
-                fn reset(&mut self) {
-                    self.reset();
-                }
-
-                fn calibrate(&mut self) {
-                    self.calibrate();
-                }
-
-                fn precharge(&mut self) {
-                    self.precharge();
-                }
-
-                fn fault(&self) -> Fault {
-                    self.fault()
-                }
-
-                fn is_running(&self) -> bool {
-                    self.is_running()
-                }
-
-                fn state_word(&self, index: usize) -> i32 {
-                    match index {
-                        #(#reads,)*
-                        _ => 0,
-                    }
-                }
-
-                fn set_state_word(&mut self, index: usize, value: i32) {
-                    match index {
-                        #(#writes,)*
-                        _ => {}
-                    }
+                fn status(&self) -> Word {
+                    Status::word(self.mode(), #fault)
                 }
             }
         }
@@ -422,7 +258,7 @@ impl Types<'_> {
     /// What the public `step` takes: name, hardware type, and the step's input of that name. The
     /// hardware's side follows the specification: a captured time comes in even where this
     /// controller makes no use of it.
-    fn measurements(&self) -> Vec<(Ident, TokenStream, Option<&Input>)> {
+    pub(super) fn measurements(&self) -> Vec<(Ident, TokenStream, Option<&Input>)> {
         let inputs = &self.program.step.inputs;
         let input = |name: &str| inputs.iter().find(|input| input.name == name);
         let mut list = vec![
@@ -463,74 +299,47 @@ impl Types<'_> {
     }
 }
 
-/// Who may call which setter from where.
-fn set_point_docs(program: &Program, shared: &[Shared<'_>]) -> Vec<String> {
-    let mut lines = vec![
-        "What other code tells the control loop, which may interrupt it at any place. All on one core.".to_owned(),
-        String::new(),
-    ];
-    let names = |single: bool| {
-        let setters = program.setters.iter().filter(|setter| {
-            if setter.next_params.is_empty() {
-                return false;
-            }
-            let mut written = setter.next_params.iter().map(|(param, _)| param.index());
-            written.all(|param| {
-                let mut groups = shared.iter();
-                groups.any(|shared| {
-                    (shared.words.len() == 1) == single
-                        && shared.words.iter().any(|&(word, _)| word == param)
-                })
-            })
-        });
-        let names: Vec<&str> = setters.map(|setter| setter.name.as_str()).collect();
-        (!names.is_empty()).then(|| list(&names, "and"))
-    };
-    if let Some(names) = names(true) {
-        lines.push(format!(
-            "From anywhere, interrupts included: {names}; the last call wins, and none disturbs another setter."
-        ));
-    }
-    if let Some(names) = names(false) {
-        lines.extend([
-            String::new(),
-            format!("{names} replaces several words as one. A call that interrupts another call of it has no effect. From an"),
-            "interrupt that can interrupt the control loop: at most once per control period.".to_owned(),
-        ]);
-    }
-    lines
-}
-
-/// What both the drive and its control loop let their owner do, besides stepping.
-fn commands() -> TokenStream {
+/// What both the drive and its control loop let their owner do, besides stepping. `publish` says what
+/// the drive is doing.
+fn commands(publish: &TokenStream) -> TokenStream {
     quote! {
-        /// Clears a trip and all control state; keeps calibrated offsets and the set-point.
+        /// Clears a trip and all control state; keeps calibrated offsets and the set-point. Ignored
+        /// while calibrating and pre-charging.
         pub fn reset(&mut self) {
             self.state.reset();
+            #publish
         }
 
         /// Starts current-offset calibration: all legs off, the motor at rest. Ignored
         /// when tripped.
         pub fn calibrate(&mut self) {
             self.state.calibrate();
+            #publish
         }
 
-        /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, and where
-        /// the specification has no pre-charge.
+        /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, while
+        /// calibrating, and where the specification has no pre-charge.
         pub fn precharge(&mut self) {
             self.state.precharge();
+            #publish
+        }
+
+        /// What the drive is doing, and what tripped it.
+        #[must_use]
+        pub fn status(&self) -> Status {
+            Status::from_word(self.state.status())
         }
 
         /// What tripped the drive, or [`Fault::None`].
         #[must_use]
         pub fn fault(&self) -> Fault {
-            self.state.fault()
+            self.status().fault
         }
 
         /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
         #[must_use]
         pub fn is_running(&self) -> bool {
-            self.state.is_running()
+            self.status().is_running()
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The Rust emitter: from a verified graph to a module that reads as if written by hand.
 //!
 //! `plan` says what each stage takes and yields, `stage` makes a function of it, `function`
-//! strings the calls together, `expression` writes operators, `interface` the types around them.
+//! strings the calls together, `expression` writes operators, `interface`, `set_point` and `traits` the
+//! types around them.
 //! The same graph gives the same tokens, whoever asks; nothing here can fail.
 
 mod expression;
@@ -12,7 +13,9 @@ mod imports;
 mod interface;
 mod names;
 mod plan;
+mod set_point;
 mod stage;
+mod traits;
 
 pub use format::{format_rust, rustfmt};
 pub use names::module_name;

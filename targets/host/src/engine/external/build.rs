@@ -38,7 +38,7 @@ impl From<io::Error> for BuildError {
 }
 
 /// The runtime's sources.
-const RUNTIME: [(&str, &str); 7] = [
+const RUNTIME: [(&str, &str); 8] = [
     ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
     (
         "arith.rs",
@@ -59,6 +59,10 @@ const RUNTIME: [(&str, &str); 7] = [
     (
         "shared_word.rs",
         include_str!("../../../../../runtime/src/shared_word.rs"),
+    ),
+    (
+        "status.rs",
+        include_str!("../../../../../runtime/src/status.rs"),
     ),
     (
         "word.rs",
