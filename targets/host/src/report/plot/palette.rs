@@ -1,7 +1,8 @@
 //! Colours of plots, and how the page's dark scheme redraws them.
 //!
-//! Variants use the palette of Okabe and Ito, phases the high-contrast one of Paul Tol; both are
-//! safe for colour-blind readers. The two share no colour, so a line is either a phase or a variant.
+//! Variants use the palette of Okabe and Ito, then three colours of Paul Tol's muted one; phases Tol's
+//! high-contrast one. All are safe for colour-blind readers. Variants and phases share no colour, so a line is
+//! either.
 
 use plotters::style::RGBColor;
 use std::fmt::Write;
@@ -22,7 +23,7 @@ pub const PHASES: [RGBColor; 3] = [
     RGBColor(0xDD, 0xAA, 0x33),
     RGBColor(0xBB, 0x55, 0x66),
 ];
-const VARIANTS: [RGBColor; 8] = [
+const VARIANTS: [RGBColor; 11] = [
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x9E, 0x73),
@@ -31,10 +32,13 @@ const VARIANTS: [RGBColor; 8] = [
     RGBColor(0x56, 0xB4, 0xE9),
     RGBColor(0x7A, 0x5C, 0x3E),
     RGBColor(0x7F, 0x7F, 0x7F),
+    RGBColor(0x33, 0x22, 0x88),
+    RGBColor(0x99, 0x99, 0x33),
+    RGBColor(0x88, 0x22, 0x55),
 ];
 
 /// Colours that the dark scheme replaces; the others read well on both grounds.
-const DARK: [(RGBColor, &str); 11] = [
+const DARK: [(RGBColor, &str); 13] = [
     (INK, "#D7DCE2"),
     (AXIS, "#8B949E"),
     (GRID, "#2D333B"),
@@ -46,6 +50,8 @@ const DARK: [(RGBColor, &str); 11] = [
     (VARIANTS[1], "#F07F35"),
     (VARIANTS[2], "#2FC295"),
     (VARIANTS[6], "#B8946C"),
+    (VARIANTS[8], "#9A8CF0"),
+    (VARIANTS[10], "#CC66A0"),
 ];
 
 /// Colour of the variant at a place in the table; places beyond the palette begin anew.
