@@ -98,8 +98,10 @@ fn check_reach(kind: &str, total: &Report) {
             "{kind}: only {count} steps were {what}"
         );
     }
-    // Start-up is rare by design of the streams.
-    assert!(total.calibrating > 0 && total.precharging > 0, "{total}");
+    // Every drive starts up; some of them with an offset that is refused.
+    let drives = rows_of(kind).len() as u64;
+    assert!(total.calibrations > drives / 2, "{kind}: {total}");
+    assert!(total.precharging > 0, "{kind}: {total}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The bit-for-bit test: a drive and its bit-true model get the same inputs, and every output and
 //! every state word must be equal after every step.
 //!
-//! Three kinds of input take turns: arbitrary words, a crude motor in closed loop, and corner
+//! Each session begins with a calibration; then three kinds of input take turns: arbitrary words, a crude motor in closed loop, and corner
 //! values. A seed fixes the whole run.
 
 mod mismatch;
@@ -88,6 +88,7 @@ pub fn verify_subject<S: Subject>(
             pair.apply(action);
             report.actions += 1;
         }
+        let mode = pair.model.mode();
         match pair.step(sample) {
             Ok(legs) => stimulus.respond(&legs),
             Err(differences) => {
@@ -101,7 +102,7 @@ pub fn verify_subject<S: Subject>(
                 })));
             }
         }
-        report.count(&pair.model);
+        report.count(&pair.model, mode);
     }
     Ok(report)
 }

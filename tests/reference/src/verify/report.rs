@@ -12,6 +12,8 @@ pub struct Report {
     pub running: u64,
     /// Steps with offset calibration under way.
     pub calibrating: u64,
+    /// Calibrations that came to their end with offsets to be believed.
+    pub calibrations: u64,
     /// Steps with bootstrap pre-charge under way.
     pub precharging: u64,
     /// Steps tripped.
@@ -31,10 +33,13 @@ pub struct Report {
 }
 
 impl Report {
-    /// Counts the step that the model has just made.
+    /// Counts the step that the model has just made; `before` is its mode before that.
     #[inline]
-    pub(super) fn count(&mut self, model: &BitTrue) {
+    pub(super) fn count(&mut self, model: &BitTrue, before: Mode) {
         self.steps += 1;
+        let calibrated =
+            before == Mode::Calibrate && matches!(model.mode(), Mode::Precharge | Mode::Run);
+        self.calibrations += u64::from(calibrated);
         match model.mode() {
             Mode::Run => {
                 let seen = model.course();
@@ -56,6 +61,7 @@ impl Report {
         self.steps += other.steps;
         self.running += other.running;
         self.calibrating += other.calibrating;
+        self.calibrations += other.calibrations;
         self.precharging += other.precharging;
         self.tripped += other.tripped;
         self.limited += other.limited;
@@ -73,7 +79,7 @@ impl fmt::Display for Report {
         write!(
             f,
             "{} steps: {:.1} % in control ({:.1} % limited, {:.1} % past reach, {:.1} % commutating, {:.1} % with angle), \
-             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % tripped; {} calls",
+             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % tripped; {} calls, {} calibrations",
             self.steps,
             share(self.running),
             share(self.limited),
@@ -83,7 +89,8 @@ impl fmt::Display for Report {
             share(self.calibrating),
             share(self.precharging),
             share(self.tripped),
-            self.actions
+            self.actions,
+            self.calibrations
         )
     }
 }

@@ -1,7 +1,8 @@
 //! Input streams of the bit-for-bit test, deterministic by seed.
 //!
-//! Streams take turns in blocks; calls (set-points, reset, start-up, jumps to an earlier state)
-//! are strewn in between. A tripped drive is reset soon, so that most steps are in control.
+//! A drive first starts up: its current offsets are calibrated at rest, then it pre-charges. Streams take turns
+//! in blocks from there on; calls (set-points, reset, start-up, jumps to an earlier state) are strewn in between.
+//! A tripped drive is reset soon, so that most steps are in control.
 
 use super::toy_motor::ToyMotor;
 use crate::{Bus, BusSense, Error, Spec};
@@ -11,9 +12,14 @@ use hexagen::{Legs, Sample};
 /// Steps after which another stream may take over.
 const BLOCK: u32 = 512;
 
+/// Steps that start-up may take at most; longer ones are left before their end.
+const START_UP: u32 = 1 << 14;
+
 /// Kind of input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
+    /// Calibration at rest, then pre-charge.
+    StartUp,
     /// Words of any value, most of them within the trip level.
     Arbitrary,
     /// A motor in closed loop.
@@ -73,6 +79,11 @@ pub struct Stimulus {
     i_max_bits: f64,
     t_max_bits: f64,
     startup_steps: u32,
+    /// Steps left of start-up, and the true offsets during it, ADC counts.
+    start_up: u32,
+    true_offset: [i32; 2],
+    nominal_offset: i32,
+    offset_tolerance: i32,
     bus: Option<BusSense>,
 }
 
@@ -101,6 +112,10 @@ impl Stimulus {
             i_max_bits: inverter.max_current * 65_536.0,
             t_max_bits: inverter.max_current * spec.motor.torque_constant * 65_536.0,
             startup_steps: (1 << inverter.calibration_log2) + inverter.precharge_periods,
+            start_up: 0,
+            true_offset: [0; 2],
+            nominal_offset: inverter.adc_offset as i32,
+            offset_tolerance: inverter.offset_tolerance as i32,
             bus: if inverter.bus == Bus::Measured {
                 inverter.bus_sense()?
             } else {
@@ -114,15 +129,35 @@ impl Stimulus {
         self.stream
     }
 
-    /// Lets the motor stand still without current, as for a new drive.
+    /// Lets the motor stand still without current and starts up, as for a new drive. One calibration in a few meets
+    /// an offset at the edge of the tolerance or beyond.
     pub fn restart(&mut self) {
         self.motor.i = [0.0; 2];
         self.pending = Legs::OFF;
+        self.start_up = (self.startup_steps + 2).min(START_UP);
+        let tolerance = self.offset_tolerance;
+        self.true_offset = [0; 2].map(|_: i32| {
+            let distance = match self.random.u8(..4) {
+                0 => tolerance + self.random.i32(-2..=2),
+                1 => tolerance - self.random.i32(0..=tolerance / 8),
+                _ => self.random.i32(0..=tolerance),
+            };
+            let sign = if self.random.bool() { 1 } else { -1 };
+            self.nominal_offset + sign * distance
+        });
     }
 
     /// The next call, if any, and the next sample.
     #[inline]
     pub fn next(&mut self, context: &Context) -> (Option<Action>, Sample) {
+        if self.start_up > 0 && !context.tripped {
+            let is_first = self.stream != Stream::StartUp;
+            self.stream = Stream::StartUp;
+            self.start_up -= 1;
+            self.left = 1;
+            return (is_first.then_some(Action::Calibrate), self.at_rest());
+        }
+        self.start_up = 0;
         self.left -= 1;
         if self.left == 0 {
             self.left = BLOCK;
@@ -142,11 +177,24 @@ impl Stimulus {
             None
         };
         let sample = match self.stream {
+            Stream::StartUp => self.at_rest(),
             Stream::Arbitrary => self.arbitrary(context),
             Stream::Motor => self.motor(context),
             Stream::Corners => self.corners(context),
         };
         (action, sample)
+    }
+
+    /// A motor without current, its converters at their true offsets.
+    fn at_rest(&mut self) -> Sample {
+        let noise = [0; 2].map(|_: i32| self.random.i32(-1..=1));
+        let [adc_a, adc_b] = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
+        Sample {
+            adc_a,
+            adc_b,
+            hall: self.codes[self.sector],
+            hall_ticks: u16::MAX,
+        }
     }
 
     /// Takes the drive's answer to the last sample.

@@ -3,7 +3,7 @@
 use crate::variants::{self, Variant};
 use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
-use hexagen_reference::{BitTrue, Controller, FormatTable};
+use hexagen_reference::{BitTrue, Controller, FormatTable, Spec};
 
 /// The model in the place of a drive, with an optional fault.
 struct Mirror {
@@ -104,6 +104,39 @@ fn covers_every_path() {
             at_least(report.timed, 0.05, "with angle");
             at_least(report.backward, 0.02, "backward");
         }
+    }
+}
+
+#[test]
+fn start_up_is_part_of_every_session() {
+    let variant = &variants::all()[0];
+    let report = run(variant, 5 << 16, None).expect("the model equals itself");
+    assert!(
+        report.calibrations >= 3 && report.precharging > 0,
+        "{report}"
+    );
+}
+
+#[test]
+fn a_fault_in_start_up_is_seen() {
+    let variant = &variants::all()[0];
+    let fresh = BitTrue::new(&variant.spec, &variants::table(variant)).expect("a model");
+    let names = fresh.state_names();
+    for (right, wrong) in [
+        ("calibration_log2 = 8", "calibration_log2 = 7"),
+        ("offset_tolerance = 102", "offset_tolerance = 90"),
+        ("offset_tolerance = 102", "offset_tolerance = 110"),
+        ("precharge_periods = 20", "precharge_periods = 21"),
+    ] {
+        assert!(variant.toml.contains(right), "{right}");
+        let other = Spec::from_toml(&variant.toml.replace(right, wrong)).expect("a specification");
+        let faulty = BitTrue::new(&other, &variants::table(variant)).expect("a model");
+        let mirror = || Mirror {
+            model: faulty.clone(),
+            flip: None,
+        };
+        let found = verify_subject(&variant.toml, variant.formats, &names, mirror, 500_000, 1);
+        assert!(matches!(found, Err(VerifyError::Mismatch(_))), "{wrong}");
     }
 }
 
