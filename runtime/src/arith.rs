@@ -1,9 +1,10 @@
 //! The integer primitives of emitted code, besides the operators of [`Word`].
 //!
-//! Each is exact and branch-free, contains no panic path, no loop and no float, and divides only
-//! where its name says so. Shifts and segments are literals in emitted code. The generator proves that every result fits its word; the `_narrow`
-//! forms are chosen where the product (or dividend) itself fits 32 bits, which saves a 64-bit
-//! product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
+//! Each is exact and branch-free, contains no loop and no float, no panic path from `opt-level = 1`
+//! on, and divides only where its name says so. Shifts and segments are literals in emitted code. The
+//! generator proves that every result fits its word; the `_narrow` forms are chosen where the product
+//! (or dividend) itself fits 32 bits, which saves a 64-bit product on small cores. On a Cortex-M4
+//! `mul_round(c, x, 32)` is one SMMULR.
 #![expect(
     clippy::inline_always,
     reason = "each is a handful of instructions, and firmware is debugged unoptimised, too"
@@ -46,9 +47,11 @@ pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
 #[inline(always)]
 #[must_use]
 pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
-    // The proven lower limit, repeated where the compiler sees it: no division by zero to check.
+    // The proven lower limit, repeated where the compiler sees it: no division by zero to check. Where
+    // it does not look, `checked_div` has no panic path either.
     let denominator = denominator.0.max(1) as u64;
-    let quotient = ((numerator.0 as u32 as u64) << shift) / denominator;
+    let numerator = (numerator.0 as u32 as u64) << shift;
+    let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32 as u64) as i32)
 }
 
@@ -57,7 +60,8 @@ pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Wo
 #[must_use]
 pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
     let denominator = denominator.0.max(1) as u32;
-    let quotient = ((numerator.0 as u32) << shift) / denominator;
+    let numerator = (numerator.0 as u32) << shift;
+    let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32) as i32)
 }
 
@@ -66,7 +70,8 @@ pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32
 #[inline(always)]
 #[must_use]
 pub fn turn_over(ticks: Word) -> Word {
-    Word((u32::MAX / ticks.0.max(2) as u32) as i32)
+    let ticks = ticks.0.max(2) as u32;
+    Word(u32::MAX.checked_div(ticks).unwrap_or(0) as i32)
 }
 
 /// Which of `segments` equal parts of a turn the angle lies in, from 0. `segments` is 1 to 65536.

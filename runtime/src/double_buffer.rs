@@ -100,7 +100,15 @@ impl<P: Place, const N: usize> Banks<P, N> {
             &self.second
         };
         compiler_fence(Ordering::Acquire);
-        bank.each_ref().map(|place| Word(place.load()))
+        let mut words = [Word(0); N];
+        // Without iterators, here and below: they keep checks of their own where code is optimised for
+        // size.
+        let mut index = 0;
+        while let (Some(word), Some(place)) = (words.get_mut(index), bank.get(index)) {
+            *word = Word(place.load());
+            index = index.wrapping_add(1);
+        }
+        words
     }
 
     #[inline]
@@ -116,8 +124,10 @@ impl<P: Place, const N: usize> Banks<P, N> {
         } else {
             (&self.first, FIRST)
         };
-        for (place, word) in spare.iter().zip(words) {
+        let mut index = 0;
+        while let (Some(place), Some(word)) = (spare.get(index), words.get(index)) {
             place.store(word.0);
+            index = index.wrapping_add(1);
         }
         compiler_fence(Ordering::Release);
         self.published.store(number);

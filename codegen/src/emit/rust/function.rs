@@ -177,14 +177,14 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         if words.iter().all(|&(word, _)| written(word).is_none()) {
             continue;
         }
-        let values = words.iter().map(|&(word, known)| match written(word) {
-            Some(&(_, value)) => scope.whole(value),
-            // Of words that are replaced together, what this setter leaves alone stays.
-            None => {
-                kept.push(word);
-                let name = snake(&known.name);
-                quote!(#name)
+        let values = words.iter().map(|&(word, known)| {
+            if let Some(&(_, value)) = written(word) {
+                return scope.whole(value);
             }
+            // Of words that are replaced together, what this setter leaves alone stays.
+            kept.push(word);
+            let name = snake(&known.name);
+            quote!(#name)
         });
         let values: Vec<TokenStream> = values.collect();
         let name = snake(&shared.name);

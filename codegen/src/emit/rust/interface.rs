@@ -38,9 +38,10 @@ impl Types<'_> {
                 let initial = number(i64::from(word.initial));
                 quote!(Word(#initial))
             });
-            match shared.words.len() {
-                1 => quote!(#name: SharedWord::new(#(#words)*)),
-                _ => quote!(#name: DoubleBuffer::new([#(#words),*])),
+            if shared.words.len() == 1 {
+                quote!(#name: SharedWord::new(#(#words)*))
+            } else {
+                quote!(#name: DoubleBuffer::new([#(#words),*]))
             }
         });
         quote! {

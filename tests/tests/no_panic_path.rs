@@ -1,0 +1,164 @@
+//! Optimised emitted code has no panic path, whatever else the compiler checks: the machine code of the
+//! step and of the setters calls nothing of `core::panicking`.
+
+use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_codegen::pipeline::generate;
+use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_tests::library::{PAPER_MOTOR, motor};
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Drives that together call every function of the runtime.
+const CONTROLLERS: [&str; 6] = [
+    "pdcc:saturation=torque_priority",
+    "pdcc:word=16,saturation=keep_angle",
+    "pdcc:modulation=pair,emf=model,reference=proportional,saturation=nearest",
+    "fcs-mpc:candidates=all",
+    "phcc",
+    "pi-pwm",
+];
+
+/// A bus that is measured: all setters, and the double buffer.
+const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"100 V\"\n";
+
+/// The emitted modules of all drives, and functions that call what firmware calls.
+fn firmware() -> String {
+    let toml = motor(PAPER_MOTOR).text;
+    let mut text = "#![no_std]\nuse hexagen::{Legs, Status, fixed::types::I16F16};\n".to_owned();
+    for (number, controller) in CONTROLLERS.iter().enumerate() {
+        let name = format!("Drive{number}");
+        let toml = toml.replace("[inverter]\n", &format!("[inverter]\n{BUS}"));
+        let mut ast = parse_toml(&toml, "motor.toml").expect("TOML");
+        apply_variant(&mut ast, controller).expect("a variant");
+        let (spec, origins) = check(&ast).expect("a specification");
+        let generated = generate(&spec, &origins).expect("a controller");
+        let surface = Surface::public(&name);
+        let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
+        let module = format!("drive_{number}");
+        write!(
+            text,
+            "{}
+            #[unsafe(no_mangle)] pub fn step_{number}(drive: &mut {module}::ControlLoop<'_>, a: u16, b: u16, hall: u8) -> Legs {{ drive.step(a, b, hall) }}
+            #[unsafe(no_mangle)] pub fn restart_{number}(drive: &mut {module}::ControlLoop<'_>) {{ drive.reset(); drive.calibrate(); drive.precharge(); }}
+            #[unsafe(no_mangle)] pub fn set_{number}(main: &{module}::SetPoint, set: I16F16, bus: u16) -> Status {{
+                main.set_current(set); main.set_torque(set); main.set_bus(bus); main.status()
+            }}\n",
+            format_rust(&tokens)
+        )
+        .expect("a string takes all");
+    }
+    text
+}
+
+/// The `fixed` types that emitted code names, as far as it uses them.
+fn fixed() -> String {
+    let mut text = "#![no_std]\npub mod types {\n".to_owned();
+    for frac_bits in 0..32 {
+        let integer_bits = 32 - frac_bits;
+        writeln!(
+            text,
+            "#[derive(Clone, Copy)] pub struct I{integer_bits}F{frac_bits}(i32);
+            impl I{integer_bits}F{frac_bits} {{
+                #[inline(always)] pub const fn from_bits(bits: i32) -> Self {{ Self(bits) }}
+                #[inline(always)] pub const fn to_bits(self) -> i32 {{ self.0 }}
+            }}"
+        )
+        .expect("a string takes all");
+    }
+    text + "}\n"
+}
+
+/// Compiles one crate with all of the compiler's checks.
+fn rustc(folder: &Path, level: &str, name: &str, file: &str, needs: &[&str], emit: &str) {
+    let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    rustc.current_dir(folder).args([
+        "--edition",
+        "2024",
+        "--crate-type",
+        "rlib",
+        "--cap-lints",
+        "allow",
+    ]);
+    let level = format!("opt-level={level}");
+    let flags = [level.as_str(), "overflow-checks=on", "debug-assertions=on"];
+    let flags = flags.iter().flat_map(|flag| ["-C", flag]);
+    rustc
+        .args(flags)
+        .args(["--crate-name", name, file, "-L", "."]);
+    rustc.args(["--emit", emit, "-C", "codegen-units=1"]);
+    for need in needs {
+        rustc.args(["--extern", &format!("{need}=lib{need}.rlib")]);
+    }
+    let output = rustc.output().expect("rustc runs");
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{file}: {messages}");
+}
+
+/// Calls into `core::panicking` in the machine code at an optimisation level, with their functions.
+fn panic_paths(level: &str) -> Vec<String> {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("no_panic_path_{level}"));
+    fs::create_dir_all(&folder).expect("a folder");
+    let runtime = Path::new(env!("CARGO_MANIFEST_DIR")).join("../runtime/src");
+    for entry in fs::read_dir(runtime).expect("the runtime's sources") {
+        let path = entry.expect("a source").path();
+        if path.extension().is_some_and(|ending| ending == "rs") {
+            let text = fs::read_to_string(&path).expect("a source");
+            // The macros run in the compiler; nothing of them is in firmware.
+            let text = text.replace("pub use hexagen_macros::{controller, verify};", "");
+            let name = path.file_name().expect("a name");
+            fs::write(folder.join(name), text).expect("a source");
+        }
+    }
+    fs::write(folder.join("fixed.rs"), fixed()).expect("a source");
+    fs::write(folder.join("firmware.rs"), firmware()).expect("a source");
+    rustc(&folder, level, "fixed", "fixed.rs", &[], "link");
+    rustc(&folder, level, "hexagen", "lib.rs", &["fixed"], "link");
+    rustc(
+        &folder,
+        level,
+        "firmware",
+        "firmware.rs",
+        &["hexagen"],
+        "asm",
+    );
+    let code = fs::read_to_string(folder.join("firmware.s")).expect("machine code");
+    assert!(code.contains("step_5:") && code.contains("set_5:"));
+    let mut function = "";
+    let mut paths = vec![];
+    for line in code.lines() {
+        match line.strip_suffix(':') {
+            Some(label) if !label.starts_with('.') => function = label,
+            _ if line.contains("panic") => paths.push(format!("{function}: {}", line.trim())),
+            _ => {}
+        }
+    }
+    paths
+}
+
+#[test]
+fn optimised_code_has_no_panic_path() {
+    for level in ["1", "2", "3", "s", "z"] {
+        assert_eq!(
+            panic_paths(level),
+            Vec::<String>::new(),
+            "opt-level {level}"
+        );
+    }
+}
+
+/// What the documentation says of it, and the proof that a panic path is seen.
+#[test]
+fn unoptimised_code_has_those_of_core_itself() {
+    let paths = panic_paths("0");
+    assert!(!paths.is_empty());
+    for path in paths {
+        let function = path.split(':').next().unwrap_or_default();
+        // A drive that is no constant is made by a function that the step does not call.
+        assert!(
+            function.contains("4core") || function.contains("3new"),
+            "{path}"
+        );
+    }
+}
