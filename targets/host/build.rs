@@ -2,8 +2,12 @@
 //!
 //! Writes `library.rs`: the texts of all motor files, the modules of the generated drives and a
 //! table of them. Every motor has the controller of its file; the paper's motor also has the
-//! variants of the result table.
+//! variants of the result table and of the paper's experiment.
 
+#[path = "src/commands/reproduce/variants.rs"]
+mod variants;
+
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -99,9 +103,17 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
         }
     }
     if name == PAPER_MOTOR {
-        for options in VARIANTS {
-            for capture in ["timer", "sampled"] {
-                let variant = format!("{options},discretisation=euler,hall_capture={capture}");
+        let of_table = VARIANTS.iter().flat_map(|options| {
+            ["timer", "sampled"]
+                .map(|capture| format!("{options},discretisation=euler,hall_capture={capture}"))
+        });
+        let of_readings = variants::READINGS
+            .iter()
+            .flat_map(|readings| [readings.literal, readings.corrected].map(str::to_owned));
+        // Some readings are rows of the table.
+        let mut known = BTreeSet::new();
+        for variant in of_table.chain(of_readings) {
+            if known.insert(normalised(file, &variant)?) {
                 builder = builder.controller(variant);
             }
         }
@@ -129,4 +141,14 @@ fn has_controller(file: &str, kind: &str) -> Result<bool, Box<dyn Error>> {
     };
     Ok(apply_variant(&mut ast, kind).is_ok()
         && check(&ast).is_ok_and(|(spec, origins)| generate(&spec, &origins).is_ok()))
+}
+
+/// The normalised specification of a variant; its text where it has errors, which the builder reports.
+fn normalised(file: &str, variant: &str) -> Result<String, Box<dyn Error>> {
+    use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+    let checked = parse_toml(&fs::read_to_string(file)?, file).and_then(|mut ast| {
+        apply_variant(&mut ast, variant)?;
+        check(&ast)
+    });
+    Ok(checked.map_or_else(|_| variant.to_owned(), |(spec, _)| spec.to_toml()))
 }

@@ -1,4 +1,4 @@
-//! The `hexagen` program: simulate, limit, verify, compare, generate, report.
+//! The `hexagen` program: simulate, limit, verify, compare, generate, report, reproduce.
 
 use std::process::ExitCode;
 

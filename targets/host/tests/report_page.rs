@@ -1,58 +1,15 @@
 //! The report's page: complete, self-contained, well nested, and the same for the same data.
 
+mod page_support;
 mod report_support;
 
 use hexagen_host::closed_loop::{LimitOutcome, SpeedLimit};
 use hexagen_host::report::{Expected, ExpectedPoint, ReportData, Variant, render, write};
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::LazyLock;
 
 static DATA: LazyLock<ReportData> = LazyLock::new(report_support::data);
 static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA).expect("the page renders"));
-
-/// Elements that have no end tag.
-const VOID: [&str; 3] = ["meta", "br", "wbr"];
-
-/// One tag: name, attributes as written, and whether it opens, closes or stands alone.
-struct Tag<'a> {
-    name: &'a str,
-    attributes: &'a str,
-    end: bool,
-    alone: bool,
-}
-
-/// The tags of a page, in order. Enough for pages without comments and scripts.
-fn tags(page: &str) -> Vec<Tag<'_>> {
-    let mut found = Vec::new();
-    let mut rest = page;
-    while let Some(start) = rest.find('<') {
-        let mut quoted = false;
-        let end = rest[start..]
-            .find(|c| {
-                quoted ^= c == '"';
-                c == '>' && !quoted
-            })
-            .expect("every tag ends")
-            + start;
-        let inside = &rest[start + 1..end];
-        rest = &rest[end + 1..];
-        if inside.starts_with('!') {
-            continue;
-        }
-        let closing = inside.starts_with('/');
-        let body = inside.trim_start_matches('/');
-        let (name, attributes) = body.split_once(char::is_whitespace).unwrap_or((body, ""));
-        let name = name.trim_end_matches('/');
-        found.push(Tag {
-            name,
-            attributes,
-            end: closing,
-            alone: inside.ends_with('/') || VOID.contains(&name),
-        });
-    }
-    found
-}
 
 #[test]
 fn every_section_is_there_and_linked() {
@@ -82,39 +39,10 @@ fn every_section_is_there_and_linked() {
 }
 
 #[test]
-fn page_refers_to_nothing_outside_and_runs_nothing() {
-    for tag in tags(&PAGE) {
-        assert!(
-            !["script", "link", "img", "iframe", "object", "image"].contains(&tag.name),
-            "<{} {}>",
-            tag.name,
-            tag.attributes
-        );
-        assert!(!tag.attributes.contains("://"), "{}", tag.attributes);
-        assert!(!tag.attributes.contains("url("), "{}", tag.attributes);
-        assert!(!tag.attributes.starts_with("on"), "{}", tag.attributes);
-    }
-    let style =
-        &PAGE[PAGE.find("<style>").expect("a style")..PAGE.find("</style>").expect("its end")];
-    assert!(!style.contains("url(") && !style.contains("@import"));
-}
-
-#[test]
-fn tags_nest_and_names_are_unique() {
-    let mut open = Vec::new();
-    let mut ids = BTreeSet::new();
-    for tag in tags(&PAGE) {
-        if tag.end {
-            assert_eq!(open.pop(), Some(tag.name), "end tag");
-        } else if !tag.alone {
-            open.push(tag.name);
-        }
-        if let Some((_, id)) = tag.attributes.split_once("id=\"") {
-            let id = id.split('"').next().unwrap_or_default();
-            assert!(ids.insert(id), "{id} twice");
-        }
-    }
-    assert_eq!(open, [""; 0], "unclosed");
+fn page_is_complete_in_itself_and_well_formed() {
+    page_support::assert_refers_to_nothing_outside(&PAGE);
+    page_support::assert_well_nested(&PAGE);
+    page_support::assert_plots_stay_inside_their_frames(&PAGE);
 }
 
 #[test]
@@ -126,34 +54,6 @@ fn same_data_give_the_same_bytes() {
 fn texts_of_the_data_are_escaped() {
     assert!(PAGE.contains("&lt;text &amp; &quot;quotes&quot;&gt;"));
     assert!(!PAGE.contains("<text & "));
-}
-
-#[test]
-fn plots_hold_finite_numbers_inside_their_frames() {
-    for plot in PAGE.split("<svg class=\"plot\"").skip(1) {
-        let plot = &plot[..plot.find("</svg>").expect("its end")];
-        let numbers = |text: &str| -> Vec<f64> {
-            text.split([' ', ','])
-                .filter_map(|number| number.parse().ok())
-                .collect()
-        };
-        let quoted = |text: &str, name: &str| {
-            let (_, rest) = text.split_once(&format!("{name}=\""))?;
-            Some(rest.split('"').next()?.to_owned())
-        };
-        let frame = numbers(&quoted(plot, "viewBox").expect("a view box"));
-        for element in tags(plot) {
-            let Some(points) = quoted(element.attributes, "points") else {
-                continue;
-            };
-            for point in numbers(&points).chunks(2) {
-                assert!(
-                    (0.0..=frame[2]).contains(&point[0]) && (0.0..=frame[3]).contains(&point[1]),
-                    "{point:?} outside of {frame:?}"
-                );
-            }
-        }
-    }
 }
 
 #[test]

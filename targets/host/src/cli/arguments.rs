@@ -2,7 +2,7 @@
 
 use super::{Failure, quantity, warn};
 use crate::closed_loop::RunOptions;
-use crate::commands::{compare, generate, limit, motors, report, simulate, verify};
+use crate::commands::{compare, generate, limit, motors, report, reproduce, simulate, verify};
 use crate::engine::{
     Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
 };
@@ -43,6 +43,8 @@ pub enum Command {
     Verify(verify::Options),
     /// Compares fixed-point with floating-point accuracy, per controller and word length
     Compare(compare::Options),
+    /// Runs the paper's experiment, judges its claims and writes a page with its figures
+    Reproduce(reproduce::Options),
     /// Lists the motors of the library
     Motors(motors::Options),
 }

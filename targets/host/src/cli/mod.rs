@@ -43,6 +43,7 @@ pub fn run() -> ExitCode {
         Command::Limit(options) => commands::limit::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
         Command::Compare(options) => commands::compare::run(&options),
+        Command::Reproduce(options) => commands::reproduce::run(&options),
         Command::Motors(options) => commands::motors::run(&options),
     };
     match outcome {

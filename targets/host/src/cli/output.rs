@@ -2,7 +2,7 @@
 
 use super::Failure;
 use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{CellAlignment, Table};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -95,6 +95,19 @@ impl TextTable {
     pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
         self.table
             .add_row(cells.into_iter().map(Into::into).collect::<Vec<String>>());
+    }
+
+    /// Breaks the lines of a column's cells where they are longer than so many characters.
+    #[must_use]
+    pub fn wrapped(mut self, column: usize, most: u16) -> Self {
+        // Without a width of the whole nothing is broken; this one leaves the choice to the column.
+        self.table
+            .set_content_arrangement(ContentArrangement::Dynamic)
+            .set_width(u16::MAX);
+        if let Some(column) = self.table.column_mut(column) {
+            column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most)));
+        }
+        self
     }
 
     /// The table as text.

@@ -148,9 +148,12 @@ pub fn record<C: CurrentLoop>(
     Ok(trace)
 }
 
-/// Mean torque over the measured window, mean of the starts, without a record: what the speed
-/// limit's scan needs.
-pub(super) fn mean_torque<C, F>(
+/// Mean torque over the measured window, mean of the starts, in newton metres, without a record:
+/// what the speed limit's scan needs.
+///
+/// # Errors
+/// A plant parameter outside its range.
+pub fn mean_torque<C, F>(
     params: &PlantParams,
     options: &RunOptions,
     make: &F,

@@ -12,7 +12,7 @@ mod trace;
 
 pub use harmonics::amplitudes;
 pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
-pub use measure::{Measurement, RunOptions, STARTS, measure, record};
+pub use measure::{Measurement, RunOptions, STARTS, mean_torque, measure, record};
 pub use merits::{Merits, merits};
 pub use trace::{PeriodRow, Trace, quasi_square};
 

@@ -9,6 +9,7 @@ pub mod generate;
 pub mod limit;
 pub mod motors;
 pub mod report;
+pub mod reproduce;
 pub mod results;
 pub mod simulate;
 pub mod verify;

@@ -21,7 +21,7 @@ pub use verifier::Verifier;
 
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
-use hexagen::{Legs, Sample};
+use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
@@ -91,6 +91,18 @@ impl Engine<'_> {
             Self::Interpreted(drive) => drive.set_bus(counts),
             Self::BitTrue(model) => model.set_bus(counts),
             Self::Ideal(model) => model.set_bus(counts),
+        }
+    }
+}
+
+impl Engine<'_> {
+    /// Why the drive has tripped, [`Fault::None`] while it has not; the ideal model does not tell.
+    pub fn fault(&self) -> Option<Fault> {
+        match self {
+            Self::Compiled(drive) => Some(drive.fault()),
+            Self::Interpreted(drive) => Some(drive.fault()),
+            Self::BitTrue(model) => Some(model.fault()),
+            Self::Ideal(_) => None,
         }
     }
 }

@@ -4,11 +4,13 @@
 //! anything outside the file, and the same bytes for the same data.
 
 mod data;
+mod document;
 mod expected;
 mod harmonics;
 mod highlight;
 mod page;
 mod plot;
+pub mod reproduction;
 mod sections;
 mod window;
 
@@ -51,12 +53,21 @@ pub enum ReportError {
 /// A file that cannot be written, or a plot that cannot be drawn.
 pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
     let html = page::render(data)?;
+    write_page(
+        &html,
+        dir,
+        &format!("report-{}.html", file_stem(&data.name)),
+    )
+}
+
+/// Writes a page beside its place and renames it.
+fn write_page(html: &str, dir: &Path, name: &str) -> Result<PathBuf, ReportError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |source| ReportError::Write { path, source }
     };
     fs::create_dir_all(dir).map_err(failed(dir))?;
-    let path = dir.join(format!("report-{}.html", file_stem(&data.name)));
+    let path = dir.join(name);
     let beside = path.with_extension("html.part");
     fs::write(&beside, html).map_err(failed(&beside))?;
     fs::rename(&beside, &path).map_err(failed(&path))?;

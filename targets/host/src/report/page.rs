@@ -1,20 +1,9 @@
-//! The page around the sections: title, style, contents, order.
+//! The report's page: which sections it has, in which order.
 
+use super::document::{Section, document};
 use super::highlight::Highlighter;
-use super::plot::palette;
 use super::sections::{header, numbers, results, spectra, stability, texts, torque_speed, waves};
 use super::{ReportData, ReportError};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-/// Style sheet, without the rules for plots on a dark ground.
-const STYLE: &str = include_str!("page.css");
-
-/// One section: the name its link has, its title, its content.
-struct Section {
-    id: &'static str,
-    title: &'static str,
-    content: Markup,
-}
 
 /// The whole page.
 ///
@@ -47,40 +36,6 @@ pub fn render(data: &ReportData) -> Result<String, ReportError> {
         section("spec", "Specification", texts::spec(data)),
     ];
     let title = header::title(data);
-    let dark = format!(
-        "@media (prefers-color-scheme: dark) {{\n{}}}",
-        palette::dark_rules()
-    );
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
-            }
-            body {
-                header {
-                    (header::heading(data))
-                    nav {
-                        @for section in &sections {
-                            a href={ "#" (section.id) } { (section.title) }
-                        }
-                    }
-                }
-                main {
-                    @for section in &sections {
-                        section id=(section.id) {
-                            h2 { (section.title) }
-                            (section.content)
-                        }
-                    }
-                }
-                footer { p { "Written by " (data.generator) "." } }
-            }
-        }
-    };
-    Ok(page.into_string())
+    let heading = header::heading(data);
+    Ok(document(&title, &heading, &sections, &data.generator))
 }

@@ -85,7 +85,6 @@ fn cli_text() -> String {
 fn what_does_not_exist_yet_is_not_offered() {
     run(["generate", PAPER, "--emit", "c99"]).assert_bad_input(&["c99"]);
     run(["generate", PAPER, "--emit", "gappa"]).assert_bad_input(&["gappa"]);
-    run(["reproduce"]).assert_bad_input(&["reproduce"]);
     run(["prove"]).assert_bad_input(&["prove"]);
 }
 

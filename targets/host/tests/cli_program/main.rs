@@ -2,6 +2,7 @@
 
 mod generate;
 mod input;
+mod reproduce;
 mod rows;
 mod simulate;
 mod support;

@@ -12,8 +12,9 @@ use hexagen_host::closed_loop::{
 };
 use hexagen_host::plant::{PlantParams, Truth};
 use hexagen_host::report::{
-    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SameWords,
-    SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification, design_table,
+    Capture, DesignRow, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint,
+    SameWords, SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
+    design_table,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -148,8 +149,20 @@ fn generated(variant: &str) -> (Spec, GeneratedTexts, Stability) {
     (spec, texts, stability)
 }
 
-fn variant(label: &str, row: usize, options: Options, with_texts: bool) -> Variant {
-    let design = &design_table()[row];
+/// The rows that the controllers here come nearest to.
+const NEAREST: &str = "PDCC three_phase, nearest, model EMF";
+const PAIR: &str = "PDCC pair, keep_angle, model EMF";
+const PROPORTIONAL: &str = "PDCC three_phase, nearest, proportional, model EMF";
+
+/// The row of the design document's table that has a label.
+fn row_of(label: &str) -> DesignRow {
+    let mut rows = design_table().into_iter();
+    rows.find(|row| row.label == label)
+        .expect("the table has it")
+}
+
+fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Variant {
+    let design = &row_of(row);
     let rough = Options {
         counts: 900.0,
         ..options
@@ -258,7 +271,7 @@ pub fn data() -> ReportData {
         proportional: true,
         ..fine
     };
-    let (spec, ..) = generated(design_table()[0].variant);
+    let (spec, ..) = generated(row_of(NEAREST).variant);
     let mark = |label: &str, percent: f64| SpeedMark {
         label: label.to_owned(),
         percent,
@@ -278,9 +291,14 @@ pub fn data() -> ReportData {
             mismatches: 0,
         }),
         variants: vec![
-            variant("PDCC three_phase, nearest", 0, fine, true),
-            variant("PDCC three_phase, keep_angle", 1, keep_angle, false),
-            variant("PDCC three_phase, proportional", 5, proportional, false),
+            variant("PDCC three_phase, nearest", NEAREST, fine, true),
+            variant("PDCC three_phase, keep_angle", PAIR, keep_angle, false),
+            variant(
+                "PDCC three_phase, proportional",
+                PROPORTIONAL,
+                proportional,
+                false,
+            ),
         ],
         marks: vec![
             mark("PI-PWM (paper)", 67.0),

@@ -2,14 +2,18 @@
 
 mod bars;
 mod canvas;
+mod levels;
 pub mod palette;
+mod plane;
 mod stability;
 mod torque_speed;
 mod trajectory;
 mod wave;
 
 pub use bars::{Bars, Group, bars};
+pub use levels::{Level, levels};
+pub use plane::{Named, Path, Plane, plane};
 pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
-pub use trajectory::trajectory;
+pub use trajectory::{corners, hexagon, means, trajectory};
 pub use wave::{Wave, wave};

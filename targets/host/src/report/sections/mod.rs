@@ -16,7 +16,7 @@ use maud::{Markup, PreEscaped, html};
 use plotters::style::RGBColor;
 
 /// A quantity with the signs of print: ohm and micro as letters.
-fn quantity(value: f64, unit: &str) -> String {
+pub(in crate::report) fn quantity(value: f64, unit: &str) -> String {
     let text = engineering(value, unit);
     let Some((number, unit)) = text.split_once(' ') else {
         return text;
@@ -29,7 +29,7 @@ fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// A number with so many decimals and a true minus sign; a dash where there is none.
-fn number(value: f64, decimals: usize) -> String {
+pub(in crate::report) fn number(value: f64, decimals: usize) -> String {
     if value.is_finite() {
         format!("{value:.decimals$}").replace('-', "\u{2212}")
     } else {
@@ -38,7 +38,7 @@ fn number(value: f64, decimals: usize) -> String {
 }
 
 /// A percentage of ripple: two decimals below 1, one below 100.
-fn ripple(value: f64) -> String {
+pub(in crate::report) fn ripple(value: f64) -> String {
     // Where rounding decides, what is shown counts.
     let decimals = match value.abs() {
         x if x < 0.995 => 2,
@@ -87,7 +87,7 @@ impl TorqueScale {
 }
 
 /// A short line of a colour, dashed or not, as legends and captions show it.
-fn swatch(color: RGBColor, width: f64, (dash, gap): (f64, f64)) -> Markup {
+pub(in crate::report) fn swatch(color: RGBColor, width: f64, (dash, gap): (f64, f64)) -> Markup {
     let color = palette::css(color);
     let dashes = (gap > 0.0).then(|| format!("{dash} {gap}"));
     html! {
@@ -98,7 +98,7 @@ fn swatch(color: RGBColor, width: f64, (dash, gap): (f64, f64)) -> Markup {
 }
 
 /// A filled field of a colour.
-fn field(color: RGBColor, opacity: f64) -> Markup {
+pub(in crate::report) fn field(color: RGBColor, opacity: f64) -> Markup {
     let color = palette::css(color);
     html! {
         svg.swatch viewBox="0 0 30 12" aria-hidden="true" {
@@ -113,7 +113,7 @@ fn variant_swatch(index: usize) -> Markup {
 }
 
 /// A variant's text, which may break after its commas.
-fn variant_text(variant: &str) -> Markup {
+pub(in crate::report) fn variant_text(variant: &str) -> Markup {
     html! {
         code.variant {
             @for part in variant.split_inclusive(',') { (part) wbr; }
@@ -122,7 +122,7 @@ fn variant_text(variant: &str) -> Markup {
 }
 
 /// Legend items in a row.
-fn legend(items: impl IntoIterator<Item = (Markup, String)>) -> Markup {
+pub(in crate::report) fn legend(items: impl IntoIterator<Item = (Markup, String)>) -> Markup {
     html! {
         ul.legend {
             @for (sign, text) in items { li { (sign) span { (text) } } }
@@ -131,7 +131,7 @@ fn legend(items: impl IntoIterator<Item = (Markup, String)>) -> Markup {
 }
 
 /// A plot below its caption.
-fn figure(caption: &Markup, plot: &PreEscaped<String>) -> Markup {
+pub(in crate::report) fn figure(caption: &Markup, plot: &PreEscaped<String>) -> Markup {
     html! { figure { figcaption { (caption) } (plot) } }
 }
 

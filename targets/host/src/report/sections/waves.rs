@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use std::ops::Range;
 
 /// Columns of a plot over one turn.
-const COLUMNS: usize = 480;
+pub(in crate::report) const COLUMNS: usize = 480;
 
 /// A plot of one record of one variant.
 struct Panel<'a> {
@@ -109,7 +109,7 @@ pub fn currents(data: &ReportData) -> Result<Markup, ReportError> {
 }
 
 /// Corners of the ideal quasi-square current of a phase over the plotted turn.
-fn ideal_phase(current: f64, phase: usize) -> Vec<(f64, f64)> {
+pub(in crate::report) fn ideal_phase(current: f64, phase: usize) -> Vec<(f64, f64)> {
     (0..6)
         .flat_map(|sector| {
             let from = FIRST_DEG + 60.0 * f64::from(sector);
@@ -209,7 +209,10 @@ pub fn torque(data: &ReportData) -> Result<Markup, ReportError> {
 }
 
 /// Holds the demand and every signal, with a little room.
-fn torque_range<'a>(demand: f64, signals: impl Iterator<Item = &'a Columns>) -> Range<f64> {
+pub(in crate::report) fn torque_range<'a>(
+    demand: f64,
+    signals: impl Iterator<Item = &'a Columns>,
+) -> Range<f64> {
     let span = 0.1 * demand.abs().max(1e-9);
     let (least, most) = signals
         .flat_map(|columns| columns.least.iter().chain(&columns.most))

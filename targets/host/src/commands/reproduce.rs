@@ -1,0 +1,345 @@
+//! `hexagen reproduce`: the paper's experiment, its claims and a page with its figures.
+//!
+//! Both readings of each controller are generated drives in closed loop on the paper's motor.
+
+mod variants;
+
+pub use variants::{READINGS, Readings};
+
+use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
+use crate::closed_loop::{
+    ClosedLoop, Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
+};
+use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
+use crate::plant::{Plant, PlantParams, Truth};
+use crate::report;
+use crate::report::reproduction::{
+    self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables, Trip,
+    cycles, cycles_text, distance_rms,
+};
+use clap::Args;
+use hexagen::{Fault, Sample};
+use hexagen_codegen::interface::PublicValue;
+use hexagen_codegen::ir::PathCost;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// The motor of the paper.
+const MOTOR: &str = "trivedi-keshri-660w";
+
+/// Where the page goes.
+const FOLDER: &str = "target/hexagen";
+
+/// The two speeds in rpm.
+const SPEEDS: [f64; 2] = [400.0, 1500.0];
+
+/// The demanded torque in newton metres.
+const TORQUE: f64 = 3.3;
+
+/// Options of `reproduce`.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Options {
+    /// Folder of the page [default: target/hexagen]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// How much is run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effort {
+    /// Electrical start angles in radians.
+    pub starts: Vec<f64>,
+    /// Speeds of the torque-speed curves in rpm, ascending.
+    pub curve_rpm: Vec<f64>,
+    /// First speed and step of the search for the limit in rpm.
+    pub limit_rpm: (f64, f64),
+}
+
+impl Effort {
+    /// All three starts, curves from 10 to 130 % of rated speed, limits in steps of 20 rpm.
+    pub fn full() -> Self {
+        Self {
+            starts: STARTS.to_vec(),
+            curve_rpm: (2..=26).map(|k| 100.0 * f64::from(k)).collect(),
+            limit_rpm: (400.0, 20.0),
+        }
+    }
+}
+
+/// Runs everything. A folder that the page is meant for is tried before the long work.
+///
+/// # Errors
+/// Diagnostics of a drive, a plant parameter out of range, or a folder that cannot be written into.
+pub fn collect(effort: &Effort, folder: Option<&Path>) -> Result<Reproduction, Failure> {
+    if let Some(folder) = folder {
+        report::prepare_folder(folder)?;
+    }
+    let motor = SelectedMotor::find(MOTOR, &PlantArguments::default())?;
+    let texts: Vec<&str> = READINGS
+        .iter()
+        .flat_map(|readings| [readings.literal, readings.corrected])
+        .collect();
+    let drives = texts
+        .iter()
+        .map(|variant| motor.prepare(Some(variant)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let per_drive = SPEEDS.len() + effort.curve_rpm.len() + 1;
+    let progress = bar((per_drive * drives.len()) as u64, "simulating");
+    let runs = drives
+        .par_iter()
+        .map(|drive| Bench::of(drive, effort).run(&progress))
+        .collect::<Result<Vec<_>, Failure>>();
+    progress.finish_and_clear();
+    let mut runs = runs?.into_iter();
+    let [Some(fcs_mpc), Some(pdcc), Some(phcc), Some(pi_pwm)] = [(); 4].map(|()| {
+        Some(BothReadings {
+            literal: runs.next()?,
+            corrected: runs.next()?,
+        })
+    }) else {
+        return Err(Failure::Argument("not every reading ran".to_owned()));
+    };
+    let phcc_drives = &drives[2 * Method::Phcc.index()..];
+    let spec = &drives[0].spec;
+    Ok(Reproduction {
+        generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
+        motor: spec.motor.clone(),
+        inverter: spec.inverter.clone(),
+        torque: TORQUE,
+        current: TORQUE / spec.torque_constant(),
+        speeds_rpm: SPEEDS,
+        methods: [fcs_mpc, pdcc, phcc, pi_pwm],
+        tables: SwitchingTables {
+            printed: forward_rows(&phcc_drives[0]),
+            derived: forward_rows(&phcc_drives[1]),
+        },
+    })
+}
+
+/// The forward motoring rows of a drive's switching table; zeros for a drive that has none.
+fn forward_rows(drive: &Prepared) -> [[u8; 8]; 6] {
+    let constants = &drive.generated.interface.constants;
+    let table = constants.iter().find_map(|constant| match &constant.value {
+        PublicValue::Integers { values, .. } if constant.name == "SWITCHING_TABLE" => Some(values),
+        _ => None,
+    });
+    // Eight entries per sector; the first eight are those of an unknown sector.
+    std::array::from_fn(|k| {
+        std::array::from_fn(|entry| {
+            let value = table.and_then(|table| table.get(8 * (k + 1) + entry));
+            value.map_or(0, |&value| value as u8)
+        })
+    })
+}
+
+/// A drive on its plant.
+struct Bench<'p> {
+    drive: &'p Prepared,
+    effort: &'p Effort,
+    plant: PlantParams,
+    set_point: SetPoint,
+}
+
+impl<'p> Bench<'p> {
+    fn of(drive: &'p Prepared, effort: &'p Effort) -> Self {
+        Self {
+            drive,
+            effort,
+            plant: plant_of(&drive.spec),
+            set_point: SetPoint {
+                current: TORQUE / drive.spec.torque_constant(),
+                v_bus: drive.spec.inverter.v_bus,
+            },
+        }
+    }
+
+    /// The rig computes a command in one period and applies it in the next, whatever delay the
+    /// drive reckons with.
+    fn at(&self, rpm: f64) -> RunOptions {
+        RunOptions {
+            delay: Delay::OnePeriod,
+            starts: self.effort.starts.clone(),
+            ..run_of(&self.drive.spec, rpm * TAU / 60.0, TORQUE)
+        }
+    }
+
+    fn run(&self, progress: &ProgressBar) -> Result<Run, Failure> {
+        let (drive, effort) = (self.drive, self.effort);
+        let [low, high] = SPEEDS.map(|rpm| {
+            let point = self.point(rpm);
+            progress.inc(1);
+            point
+        });
+        let points = [low?, high?];
+        let maker = || drive.maker(Model::Fixed, self.set_point);
+        let known = |rpm: f64| points.iter().find(|point| point.rpm == rpm);
+        let mut curve = effort
+            .curve_rpm
+            .par_iter()
+            .map(|&rpm| {
+                let torque = match known(rpm) {
+                    Some(point) => point.merits.mean_torque_nm,
+                    None => mean_torque(&self.plant, &self.at(rpm), &maker())?,
+                };
+                progress.inc(1);
+                Ok((rpm, torque))
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let (from_rpm, step_rpm) = effort.limit_rpm;
+        let scan = LimitOptions {
+            from_rpm,
+            step_rpm,
+            ..LimitOptions::new(drive.rated_rpm(), TORQUE)
+        };
+        let limit = speed_limit_knowing(&self.plant, &self.at(1.0), &scan, &curve, maker())?;
+        progress.inc(1);
+        // The search's speeds lie closer: with them the limit lies on the curve.
+        curve.extend_from_slice(&limit.curve);
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+        curve.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-6);
+        Ok(Run {
+            variant: drive.variant.clone(),
+            engine: drive.engine_kind().name(),
+            points,
+            curve,
+            limit,
+            cost: PathCost::of_function(&drive.generated.graph.program().step),
+        })
+    }
+
+    fn point(&self, rpm: f64) -> Result<Point, Failure> {
+        let run = self.at(rpm);
+        let maker = self.drive.maker(Model::Fixed, self.set_point);
+        let measured = measure(&self.plant, &run, maker)?;
+        let distances = measured.traces.iter();
+        let distance: f64 = distances
+            .map(|trace| distance_rms(trace, run.current))
+            .sum();
+        let hexagon_rms_a = distance / measured.traces.len() as f64;
+        let trip = self.trip(&run)?;
+        let Some(trace) = measured.traces.into_iter().next() else {
+            return Err(Failure::Argument("a run needs a start".to_owned()));
+        };
+        Ok(Point {
+            rpm,
+            merits: measured.merits,
+            hexagon_rms_a,
+            trace,
+            trip,
+        })
+    }
+
+    /// When the first start trips before the measured window.
+    fn trip(&self, run: &RunOptions) -> Result<Option<Trip>, Failure> {
+        let start = run.starts.first().copied().unwrap_or(STARTS[0]);
+        let plant = Plant::new(self.plant.clone(), start, run.omega_m)?;
+        let mut engine = self.drive.engine(Model::Fixed, self.set_point);
+        let mut trip = None;
+        let controller = |sample: &Sample, truth: &Truth| {
+            use crate::closed_loop::CurrentLoop;
+            let legs = engine.step(sample, truth);
+            let why = engine.fault().unwrap_or_default();
+            if trip.is_none() && why != Fault::None {
+                trip = Some(Trip {
+                    after: truth.t,
+                    why,
+                });
+            }
+            legs
+        };
+        let (settling, _) = run.periods(&self.plant);
+        ClosedLoop::new(plant, controller, run.delay).run(settling, &mut ());
+        Ok(trip)
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`collect`], or a page that cannot be written.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
+    let data = collect(&Effort::full(), Some(&folder))?;
+    print_text(&summary(&data));
+    let page = reproduction::write(&data, &folder)?;
+    print_text(&format!("Page: {}", page.display()));
+    Ok(())
+}
+
+/// The claims and Table 5, as text.
+pub fn summary(data: &Reproduction) -> String {
+    let head = format!(
+        "{}: {} Nm, {} V bus, Ts {} us, {}-bit ADC; figures are FCS-MPC / PDCC / PHCC / PI-PWM",
+        data.motor.description,
+        significant(data.torque, 3),
+        significant(data.inverter.v_bus, 3),
+        significant(data.inverter.t_s * 1e6, 3),
+        data.inverter.adc_bits
+    );
+    let claims = data.claims();
+    let header = ["claim", "literal reading", "corrected reading", "verdict"];
+    let mut table = TextTable::new(4, header);
+    for claim in &claims {
+        let [literal, corrected] = claim.figures.clone();
+        table.row([
+            format!("({}) {}", claim.letter, claim.text),
+            literal.replace("; ", "\n"),
+            corrected.replace("; ", "\n"),
+            claim.verdict().text().to_owned(),
+        ]);
+    }
+    let reasons = claims
+        .iter()
+        .map(|claim| format!("({}) {}", claim.letter, claim.reason()));
+    let parts = [table.wrapped(0, 48).render()].into_iter().chain(reasons);
+    let parts: Vec<String> = [head].into_iter().chain(parts).collect();
+    format!("{}\n\n{}", parts.join("\n"), table_5(data))
+}
+
+/// Table 5 and what its times are reckoned from.
+fn table_5(data: &Reproduction) -> String {
+    let [low, high] = data.speeds_rpm;
+    let mut table = TextTable::new(
+        2,
+        [
+            "method".to_owned(),
+            "reading".to_owned(),
+            "operations".to_owned(),
+            "worst".to_owned(),
+            "cycles".to_owned(),
+            "T_c us".to_owned(),
+            "T_f us".to_owned(),
+            format!("f_sw kHz, {low:.0} rpm"),
+            format!("{high:.0} rpm"),
+        ],
+    );
+    for method in Method::ALL {
+        for reading in Reading::ALL {
+            let run = data.methods[method.index()].of(reading);
+            let cycles = cycles(&run.cost.worst);
+            let t_c = 1e6 * f64::from(cycles) / CLOCK_HZ;
+            let switching = run.points.iter().map(|point| match point.trip {
+                None => format!("{:.1}", point.merits.switching_hz / 1e3),
+                Some(_) => "-".to_owned(),
+            });
+            let cells = [
+                method.name().to_owned(),
+                reading.name().to_owned(),
+                run.cost.normal.total().to_string(),
+                run.cost.worst.total().to_string(),
+                cycles.to_string(),
+                format!("{t_c:.1}"),
+                format!("{:.1}", 1e6 * data.inverter.t_s - t_c),
+            ];
+            table.row(cells.into_iter().chain(switching));
+        }
+    }
+    format!(
+        "{}\nOperations of the generator's integer graph, not yet instructions; T_c at worst, {} MHz, {}.",
+        table.render(),
+        CLOCK_HZ / 1e6,
+        cycles_text()
+    )
+}

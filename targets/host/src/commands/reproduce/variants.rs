@@ -1,0 +1,32 @@
+//! The drives that `hexagen reproduce` runs, two readings of each controller of the paper.
+//!
+//! The build script reads this list, too, and compiles them into the program.
+
+/// Readings of one controller of the paper, as variant texts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Readings {
+    /// What the paper prints, as far as a drive can do it.
+    pub literal: &'static str,
+    /// The errata of DESIGN.md section 3 applied.
+    pub corrected: &'static str,
+}
+
+/// The controllers in the paper's order: (a) to (d) of its figures.
+pub const READINGS: [Readings; 4] = [
+    Readings {
+        literal: "fcs-mpc:off_leg=nominal,emf=estimated,delay=0,discretisation=euler,hall_capture=timer",
+        corrected: "fcs-mpc:off_leg=physical,emf=model,discretisation=euler,hall_capture=timer",
+    },
+    Readings {
+        literal: "pdcc:saturation=keep_angle,emf=estimated,discretisation=euler,hall_capture=timer",
+        corrected: "pdcc:saturation=torque_priority,advance=2,emf=model,discretisation=euler,hall_capture=timer",
+    },
+    Readings {
+        literal: "phcc:table=printed,emf=estimated,discretisation=euler,hall_capture=timer",
+        corrected: "phcc:table=derived,emf=model,discretisation=euler,hall_capture=timer",
+    },
+    Readings {
+        literal: "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,discretisation=euler,hall_capture=timer",
+        corrected: "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,discretisation=euler,hall_capture=timer",
+    },
+];

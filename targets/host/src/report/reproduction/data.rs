@@ -1,0 +1,232 @@
+//! What was run, as plain data: four methods, each in two readings of the paper.
+
+use super::experiment::{AtSpeed, Experiment, Figures, Setting};
+use super::timing::{CLOCK_HZ, cycles};
+use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace};
+use hexagen::Fault;
+use hexagen_codegen::ir::PathCost;
+use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+
+/// The paper's methods, (a) to (d) of its figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Finite-control-set model predictive control.
+    FcsMpc,
+    /// Predictive deadbeat current control.
+    Pdcc,
+    /// Predictive hysteresis current control.
+    Phcc,
+    /// PI control with pulse-width modulation.
+    PiPwm,
+}
+
+impl Method {
+    /// All of them, in the paper's order.
+    pub const ALL: [Self; 4] = [Self::FcsMpc, Self::Pdcc, Self::Phcc, Self::PiPwm];
+
+    /// Its name in the paper.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FcsMpc => "FCS-MPC",
+            Self::Pdcc => "PDCC",
+            Self::Phcc => "PHCC",
+            Self::PiPwm => "PI-PWM",
+        }
+    }
+
+    /// Its letter in the paper's figures.
+    pub fn letter(self) -> char {
+        match self {
+            Self::FcsMpc => 'a',
+            Self::Pdcc => 'b',
+            Self::Phcc => 'c',
+            Self::PiPwm => 'd',
+        }
+    }
+
+    /// Its place in [`Self::ALL`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// How the paper is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// As it prints its equations and tables, as far as a drive can do it.
+    Literal,
+    /// With its errata corrected.
+    Corrected,
+}
+
+impl Reading {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Literal, Self::Corrected];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Literal => "literal",
+            Self::Corrected => "corrected",
+        }
+    }
+}
+
+/// Everything on the page.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    /// Program and version: "hexagen 0.1.0".
+    pub generator: String,
+    /// The motor.
+    pub motor: MotorSpec,
+    /// Inverter, timer and sensors.
+    pub inverter: InverterSpec,
+    /// Demanded torque in newton metres.
+    pub torque: f64,
+    /// Amplitude in amperes of the quasi-square reference that gives this torque.
+    pub current: f64,
+    /// The two speeds in rpm, ascending.
+    pub speeds_rpm: [f64; 2],
+    /// The runs, methods in the paper's order.
+    pub methods: [BothReadings; 4],
+    /// Switching tables of PHCC.
+    pub tables: SwitchingTables,
+}
+
+/// The two drives of a method.
+#[derive(Clone, Debug)]
+pub struct BothReadings {
+    /// Literal reading.
+    pub literal: Run,
+    /// Corrected reading.
+    pub corrected: Run,
+}
+
+impl BothReadings {
+    /// The drive of a reading.
+    pub fn of(&self, reading: Reading) -> &Run {
+        match reading {
+            Reading::Literal => &self.literal,
+            Reading::Corrected => &self.corrected,
+        }
+    }
+}
+
+/// One drive and what it did.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The variant text that selects it.
+    pub variant: String,
+    /// What ran it: "compiled" or "interpreter".
+    pub engine: &'static str,
+    /// At each of [`Reproduction::speeds_rpm`].
+    pub points: [Point; 2],
+    /// Mean torque over speed: rpm and newton metres, ascending.
+    pub curve: Vec<(f64, f64)>,
+    /// Constant-torque speed limit.
+    pub limit: SpeedLimit,
+    /// Operations of one step.
+    pub cost: PathCost,
+}
+
+/// What a drive did at one speed.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// Merits over all starts.
+    pub merits: Merits,
+    /// RMS distance of the current from the ideal hexagon's outline in amperes, mean of the starts.
+    pub hexagon_rms_a: f64,
+    /// Record of the first start.
+    pub trace: Trace,
+    /// When the first start tripped, if it did.
+    pub trip: Option<Trip>,
+}
+
+/// The trip of a drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trip {
+    /// Time from the start in seconds.
+    pub after: f64,
+    /// Why.
+    pub why: Fault,
+}
+
+impl Trip {
+    /// What happened, after "the drive trips".
+    pub fn text(&self) -> String {
+        let why = match self.why {
+            Fault::AdcRange => "a current converter reached an end of its range",
+            Fault::OverCurrent => "a phase current exceeded the trip level",
+            Fault::Hall => "the Hall code was none",
+            Fault::Stall => "no Hall edge came",
+            _ => "it says no reason",
+        };
+        format!("{:.2} ms after the start: {why}", 1e3 * self.after)
+    }
+}
+
+/// Forward motoring rows of PHCC's switching table, per sector: vector numbers by
+/// 4 commutating + 2 H_a + H_b. 0 is V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero
+/// vector of the sector's pair with its third leg off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SwitchingTables {
+    /// Derived from the vectors' geometry.
+    pub derived: [[u8; 8]; 6],
+    /// The printed row of sector 1, turned through the sectors.
+    pub printed: [[u8; 8]; 6],
+}
+
+impl Reproduction {
+    /// What the claims are judged under.
+    pub fn setting(&self) -> Setting {
+        Setting {
+            torque: self.torque,
+            current: self.current,
+            speeds_rpm: self.speeds_rpm,
+            period_cycles: CLOCK_HZ * self.inverter.t_s,
+        }
+    }
+
+    /// The figures of a reading that the claims are judged by.
+    pub fn experiment(&self, reading: Reading) -> Experiment {
+        Experiment {
+            setting: self.setting(),
+            methods: [0, 1, 2, 3].map(|method| figures(self.methods[method].of(reading))),
+        }
+    }
+
+    /// The paper's claims, judged.
+    pub fn claims(&self) -> Vec<super::Claim> {
+        super::claims(Reading::ALL.map(|reading| self.experiment(reading)))
+    }
+}
+
+fn figures(run: &Run) -> Figures {
+    let [low, high] = [0, 1].map(|speed| {
+        let Point {
+            merits,
+            hexagon_rms_a,
+            ..
+        } = &run.points[speed];
+        AtSpeed {
+            mean_torque_nm: merits.mean_torque_nm,
+            h6_pct: merits.h6_pct,
+            h12_pct: merits.h12_pct,
+            i5_pct: merits.i5_pct,
+            i7_pct: merits.i7_pct,
+            hexagon_rms_a: *hexagon_rms_a,
+            switching_hz: merits.switching_hz,
+        }
+    });
+    Figures {
+        limit_pct: match run.limit.outcome {
+            LimitOutcome::NeverHeld => 0.0,
+            // Where the scan ended without a limit, its end is a lower bound.
+            LimitOutcome::Found | LimitOutcome::NotReached => run.limit.limit_pct.unwrap_or(0.0),
+        },
+        speeds: [low, high],
+        cycles: cycles(&run.cost.worst),
+    }
+}

@@ -1,0 +1,200 @@
+//! The figures of one reading, and the comparisons that the claims are made of.
+//!
+//! A drive whose mean torque at a speed is below half of the demand has lost its current; its
+//! other figures there tell nothing, and comparisons that need them have no outcome.
+
+use super::data::Method;
+use super::judge::Finding;
+
+/// Fraction of the demand that counts as held; as in the speed limit's search.
+const HELD: f64 = 0.97;
+
+/// Fraction of the demand below which a drive has lost its current.
+const LOST: f64 = 0.5;
+
+/// What all runs have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Demanded torque in newton metres.
+    pub torque: f64,
+    /// Amplitude of the quasi-square reference in amperes.
+    pub current: f64,
+    /// The two speeds in rpm.
+    pub speeds_rpm: [f64; 2],
+    /// Processor cycles in a control period.
+    pub period_cycles: f64,
+}
+
+/// Figures of a drive at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtSpeed {
+    /// Mean torque in newton metres.
+    pub mean_torque_nm: f64,
+    /// 6th harmonic of the torque in percent of its mean.
+    pub h6_pct: f64,
+    /// 12th harmonic, likewise.
+    pub h12_pct: f64,
+    /// 5th harmonic of the phase current in percent of the fundamental.
+    pub i5_pct: f64,
+    /// 7th harmonic, likewise.
+    pub i7_pct: f64,
+    /// RMS distance of the current from the ideal hexagon's outline in amperes.
+    pub hexagon_rms_a: f64,
+    /// Turn-ons per device and second.
+    pub switching_hz: f64,
+}
+
+/// Figures of a drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Constant-torque speed limit in percent of rated speed; 0 where the torque is never held.
+    pub limit_pct: f64,
+    /// At the two speeds.
+    pub speeds: [AtSpeed; 2],
+    /// Cycles of a step at worst.
+    pub cycles: u32,
+}
+
+/// The figures of one reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Experiment {
+    /// What all runs have in common.
+    pub setting: Setting,
+    /// The drives, methods in the paper's order.
+    pub methods: [Figures; 4],
+}
+
+/// A figure of a drive at a speed.
+pub type Of = fn(&AtSpeed) -> f64;
+
+impl Experiment {
+    fn drive(&self, method: Method) -> &Figures {
+        &self.methods[method.index()]
+    }
+
+    fn is_lost(&self, method: Method, speed: usize) -> bool {
+        let torque = self.drive(method).speeds[speed].mean_torque_nm;
+        let share = torque / self.setting.torque;
+        share.is_nan() || share < LOST
+    }
+
+    /// A figure at a speed; none for a drive that has lost its current.
+    pub fn at(&self, method: Method, speed: usize, of: Of) -> Option<f64> {
+        let figure = of(&self.drive(method).speeds[speed]);
+        (!self.is_lost(method, speed) && figure.is_finite()).then_some(figure)
+    }
+
+    /// The speed limit in percent; none for a drive that has lost its current at both speeds.
+    pub fn limit(&self, method: Method) -> Option<f64> {
+        let is_lost = self.is_lost(method, 0) && self.is_lost(method, 1);
+        (!is_lost).then(|| self.drive(method).limit_pct)
+    }
+
+    /// The speed limits of all methods in percent, in the paper's order.
+    pub fn limits(&self) -> String {
+        let texts = Method::ALL.map(|method| match self.limit(method) {
+            Some(limit) if limit <= 0.0 => "never".to_owned(),
+            limit => number(limit, 0),
+        });
+        texts.join(" / ")
+    }
+
+    /// A figure of all methods, in the paper's order: "1.2 / 0.4 / - / 3".
+    pub fn row(&self, figure: impl Fn(Method) -> Option<f64>, decimals: usize) -> String {
+        let texts = Method::ALL.map(|method| number(figure(method), decimals));
+        texts.join(" / ")
+    }
+
+    /// Whether the mean torque falls short of the demand.
+    pub fn misses(&self, method: Method, speed: usize) -> Finding {
+        let Some(torque) = self.at(method, speed, |at| at.mean_torque_nm) else {
+            return lost(method);
+        };
+        Finding {
+            outcome: Some(torque / self.setting.torque < HELD),
+            why: format!("{torque:.2} Nm of {:.2} Nm", self.setting.torque),
+        }
+    }
+
+    /// Whether a method's figure is above those of all others, or below.
+    pub fn is_extreme(
+        &self,
+        which: Extreme,
+        method: Method,
+        others: &[Method],
+        figure: impl Fn(Method) -> Option<f64>,
+        unit: &str,
+    ) -> Finding {
+        let Some(own) = figure(method) else {
+            return lost(method);
+        };
+        let beyond = |other: f64| match which {
+            Extreme::Most => other >= own,
+            Extreme::Least => other <= own,
+        };
+        let mut farthest: Option<(Method, f64)> = None;
+        let mut unknown = None;
+        for &other in others {
+            match figure(other) {
+                None => unknown = Some(other),
+                Some(value) => {
+                    let is_farther = farthest.is_none_or(|(_, most)| match which {
+                        Extreme::Most => value > most,
+                        Extreme::Least => value < most,
+                    });
+                    if is_farther {
+                        farthest = Some((other, value));
+                    }
+                }
+            }
+        }
+        // One drive beyond it refutes the statement whatever the lost ones would have done.
+        let is_refuted = farthest.is_some_and(|(_, value)| beyond(value));
+        if let (false, Some(unknown)) = (is_refuted, unknown) {
+            return lost(unknown);
+        }
+        let against = farthest.map_or_else(String::new, |(other, value)| {
+            format!("; {} {}", other.name(), short(value))
+        });
+        Finding {
+            outcome: Some(!is_refuted),
+            why: format!("{} {}{against} {unit}", method.name(), short(own)),
+        }
+    }
+}
+
+/// Which end of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extreme {
+    /// Above all others.
+    Most,
+    /// Below all others.
+    Least,
+}
+
+/// No outcome, since a drive has lost its current.
+pub fn lost(method: Method) -> Finding {
+    Finding {
+        outcome: None,
+        why: format!("{} has lost its current", method.name()),
+    }
+}
+
+/// A number with so many decimals; a dash where there is none.
+pub fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(
+        || "\u{2013}".to_owned(),
+        |value| format!("{value:.decimals$}"),
+    )
+}
+
+/// Three digits, none after the point from 100 on; zero as it is.
+pub fn short(value: f64) -> String {
+    let decimals = match value.abs() {
+        0.0 => 0,
+        x if x < 9.995 => 2,
+        x if x < 99.95 => 1,
+        _ => 0,
+    };
+    format!("{value:.decimals$}")
+}

@@ -1,0 +1,155 @@
+//! The page of the paper's experiment, from short runs of the real drives.
+
+mod page_support;
+
+use hexagen_host::commands::reproduce::{Effort, READINGS, collect, summary};
+use hexagen_host::report::reproduction::{
+    Method, Reading, Reproduction, Verdict, distance_rms, render, write,
+};
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// One start, a coarse curve and a coarse search for the limit.
+static DATA: LazyLock<Reproduction> = LazyLock::new(|| {
+    let effort = Effort {
+        starts: vec![0.1],
+        curve_rpm: vec![400.0, 1500.0, 2500.0],
+        limit_rpm: (1000.0, 400.0),
+    };
+    collect(&effort, None).expect("every drive runs")
+});
+static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA).expect("the page renders"));
+
+#[test]
+fn tables_and_figures_are_there_in_the_papers_order() {
+    let ids = [
+        "claims",
+        "readings",
+        "table-1",
+        "table-2",
+        "table-3",
+        "figure-2",
+        "figure-3",
+        "figure-4",
+        "figure-9",
+        "figure-12",
+        "figure-14",
+        "figure-15",
+        "figure-16",
+        "figure-17",
+        "figure-18",
+        "figure-19",
+        "figure-20",
+        "table-5",
+    ];
+    let places: Vec<usize> = ids
+        .iter()
+        .map(|id| {
+            assert!(PAGE.contains(&format!("href=\"#{id}\"")), "link to {id}");
+            let section = format!("<section id=\"{id}\">");
+            PAGE.find(&section).unwrap_or_else(|| panic!("no {id}"))
+        })
+        .collect();
+    assert!(places.is_sorted(), "{places:?}");
+    // Figures 2, 3, 4, 9, 12 and 13; per speed seven runs (one drive trips) as current, torque and
+    // trajectory, four spectra and two harmonics; two torque-speed plots.
+    let plots = PAGE.matches("<svg class=\"plot\"").count();
+    assert_eq!(plots, 9 + 2 * (3 * 7 + 4 + 2) + 2);
+}
+
+#[test]
+fn page_is_complete_in_itself_and_well_formed() {
+    page_support::assert_refers_to_nothing_outside(&PAGE);
+    page_support::assert_well_nested(&PAGE);
+    page_support::assert_plots_stay_inside_their_frames(&PAGE);
+    assert_eq!(render(&DATA).expect("the page renders"), *PAGE);
+}
+
+#[test]
+fn readings_are_compiled_drives_of_the_four_methods() {
+    for (method, readings) in Method::ALL.into_iter().zip(READINGS) {
+        let runs = &DATA.methods[method.index()];
+        assert_eq!(runs.literal.variant, readings.literal);
+        assert_eq!(runs.corrected.variant, readings.corrected);
+        let kind = method.name().to_lowercase();
+        for run in Reading::ALL.map(|reading| runs.of(reading)) {
+            assert!(run.variant.starts_with(&kind), "{}", run.variant);
+            assert_eq!(run.engine, "compiled", "{}", run.variant);
+            assert!(run.cost.worst.total() >= run.cost.normal.total());
+        }
+    }
+}
+
+#[test]
+fn printed_switching_row_trips_and_the_derived_one_does_not() {
+    let phcc = &DATA.methods[Method::Phcc.index()];
+    for (literal, corrected) in phcc.literal.points.iter().zip(&phcc.corrected.points) {
+        let trip = literal.trip.expect("it loses its current");
+        assert!(trip.after > 0.0 && literal.merits.mean_torque_nm == 0.0);
+        assert_eq!(corrected.trip, None);
+        assert!((corrected.merits.mean_torque_nm / DATA.torque - 1.0).abs() < 0.1);
+    }
+    assert_eq!(DATA.tables.printed[0], [0, 7, 12, 7, 0, 2, 1, 2]);
+    assert_ne!(DATA.tables.derived[0], DATA.tables.printed[0]);
+    assert!(PAGE.contains("Nothing to show: the drive trips"));
+}
+
+#[test]
+fn experiment_tells_what_the_paper_could_not_have_seen() {
+    let claims = DATA.claims();
+    let letters: String = claims.iter().map(|claim| claim.letter).collect();
+    assert_eq!(letters, "abcdefgh");
+    let verdict = |letter: char| {
+        let claim = claims.iter().find(|claim| claim.letter == letter);
+        claim.expect("it is judged").verdict()
+    };
+    // Vectors held for whole periods switch several times less than pulsed legs, in both readings.
+    assert_eq!(verdict('g'), Verdict::DoesNotHold);
+    assert_eq!(verdict('h'), Verdict::DoesNotHold);
+    // Time remains in all methods, but another one than PDCC takes longest.
+    assert_eq!(verdict('f'), Verdict::InPart);
+    let corrected = &DATA.methods[Method::Pdcc.index()].corrected;
+    for point in &corrected.points {
+        assert!(point.hexagon_rms_a < 0.2, "{}", point.hexagon_rms_a);
+        let again = distance_rms(&point.trace, DATA.current);
+        assert!((again - point.hexagon_rms_a).abs() < 1e-12, "one start");
+        let twice = distance_rms(&point.trace, 2.0 * DATA.current);
+        assert!(twice > 10.0, "{twice} from a hexagon of twice the size");
+    }
+}
+
+#[test]
+fn summary_has_claims_reasons_and_table_5() {
+    let text = summary(&DATA);
+    for claim in DATA.claims() {
+        let reason = format!("({}) {}", claim.letter, claim.reason());
+        assert!(text.contains(&reason), "{reason}");
+        assert!(text.contains(claim.verdict().text()));
+        let [literal, corrected] = &claim.figures;
+        for part in literal.split("; ").chain(corrected.split("; ")) {
+            assert!(text.contains(part), "{part}");
+        }
+    }
+    for word in [
+        "T_c us",
+        "T_f us",
+        "f_sw kHz",
+        "not yet instructions",
+        "72 MHz",
+    ] {
+        assert!(text.contains(word), "{word}");
+    }
+}
+
+/// Also leaves the page where a person can look at it: the folder for files of integration tests.
+#[test]
+fn page_is_written_whole() {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reproduction");
+    let path = write(&DATA, &dir).expect("the page is written");
+    assert_eq!(path, dir.join("reproduction.html"));
+    assert_eq!(std::fs::read_to_string(&path).expect("it is there"), *PAGE);
+    let left = std::fs::read_dir(&dir)
+        .expect("the folder is there")
+        .count();
+    assert_eq!(left, 1);
+}
