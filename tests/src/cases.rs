@@ -35,6 +35,17 @@ pub struct Set {
 }
 
 impl Set {
+    fn tell(self, model: &mut BitTrue) {
+        if let Some(counts) = self.bus {
+            model.set_bus(counts);
+        }
+        if self.is_torque {
+            model.set_torque(self.bits);
+        } else {
+            model.set_current(self.bits);
+        }
+    }
+
     fn apply<S: Subject>(self, subject: &mut S) {
         if let Some(counts) = self.bus {
             subject.set_bus(counts);
@@ -55,6 +66,26 @@ struct Answer {
     words: Vec<i32>,
 }
 
+/// What the model makes of a drive: at the start, and from arbitrary states.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Words of the initial state.
+    initial: Vec<i32>,
+    /// States with the answers to them.
+    pub cases: Vec<Case>,
+}
+
+impl Record {
+    /// The first so many cases alone.
+    #[must_use]
+    pub fn first(&self, cases: usize) -> Self {
+        Self {
+            initial: self.initial.clone(),
+            cases: self.cases.iter().take(cases).cloned().collect(),
+        }
+    }
+}
+
 /// The cases of `steps` steps from arbitrary states of a drive, for any number of subjects: its
 /// specification, its formats and the generated program.
 ///
@@ -66,7 +97,7 @@ pub fn record(
     program: &Program,
     steps: u64,
     seed: u64,
-) -> Result<Vec<Case>, String> {
+) -> Result<Record, String> {
     let spec = Spec::from_toml(spec).map_err(|error| error.to_string())?;
     let formats = FormatTable::new(formats);
     let mut model = BitTrue::new(&spec, &formats).map_err(|error| error.to_string())?;
@@ -77,34 +108,30 @@ pub fn record(
     let mut states = States::new(&spec, count_bits, &names, program, seed);
     let most_current = spec.inverter.max_current * 65_536.0;
     let most_torque = most_current * spec.motor.torque_constant;
+    let mut initial = vec![0; names.len()];
+    model.state_words(&mut initial);
     let mut cases = vec![];
     for number in 0..steps.div_ceil(STEPS_PER_STATE as u64) {
         let is_torque = number % 2 == 1;
         let most = if is_torque { most_torque } else { most_current };
-        let set = Set {
+        let mut set = Set {
             bits: states.set_point(most),
             is_torque,
             bus: (spec.inverter.bus == Bus::Measured).then(|| states.bus_counts()),
         };
-        if let Some(counts) = set.bus {
-            model.set_bus(counts);
-        }
-        if is_torque {
-            model.set_torque(set.bits);
-        } else {
-            model.set_current(set.bits);
-        }
+        set.tell(&mut model);
+        let mut words = vec![0; names.len()];
+        let mut sample = states.fill(&mut words);
+        states.seek_edge(&mut model, &mut words, sample, (&mut set, most as i32));
+        set.tell(&mut model);
+        model.set_state_words(&words);
         let mut case = Case {
             set,
             set_point_words: model.set_point_words().map(|word| word as i32),
-            words: vec![0; names.len()],
-            sample: Sample::default(),
+            words,
+            sample,
             answers: Default::default(),
         };
-        case.sample = states.fill(&mut case.words);
-        states.seek_edge(&mut model, &mut case.words, case.sample);
-        model.set_state_words(&case.words);
-        let mut sample = case.sample;
         for answer in &mut case.answers {
             *answer = Answer {
                 legs: model.step(&sample),
@@ -116,7 +143,7 @@ pub fn record(
         }
         cases.push(case);
     }
-    Ok(cases)
+    Ok(Record { initial, cases })
 }
 
 /// The sample of the next period.
@@ -127,14 +154,21 @@ fn next(sample: Sample) -> Sample {
     }
 }
 
-/// Compares the subject with what was recorded; `names` are those of the state words.
+/// Compares the fresh subject with what was recorded; `names` are those of the state words.
 ///
 /// # Errors
 /// What differs.
-pub fn replay<S: Subject>(cases: &[Case], names: &[&str], mut subject: S) -> Result<(), String> {
+pub fn replay<S: Subject>(record: &Record, names: &[&str], mut subject: S) -> Result<(), String> {
     let mut found = Answer::default();
     found.words.resize(names.len(), 0);
-    for (number, case) in cases.iter().enumerate() {
+    subject.state_words(&mut found.words);
+    if let Some(place) = (0..names.len()).find(|&word| found.words[word] != record.initial[word]) {
+        let (name, is, should) = (names[place], found.words[place], record.initial[place]);
+        return Err(format!(
+            "{name} is {is} at the start, {should} in the model"
+        ));
+    }
+    for (number, case) in record.cases.iter().enumerate() {
         case.set.apply(&mut subject);
         subject.set_state_words(&case.words);
         let mut sample = case.sample;

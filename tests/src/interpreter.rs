@@ -3,12 +3,13 @@
 //! What the emitted type does outside the step (reset, start-up calls, state access) is done here
 //! as the specification of the step says; the step and the setters run in the interpreter.
 
-use crate::cases::{self, Case};
+use crate::cases::{self, Case, Record};
 use hexagen::{Fault, Format, LegState, Legs, Rounding, Sample};
 use hexagen_codegen::interface;
 use hexagen_codegen::ir::{Escape, Machine, Program};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
+use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
@@ -229,7 +230,7 @@ impl Subject for Interpreted<'_> {
 ///
 /// # Errors
 /// When no model can be built.
-pub fn record_states(generated: &Generated, steps: u64, seed: u64) -> Result<Vec<Case>, String> {
+pub fn record_states(generated: &Generated, steps: u64, seed: u64) -> Result<Record, String> {
     let interface = &generated.interface;
     let program = generated.graph.program();
     let formats = formats(&interface.formats);
@@ -246,20 +247,20 @@ pub fn compare_states(
     steps: u64,
     seed: u64,
 ) -> Result<(), String> {
-    let cases = record_states(generated, steps, seed)?;
-    compare_cases(generated, program, &cases)
+    let record = record_states(generated, steps, seed)?;
+    compare_record(generated, program, &record)
 }
 
-/// Compares the interpreted `program` with the recorded cases.
+/// Compares the interpreted `program` with what was recorded.
 ///
 /// # Errors
 /// What differs, or which value left its proven interval.
-pub fn compare_cases(
+pub fn compare_record(
     generated: &Generated,
     program: &Program,
-    cases: &[Case],
+    record: &Record,
 ) -> Result<(), String> {
-    compare_set_points(program, cases)?;
+    compare_set_points(program, &record.cases)?;
     let escaped = RefCell::new(None);
     let subject = Interpreted::new(
         program,
@@ -267,7 +268,7 @@ pub fn compare_cases(
         generated.interface.precharge_periods,
         &escaped,
     );
-    let result = cases::replay(cases, &names(program), subject);
+    let result = cases::replay(record, &names(program), subject);
     match (escaped.into_inner(), result) {
         (Some(place), result) => Err(format!(
             "left its interval: {place}\n{}",
@@ -275,6 +276,61 @@ pub fn compare_cases(
         )),
         (None, result) => result,
     }
+}
+
+/// Compares the words that the setters make of every input: of all set-points up to the greatest and a
+/// few beyond, and of all bus voltages.
+///
+/// # Errors
+/// What differs, or which value left its proven interval.
+pub fn compare_all_set_points(generated: &Generated, program: &Program) -> Result<(), String> {
+    let interface = &generated.interface;
+    let spec = Spec::from_toml(&interface.spec_toml).map_err(|error| error.to_string())?;
+    let table = formats(&interface.formats);
+    let mut model =
+        BitTrue::new(&spec, &FormatTable::new(&table)).map_err(|error| error.to_string())?;
+    let mut machine = Machine::of_program(program);
+    let most = spec.inverter.max_current * 65_536.0;
+    let set_points = [
+        ("set_current", most),
+        ("set_torque", most * spec.motor.torque_constant),
+    ];
+    for (setter, most) in set_points {
+        let most = most as i32 + 2;
+        for bits in (-most..=most).chain([i32::MIN, i32::MAX]) {
+            if setter == "set_current" {
+                model.set_current(bits);
+            } else {
+                model.set_torque(bits);
+            }
+            compare_setter(&mut machine, setter, bits, &model)?;
+        }
+    }
+    if spec.inverter.bus == Bus::Measured {
+        for counts in 0..=u16::MAX {
+            model.set_bus(counts);
+            compare_setter(&mut machine, "set_bus", counts.into(), &model)?;
+        }
+    }
+    Ok(())
+}
+
+/// Calls a setter and compares all set-point words with the model's.
+fn compare_setter(
+    machine: &mut Machine<'_>,
+    setter: &str,
+    word: i32,
+    model: &BitTrue,
+) -> Result<(), String> {
+    let escape = |escape: Escape| format!("left its interval: {}", escape.place);
+    machine.set(setter, &[word]).map_err(escape)?;
+    let expected = model.set_point_words().map(|word| word as i32);
+    // The current's word comes first, then those of a measured bus, as far as they are needed.
+    if machine.params[..] == expected[..machine.params.len()] {
+        return Ok(());
+    }
+    let found = &machine.params;
+    Err(format!("{setter}({word}): {found:?}, {expected:?} (model)"))
 }
 
 /// The words that the setters make, which steps show only through their effects.

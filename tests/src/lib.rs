@@ -4,6 +4,7 @@
 
 pub mod cases;
 pub mod edges;
+pub mod equality;
 pub mod faults;
 pub mod interpreter;
 pub mod library;

@@ -34,6 +34,21 @@ pub const MUTATED: &[Drive] = &[
             ("adc_inverted", "on"),
         ],
     },
+    Drive {
+        kind: "fcs-mpc",
+        motor: "mit-mini-cheetah",
+        settings: &[("off_leg", "nominal"), ("v_bus", "measured")],
+    },
+    Drive {
+        kind: "phcc",
+        motor: "trivedi-keshri-660w",
+        settings: &[("start_up", "brief")],
+    },
+    Drive {
+        kind: "pi-pwm",
+        motor: "velineon-3500",
+        settings: &[("saturation", "nearest"), ("word", "16")],
+    },
 ];
 
 /// A mutated module.

@@ -5,7 +5,9 @@
 //! own constants and their neighbours, so that comparisons are met at equality. Half of the states
 //! is moved to an edge: to one side of where the step's result jumps.
 
+use crate::cases::Set;
 use crate::edges::{self, Watched};
+use crate::equality::{Comparisons, seek_zero};
 use fastrand::Rng;
 use hexagen::Sample;
 use hexagen_codegen::ir::Program;
@@ -20,6 +22,9 @@ pub struct States<'a> {
     ranges: Vec<(i32, i32)>,
     /// Constants of the program.
     constants: Vec<i32>,
+    comparisons: Comparisons,
+    /// Sum of calibration samples at the nominal offset, and how far from it a sum may be.
+    calibration: [i64; 2],
     count_bits: u32,
     adc_max: i64,
     inverted: bool,
@@ -54,6 +59,12 @@ impl<'a> States<'a> {
                 .map(|word| (word.interval.low as i32, word.interval.high as i32))
                 .collect(),
             constants: constants.map(|constant| constant.raw).collect(),
+            comparisons: Comparisons::of(program),
+            calibration: ["calibration_sum_nominal", "calibration_sum_tolerance"].map(|name| {
+                let mut constants = program.constants.iter();
+                let found = constants.find(|constant| constant.name == name);
+                found.map_or(0, |constant| constant.raw.into())
+            }),
             count_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
             inverted: inverter.adc_gain < 0.0,
@@ -171,6 +182,7 @@ impl<'a> States<'a> {
             _ => {}
         }
         self.respect_invariants(words);
+        self.end_calibration(words, sample);
         sample
     }
 
@@ -370,6 +382,36 @@ impl<'a> States<'a> {
         }
     }
 
+    /// The last samples of most calibrations make sums that are just good enough, or just not.
+    fn end_calibration(&mut self, words: &mut [i32], sample: Sample) {
+        let places = ["mode", "countdown", "sum_a", "sum_b"].map(|name| self.place(name));
+        let [Some(mode), Some(countdown), sum_a, sum_b] = places else {
+            return;
+        };
+        if words[mode] != 1 || self.random.u8(..4) == 0 {
+            return;
+        }
+        words[countdown] = self.random.i32(0..3);
+        let [nominal, tolerance] = self.calibration;
+        for (place, count) in [(sum_a, sample.adc_a), (sum_b, sample.adc_b)] {
+            let distance = match self.random.u8(..4) {
+                0 => tolerance + self.random.i64(-1..=1),
+                _ => self.random.i64(0..=tolerance),
+            };
+            let sum = nominal
+                + if self.random.bool() {
+                    distance
+                } else {
+                    -distance
+                };
+            if let Some(place) = place {
+                let (low, high) = self.ranges[place];
+                let before = sum - i64::from(count);
+                words[place] = before.clamp(low.into(), high.into()) as i32;
+            }
+        }
+    }
+
     /// Whether a word has many values, and the invariants leave it free.
     fn is_free(&self, index: usize, word: i32) -> bool {
         let (least, most) = self.ranges[index];
@@ -391,14 +433,61 @@ impl<'a> States<'a> {
         i64::from(most) - i64::from(least) >= 1 << 10 && !bound.contains(&name) && !is_zero
     }
 
-    /// Moves one word of half of the states to where what is watched changes, on either side of it.
-    pub fn seek_edge(&mut self, model: &mut BitTrue, words: &mut [i32], sample: Sample) {
-        if self.random.bool() {
+    fn free(&self, words: &[i32]) -> Vec<usize> {
+        let is_free = |&index: &usize| self.is_free(index, words[index]);
+        (0..words.len()).filter(is_free).collect()
+    }
+
+    /// Moves up to three words to where a comparison of the program meets equality, or next to it.
+    /// The set-point is one of these words.
+    fn seek_equality(&mut self, words: &mut [i32], sample: Sample, (set, most): (&mut Set, i32)) {
+        if self.comparisons.is_empty() {
             return;
         }
-        let free: Vec<usize> = (0..words.len())
-            .filter(|&index| self.is_free(index, words[index]))
-            .collect();
+        let comparison = self.random.usize(..self.comparisons.len());
+        let mut free = self.free(words);
+        free.push(words.len());
+        let mut probe = self.comparisons.probe(&sample, *set);
+        let mut all = [&[set.bits], &*words].concat();
+        for _ in 0..3 {
+            // The set-point is before the words of the state.
+            let state = free[self.random.usize(..free.len())];
+            let (place, (least, greatest)) = match self.ranges.get(state) {
+                Some(range) => (state + 1, *range),
+                None => (0, (-most, most)),
+            };
+            let mut moved = all.clone();
+            let found = seek_zero(all[place], (least, greatest), |word| {
+                moved[place] = word;
+                probe.difference(comparison, &moved)
+            });
+            all[place] = found.unwrap_or(all[place]);
+            if probe.difference(comparison, &all) == Some(0) {
+                if self.random.u8(..4) == 0 {
+                    all[place] = (all[place] + self.random.i32(-1..=1)).clamp(least, greatest);
+                }
+                break;
+            }
+        }
+        set.bits = all[0];
+        words.copy_from_slice(&all[1..]);
+    }
+
+    /// Moves half of the states to an edge: a quarter to where a comparison meets equality, and one word of
+    /// another quarter to where what is watched changes, on either side of it.
+    pub fn seek_edge(
+        &mut self,
+        model: &mut BitTrue,
+        words: &mut [i32],
+        sample: Sample,
+        set_point: (&mut Set, i32),
+    ) {
+        match self.random.u8(..4) {
+            0 | 1 => return,
+            2 => return self.seek_equality(words, sample, set_point),
+            _ => {}
+        }
+        let free = self.free(words);
         let mut index = free[self.random.usize(..free.len())];
         let watched = match self.random.u8(..10) {
             0..=2 => Watched::Compare(self.random.usize(..3)),

@@ -1,6 +1,6 @@
 //! The interpreted IR computes what the bit-true model computes, on every output and state bit.
 
-use hexagen_tests::interpreter::{compare, compare_states};
+use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, generate_toml, kinds};
 use rayon::prelude::*;
@@ -103,6 +103,7 @@ fn default_drive_of_the_paper_motor() {
         println!("{}: {report}", kind.name);
         compare_states(&generated, program, DEFAULT_STEPS, 1)
             .unwrap_or_else(|what| panic!("{what}"));
+        compare_all_set_points(&generated, program).unwrap_or_else(|what| panic!("{what}"));
     }
 }
 

@@ -1,35 +1,28 @@
 //! Planted faults that change no output and no state, each with its reason.
 
-const PAPER: &str = "pdcc trivedi-keshri-660w";
-const HOVERBOARD: &str = "pdcc hoverboard-hub";
-const ESTUN: &str = "pdcc estun-emj-04apb22";
-const TEKNIC: &str = "pdcc teknic-m2310p";
-
-/// Faults without effect for the same reason: all of `what` at all of `places`.
-pub struct Equivalent {
-    pub because: &'static str,
-    pub drives: &'static [&'static str],
-    faults: &'static [Faults],
-}
-
-/// Places and what is wrong at each of them.
-type Faults = (&'static [&'static str], &'static [&'static str]);
-
-impl Equivalent {
-    /// Place and what is wrong there.
-    pub fn faults(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        self.faults.iter().flat_map(|(places, whats)| {
-            let pairs = |place| whats.iter().map(move |what| (place, *what));
-            places.iter().flat_map(move |place| pairs(*place))
-        })
-    }
-}
+use crate::unnoticed::{
+    ESTUN, FCS_ESTUN, FCS_HOVERBOARD, FCS_PAPER, FCS_TEKNIC, HOVERBOARD, PAPER, PHCC_ESTUN,
+    PHCC_PAPER, PI_ANAHEIM, PI_TEKNIC, TEKNIC, Unnoticed,
+};
 
 /// All of them.
-pub const EQUIVALENT: &[Equivalent] = &[
-    Equivalent {
+pub const EQUIVALENT: &[Unnoticed] = &[
+    Unnoticed {
         because: "a sum of full-scale samples is the limit itself",
-        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
         faults: &[
             (&["calibration_sum_max"], &["one more"]),
             (
@@ -41,32 +34,96 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
-        because: "a sum of full-scale samples is the limit itself, and this bit makes it greater",
+    Unnoticed {
+        because: "a sum of full-scale samples is the limit itself",
         drives: &[PAPER],
         faults: &[(&["calibration_sum_max"], &["bit 6"])],
     },
-    Equivalent {
+    Unnoticed {
+        because: "a distance is the same from either end",
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
+        faults: &[(
+            &["advance_sequence: in offset_is_bad"],
+            &["operands swapped", "operands swapped (3)"],
+        )],
+    },
+    Unnoticed {
         because: "a drive in control takes the sequence's branch without effect",
-        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
         faults: &[(&["detect_faults: in sequencing"], &["-1 for 0"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "without stall time-out there is no fourth fault to tell",
-        drives: &[PAPER, ESTUN, TEKNIC],
-        faults: &[(&["latch_fault: in fault_latched"], &["3 for 4", "5 for 4"])],
+        drives: &[
+            PAPER,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
+        faults: &[(&["latch_fault: in fault_latched"], &["5 for 4", "3 for 4"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "only the magnitude of this current is used",
-        drives: &[PAPER, ESTUN],
+        drives: &[PAPER, ESTUN, PI_TEKNIC, PI_ANAHEIM],
         faults: &[(&["measure_currents: i_c"], &["sign lost"])],
     },
-    Equivalent {
+    Unnoticed {
+        because: "only the magnitude of this current is used",
+        drives: &[HOVERBOARD, TEKNIC, FCS_PAPER, PHCC_PAPER],
+        faults: &[(&["meet_emf: i_c_prev"], &["sign lost"])],
+    },
+    Unnoticed {
         because: "every leg word but 0 and 1 is off",
-        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
         faults: &[(&["rest: in leg_resting"], &["3 for 2 (2)"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "every leg word but 0 and 1 is off",
         drives: &[HOVERBOARD, TEKNIC],
         faults: &[(
@@ -78,33 +135,93 @@ pub const EQUIVALENT: &[Equivalent] = &[
             &["3 for 2"],
         )],
     },
-    Equivalent {
+    Unnoticed {
+        because: "every leg word but 0 and 1 is off",
+        drives: &[
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+        ],
+        faults: &[(
+            &[
+                "vector_leg_a[7]",
+                "vector_leg_a[10]",
+                "vector_leg_b[9]",
+                "vector_leg_b[12]",
+                "vector_leg_c[8]",
+                "vector_leg_c[11]",
+            ],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
+        because: "every leg word but 0 and 1 is off",
+        drives: &[FCS_PAPER, FCS_TEKNIC, PHCC_PAPER, PHCC_ESTUN],
+        faults: &[(
+            &["vector_leg_a[13]", "vector_leg_b[14]", "vector_leg_c[15]"],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: &[PAPER, HOVERBOARD, TEKNIC],
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+            PI_TEKNIC,
+            PI_ANAHEIM,
+        ],
         faults: &[(&["corner_a[0]", "corner_b[0]"], &["one more"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: &[HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[
+            HOVERBOARD,
+            ESTUN,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+        ],
         faults: &[(&["next_sector[0]"], &["one more"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: &[HOVERBOARD, ESTUN],
+        drives: &[HOVERBOARD, ESTUN, FCS_HOVERBOARD],
         faults: &[(&["sector_start[0]"], &["one more"])],
     },
-    Equivalent {
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[
+            HOVERBOARD,
+            TEKNIC,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+        ],
+        faults: &[(&["off_phase[0]", "outgoing_sign[0]"], &["one more"])],
+    },
+    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
         drives: &[HOVERBOARD, TEKNIC],
         faults: &[
             (
-                &[
-                    "off_phase[0]",
-                    "outgoing_sign[0]",
-                    "pair_sign_a[0]",
-                    "pair_sign_b[0]",
-                    "pair_sign_c[0]",
-                ],
+                &["pair_sign_a[0]", "pair_sign_b[0]", "pair_sign_c[0]"],
                 &["one more"],
             ),
             (
@@ -113,28 +230,116 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[FCS_PAPER, FCS_TEKNIC],
+        faults: &[
+            (&["zero_vector[0]"], &["one more"]),
+            (&["nearest_pair: in vector"], &["-1 for 0", "1 for 0 (2)"]),
+        ],
+    },
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(&["nearest_pair: in vector"], &["-1 for 0 (2)"])],
+    },
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
+        faults: &[(
+            &["nearest_pair: in vector"],
+            &["1 for 0 (3)", "-1 for 0 (3)"],
+        )],
+    },
+    Unnoticed {
+        because: "there is neither a sector 0, but before the first valid Hall code, which trips, nor a seventh",
+        drives: &[PHCC_PAPER, PHCC_ESTUN],
+        faults: &[(
+            &[
+                "switching[0]",
+                "switching[1]",
+                "switching[2]",
+                "switching[3]",
+                "switching[4]",
+                "switching[5]",
+                "switching[6]",
+                "switching[7]",
+                "switching[56]",
+                "switching[57]",
+                "switching[58]",
+                "switching[59]",
+                "switching[60]",
+                "switching[61]",
+                "switching[62]",
+                "switching[63]",
+                "switching[64]",
+                "switching[65]",
+                "switching[66]",
+                "switching[67]",
+                "switching[68]",
+                "switching[69]",
+                "switching[70]",
+                "switching[71]",
+                "switching[120]",
+                "switching[121]",
+                "switching[122]",
+                "switching[123]",
+                "switching[124]",
+                "switching[125]",
+                "switching[126]",
+                "switching[127]",
+                "switching[128]",
+                "switching[129]",
+                "switching[130]",
+                "switching[131]",
+                "switching[132]",
+                "switching[133]",
+                "switching[134]",
+                "switching[135]",
+                "switching[184]",
+                "switching[185]",
+                "switching[186]",
+                "switching[187]",
+                "switching[188]",
+                "switching[189]",
+                "switching[190]",
+                "switching[191]",
+                "switching[192]",
+                "switching[193]",
+                "switching[194]",
+                "switching[195]",
+                "switching[196]",
+                "switching[197]",
+                "switching[198]",
+                "switching[199]",
+            ],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
         because: "a phase that is neither the first nor the second is the third",
-        drives: &[HOVERBOARD, TEKNIC],
+        drives: &[FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC, PHCC_ESTUN],
         faults: &[(&["off_phase[2]", "off_phase[5]"], &["one more"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "direction is 1 or -1",
-        drives: &[HOVERBOARD, ESTUN],
+        drives: &[HOVERBOARD, ESTUN, FCS_HOVERBOARD],
         faults: &[
             (&["interpolate_angle: in forward"], &["-1 for 0"]),
             (&["interpolate_angle: forward"], &["another comparison"]),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "steps from or to sector 0, and of none, tell no direction",
-        drives: &[TEKNIC],
+        drives: &[
+            TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER, PHCC_ESTUN,
+        ],
         faults: &[
             (&["read_hall: in edge"], &["-1 for 0"]),
             (&["read_hall: edge"], &["or for and", "second left out"]),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "the age before an edge is at least two ticks, that after it one",
         drives: &[HOVERBOARD],
         faults: &[
@@ -142,15 +347,15 @@ pub const EQUIVALENT: &[Equivalent] = &[
             (&["measure_speed: interval"], &["lower limit left out"]),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "the greatest speed turns the rotor by less in a period",
-        drives: &[HOVERBOARD, ESTUN],
+        drives: &[HOVERBOARD, ESTUN, FCS_HOVERBOARD],
         faults: &[(
             &["turn_max"],
             &["one more", "one less", "bit 9", "bit 19", "bit 28"],
         )],
     },
-    Equivalent {
+    Unnoticed {
         because: "an angle that is not tracked is not used",
         drives: &[HOVERBOARD],
         faults: &[(
@@ -158,160 +363,226 @@ pub const EQUIVALENT: &[Equivalent] = &[
             &["one more", "one less", "bit 9", "bit 19", "bit 28"],
         )],
     },
-    Equivalent {
+    Unnoticed {
+        because: "without a known speed the rotor does not turn, and its EMF is the change of flux",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[(
+            &["sector_centre"],
+            &["one more", "one less", "bit 9", "bit 19", "bit 28"],
+        )],
+    },
+    Unnoticed {
         because: "at the centres of all six sectors the shape rounds to the same, and the rotor does not turn",
         drives: &[ESTUN],
         faults: &[(&["sector_centre"], &["one more"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "one and a half periods of two ticks are three ticks: nothing to round",
         drives: &[HOVERBOARD],
         faults: &[(&["advance_sector: in sector_eff"], &["rounded down"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "the least set-point but 0 makes more than 1",
-        drives: &[HOVERBOARD],
+        drives: &[
+            HOVERBOARD,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            FCS_ESTUN,
+            FCS_TEKNIC,
+            PHCC_PAPER,
+            PHCC_ESTUN,
+        ],
         faults: &[(
             &["detect_commutation: in outgoing_sign_turned"],
             &["-1 for 0 (2)"],
         )],
     },
-    Equivalent {
-        because: "the age before counts at an edge only, and the first step has none",
-        drives: &[ESTUN],
-        faults: &[(&["age_prev"], &["initial value one more"])],
+    Unnoticed {
+        because: "the least set-point but 0 makes more than 1",
+        drives: &[PHCC_PAPER, PHCC_ESTUN],
+        faults: &[(&["look_up_vector: in is_negative"], &["-1 for 0"])],
     },
-    Equivalent {
-        because: "a third of one more rounds to nothing, and only the mean takes the third terminal",
-        drives: &[HOVERBOARD],
-        faults: &[(&["t_c_cmd"], &["initial value one more"])],
-    },
-    Equivalent {
-        because: "without delay the EMF is stored, but not used in the next step",
-        drives: &[TEKNIC],
-        faults: &[(&["e_a_prev", "e_b_prev"], &["initial value one more"])],
-    },
-    Equivalent {
+    Unnoticed {
         because: "a third is a sixth away from its ties",
-        drives: &[PAPER, HOVERBOARD],
+        drives: &[
+            PAPER,
+            HOVERBOARD,
+            FCS_PAPER,
+            FCS_HOVERBOARD,
+            PHCC_PAPER,
+            PI_TEKNIC,
+        ],
         faults: &[(&["k_third"], &["one more", "one less"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "0.6 of a whole number is a tenth away from its ties",
-        drives: &[HOVERBOARD],
+        drives: &[HOVERBOARD, FCS_TEKNIC],
         faults: &[(&["k_filter"], &["one more", "one less"])],
     },
-    Equivalent {
+    Unnoticed {
+        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
+        drives: &[TEKNIC, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER],
+        faults: &[(&["di_min"], &["one more"]), (&["di_max"], &["one less"])],
+    },
+    Unnoticed {
+        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
+        drives: &[TEKNIC, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC],
+        faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
+    },
+    Unnoticed {
+        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
+        drives: &[TEKNIC],
+        faults: &[(&["di_min", "di_max"], &["bit 4"])],
+    },
+    Unnoticed {
+        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
+        drives: &[TEKNIC, FCS_PAPER, PHCC_PAPER],
+        faults: &[(
+            &["estimate_emf: di_a", "estimate_emf: di_b"],
+            &["lower limit left out", "upper limit left out"],
+        )],
+    },
+    Unnoticed {
+        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
+        drives: &[FCS_PAPER, PHCC_PAPER],
+        faults: &[(&["di_min", "di_max"], &["bit 9", "bit 19"])],
+    },
+    Unnoticed {
         because: "the product at the limit rounds to the same",
         drives: &[PAPER, HOVERBOARD],
         faults: &[(&["di_min", "di_max"], &["one more", "one less"])],
     },
-    Equivalent {
-        because: "the set-point word at the limit is the same",
-        drives: &[TEKNIC],
-        faults: &[(&["i_min_bits", "i_max_bits"], &["one more", "one less"])],
-    },
-    Equivalent {
-        because: "the set-point words of all torques within the limits are the same",
-        drives: &[TEKNIC],
-        faults: &[(&["k_torque"], &["one more", "one less"])],
-    },
-    Equivalent {
-        because: "a filter's result lies between its input and its last result, which are within",
-        drives: &[HOVERBOARD],
+    Unnoticed {
+        because: "the set-point words of all inputs are the same",
+        drives: &[TEKNIC, PI_ANAHEIM],
         faults: &[
-            (
-                &["e_min", "e_max"],
-                &["one more", "one less", "bit 9", "bit 18"],
-            ),
-            (
-                &["estimate_emf: e_a", "estimate_emf: e_b"],
-                &["lower limit left out", "upper limit left out"],
-            ),
+            (&["k_torque"], &["one more", "one less"]),
+            (&["i_max_bits"], &["one more"]),
+            (&["i_min_bits"], &["one less"]),
         ],
     },
-    Equivalent {
+    Unnoticed {
+        because: "the set-point words of all inputs are the same",
+        drives: &[TEKNIC],
+        faults: &[
+            (&["i_max_bits"], &["one less"]),
+            (&["i_min_bits"], &["one more"]),
+        ],
+    },
+    Unnoticed {
+        because: "the set-point words of all inputs are the same",
+        drives: &[FCS_ESTUN],
+        faults: &[(&["k_set"], &["one more"])],
+    },
+    Unnoticed {
+        because: "a filter's result lies between its input and its last result, which are within",
+        drives: &[FCS_HOVERBOARD, FCS_TEKNIC, PI_TEKNIC],
+        faults: &[(&["e_min", "e_max"], &["one more", "one less"])],
+    },
+    Unnoticed {
+        because: "a filter's result lies between its input and its last result, which are within",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[(&["e_min", "e_max"], &["bit 7", "bit 14"])],
+    },
+    Unnoticed {
+        because: "a filter's result lies between its input and its last result, which are within",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["e_min", "e_max"], &["bit 8", "bit 17"])],
+    },
+    Unnoticed {
+        because: "a filter's result lies between its input and its last result, which are within",
+        drives: &[FCS_TEKNIC, PI_TEKNIC],
+        faults: &[(
+            &["estimate_emf: e_a", "estimate_emf: e_b"],
+            &["lower limit left out", "upper limit left out"],
+        )],
+    },
+    Unnoticed {
+        because: "a filter's result lies between its input and its last result, which are within",
+        drives: &[PI_TEKNIC],
+        faults: &[(&["e_min", "e_max"], &["bit 9", "bit 18"])],
+    },
+    Unnoticed {
         because: "the flux changes by less within a period at the greatest speed",
         drives: &[ESTUN],
-        faults: &[
-            (
-                &["e_min", "e_max"],
-                &["one more", "one less", "bit 8", "bit 16"],
-            ),
-            (
-                &[
-                    "model_emf: e_a",
-                    "model_emf: e_b",
-                    "model_emf: e_a_now",
-                    "model_emf: e_b_now",
-                ],
-                &["lower limit left out", "upper limit left out"],
-            ),
-        ],
+        faults: &[(
+            &["e_min", "e_max"],
+            &["one more", "one less", "bit 8", "bit 16"],
+        )],
     },
-    Equivalent {
-        because: "a count is a whole number of units, and the limits of the bus are narrower than the ADC's range",
-        drives: &[HOVERBOARD],
+    Unnoticed {
+        because: "the flux changes by less within a period at the greatest speed",
+        drives: &[ESTUN, FCS_HOVERBOARD],
+        faults: &[(
+            &[
+                "model_emf: e_a",
+                "model_emf: e_b",
+                "model_emf: e_a_now",
+                "model_emf: e_b_now",
+            ],
+            &["lower limit left out", "upper limit left out"],
+        )],
+    },
+    Unnoticed {
+        because: "the bus is a whole number of units, and its limits are narrower than the ADC's range",
+        drives: &[HOVERBOARD, FCS_HOVERBOARD, PI_ANAHEIM],
         faults: &[
-            (&["k_bus"], &["one more", "one less"]),
+            (&["k_bus"], &["one more"]),
             (
                 &["bus_adc_max"],
                 &["one more", "one less", "bit 4", "bit 8"],
             ),
-            (
-                &["set_bus: in v_bus_new"],
-                &["limit left out", "rounded down"],
-            ),
+            (&["set_bus: in v_bus_new"], &["limit left out"]),
         ],
     },
-    Equivalent {
+    Unnoticed {
+        because: "the bus is a whole number of units, and its limits are narrower than the ADC's range",
+        drives: &[HOVERBOARD, FCS_HOVERBOARD],
+        faults: &[
+            (&["k_bus"], &["one less"]),
+            (&["set_bus: in v_bus_new"], &["rounded down"]),
+        ],
+    },
+    Unnoticed {
+        because: "the bus is a whole number of units, and its limits are narrower than the ADC's range",
+        drives: &[PI_ANAHEIM],
+        faults: &[(&["k_bus"], &["bit 10"])],
+    },
+    Unnoticed {
         because: "the least bus voltage makes the limit itself",
-        drives: &[HOVERBOARD],
+        drives: &[HOVERBOARD, PI_ANAHEIM],
         faults: &[(&["ratio_max"], &["one more", "bit 9"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "a voltage on the hexagon is limited to itself",
-        drives: &[HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[HOVERBOARD, ESTUN, TEKNIC, PI_TEKNIC, PI_ANAHEIM],
         faults: &[(&["find_saturation: saturated"], &["another comparison"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "the terminals sum to a multiple of three or one less: with one more their mean rounds to the same",
         drives: &[PAPER],
         faults: &[(&["limit_torque_priority: in terminal_c"], &["1 for 0"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "the terminals sum to a multiple of three or one less: with one more their mean rounds to the same",
-        drives: &[HOVERBOARD],
+        drives: &[HOVERBOARD, PI_TEKNIC],
         faults: &[(&["limit_nearest: in terminal_c"], &["1 for 0"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "a limited voltage spreads over more than the bus, so its scale is between 0 and 1",
-        drives: &[ESTUN, TEKNIC],
+        drives: &[ESTUN, TEKNIC, PI_ANAHEIM],
         faults: &[(
             &["limit_keep_angle: in scale"],
             &[
-                "0 for 1",
-                "2 for 1",
-                "1073741823 for 1073741824",
                 "1073741825 for 1073741824",
+                "1073741823 for 1073741824",
+                "2 for 1",
+                "0 for 1",
                 "limit left out",
             ],
         )],
     },
-    Equivalent {
-        because: "no phase of a voltage on the hexagon exceeds the bus",
-        drives: &[ESTUN, TEKNIC],
-        faults: &[(
-            &[
-                "limit_keep_angle: in u_a_limited",
-                "limit_keep_angle: u_a_limited",
-                "limit_keep_angle: in u_b_limited",
-                "limit_keep_angle: u_b_limited",
-            ],
-            &["limit left out"],
-        )],
-    },
-    Equivalent {
+    Unnoticed {
         because: "no phase of a voltage on the hexagon exceeds the bus",
         drives: &[PAPER],
         faults: &[(
@@ -324,7 +595,20 @@ pub const EQUIVALENT: &[Equivalent] = &[
             &["limit left out"],
         )],
     },
-    Equivalent {
+    Unnoticed {
+        because: "no phase of a voltage on the hexagon exceeds the bus",
+        drives: &[ESTUN, TEKNIC, PI_ANAHEIM],
+        faults: &[(
+            &[
+                "limit_keep_angle: in u_a_limited",
+                "limit_keep_angle: u_a_limited",
+                "limit_keep_angle: in u_b_limited",
+                "limit_keep_angle: u_b_limited",
+            ],
+            &["limit left out"],
+        )],
+    },
+    Unnoticed {
         because: "without a directed EMF the result is not used",
         drives: &[PAPER],
         faults: &[
@@ -345,7 +629,7 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "the lesser two of three EMF that sum to zero are opposite to the greatest",
         drives: &[PAPER],
         faults: &[
@@ -365,19 +649,19 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "where both lines are equally heavy, both are at the bus",
         drives: &[PAPER],
         faults: &[(&["limit_torque_priority: x_heavy"], &["another comparison"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
-        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC],
+        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC, PI_TEKNIC, PI_ANAHEIM],
         faults: &[(&["timer_period"], &["one more", "bit 7"])],
     },
-    Equivalent {
+    Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
-        drives: &[PAPER, ESTUN],
+        drives: &[PAPER, ESTUN, PI_TEKNIC, PI_ANAHEIM],
         faults: &[
             (
                 &[
@@ -397,7 +681,7 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
         drives: &[HOVERBOARD, TEKNIC],
         faults: &[
@@ -421,8 +705,8 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
-        because: "the middle of limited voltages is rounded down: no terminal is below the bus",
+    Unnoticed {
+        because: "the middle of limited voltages is rounded down: no terminal is below zero",
         drives: &[HOVERBOARD, TEKNIC],
         faults: &[
             (
@@ -443,7 +727,7 @@ pub const EQUIVALENT: &[Equivalent] = &[
             ),
         ],
     },
-    Equivalent {
+    Unnoticed {
         because: "the bus is a multiple of six units: only the third terminal rounds beyond it",
         drives: &[HOVERBOARD],
         faults: &[(
@@ -454,9 +738,136 @@ pub const EQUIVALENT: &[Equivalent] = &[
             &["upper limit left out"],
         )],
     },
-    Equivalent {
-        because: "a leg number but 1, 2 and 3 is no leg",
-        drives: &[TEKNIC],
-        faults: &[(&["modulate_three: in u_c_pair"], &["-1 for 0"])],
+    Unnoticed {
+        because: "where the third phase is at zero and the second next to it, V0 is nearest",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(
+            &["nearest_vector: in gates"],
+            &["1 for 0", "-1 for 0", "another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "four less and four more are the same entry of eight",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(&["nearest_vector: gates"], &["- for +"])],
+    },
+    Unnoticed {
+        because: "three phases that sum to zero are neither all high nor all low, but at zero",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(&["vector_of_gates[0]", "vector_of_gates[7]"], &["one more"])],
+    },
+    Unnoticed {
+        because: "two vectors have different numbers",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(
+            &["nearest_pair: in take_c", "nearest_pair: in take_b"],
+            &["another comparison (3)"],
+        )],
+    },
+    Unnoticed {
+        because: "a line voltage next to zero is not the longest, or V0 is nearest",
+        drives: &[FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(
+            &[
+                "nearest_pair: in pair_a",
+                "nearest_pair: in pair_c",
+                "nearest_pair: in pair_b",
+            ],
+            &["1 for 0", "-1 for 0", "another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "where two three-phase vectors tie, the pair vector between them is nearer",
+        drives: &[FCS_ESTUN],
+        faults: &[
+            (&["nearest_vector: in b_is_high"], &["1 for 0", "-1 for 0"]),
+            (&["nearest_vector: b_is_high"], &["another comparison"]),
+            (
+                &["nearest_vector: in gates"],
+                &[
+                    "operands swapped",
+                    "2 for 1",
+                    "0 for 1",
+                    "1 for 0 (2)",
+                    "-1 for 0 (2)",
+                    "branches swapped",
+                    "- for +",
+                    "second term left out",
+                    "1 for 0 (3)",
+                    "-1 for 0 (3)",
+                    "another comparison (2)",
+                    "2 for 1 (3)",
+                    "0 for 1 (3)",
+                    "1 for 0 (5)",
+                    "-1 for 0 (5)",
+                    "branches swapped (3)",
+                    "- for + (2)",
+                    "second term left out (2)",
+                    "1 for 0 (6)",
+                    "-1 for 0 (6)",
+                    "another comparison (3)",
+                ],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "where two pair vectors tie, V0 or the three-phase vector between them is as near and comes first",
+        drives: &[FCS_ESTUN],
+        faults: &[
+            (
+                &["nearest_pair: in take_c"],
+                &[
+                    "another comparison",
+                    "another comparison (2)",
+                    "operands swapped (2)",
+                    "or for and",
+                    "second left out",
+                ],
+            ),
+            (
+                &["nearest_pair: take_c", "nearest_pair: take_b"],
+                &["second left out"],
+            ),
+            (
+                &["nearest_pair: in take_b"],
+                &[
+                    "another comparison",
+                    "operands swapped (2)",
+                    "second left out",
+                ],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "where the second pair's number is the lesser, the third line is the longest",
+        drives: &[FCS_TEKNIC],
+        faults: &[
+            (&["nearest_pair: in take_c"], &["another comparison (2)"]),
+            (&["nearest_pair: take_c"], &["second left out"]),
+        ],
+    },
+    Unnoticed {
+        because: "scores are multiples of three",
+        drives: &[FCS_ESTUN],
+        faults: &[(&["nearest_pair: in vector"], &["-1 for 0"])],
+    },
+    Unnoticed {
+        because: "two and three times a voltage are multiples of what the bus is a multiple of",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["v_bus"], &["one more"])],
+    },
+    Unnoticed {
+        because: "without an EMF the integral is a mean of itself and the limited voltage",
+        drives: &[PI_ANAHEIM],
+        faults: &[
+            (
+                &["integral_min", "integral_max"],
+                &["one more", "one less", "bit 5", "bit 10"],
+            ),
+            (
+                &["integrate: integral_a_now", "integrate: integral_b_now"],
+                &["lower limit left out", "upper limit left out"],
+            ),
+        ],
     },
 ];

@@ -1,0 +1,164 @@
+//! Comparisons of a program's step at equality: a wrong comparison, limit or order of ties shows there
+//! alone, and no stream of inputs gets there by chance.
+//!
+//! The program says where its comparisons are; what it computes there is told by the model.
+
+use crate::cases::Set;
+use hexagen::Sample;
+use hexagen_codegen::ir::{Machine, Op, Program, Value};
+
+/// Values of an operand pair that are met often enough by chance.
+const FEW: i64 = 1 << 10;
+
+/// Results of the probe per comparison: both operands, and whether it is made.
+const RESULTS: usize = 3;
+
+/// The comparisons of a step.
+#[derive(Clone, Debug)]
+pub struct Comparisons {
+    /// The program with the operands of its comparisons as the results of its step.
+    probe: Program,
+    /// Comparisons whose stage has no guard.
+    unguarded: Vec<bool>,
+}
+
+impl Comparisons {
+    /// Those of a program that have many values on either side.
+    pub fn of(program: &Program) -> Self {
+        let mut probe = program.clone();
+        let step = &program.step;
+        let guard_of = |index: usize| {
+            let mut stages = step.stages.iter();
+            let stage = stages.find(|stage| (stage.first..stage.end).contains(&index));
+            stage.and_then(|stage| stage.guard.as_ref().map(|guard| guard.condition))
+        };
+        let width = |value: Value| {
+            let interval = step.node(value).interval;
+            interval.high - interval.low
+        };
+        let mut results = vec![];
+        let mut unguarded = vec![];
+        for (index, node) in step.nodes.iter().enumerate() {
+            if let Op::Compare(_, a, b) = node.op
+                && width(a).max(width(b)) >= FEW
+            {
+                let guard = guard_of(index);
+                results.extend([a, b, guard.unwrap_or(a)]);
+                unguarded.push(guard.is_none());
+            }
+        }
+        let named = results.into_iter().map(|value| (String::new(), value));
+        probe.step.outputs = named.collect();
+        Self { probe, unguarded }
+    }
+
+    /// Their number.
+    pub fn len(&self) -> usize {
+        self.unguarded.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.unguarded.is_empty()
+    }
+
+    /// The program in a sample's period, with the bus voltage as set.
+    pub fn probe(&self, sample: &Sample, set: Set) -> Probe<'_> {
+        let mut machine = Machine::of_program(&self.probe);
+        if let Some(counts) = set.bus {
+            // A value that leaves its interval shows in the comparison with the model.
+            let _ = machine.set("set_bus", &[counts.into()]);
+        }
+        let inputs = self.probe.step.inputs.iter();
+        let inputs = inputs.map(|input| match input.name.as_str() {
+            "adc_a" => i32::from(sample.adc_a),
+            "adc_b" => i32::from(sample.adc_b),
+            "hall" => i32::from(sample.hall),
+            _ => i32::from(sample.hall_ticks),
+        });
+        Probe {
+            setter: if set.is_torque {
+                "set_torque"
+            } else {
+                "set_current"
+            },
+            inputs: inputs.collect(),
+            unguarded: &self.unguarded,
+            machine,
+        }
+    }
+}
+
+/// A program whose comparisons are looked at.
+#[derive(Debug)]
+pub struct Probe<'p> {
+    machine: Machine<'p>,
+    setter: &'static str,
+    inputs: Vec<i32>,
+    unguarded: &'p [bool],
+}
+
+impl Probe<'_> {
+    /// By how much the first operand of a comparison is greater with a set-point and in a state, whose words
+    /// follow it; none where the comparison is not made.
+    pub fn difference(&mut self, comparison: usize, words: &[i32]) -> Option<i64> {
+        let (bits, words) = words.split_first()?;
+        self.machine.set(self.setter, &[*bits]).ok()?;
+        self.machine.state.copy_from_slice(words);
+        let results = self.machine.step(&self.inputs).ok()?;
+        let [a, b, guard] = results[RESULTS * comparison..][..RESULTS] else {
+            return None;
+        };
+        (self.unguarded[comparison] || guard == 1).then(|| i64::from(a) - i64::from(b))
+    }
+}
+
+/// The value of a word nearest to `from`, by powers of eight, between which and its neighbour the
+/// difference changes its sign: of the two the one with the lesser difference. None without a change.
+pub fn seek_zero(
+    from: i32,
+    (least, most): (i32, i32),
+    mut difference: impl FnMut(i32) -> Option<i64>,
+) -> Option<i32> {
+    let start = difference(from)?;
+    let is_past = |value: i64| value == 0 || (value < 0) != (start < 0);
+    let steps = (0..=30)
+        .step_by(3)
+        .flat_map(|bits| [1 << bits, -(1 << bits)]);
+    let far = steps
+        .map(|step: i32| from.saturating_add(step).clamp(least, most))
+        .find(|&word| difference(word).is_some_and(is_past))?;
+    let (mut near, mut far) = (i64::from(from), i64::from(far));
+    let mut at_near = start;
+    while (far - near).abs() > 1 {
+        let middle = near.midpoint(far);
+        let value = difference(middle as i32)?;
+        if is_past(value) {
+            far = middle;
+        } else {
+            (near, at_near) = (middle, value);
+        }
+    }
+    let at_far = difference(far as i32)?;
+    let nearer = if at_far.abs() <= at_near.abs() {
+        far
+    } else {
+        near
+    };
+    Some(nearer as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seek_zero;
+
+    #[test]
+    fn a_change_of_sign_is_found_on_its_nearer_side() {
+        let range = (-1_000_000, 1_000_000);
+        let line = |word: i32| Some(3 * i64::from(word) - 36_000);
+        assert_eq!(seek_zero(500, range, line), Some(12_000));
+        let between = |word: i32| Some(3 * i64::from(word) - 35_999);
+        assert_eq!(seek_zero(-7, range, between), Some(12_000));
+        assert_eq!(seek_zero(500, (0, 11_000), line), None);
+    }
+}

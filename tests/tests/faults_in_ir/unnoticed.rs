@@ -1,0 +1,78 @@
+//! Faults that the comparison does not notice, and why.
+
+/// Faults for the same reason: all of `what` at all of `places`.
+pub struct Unnoticed {
+    pub because: &'static str,
+    pub drives: &'static [&'static str],
+    pub faults: &'static [Faults],
+}
+
+/// Places and what is wrong at each of them.
+type Faults = (&'static [&'static str], &'static [&'static str]);
+
+impl Unnoticed {
+    /// Place and what is wrong there.
+    pub fn faults(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.faults.iter().flat_map(|(places, whats)| {
+            let pairs = |place| whats.iter().map(move |what| (place, *what));
+            places.iter().flat_map(move |place| pairs(*place))
+        })
+    }
+}
+
+pub const PAPER: &str = "pdcc trivedi-keshri-660w";
+pub const HOVERBOARD: &str = "pdcc hoverboard-hub";
+pub const ESTUN: &str = "pdcc estun-emj-04apb22";
+pub const TEKNIC: &str = "pdcc teknic-m2310p";
+pub const FCS_PAPER: &str = "fcs-mpc trivedi-keshri-660w";
+pub const FCS_HOVERBOARD: &str = "fcs-mpc hoverboard-hub";
+pub const FCS_ESTUN: &str = "fcs-mpc estun-emj-04apb22";
+pub const FCS_TEKNIC: &str = "fcs-mpc teknic-m2310p";
+pub const PHCC_PAPER: &str = "phcc trivedi-keshri-660w";
+pub const PHCC_ESTUN: &str = "phcc estun-emj-04apb22";
+pub const PI_TEKNIC: &str = "pi-pwm teknic-m2310p";
+pub const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
+
+/// Faults that change an output or a state in so few states that a run may miss them all.
+pub const RARE: &[Unnoticed] = &[
+    Unnoticed {
+        because: "differs only where the nearest pair vector has next to no line voltage, with its third leg at a rail",
+        drives: &[FCS_PAPER, FCS_HOVERBOARD],
+        faults: &[(
+            &[
+                "nearest_pair: in pair_a",
+                "nearest_pair: in pair_c",
+                "nearest_pair: in pair_b",
+            ],
+            &["1 for 0", "-1 for 0", "another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "differs only at six voltages, where V0, a three-phase and a pair vector tie",
+        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
+        faults: &[(
+            &["nearest_vector: in vector_three"],
+            &["another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "moves the score of the pair's zero vector by no more than its last digits",
+        drives: &[FCS_PAPER],
+        faults: &[(&["nearest_pair: in tau_zero"], &["1 for 0 (2)", "1 for 0"])],
+    },
+    Unnoticed {
+        because: "differs only where the error is at the end of its band to the last bit",
+        drives: &[PHCC_ESTUN],
+        faults: &[
+            (&["band_alpha"], &["one more", "one less"]),
+            (
+                &[
+                    "compare_with_bands: above_alpha",
+                    "compare_with_bands: in h_a",
+                    "compare_with_bands: in h_b",
+                ],
+                &["another comparison"],
+            ),
+        ],
+    },
+];
