@@ -34,8 +34,10 @@ pub struct Axis {
 pub struct Kind {
     /// Its name in a specification.
     pub name: &'static str,
-    /// The options of the controller, then those of the inverter.
+    /// The options that depend on each other, then the loose ones.
     pub axes: Vec<Axis>,
+    /// The number of loose ones.
+    loose: usize,
 }
 
 /// One value per axis of a kind, as indices.
@@ -108,30 +110,10 @@ const OWN: &[Row] = &[
         ],
     ),
     (
-        "band",
-        &[
-            ("default", &[]),
-            ("narrow", &[("controller", "band", "\"20 mA\"")]),
-        ],
-    ),
-    (
         "feed_forward",
         &[
             ("on", &[("controller", "feed_forward", "\"on\"")]),
             ("off", &[("controller", "feed_forward", "\"off\"")]),
-        ],
-    ),
-    (
-        "tuning",
-        &[
-            ("default", &[]),
-            (
-                "slow",
-                &[
-                    ("controller", "bandwidth", "\"700 Hz\""),
-                    ("controller", "integral_time", "\"0.5 ms\""),
-                ],
-            ),
         ],
     ),
 ];
@@ -212,8 +194,28 @@ const SHARED: &[Row] = &[
     ),
 ];
 
-/// Options of the inverter that no other option depends on.
-const INVERTER: &[Row] = &[
+/// Options that no other option depends on, of the inverter and of the controllers that take them.
+const LOOSE: &[Row] = &[
+    (
+        "tuning",
+        &[
+            ("default", &[]),
+            (
+                "slow",
+                &[
+                    ("controller", "bandwidth", "\"700 Hz\""),
+                    ("controller", "integral_time", "\"0.5 ms\""),
+                ],
+            ),
+        ],
+    ),
+    (
+        "band",
+        &[
+            ("default", &[]),
+            ("narrow", &[("controller", "band", "\"20 mA\"")]),
+        ],
+    ),
     (
         "stall_timeout",
         &[
@@ -288,12 +290,14 @@ pub fn kind(name: &str) -> Kind {
     let (name, own) = known.expect("a kind of controller");
     let is_taken = |row: &&Row| {
         let mut settings = row.1.iter().flat_map(|(_, settings)| *settings);
-        settings.all(|(_, field, _)| own.contains(field))
+        settings.all(|(section, field, _)| *section == "inverter" || own.contains(field))
     };
-    let axes = OWN.iter().filter(is_taken).chain(SHARED).chain(INVERTER);
+    let loose = LOOSE.iter().filter(is_taken);
+    let axes = OWN.iter().filter(is_taken).chain(SHARED);
     Kind {
         name,
-        axes: axes.map(|row| axis(name, row)).collect(),
+        loose: loose.clone().count(),
+        axes: axes.chain(loose).map(|row| axis(name, row)).collect(),
     }
 }
 
@@ -307,7 +311,7 @@ fn axis(kind: &str, (name, values): &Row) -> Axis {
 
 /// Options that no axis sets, but some kind takes.
 pub fn untested_options() -> Vec<&'static str> {
-    let rows = OWN.iter().flat_map(|(_, values)| *values);
+    let rows = OWN.iter().chain(LOOSE).flat_map(|(_, values)| *values);
     let settings: Vec<&Setting> = rows.flat_map(|(_, settings)| *settings).collect();
     let is_set = |option: &&str| settings.iter().any(|(_, field, _)| field == option);
     let options = KINDS.iter().flat_map(|(_, own)| *own).copied();
@@ -315,41 +319,40 @@ pub fn untested_options() -> Vec<&'static str> {
 }
 
 impl Kind {
-    /// Axes of the controller's own and shared options.
-    fn controller(&self) -> &[Axis] {
-        &self.axes[..self.axes.len() - INVERTER.len()]
+    fn bound(&self) -> &[Axis] {
+        &self.axes[..self.axes.len() - self.loose]
     }
 
-    fn inverter(&self) -> &[Axis] {
-        &self.axes[self.axes.len() - INVERTER.len()..]
+    fn loose(&self) -> &[Axis] {
+        &self.axes[self.axes.len() - self.loose..]
     }
 
-    /// The number of elements of the full product of the controller's options.
+    /// The number of elements of the full product of the options that depend on each other.
     pub fn product_len(&self) -> usize {
-        combinations(self.controller())
+        combinations(self.bound())
     }
 
-    /// Element `index` of the full product of the controller's options. The inverter's axes take a
+    /// Element `index` of the full product of the options that depend on each other. The loose ones take a
     /// combination each, by a hash of the index, so that each of their combinations meets every value
     /// of every other axis.
     pub fn product_element(&self, index: usize) -> Choice {
-        let mut choice = digits(self.controller(), index);
+        let mut choice = digits(self.bound(), index);
         // Knuth's multiplicative hash; its upper bits are the mixed ones.
         let hash = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
-        let turn = hash as usize % combinations(self.inverter());
-        choice.extend(digits(self.inverter(), turn));
+        let turn = hash as usize % combinations(self.loose());
+        choice.extend(digits(self.loose(), turn));
         choice
     }
 
-    /// Number of the combination of the inverter's axes in a choice, with every value of another
+    /// Number of the combination of the loose options in a choice, with every value of another
     /// axis that it meets there (number of the axis, and of the value).
     pub fn meetings(&self, choice: &[usize]) -> Vec<(usize, usize, usize)> {
-        let (controller, inverter) = choice.split_at(self.controller().len());
-        let axes = self.inverter().iter().zip(inverter);
+        let (bound, loose) = choice.split_at(self.bound().len());
+        let axes = self.loose().iter().zip(loose);
         let combination = axes.fold(0, |number, (axis, value)| {
             number * axis.values.len() + value
         });
-        let values = controller.iter().enumerate();
+        let values = bound.iter().enumerate();
         values
             .map(|(axis, &value)| (combination, axis, value))
             .collect()
@@ -357,8 +360,8 @@ impl Kind {
 
     /// The number of all meetings.
     pub fn meetings_len(&self) -> usize {
-        let axes = self.controller().iter();
-        combinations(self.inverter()) * axes.map(|axis| axis.values.len()).sum::<usize>()
+        let axes = self.bound().iter();
+        combinations(self.loose()) * axes.map(|axis| axis.values.len()).sum::<usize>()
     }
 
     /// The choice with the first value of every axis but those named: `[("emf", "model")]`.
