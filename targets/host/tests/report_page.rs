@@ -104,11 +104,11 @@ fn page_without_runs_says_so_instead_of_failing() {
 fn page_is_written_whole_under_the_motors_name() {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report");
     let path = write(&DATA, &dir).expect("the page is written");
-    assert_eq!(path, dir.join("report-trivedi-keshri660w.html"));
+    assert_eq!(path, dir.join("report-trivedi-keshri-660w.html"));
     assert_eq!(std::fs::read_to_string(&path).expect("it is there"), *PAGE);
     let left: Vec<_> = std::fs::read_dir(&dir)
         .expect("the folder is there")
         .filter_map(|entry| Some(entry.ok()?.file_name()))
         .collect();
-    assert_eq!(left, ["report-trivedi-keshri660w.html"]);
+    assert_eq!(left, ["report-trivedi-keshri-660w.html"]);
 }

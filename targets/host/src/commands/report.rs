@@ -91,6 +91,7 @@ pub fn collect(
     let data = ReportData {
         generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
         name: own.spec.name.clone(),
+        file: motor.source.name.clone(),
         motor: own.spec.motor.clone(),
         inverter: own.spec.inverter.clone(),
         source: source(&own),

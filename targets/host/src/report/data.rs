@@ -15,8 +15,10 @@ use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 pub struct ReportData {
     /// Program and version: "hexagen 0.1.0".
     pub generator: String,
-    /// Name of the motor's type, `UpperCamelCase`; also names the file.
+    /// Name of the motor's type, `UpperCamelCase`.
     pub name: String,
+    /// The motor file's own name, without ending; names the page's file.
+    pub file: String,
     /// The motor.
     pub motor: MotorSpec,
     /// Inverter, timer and sensors.

@@ -47,7 +47,7 @@ pub enum ReportError {
 }
 
 /// Writes the page into a folder, which is created where it is missing, and returns its path:
-/// `report-<name>.html`. A page of that name is replaced at once or not at all.
+/// `report-<motor file>.html`. A page of that name is replaced at once or not at all.
 ///
 /// # Errors
 /// A file that cannot be written, or a plot that cannot be drawn.
@@ -56,7 +56,7 @@ pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
     write_page(
         &html,
         dir,
-        &format!("report-{}.html", file_stem(&data.name)),
+        &format!("report-{}.html", file_stem(&data.file)),
     )
 }
 
@@ -95,20 +95,15 @@ pub fn render(data: &ReportData) -> Result<String, ReportError> {
     page::render(data)
 }
 
-/// A name as part of a file name: `TrivediKeshri660w` is `trivedi-keshri660w`.
+/// A name as part of a file name: what is neither letter nor digit of any script, `-`, `_` nor `.`
+/// becomes `-`.
 fn file_stem(name: &str) -> String {
-    let mut stem = String::new();
-    for c in name.chars() {
-        if c.is_ascii_uppercase() && !stem.is_empty() && !stem.ends_with('-') {
-            stem.push('-');
-        }
-        if c.is_ascii_alphanumeric() {
-            stem.push(c.to_ascii_lowercase());
-        } else if !stem.is_empty() && !stem.ends_with('-') {
-            stem.push('-');
-        }
-    }
-    let stem = stem.trim_end_matches('-');
+    let kept = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let stem: String = name
+        .chars()
+        .map(|c| if kept(c) { c } else { '-' })
+        .collect();
+    let stem = stem.trim_matches(['-', '.']);
     if stem.is_empty() { "motor" } else { stem }.to_owned()
 }
 
@@ -119,10 +114,11 @@ mod tests {
     #[test]
     fn names_become_file_names() {
         for (name, stem) in [
-            ("TrivediKeshri660w", "trivedi-keshri660w"),
+            ("trivedi-keshri-660w", "trivedi-keshri-660w"),
+            ("Hub_2.1", "Hub_2.1"),
             ("../etc/x", "etc-x"),
             ("", "motor"),
-            ("A B", "a-b"),
+            ("A B", "A-B"),
         ] {
             assert_eq!(file_stem(name), stem);
         }
