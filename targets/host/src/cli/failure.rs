@@ -47,7 +47,7 @@ impl From<Diagnostics> for Failure {
 impl Failure {
     /// Tells the failure on stderr.
     pub fn print(&self) {
-        eprintln!("{self}");
+        super::note(&self.to_string());
     }
 
     /// 1 for a failed check, 2 for bad input.

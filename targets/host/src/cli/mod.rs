@@ -1,6 +1,6 @@
 //! The command line: arguments in, exit code out.
 //!
-//! 0: fine; 1: a check failed; 2: bad input. Results go to stdout, everything else to stderr.
+//! 0: fine; 1: a check failed, or the drive tripped; 2: bad input, or no place for the result. Results go to stdout, everything else to stderr.
 //! With `--json`, stdout carries exactly one JSON object.
 
 mod arguments;
@@ -13,11 +13,12 @@ pub use arguments::{
     Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
 };
 pub use failure::Failure;
-pub use output::{TextTable, print_json, print_text, significant, warn, write_file};
+pub use output::{TextTable, note, print_json, print_text, significant, warn, write_file};
 pub use progress::{bar, spinner};
 
 use crate::commands;
 use clap::Parser;
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 /// Runs the program on the process's arguments.
@@ -28,8 +29,8 @@ pub fn run() -> ExitCode {
         Err(error) => {
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
             return match error.print() {
-                Ok(()) => ExitCode::from(code),
-                Err(_) => ExitCode::from(2),
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => ExitCode::from(2),
+                _ => ExitCode::from(code),
             };
         }
     };

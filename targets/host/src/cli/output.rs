@@ -4,46 +4,76 @@ use super::Failure;
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use serde::Serialize;
-use std::io::Write;
-use std::path::Path;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
-/// Prints text to stdout, with a line end. A closed pipe is no error.
-pub fn print_text(text: &str) {
+/// Prints text to stdout, with a line end. A closed pipe is no error: the reader has enough.
+///
+/// # Errors
+/// When the text cannot be written.
+pub fn print_text(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let _ = writeln!(out, "{}", text.trim_end_matches('\n'));
+    let written = writeln!(out, "{}", text.trim_end_matches('\n')).and_then(|()| out.flush());
+    match written {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Write {
+            path: "standard output".into(),
+            reason: error.to_string(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a line to stderr. There is no place to tell that this failed.
+pub fn note(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints one JSON object to stdout.
 ///
 /// # Errors
-/// A value that JSON has no words for.
+/// A value that JSON has no words for, or as [`print_text`].
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::Argument(format!("no JSON: {error}")))?;
-    print_text(&text);
-    Ok(())
+    print_text(&text)
 }
 
 /// A note on stderr.
 pub fn warn(text: &str) {
-    eprintln!("warning: {text}");
+    note(&format!("warning: {text}"));
 }
 
 /// Writes a file beside its place and renames it, so that no reader sees half of it. Makes the
-/// folder if it is missing.
+/// folder if it is missing; where the file cannot be written, nothing new is left.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::Write {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    };
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    std::fs::create_dir_all(folder).map_err(failed)?;
+    let missing: Vec<PathBuf> = folder
+        .ancestors()
+        .take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists())
+        .map(Path::to_owned)
+        .collect();
+    std::fs::create_dir_all(folder)
+        .and_then(|()| write_into(folder, path, contents))
+        .map_err(|error| {
+            // The innermost first; one that somebody else uses meanwhile is not empty and stays.
+            for folder in &missing {
+                let _ = std::fs::remove_dir(folder);
+            }
+            Failure::Write {
+                path: path.to_owned(),
+                reason: error.to_string(),
+            }
+        })
+}
+
+/// Writes a file of a folder that exists.
+fn write_into(folder: &Path, path: &Path, contents: &[u8]) -> std::io::Result<()> {
     let mut beside = tempfile::Builder::new();
     // Results are no secrets: the usual permissions of new files.
     #[cfg(unix)]
@@ -51,12 +81,9 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
         use std::os::unix::fs::PermissionsExt;
         beside.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = beside
-        .prefix(".hexagen-")
-        .tempfile_in(folder)
-        .map_err(failed)?;
-    file.write_all(contents).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+    let mut file = beside.prefix(".hexagen-").tempfile_in(folder)?;
+    file.write_all(contents)?;
+    file.persist(path)?;
     Ok(())
 }
 
@@ -144,5 +171,20 @@ mod tests {
         }
         let left = std::fs::read_dir(path.parent().expect("has a folder")).expect("can be listed");
         assert_eq!(left.count(), 1);
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_written_leaves_no_folders_behind() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir(folder.path().join("old")).expect("a folder");
+        let long = "n".repeat(300);
+        // A name that is too long, a folder's name that is, and a folder in place of a file.
+        for path in ["old/new/newer/LONG", "old/new/LONG/file", "new/LONG", "old"] {
+            let path = folder.path().join(path.replace("LONG", &long));
+            write_file(&path, b"text").expect_err("cannot be written");
+            let old = folder.path().join("old");
+            assert!(std::fs::read_dir(&old).expect("a folder").next().is_none());
+            assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1);
+        }
     }
 }

@@ -163,7 +163,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             rows,
         });
     }
-    print_text(&one_step_table(&rows));
+    print_text(&one_step_table(&rows))?;
     for row in &rows {
         let Some(accuracy) = &row.accuracy else {
             continue;
@@ -174,14 +174,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 row.controller,
                 at.rpm,
                 accuracy.engine.name()
-            ));
-            print_text(&merit_table(&at.merits));
+            ))?;
+            print_text(&merit_table(&at.merits))?;
         }
     }
     print_text(
         "\nideal: on the words that the fixed-point drive read and from its state; alone: in a loop of its own.",
-    );
-    Ok(())
+    )
 }
 
 fn one_step_table(rows: &[Row]) -> String {

@@ -1,6 +1,6 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
-use crate::cli::{Emit, Failure, PlantArguments, SelectedMotor, print_text, write_file};
+use crate::cli::{Emit, Failure, PlantArguments, SelectedMotor, note, print_text, write_file};
 use crate::engine::Prepared;
 use clap::Args;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
@@ -45,11 +45,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = motor.prepare(options.controller.as_deref())?;
     let text = text_of(&drive, options.emit);
     let Some(folder) = &options.out else {
-        print_text(&text);
-        return Ok(());
+        return print_text(&text);
     };
     let path = folder.join(format!("{}.{}", drive.motor, options.emit.ending()));
     write_file(&path, text.as_bytes())?;
-    eprintln!("{}", path.display());
+    note(&path.display().to_string());
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `hexagen motors`: the library.
 
-use crate::cli::{Failure, SelectedMotor, TextTable, print_json, print_text, significant};
+use crate::cli::{Failure, SelectedMotor, TextTable, note, print_json, print_text, significant};
 use clap::Args;
 use serde::Serialize;
 
@@ -141,11 +141,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             if motor.generates { "yes" } else { "no" }.to_owned(),
         ]);
     }
-    print_text(&table.render());
-    print_text("R, L per phase of the star; EMF: phase peak per mechanical rad/s.");
+    print_text(&table.render())?;
+    print_text("R, L per phase of the star; EMF: phase peak per mechanical rad/s.")?;
     for motor in &motors {
         if let Some(reason) = &motor.reason {
-            eprintln!("{reason}");
+            note(reason);
         }
     }
     Ok(())

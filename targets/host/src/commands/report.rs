@@ -197,10 +197,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         significant(data.inverter.v_bus, 3),
         significant(data.inverter.t_s * 1e6, 3),
         data.inverter.adc_bits
-    ));
-    print_text(&table(&data));
+    ))?;
+    print_text(&table(&data))?;
     for note in &data.notes {
-        print_text(&format!("- {note}"));
+        print_text(&format!("- {note}"))?;
     }
     if let Some(verification) = &data.verification {
         print_text(&format!(
@@ -209,10 +209,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             checked.len(),
             verification.engine,
             verification.mismatches
-        ));
+        ))?;
     }
     let page = report::write(&data, &folder)?;
-    print_text(&format!("Page: {}", page.display()));
+    print_text(&format!("Page: {}", page.display()))?;
     let different: Vec<String> = checked
         .iter()
         .filter_map(|drive| {

@@ -262,10 +262,9 @@ impl<'p> Bench<'p> {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     let data = collect(&Effort::full(), Some(&folder))?;
-    print_text(&summary(&data));
+    print_text(&summary(&data))?;
     let page = reproduction::write(&data, &folder)?;
-    print_text(&format!("Page: {}", page.display()));
-    Ok(())
+    print_text(&format!("Page: {}", page.display()))
 }
 
 /// The claims and Table 5, as text.

@@ -235,7 +235,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             refused,
         })?;
     } else {
-        print_text(&table(&results));
+        print_text(&table(&results))?;
     }
     outcome
 }

@@ -2,6 +2,7 @@
 
 mod generate;
 mod input;
+mod output;
 mod reproduce;
 mod rows;
 mod simulate;
