@@ -77,6 +77,7 @@ fn difference_from_the_expected_is_marked() {
         limit_rpm: None,
         limit_pct: None,
         outcome: LimitOutcome::NeverHeld,
+        tripped: None,
         curve: Vec::new(),
     });
     let page = render(&data).expect("the page renders");

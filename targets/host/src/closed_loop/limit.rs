@@ -5,7 +5,7 @@
 //! so it is the first one of the grid.
 
 use super::measure::mean_torque;
-use super::{CurrentLoop, RunOptions};
+use super::{CurrentLoop, RunOptions, Trip};
 use crate::plant::{PlantError, PlantParams, Truth};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -64,6 +64,8 @@ pub struct SpeedLimit {
     pub limit_pct: Option<f64>,
     /// How the scan ended.
     pub outcome: LimitOutcome,
+    /// Why the torque was not held at the speed that ended the scan, if the controller tripped there.
+    pub tripped: Option<Trip>,
     /// The torque-speed curve as far as it was scanned: rpm and mean torque in newton metres.
     pub curve: Vec<(f64, f64)>,
 }
@@ -122,7 +124,7 @@ where
             .par_iter()
             .map(|rpm| {
                 if let Some(torque) = measured(*rpm) {
-                    return Ok(torque);
+                    return Ok((torque, None));
                 }
                 let omega_m = (rpm * TAU / 60.0).copysign(run.omega_m);
                 mean_torque(
@@ -135,7 +137,7 @@ where
                 )
             })
             .collect::<Result<Vec<_>, _>>()?;
-        for (&rpm, torque) in speeds.iter().zip(torques) {
+        for (&rpm, (torque, tripped)) in speeds.iter().zip(torques) {
             let before = curve.last().copied();
             curve.push((rpm, torque));
             if held(torque) {
@@ -152,17 +154,18 @@ where
                     )
                 }
             };
-            return Ok(report(limit, options, outcome, curve));
+            return Ok(report(limit, options, (outcome, tripped), curve));
         }
     }
     let last = curve.last().map(|point| point.0);
-    Ok(report(last, options, LimitOutcome::NotReached, curve))
+    let outcome = (LimitOutcome::NotReached, None);
+    Ok(report(last, options, outcome, curve))
 }
 
 fn report(
     limit: Option<f64>,
     options: &LimitOptions,
-    outcome: LimitOutcome,
+    (outcome, tripped): (LimitOutcome, Option<Trip>),
     curve: Vec<(f64, f64)>,
 ) -> SpeedLimit {
     let limit_pct = limit.map(|rpm| 100.0 * rpm / options.rated_rpm);
@@ -170,6 +173,7 @@ fn report(
         limit_rpm: limit,
         limit_pct,
         outcome,
+        tripped,
         curve,
     }
 }

@@ -1,6 +1,6 @@
 //! Runs that are measured: settling, the measured window, and the three starts.
 
-use super::{ClosedLoop, CurrentLoop, Delay, Merits, Trace, merits};
+use super::{ClosedLoop, CurrentLoop, Delay, Merits, Trace, Trip, merits};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -71,6 +71,8 @@ pub struct Measurement {
     pub starts: Vec<Merits>,
     /// Record of each start's measured window.
     pub traces: Vec<Trace>,
+    /// The trip of the first start whose controller tripped.
+    pub tripped: Option<Trip>,
 }
 
 /// Runs one start: settles, then records the measured window.
@@ -79,14 +81,14 @@ fn run_start<C: CurrentLoop>(
     options: &RunOptions,
     start: f64,
     controller: C,
-) -> Result<Trace, PlantError> {
+) -> Result<(Trace, Option<Trip>), PlantError> {
     let plant = Plant::new(params.clone(), start, options.omega_m)?;
     let (settling, measured) = options.periods(params);
     let mut closed = ClosedLoop::new(plant, controller, options.delay);
     closed.run(settling, &mut ());
     let mut trace = Trace::new(closed.plant(), measured);
     closed.run(measured, &mut trace);
-    Ok(trace)
+    Ok((trace, closed.tripped()))
 }
 
 /// Measures a controller as DESIGN.md section 7 says. `make` builds a fresh controller with its
@@ -103,7 +105,7 @@ where
     C: CurrentLoop,
     F: Fn(&Truth) -> C + Sync,
 {
-    let traces = options
+    let runs = options
         .starts
         .par_iter()
         .map(|&start| {
@@ -111,11 +113,15 @@ where
             run_start(params, options, start, make(&initial))
         })
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(Measurement::of(traces, options))
+    let (traces, trips): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
+    Ok(Measurement {
+        tripped: trips.into_iter().flatten().next(),
+        ..Measurement::of(traces, options)
+    })
 }
 
 impl Measurement {
-    /// The merits of the records of all starts of a run.
+    /// The merits of the records of all starts of a run in which nothing tripped.
     pub fn of(traces: Vec<Trace>, options: &RunOptions) -> Self {
         let starts: Vec<Merits> = traces
             .iter()
@@ -125,6 +131,7 @@ impl Measurement {
             merits: Merits::of_starts(&starts),
             starts,
             traces,
+            tripped: None,
         }
     }
 }
@@ -148,8 +155,8 @@ pub fn record<C: CurrentLoop>(
     Ok(trace)
 }
 
-/// Mean torque over the measured window, mean of the starts, in newton metres, without a record:
-/// what the speed limit's scan needs.
+/// Mean torque over the measured window, mean of the starts, in newton metres, and the trip of the first
+/// start whose controller tripped, without a record: what the speed limit's scan needs.
 ///
 /// # Errors
 /// A plant parameter outside its range.
@@ -157,13 +164,13 @@ pub fn mean_torque<C, F>(
     params: &PlantParams,
     options: &RunOptions,
     make: &F,
-) -> Result<f64, PlantError>
+) -> Result<(f64, Option<Trip>), PlantError>
 where
     C: CurrentLoop,
     F: Fn(&Truth) -> C + Sync,
 {
     let (settling, measured) = options.periods(params);
-    let mut total = 0.0;
+    let (mut total, mut tripped) = (0.0, None);
     for &start in &options.starts {
         let plant = Plant::new(params.clone(), start, options.omega_m)?;
         let controller = make(&plant.truth());
@@ -175,6 +182,7 @@ where
             sum += closed.plant().truth().mean_torque;
         }
         total += sum / measured as f64;
+        tripped = tripped.or(closed.tripped());
     }
-    Ok(total / options.starts.len() as f64)
+    Ok((total / options.starts.len() as f64, tripped))
 }

@@ -9,22 +9,30 @@ mod limit;
 mod measure;
 mod merits;
 mod trace;
+mod trip;
 
 pub use harmonics::amplitudes;
 pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
 pub use measure::{Measurement, RunOptions, STARTS, mean_torque, measure, record};
 pub use merits::{Merits, merits};
 pub use trace::{PeriodRow, Trace, quasi_square};
+pub use trip::{Cause, Trip};
 
 use crate::plant::{Observer, Plant, Truth};
-use hexagen::{Drive, Legs, Sample};
+use hexagen::{Drive, Fault, Legs, Sample};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// A current controller, seen from the plant: one call per control period.
 pub trait CurrentLoop {
     /// Reads the sample and returns the command. `truth` is the plant's exact state at the same
     /// instant, for models that do without converters and sensors; real drives ignore it.
     fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs;
+
+    /// What tripped the controller, where it has a supervision that does.
+    fn fault(&self) -> Fault {
+        Fault::None
+    }
 }
 
 impl<F: FnMut(&Sample, &Truth) -> Legs> CurrentLoop for F {
@@ -40,6 +48,10 @@ pub struct DriveLoop<D>(pub D);
 impl<D: Drive> CurrentLoop for DriveLoop<D> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         self.0.step(sample)
+    }
+
+    fn fault(&self) -> Fault {
+        self.0.fault()
     }
 }
 
@@ -100,6 +112,7 @@ pub struct ClosedLoop<C> {
     controller: C,
     delay: Delay,
     pending: Legs,
+    tripped: Option<Trip>,
 }
 
 impl<C: CurrentLoop> ClosedLoop<C> {
@@ -110,6 +123,7 @@ impl<C: CurrentLoop> ClosedLoop<C> {
             controller,
             delay,
             pending: Legs::OFF,
+            tripped: None,
         }
     }
 
@@ -123,6 +137,11 @@ impl<C: CurrentLoop> ClosedLoop<C> {
         &mut self.controller
     }
 
+    /// The controller's first trip, if it tripped.
+    pub fn tripped(&self) -> Option<Trip> {
+        self.tripped
+    }
+
     /// Ends the loop and gives the controller back.
     pub fn into_controller(self) -> C {
         self.controller
@@ -134,6 +153,13 @@ impl<C: CurrentLoop> ClosedLoop<C> {
             let sample = self.plant.sample();
             let truth = self.plant.truth();
             let command = self.controller.step(&sample, &truth);
+            if self.tripped.is_none() {
+                self.tripped = Cause::of(self.controller.fault()).map(|fault| Trip {
+                    fault,
+                    time_s: truth.t,
+                    rpm: truth.omega_m * 60.0 / TAU,
+                });
+            }
             let applied = match self.delay {
                 Delay::None => command,
                 Delay::OnePeriod => std::mem::replace(&mut self.pending, command),

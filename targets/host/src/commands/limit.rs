@@ -63,7 +63,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`collect`].
+/// As [`collect`], or a drive that tripped where it no longer held the torque.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, limit) = collect(options)?;
     let model = options.run.model;
@@ -76,8 +76,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         limit,
     };
     if options.run.json {
-        return print_json(&outcome);
+        print_json(&outcome)?;
+    } else {
+        print_found(&outcome, &drive)?;
     }
+    match outcome.limit.tripped {
+        None => Ok(()),
+        Some(trip) => Err(Failure::Check(format!("error: {trip}"))),
+    }
+}
+
+fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let found = match (
         outcome.limit.outcome,
         outcome.limit.limit_rpm,
@@ -105,10 +114,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     print_text(&format!(
-        "{}, {} ({model:?}): {} Nm {found}",
+        "{}, {} ({:?}): {} Nm {found}",
         outcome.motor,
         outcome.controller,
+        outcome.model,
         significant(outcome.torque_nm, 4)
-    ));
-    Ok(())
+    ))
 }

@@ -181,7 +181,7 @@ impl<'p> Bench<'p> {
             .map(|&rpm| {
                 let torque = match known(rpm) {
                     Some(point) => point.merits.mean_torque_nm,
-                    None => mean_torque(&self.plant, &self.at(rpm), &maker())?,
+                    None => mean_torque(&self.plant, &self.at(rpm), &maker())?.0,
                 };
                 progress.inc(1);
                 Ok((rpm, torque))
@@ -240,7 +240,7 @@ impl<'p> Bench<'p> {
         let controller = |sample: &Sample, truth: &Truth| {
             use crate::closed_loop::CurrentLoop;
             let legs = engine.step(sample, truth);
-            let why = engine.fault().unwrap_or_default();
+            let why = engine.fault();
             if trip.is_none() && why != Fault::None {
                 trip = Some(Trip {
                     after: truth.t,

@@ -4,7 +4,7 @@ use crate::cli::{
     Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
     write_file,
 };
-use crate::closed_loop::{Measurement, Merits, RunOptions, measure};
+use crate::closed_loop::{Measurement, Merits, RunOptions, Trip, measure};
 use crate::engine::{EngineKind, Model, Prepared};
 use crate::plant::PlantParams;
 use clap::Args;
@@ -40,6 +40,8 @@ pub struct Outcome {
     pub rpm: f64,
     /// Demanded torque, Nm.
     pub torque_nm: f64,
+    /// What tripped the drive; none if nothing did.
+    pub tripped: Option<Trip>,
     /// What was measured.
     #[serde(flatten)]
     pub merits: Merits,
@@ -94,7 +96,7 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, rpm: f64) -> Result<(),
 /// Runs the command.
 ///
 /// # Errors
-/// As [`collect`], or a file that cannot be written.
+/// As [`collect`], a file that cannot be written, or a drive that tripped.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, run, measured) = collect(options)?;
     if let Some(path) = &options.csv {
@@ -118,11 +120,21 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         engine: (model == Model::Fixed).then(|| drive.engine_kind()),
         rpm: options.rpm,
         torque_nm: options.run.torque(&drive),
+        tripped: measured.tripped,
         merits: measured.merits,
     };
     if options.run.json {
-        return print_json(&outcome);
+        print_json(&outcome)?;
+    } else {
+        print_table(&outcome)?;
     }
+    match outcome.tripped {
+        None => Ok(()),
+        Some(trip) => Err(Failure::Check(format!("error: {trip}"))),
+    }
+}
+
+fn print_table(outcome: &Outcome) -> Result<(), Failure> {
     let engine = outcome
         .engine
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
@@ -130,16 +142,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         "{}, {} ({:?}{engine}): {} Nm at {} rpm",
         outcome.motor,
         outcome.controller,
-        model,
+        outcome.model,
         significant(outcome.torque_nm, 4),
         outcome.rpm
-    ));
+    ))?;
     let mut table = TextTable::new(1, ["merit", "value", "unit"]);
     for (name, value, unit) in rows(&outcome.merits) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
-    print_text(&table.render());
-    Ok(())
+    print_text(&table.render())
 }
 
 /// Names, values and units of merits, in the order of their keys.

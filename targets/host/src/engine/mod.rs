@@ -95,18 +95,6 @@ impl Engine<'_> {
     }
 }
 
-impl Engine<'_> {
-    /// Why the drive has tripped, [`Fault::None`] while it has not; the ideal model does not tell.
-    pub fn fault(&self) -> Option<Fault> {
-        match self {
-            Self::Compiled(drive) => Some(drive.fault()),
-            Self::Interpreted(drive) => Some(drive.fault()),
-            Self::BitTrue(model) => Some(model.fault()),
-            Self::Ideal(_) => None,
-        }
-    }
-}
-
 impl CurrentLoop for Engine<'_> {
     #[inline]
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
@@ -115,6 +103,16 @@ impl CurrentLoop for Engine<'_> {
             Self::Interpreted(drive) => drive.step(sample),
             Self::BitTrue(model) => model.step(sample),
             Self::Ideal(model) => model.step_legs(sample),
+        }
+    }
+
+    #[inline]
+    fn fault(&self) -> Fault {
+        match self {
+            Self::Compiled(drive) => drive.fault(),
+            Self::Interpreted(drive) => drive.fault(),
+            Self::BitTrue(model) => model.fault(),
+            Self::Ideal(model) => model.fault(),
         }
     }
 }

@@ -40,13 +40,22 @@ fn json_has_the_documented_keys() {
         .into_iter()
         .filter(|key| !MERITS.contains(key))
         .collect();
-    let mut expected = ["motor", "controller", "model", "engine", "rpm", "torque_nm"];
+    let mut expected = [
+        "motor",
+        "controller",
+        "model",
+        "engine",
+        "rpm",
+        "torque_nm",
+        "tripped",
+    ];
     expected.sort_unstable();
     let mut about = about;
     about.sort_unstable();
     assert_eq!(about, expected);
     assert_eq!(result["engine"], "compiled");
     assert_eq!(result["model"], "fixed");
+    assert_eq!(result["tripped"], Value::Null);
 }
 
 #[test]
@@ -215,6 +224,7 @@ fn limit_has_its_keys_and_agrees_with_simulate() {
     let (rpm, percent) = (number(&result, "limit_rpm"), number(&result, "limit_pct"));
     assert!((percent - rpm / 20.0).abs() < 1e-9, "{rpm} {percent}");
     assert_eq!(result["outcome"], "found");
+    assert_eq!(result["tripped"], Value::Null);
     assert_eq!(result["engine"], "interpreter");
     let held = |rpm: f64| {
         let rpm = rpm.to_string();
@@ -229,4 +239,42 @@ fn limit_has_its_keys_and_agrees_with_simulate() {
         number(&simulate(&arguments), "mean_torque_nm") >= 0.97 * 3.3
     };
     assert!(held(rpm - 30.0) && !held(rpm + 30.0), "{rpm}");
+}
+
+/// A tenth of the stated inductance lets the current run away from every model.
+#[test]
+fn a_drive_that_trips_is_told_with_fault_and_time() {
+    for (model, controller) in [
+        ("fixed", "pdcc"),
+        ("fixed", BEST),
+        ("bit-true", "pdcc"),
+        ("ideal", "pdcc"),
+    ] {
+        let plant = ["--scale-l", "0.1", "--start-angle", "0.1"];
+        let common = ["--controller", controller, "--model", model, "--json"];
+        let said = run(["simulate", PAPER, "--rpm", "1500"]
+            .iter()
+            .chain(&common)
+            .chain(&plant));
+        assert_eq!(said.code, 1, "{said:?}");
+        assert!(said.stderr.contains("tripped"), "{}", said.stderr);
+        let result = said.json_whatever_the_code();
+        let trip = &result["tripped"];
+        assert_eq!(trip["fault"], "over_current", "{trip}");
+        let time = number(trip, "time_s");
+        assert!(time > 0.0 && time < 0.1, "{trip}");
+        assert!((number(trip, "rpm") - 1500.0).abs() < 1e-6, "{trip}");
+
+        let said = run(["limit", PAPER].iter().chain(&common).chain(&plant));
+        assert_eq!(said.code, 1, "{said:?}");
+        assert!(said.stderr.contains("tripped"), "{}", said.stderr);
+        let result = said.json_whatever_the_code();
+        assert_eq!(result["outcome"], "never_held", "{result}");
+        assert_eq!(result["limit_rpm"], Value::Null);
+        assert_eq!(result["tripped"]["fault"], "over_current", "{result}");
+        assert!((number(&result["tripped"], "rpm") - 400.0).abs() < 1e-6);
+    }
+    let said = run(["simulate", PAPER, "--rpm", "1500", "--scale-l", "0.1"]);
+    assert_eq!(said.code, 1);
+    assert!(said.stdout.contains("| mean torque"), "{}", said.stdout);
 }

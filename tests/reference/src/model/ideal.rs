@@ -14,7 +14,7 @@ use super::trace::{PhysicalState, Trace};
 use super::variant::Variant;
 use crate::emf_shape::THIRD;
 use crate::{BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec};
-use hexagen::{LegState, Legs, Sample};
+use hexagen::{Fault, LegState, Legs, Sample};
 use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
@@ -172,6 +172,11 @@ impl Ideal {
     /// Starts bootstrap pre-charge.
     pub fn precharge(&mut self) {
         self.state.supervisor.precharge(&self.limits);
+    }
+
+    /// Why the controller is tripped.
+    pub fn fault(&self) -> Fault {
+        self.state.supervisor.fault
     }
 
     /// Signals of the last step.

@@ -1,0 +1,69 @@
+//! Drives that trip: which fault, and when.
+
+use hexagen::Fault;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What tripped a drive in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trip {
+    /// The fault.
+    pub fault: Cause,
+    /// Time from the start of the run to the sample that tripped it, in seconds.
+    pub time_s: f64,
+    /// Mechanical speed at that sample, in rpm.
+    pub rpm: f64,
+}
+
+/// A fault that is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// [`Fault::AdcRange`]
+    AdcRange,
+    /// [`Fault::OverCurrent`]
+    OverCurrent,
+    /// [`Fault::Hall`]
+    Hall,
+    /// [`Fault::Stall`]
+    Stall,
+    /// [`Fault::Offset`]
+    Offset,
+}
+
+impl Cause {
+    /// The cause of a fault; none of [`Fault::None`].
+    pub fn of(fault: Fault) -> Option<Self> {
+        match fault {
+            Fault::None => None,
+            Fault::AdcRange => Some(Self::AdcRange),
+            Fault::OverCurrent => Some(Self::OverCurrent),
+            Fault::Hall => Some(Self::Hall),
+            Fault::Stall => Some(Self::Stall),
+            Fault::Offset => Some(Self::Offset),
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AdcRange => "a current converter was at an end of its range",
+            Self::OverCurrent => "a phase current exceeded the trip level",
+            Self::Hall => "a Hall code was impossible",
+            Self::Stall => "no Hall edge came within the stall time-out",
+            Self::Offset => "a current offset was too far from its nominal value",
+        })
+    }
+}
+
+impl fmt::Display for Trip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fault, time_s, rpm } = self;
+        write!(
+            f,
+            "the drive tripped {:.2} ms after the start at {rpm:.0} rpm: {fault}",
+            1e3 * time_s
+        )
+    }
+}
