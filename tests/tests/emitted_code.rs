@@ -1,10 +1,11 @@
 //! What emitted code never contains, and that it is laid out as `rustfmt` lays it out.
 
+use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust, rustfmt};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
-use hexagen_tests::library::motors;
-use hexagen_tests::options::kinds;
+use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
+use hexagen_tests::options::{generate_toml, kinds};
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Besides every kind of controller with all options at their defaults.
@@ -119,4 +120,29 @@ fn check_layout(name: &str, tokens: &TokenStream) {
         Vec::<&str>::new(),
         "{name}"
     );
+}
+
+/// Tables of vectors, of switching and of modulation are constants of every type, and so every data sheet
+/// has them.
+#[test]
+fn data_sheets_show_all_constants_of_the_type() {
+    for kind in kinds() {
+        let toml = kind.drive_toml(&motor(PAPER_MOTOR), &kind.choice_of(&[]), None);
+        let (_, generated) = generate_toml(&toml).expect("the paper's motor generates");
+        let sheet = emit_datasheet(&generated.graph, &generated.interface);
+        let constants = &generated.interface.constants;
+        for constant in constants {
+            let row = format!("| `{}` | ", constant.name);
+            let rows = sheet.lines().filter(|line| line.starts_with(&row)).count();
+            assert_eq!(rows, 1, "{}: {}", kind.name, constant.name);
+        }
+        for table in [
+            "THREE_PHASE_VECTORS",
+            "TWO_PHASE_VECTORS",
+            "SVM_COEFFICIENTS",
+        ] {
+            let has_it = constants.iter().any(|constant| constant.name == table);
+            assert!(has_it, "{}: {table}", kind.name);
+        }
+    }
 }
