@@ -17,9 +17,9 @@
 //! Each stage imports earlier stages and [`diagnostics`] only. Emitters see a
 //! [`ir::VerifiedGraph`] and an [`interface::Interface`], never a specification. Scaling is a search:
 //! lowering computes the interval of every value, so the finest scale whose program passes the
-//! verifier is the scale. Adding a controller adds a folder under [`controllers`] (options,
-//! lowering) around the step that all share ([`controllers::current_loop`]) and a variant of
-//! [`controllers::ControllerSpec`]; blocks of that step (measurement, supervision, rotor angle,
+//! verifier is the scale. Adding a controller adds its options to `spec::controller`, a folder under
+//! [`controllers`] around the step that all share ([`controllers::current_loop`]) and a variant of
+//! [`spec::ControllerSpec`]; blocks of that step (measurement, supervision, rotor angle,
 //! limits, modulation) live in [`lower`].
 
 mod builder;

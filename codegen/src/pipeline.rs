@@ -1,16 +1,14 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
-use crate::controllers::{
-    ControllerSpec, EmfSource, LoopOptions, StableRange, fcs_mpc, interface, pdcc, phcc, pi_pwm,
-};
+use crate::controllers::{StableRange, fcs_mpc, interface, pdcc, phcc, pi_pwm};
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
 };
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::scaling::{Scaled, Unscalable, choose_scale};
-use crate::spec::{Origins, Spec};
+use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec};
 
 /// What emitters take.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,9 +5,9 @@
 //! its axes at once.
 
 use crate::library::{Motor, motor};
-use hexagen_codegen::controllers::KINDS;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::spec::KINDS;
 use hexagen_codegen::spec::{Spec, check, parse_toml};
 use toml_edit::{DocumentMut, Item, Table};
 

@@ -1,10 +1,11 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
-use super::current_loop::{LoopDesign, OPTIONS, StableRange};
+use super::current_loop::{LoopDesign, StableRange};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, rpm, significant};
 use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::scaling::Scaled;
+use crate::spec::controller::common::OPTIONS;
 use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, HallCapture, Spec};

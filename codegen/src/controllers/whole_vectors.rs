@@ -5,49 +5,9 @@
 
 use super::current_loop::{CurrentLoop, Front, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
-use crate::diagnostics::{Collector, catalogue};
 use crate::ir::{Comparison, TableId, Value};
 use crate::lower::{Applied, Command, Lowering};
 use crate::spec::BusSource;
-use crate::spec::check::reader::Reader;
-
-/// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OffLegModel {
-    /// Where its diodes or its EMF put it.
-    Physical,
-    /// Midway, as Table 2's vectors have it.
-    Nominal,
-}
-
-/// Reads the option `off_leg`; physical by default. `three_phase` says that all candidates drive all legs.
-pub(super) fn read_off_leg(
-    reader: &Reader,
-    three_phase: bool,
-    errors: &mut Collector,
-) -> OffLegModel {
-    let given = reader.word(
-        errors,
-        "off_leg",
-        &[
-            ("physical", OffLegModel::Physical),
-            ("nominal", OffLegModel::Nominal),
-        ],
-    );
-    if three_phase && let (Some(_), Some(field)) = (given, reader.field("off_leg")) {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "off_leg",
-            &field.value.to_string(),
-            reader
-                .field("candidates")
-                .map_or(reader.location(), |field| &field.location),
-            "candidates: three_phase",
-            "these vectors turn no leg off",
-        ));
-    }
-    given.unwrap_or(OffLegModel::Physical)
-}
 
 /// Legs of vectors 0 to 15: high (1), low (-1) or off (0).
 pub(super) fn vector_legs() -> [LegSigns; 16] {

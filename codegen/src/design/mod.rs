@@ -4,4 +4,4 @@ pub mod emf;
 mod plant;
 pub mod vectors;
 
-pub use plant::{DiscretePlant, Discretisation};
+pub use plant::DiscretePlant;

@@ -1,13 +1,6 @@
 //! The discrete-time R-L plant of one phase: i(k+1) = a i(k) + b (v(k) - e(k)).
 
-/// How the plant is discretised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Discretisation {
-    /// a = exp(-R Ts/L), b = (1 - a)/R.
-    Exact,
-    /// The paper's (7): a = 1 - R Ts/L, b = Ts/L.
-    Euler,
-}
+use crate::spec::Discretisation;
 
 /// Pole and gain of the discrete plant.
 #[derive(Clone, Copy, Debug, PartialEq)]

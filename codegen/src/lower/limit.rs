@@ -6,17 +6,7 @@
 use super::{Bus, Coefficient, Lowering};
 use crate::interface::Rounding;
 use crate::ir::{Comparison, Value};
-
-/// What gives way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LimitRule {
-    /// Scale to the edge.
-    KeepAngle,
-    /// Nearest point of the hexagon.
-    Nearest,
-    /// Keep the component along the EMF.
-    TorquePriority,
-}
+use crate::spec::LimitRule;
 
 /// A voltage inside the hexagon.
 #[derive(Clone, Copy, Debug)]

@@ -14,7 +14,7 @@ pub mod set_point;
 mod supervise;
 
 pub use emf::{FluxModel, ModelledEmf};
-pub use limit::{LimitRule, Limited};
+pub use limit::Limited;
 pub use measure::{Currents, Hall};
 pub use modulate::{Applied, Command, OffLeg, PairModulation};
 use number::round_half_up;

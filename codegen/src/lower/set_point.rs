@@ -2,11 +2,10 @@
 
 use super::number::round_half_up;
 use super::{Bus, Coefficient, Lowering, Scale, round_down};
-use crate::controllers::ControllerSpec;
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
-use crate::spec::{BusSource, Spec};
+use crate::spec::{BusSource, ControllerSpec, Spec};
 
 /// Fraction bits of the ratio of nominal to measured bus.
 const RATIO_BITS: u32 = 28;

@@ -7,6 +7,7 @@
 
 pub mod ast;
 pub(crate) mod check;
+pub(crate) mod controller;
 mod emf_shape;
 mod load;
 mod macro_syntax;
@@ -22,6 +23,11 @@ mod variant;
 
 pub use ast::SpecAst;
 pub use check::{Origin, Origins, check};
+pub use controller::{
+    Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, LimitRule,
+    LoopOptions, Modulation, OffLegModel, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec, Reference,
+    SwitchingTable,
+};
 pub use load::load_motor_file;
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
 pub use model::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};

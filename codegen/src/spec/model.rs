@@ -3,7 +3,7 @@
 //! Later stages read only these types; how a value was written, in which unit and where, ends at
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
-use crate::controllers::{ControllerSpec, Reference};
+use crate::spec::{ControllerSpec, Reference};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// One drive: what to call it, and its motor, inverter and controller.

@@ -2,12 +2,10 @@
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
 use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
-use crate::controllers::fcs_mpc::Candidates;
-use crate::controllers::pdcc::Modulation;
-use crate::controllers::phcc::{PhccCandidates, SwitchingTable};
-use crate::controllers::{ControllerSpec, EmfSource, OffLegModel, Reference};
-use crate::design::Discretisation;
-use crate::lower::LimitRule;
+use crate::spec::{
+    Candidates, ControllerSpec, Discretisation, EmfSource, LimitRule, Modulation, OffLegModel,
+    PhccCandidates, Reference, SwitchingTable,
+};
 use std::fmt::{Debug, Display};
 
 impl Spec {
@@ -208,11 +206,10 @@ impl Text {
 
 #[cfg(test)]
 mod tests {
-    use crate::controllers::pdcc::{Modulation, PdccSpec};
-    use crate::controllers::{ControllerSpec, EmfSource, LoopOptions, Reference};
-    use crate::design::Discretisation;
-    use crate::lower::LimitRule;
-    use crate::spec::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+    use crate::spec::{
+        BusSource, ControllerSpec, Discretisation, EmfShape, EmfSource, HallCapture, InverterSpec,
+        LimitRule, LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, Spec,
+    };
 
     fn hub_drive() -> Spec {
         Spec {

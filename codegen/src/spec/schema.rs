@@ -3,8 +3,8 @@
 //! The limits keep out slips of unit and decimal point; they are wider than any motor that this
 //! crate is made for. The reference table for users is the documentation of [`crate::spec`].
 
+use super::controller::common::OPTIONS;
 use super::units::Dimension as D;
-use crate::controllers::current_loop::OPTIONS;
 
 /// A field: its name, what it takes, and an example for messages.
 #[derive(Clone, Copy, Debug)]

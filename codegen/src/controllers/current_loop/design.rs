@@ -1,9 +1,8 @@
 //! Numbers of the predictive laws in SI units.
 
-use super::LoopOptions;
 use crate::design::DiscretePlant;
 use crate::scaling::Scaled;
-use crate::spec::Spec;
+use crate::spec::{LoopOptions, Spec};
 
 /// Coefficients of prediction, EMF estimate and deadbeat voltage (semantics page of predictive deadbeat), SI.
 #[derive(Clone, Debug, PartialEq)]

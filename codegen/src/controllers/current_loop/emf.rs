@@ -3,10 +3,11 @@
 //! An estimate needs the voltage that was applied. Where a leg floated, that voltage was taken from the
 //! leg's own EMF, so its estimate would only integrate noise; the motor's geometry says what it is.
 
+use super::CurrentLoop;
 use super::words::{EmfUse, Words};
-use super::{CurrentLoop, EmfSource};
 use crate::ir::{Comparison, Value};
 use crate::lower::{Coefficient, Currents, Rotor, product_bound, round_down};
+use crate::spec::EmfSource;
 
 type Pair = Option<[Value; 2]>;
 

@@ -3,13 +3,10 @@
 
 mod design;
 mod emf;
-mod options;
 mod stability;
 mod words;
 
 pub use design::LoopDesign;
-pub use options::{EmfSource, LoopOptions, Reference};
-pub(crate) use options::{OPTIONS, Surroundings, read_common, read_saturation};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
@@ -17,7 +14,7 @@ use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Scale};
 use crate::scaling::Lowered;
-use crate::spec::Spec;
+use crate::spec::{LoopOptions, Reference, Spec};
 
 /// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
 pub fn lower_with(

@@ -1,8 +1,8 @@
 //! Stability of linear current loops: closed-loop poles on a plant whose R and L are not the model's.
 
-use super::{EmfSource, LoopDesign, LoopOptions};
+use super::LoopDesign;
 use crate::design::DiscretePlant;
-use crate::spec::Spec;
+use crate::spec::{EmfSource, LoopOptions, Spec};
 use nalgebra::{DMatrix, DVector};
 
 /// Stable ranges of true over stated inductance and resistance.
@@ -26,7 +26,7 @@ pub trait LinearLoop {
     fn spectral_radius(&self, spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> f64 {
         // The plant is physical whatever the model's discretisation: its own discretisation is exact.
         let real = DiscretePlant::new(
-            crate::design::Discretisation::Exact,
+            crate::spec::Discretisation::Exact,
             (spec.motor.resistance * resistance_ratio).max(1e-9),
             spec.motor.inductance * inductance_ratio,
             spec.inverter.t_s,

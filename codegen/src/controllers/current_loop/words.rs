@@ -1,8 +1,9 @@
 //! State words of the shared step, each only where the variant needs it.
 
-use super::{CurrentLoop, EmfSource, Reference};
+use super::CurrentLoop;
 use crate::ir::{Interval, StateId};
 use crate::lower::{PairModulation, RotorWords, SupervisorWords};
+use crate::spec::{EmfSource, Reference};
 
 /// What a law needs of the step around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,11 @@
 //! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
 //! the sign of a line voltage, so three scores remain.
 
-use super::{Candidates, FcsMpcSpec};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
 use crate::ir::{Comparison, Value};
 use crate::lower::Lowering;
+use crate::spec::{Candidates, FcsMpcSpec};
 
 /// Pairs by the leg that is off, in the order of their vectors: V12 | V45 leave a off, V23 | V56 c, V34 | V61 b.
 /// Off phase, the phase that is high in the first vector, the phase that is low in it.

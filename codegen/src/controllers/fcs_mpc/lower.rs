@@ -1,10 +1,9 @@
 //! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
 
-use super::FcsMpcSpec;
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::lower::Scale;
 use crate::scaling::Lowered;
-use crate::spec::Spec;
+use crate::spec::{FcsMpcSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scale) -> Lowered {

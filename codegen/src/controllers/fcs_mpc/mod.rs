@@ -2,11 +2,8 @@
 
 mod choose;
 mod lower;
-mod options;
 
 pub use lower::lower;
-pub(crate) use options::check_options;
-pub use options::{Candidates, FcsMpcSpec};
 
 use crate::controllers::Law;
 use crate::controllers::current_loop::LoopDesign;

@@ -1,10 +1,9 @@
 //! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
 
-use super::{Modulation, PdccSpec};
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::lower::Scale;
 use crate::scaling::Lowered;
-use crate::spec::Spec;
+use crate::spec::{Modulation, PdccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {

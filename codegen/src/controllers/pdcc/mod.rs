@@ -1,13 +1,9 @@
 #![doc = include_str!("semantics.md")]
 
 mod lower;
-mod options;
-mod spec;
 mod stability;
 
 pub use lower::lower;
-pub(crate) use options::check_options;
-pub use spec::{Modulation, PdccSpec};
 pub use stability::DeadbeatLoop;
 
 use crate::controllers::{Law, StableRange};

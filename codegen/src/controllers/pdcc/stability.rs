@@ -1,7 +1,8 @@
 //! The deadbeat loop as a linear system.
 
-use crate::controllers::current_loop::{LinearLoop, LoopDesign, LoopOptions, estimate};
+use crate::controllers::current_loop::{LinearLoop, LoopDesign, estimate};
 use crate::design::DiscretePlant;
+use crate::spec::LoopOptions;
 use nalgebra::DVector;
 
 /// The deadbeat loop; state i, i_prev, v_now, v_prev, e_prev.

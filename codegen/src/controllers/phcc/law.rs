@@ -1,12 +1,11 @@
 //! What the documentation of the type says of the method, and its switching table.
 
-use super::options::{PhccSpec, SwitchingTable};
 use super::switching_table;
 use crate::controllers::Law;
 use crate::controllers::current_loop::LoopDesign;
 use crate::diagnostics::engineering;
 use crate::interface::{PublicConstant, PublicValue};
-use crate::spec::Spec;
+use crate::spec::{PhccSpec, Spec, SwitchingTable};
 
 const SETS: [&str; 4] = [
     "motoring forward",

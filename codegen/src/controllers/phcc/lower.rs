@@ -1,13 +1,12 @@
 //! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
 
-use super::options::PhccSpec;
 use super::switching_table;
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
-use crate::spec::Spec;
+use crate::spec::{PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {

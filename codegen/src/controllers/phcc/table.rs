@@ -1,10 +1,9 @@
 //! The switching table, derived from the geometry of the vectors (semantics, last section).
 
-use super::options::{PhccCandidates, PhccSpec, SwitchingTable};
 use crate::controllers::whole_vectors::vector_legs;
 use crate::design::emf::zero_sum_shape;
 use crate::design::vectors::{OFF_PHASE, SECTOR_CURRENT, clarke, leg_vector};
-use crate::spec::EmfShape;
+use crate::spec::{EmfShape, PhccCandidates, PhccSpec, SwitchingTable};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 

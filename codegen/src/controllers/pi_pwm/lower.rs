@@ -1,11 +1,10 @@
 //! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
 
-use super::PiPwmSpec;
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
-use crate::spec::{BusSource, Spec};
+use crate::spec::{BusSource, PiPwmSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {

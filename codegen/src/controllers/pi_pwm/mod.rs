@@ -1,17 +1,14 @@
 #![doc = include_str!("semantics.md")]
 
 mod lower;
-mod options;
 mod stability;
 
 pub use lower::lower;
-pub use options::PiPwmSpec;
-pub(crate) use options::check_options;
 pub use stability::{PiLoop, is_stable_with_winding_time};
 
 use crate::controllers::{Law, StableRange};
 use crate::diagnostics::engineering;
-use crate::spec::Spec;
+use crate::spec::{PiPwmSpec, Spec};
 
 /// What the documentation of the type says of the method.
 pub fn law(spec: &Spec, options: &PiPwmSpec, stable: StableRange) -> Law {

@@ -1,9 +1,8 @@
 //! The PI loop as a linear system.
 
-use super::PiPwmSpec;
 use crate::controllers::current_loop::{LinearLoop, LoopDesign, estimate};
 use crate::design::DiscretePlant;
-use crate::spec::Spec;
+use crate::spec::{PiPwmSpec, Spec};
 use nalgebra::DVector;
 
 /// Whether the loop would be stable with the default integral time, L/R.

@@ -3,11 +3,11 @@
 use super::inverter::Inverter;
 use super::motor::Motor;
 use super::reader::Reader;
-use crate::controllers::current_loop::{OPTIONS, Surroundings};
-use crate::controllers::{ControllerSpec, KINDS, fcs_mpc, pdcc, phcc, pi_pwm};
 use crate::diagnostics::{Collector, Location, catalogue};
-use crate::spec::HallCapture;
 use crate::spec::ast::{Field, Section, Value};
+use crate::spec::controller::common::{OPTIONS, Surroundings};
+use crate::spec::controller::{fcs_mpc, pdcc, phcc, pi_pwm};
+use crate::spec::{ControllerSpec, HallCapture, KINDS};
 
 /// Options that are known and that this version does not have.
 const PLANNED_OPTIONS: [&str; 5] = ["horizon", "modulated", "zero", "six_step", "integral"];

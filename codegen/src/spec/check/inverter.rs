@@ -3,12 +3,10 @@
 use super::motor::Motor;
 use super::reader::{Given, Reader};
 use super::relations;
-use crate::controllers::ControllerSpec;
-use crate::controllers::Reference;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, engineering, rpm};
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, HallCapture, InverterSpec};
+use crate::spec::{BusSource, ControllerSpec, HallCapture, InverterSpec, Reference};
 
 /// The inverter as far as it could be read.
 pub(super) struct Inverter<'a> {

@@ -142,7 +142,7 @@ fn a_motor_file_is_overridden_field_by_field() {
     assert_eq!(spec.inverter.adc_gain, 0.01);
     let options = spec.controller.common();
     assert_eq!((options.advance, options.word), (1.0, 32));
-    assert_eq!(options.emf, crate::controllers::EmfSource::Model);
+    assert_eq!(options.emf, crate::spec::EmfSource::Model);
     assert_eq!(
         origins.at("motor.resistance").to_string(),
         "motors/hub.toml:5:14"
@@ -172,13 +172,13 @@ fn a_variant_overrides_options_of_the_same_controller() {
     )
     .expect("parses");
     let (spec, _) = check(&ast).expect("passes");
-    let crate::controllers::ControllerSpec::Pdcc(pdcc) = spec.controller else {
+    let crate::spec::ControllerSpec::Pdcc(pdcc) = spec.controller else {
         panic!("a deadbeat controller");
     };
     let options = pdcc.common;
     assert_eq!((options.advance, options.commutation_threshold), (1.5, 0.4));
-    assert_eq!(pdcc.modulation, crate::controllers::pdcc::Modulation::Pair);
-    assert_eq!(options.emf, crate::controllers::EmfSource::Model);
+    assert_eq!(pdcc.modulation, crate::spec::Modulation::Pair);
+    assert_eq!(options.emf, crate::spec::EmfSource::Model);
 }
 
 #[test]

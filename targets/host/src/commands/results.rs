@@ -12,8 +12,9 @@ use crate::report::{
     Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SameWords,
     SignalError, Stability, StabilityCheck, Variant,
 };
-use hexagen_codegen::controllers::{EmfSource, stable_range};
+use hexagen_codegen::controllers::stable_range;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
+use hexagen_codegen::spec::EmfSource;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

@@ -1,8 +1,7 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use crate::controllers::LoopOptions;
-use crate::controllers::current_loop::{Surroundings, read_common};
-use crate::controllers::whole_vectors::{OffLegModel, read_off_leg};
+use super::common::{LoopOptions, Surroundings, read_common};
+use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::ast::Value;

@@ -1,10 +1,8 @@
 //! Options of PI control, and how they are read.
 
-use crate::controllers::LoopOptions;
-use crate::controllers::current_loop::{Surroundings, read_common, read_saturation};
+use super::common::{LimitRule, LoopOptions, Surroundings, read_common, read_saturation};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
-use crate::lower::LimitRule;
 use crate::spec::check::reader::Reader;
 use crate::spec::{MotorSpec, Spec};
 use std::f64::consts::TAU;

@@ -1,9 +1,7 @@
 //! Options that all controllers share, and how they are read.
 
-use crate::design::Discretisation;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, engineering};
-use crate::lower::LimitRule;
 use crate::spec::check::reader::Reader;
 use crate::spec::schema::{self, Rule};
 use crate::spec::units::Dimension as D;
@@ -24,6 +22,26 @@ pub enum Reference {
     QuasiSquare,
     /// Parallel to the EMF: constant torque at least copper loss.
     Proportional,
+}
+
+/// How the plant is discretised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Discretisation {
+    /// a = exp(-R Ts/L), b = (1 - a)/R.
+    Exact,
+    /// The paper's (7): a = 1 - R Ts/L, b = Ts/L.
+    Euler,
+}
+
+/// What gives way where the voltage is beyond the hexagon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitRule {
+    /// Scale to the edge.
+    KeepAngle,
+    /// Nearest point of the hexagon.
+    Nearest,
+    /// Keep the component along the EMF.
+    TorquePriority,
 }
 
 /// Options that all controllers share.
@@ -49,7 +67,7 @@ pub struct LoopOptions {
     pub commutation_timeout: u32,
 }
 
-/// All fields of controllers; [`crate::controllers::KINDS`] says which kind takes which.
+/// All fields of controllers; [`super::KINDS`] says which kind takes which.
 pub(crate) const OPTIONS: &[Rule] = &[
     schema::word("kind", "pdcc"),
     schema::word("emf", "estimated"),

@@ -1,11 +1,29 @@
-//! Reads the options of predictive deadbeat current control.
+//! Options of predictive deadbeat current control, and how they are read.
 
-use super::{Modulation, PdccSpec};
-use crate::controllers::current_loop::{Surroundings, read_common, read_saturation};
+use super::common::{LimitRule, LoopOptions, Surroundings, read_common, read_saturation};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
-use crate::lower::LimitRule;
 use crate::spec::check::reader::Reader;
+
+/// How the deadbeat voltage becomes leg commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Modulation {
+    /// Three duties in every period.
+    ThreePhase,
+    /// Three duties in commutation, else only the conducting pair is pulsed.
+    Pair,
+}
+
+/// Options of predictive deadbeat current control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PdccSpec {
+    /// Modulation.
+    pub modulation: Modulation,
+    /// Saturation rule.
+    pub saturation: LimitRule,
+    /// Options that all controllers share.
+    pub common: LoopOptions,
+}
 
 /// Reads and checks the options. None only together with an error.
 pub(crate) fn check_options(
