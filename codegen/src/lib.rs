@@ -29,6 +29,7 @@ pub mod diagnostics;
 pub mod emit;
 mod expand;
 pub mod interface;
+mod interpreted;
 pub mod ir;
 pub mod lower;
 pub mod pipeline;
@@ -37,3 +38,4 @@ pub mod spec;
 
 pub use builder::{BuildError, Builder, Written};
 pub use expand::{expand_controller, expand_verify};
+pub use interpreted::InterpretedDrive;

@@ -1,11 +1,10 @@
 //! The IR interpreter as a subject of the bit-for-bit test.
-//!
-//! What the emitted type does outside the step (reset, start-up calls, state access) is done here
-//! as the specification of the step says; the step and the setters run in the interpreter.
 
 use crate::cases::{self, Case, Record};
+use hexagen::arith::Word;
 use hexagen::{Fault, Format, LegState, Legs, Rounding, Sample};
-use hexagen_codegen::interface;
+use hexagen_codegen::InterpretedDrive;
+use hexagen_codegen::interface::{self, Interface};
 use hexagen_codegen::ir::{Escape, Machine, Program};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
@@ -17,138 +16,51 @@ use std::collections::BTreeSet;
 /// answered with all legs off.
 #[derive(Debug)]
 pub struct Interpreted<'g> {
-    machine: Machine<'g>,
-    program: &'g Program,
-    calibration_samples: i32,
-    precharge_periods: i32,
-    words: Words,
-    outputs: [usize; 6],
-    inputs: Vec<Input>,
+    drive: InterpretedDrive<'g>,
     escaped: &'g RefCell<Option<String>>,
-}
-
-/// Places of the state words that calls touch.
-#[derive(Clone, Copy, Debug)]
-struct Words {
-    mode: usize,
-    fault: usize,
-    countdown: usize,
-    sums: [usize; 2],
-    offsets: [usize; 2],
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Input {
-    AdcA,
-    AdcB,
-    Hall,
-    HallTicks,
 }
 
 impl<'g> Interpreted<'g> {
     /// The program at rest; what leaves its interval is told to `escaped`.
-    ///
-    /// # Panics
-    /// When the program is none of a drive: words, inputs or outputs are missing.
     pub fn new(
         program: &'g Program,
-        calibration_samples: i32,
-        precharge_periods: i32,
+        interface: &Interface,
         escaped: &'g RefCell<Option<String>>,
     ) -> Self {
-        let place = |name: &str| {
-            let found = program.states.iter().position(|word| word.name == name);
-            found.expect("a state word of every drive")
-        };
-        let output = |name: &str| {
-            let found = program
-                .step
-                .outputs
-                .iter()
-                .position(|(known, _)| known == name);
-            found.expect("an output of every drive")
-        };
-        let inputs = program
-            .step
-            .inputs
-            .iter()
-            .map(|input| match input.name.as_str() {
-                "adc_a" => Input::AdcA,
-                "adc_b" => Input::AdcB,
-                "hall" => Input::Hall,
-                "hall_ticks" => Input::HallTicks,
-                other => panic!("unknown input {other}"),
-            });
         Self {
-            machine: Machine::of_program(program),
-            program,
-            calibration_samples,
-            precharge_periods,
-            words: Words {
-                mode: place("mode"),
-                fault: place("fault"),
-                countdown: place("countdown"),
-                sums: [place("sum_a"), place("sum_b")],
-                offsets: [place("offset_a"), place("offset_b")],
-            },
-            outputs: [
-                "compare_a",
-                "compare_b",
-                "compare_c",
-                "leg_a",
-                "leg_b",
-                "leg_c",
-            ]
-            .map(output),
-            inputs: inputs.collect(),
+            drive: InterpretedDrive::new(program, interface),
             escaped,
         }
     }
 
     fn set(&mut self, setter: &str, word: i32) {
-        if let Err(escape) = self.machine.set(setter, &[word]) {
-            self.note(&escape.place, escape.value);
+        if let Err(escape) = self.drive.set(setter, word) {
+            self.note(&escape);
         }
     }
 
-    fn note(&mut self, place: &str, value: Option<i64>) {
+    fn note(&self, escape: &Escape) {
         let mut escaped = self.escaped.borrow_mut();
-        if escaped.is_none() {
-            *escaped = Some(format!("{place} = {value:?}"));
-        }
-    }
-
-    fn is_tripped(&self) -> bool {
-        self.machine.state[self.words.mode] == 3
+        escaped.get_or_insert_with(|| format!("{} = {:?}", escape.place, escape.value));
     }
 }
 
 impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> Legs {
-        let words: Vec<i32> = self
-            .inputs
-            .iter()
-            .map(|input| match input {
-                Input::AdcA => i32::from(sample.adc_a),
-                Input::AdcB => i32::from(sample.adc_b),
-                Input::Hall => i32::from(sample.hall),
-                Input::HallTicks => i32::from(sample.hall_ticks),
-            })
-            .collect();
-        match self.machine.step(&words) {
-            Ok(results) => {
-                let word = |index: usize| results[self.outputs[index]];
-                Legs {
-                    compare: [0, 1, 2].map(|phase| word(phase) as u16),
-                    state: [3, 4, 5].map(|leg| match word(leg) {
-                        0 => LegState::Pulsed,
-                        1 => LegState::Low,
-                        _ => LegState::Off,
-                    }),
-                }
-            }
+        let Sample {
+            adc_a,
+            adc_b,
+            hall,
+            hall_ticks,
+        } = *sample;
+        let words = [adc_a, adc_b, u16::from(hall), hall_ticks].map(i32::from);
+        match self.drive.step(words) {
+            Ok([compare, legs]) => Legs {
+                compare: compare.map(|word| word as u16),
+                state: legs.map(|word| LegState::from_word(Word(word))),
+            },
             Err(escape) => {
-                self.note(&escape.place, escape.value);
+                self.note(&escape);
                 Legs::OFF
             }
         }
@@ -167,62 +79,27 @@ impl Subject for Interpreted<'_> {
     }
 
     fn reset(&mut self) {
-        let mode = self.machine.state[self.words.mode];
-        if mode == 1 || mode == 2 {
-            return;
-        }
-        let offsets = self.words.offsets;
-        for (index, word) in self.program.states.iter().enumerate() {
-            if !offsets.contains(&index) {
-                self.machine.state[index] = word.initial;
-            }
-        }
+        self.drive.reset();
     }
 
     fn calibrate(&mut self) {
-        if !self.is_tripped() {
-            let Words {
-                mode,
-                countdown,
-                sums,
-                ..
-            } = self.words;
-            self.machine.state[mode] = 1;
-            self.machine.state[countdown] = self.calibration_samples;
-            for sum in sums {
-                self.machine.state[sum] = 0;
-            }
-        }
+        self.drive.calibrate();
     }
 
     fn precharge(&mut self) {
-        let Words {
-            mode, countdown, ..
-        } = self.words;
-        let may_start = matches!(self.machine.state[mode], 0 | 2);
-        if may_start && self.precharge_periods > 0 {
-            self.machine.state[mode] = 2;
-            self.machine.state[countdown] = self.precharge_periods;
-        }
+        self.drive.precharge();
     }
 
     fn fault(&self) -> Fault {
-        match self.machine.state[self.words.fault] {
-            1 => Fault::AdcRange,
-            2 => Fault::OverCurrent,
-            3 => Fault::Hall,
-            4 => Fault::Stall,
-            5 => Fault::Offset,
-            _ => Fault::None,
-        }
+        Fault::from_word(Word(self.drive.fault()))
     }
 
     fn state_words(&self, words: &mut [i32]) {
-        words.copy_from_slice(&self.machine.state);
+        words.copy_from_slice(self.drive.state());
     }
 
     fn set_state_words(&mut self, words: &[i32]) {
-        self.machine.state.copy_from_slice(words);
+        self.drive.state_mut().copy_from_slice(words);
     }
 }
 
@@ -262,12 +139,7 @@ pub fn compare_record(
 ) -> Result<(), String> {
     compare_set_points(program, &record.cases)?;
     let escaped = RefCell::new(None);
-    let subject = Interpreted::new(
-        program,
-        generated.interface.calibration_samples,
-        generated.interface.precharge_periods,
-        &escaped,
-    );
+    let subject = Interpreted::new(program, &generated.interface, &escaped);
     let result = cases::replay(record, &names(program), subject);
     match (escaped.into_inner(), result) {
         (Some(place), result) => Err(format!(
@@ -426,14 +298,7 @@ pub fn compare(
         &interface.spec_toml,
         &formats(&interface.formats),
         &names(program),
-        || {
-            Interpreted::new(
-                program,
-                interface.calibration_samples,
-                interface.precharge_periods,
-                &escaped,
-            )
-        },
+        || Interpreted::new(program, interface, &escaped),
         steps,
         seed,
     )

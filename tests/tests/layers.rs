@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Modules of the generator, each with those that it may import besides itself.
-const IMPORTS: [(&str, &[&str]); 12] = [
+const IMPORTS: [(&str, &[&str]); 13] = [
     ("diagnostics", &[]),
     ("interface", &[]),
     ("ir", &[]),
@@ -39,6 +39,7 @@ const IMPORTS: [(&str, &[&str]); 12] = [
             "spec",
         ],
     ),
+    ("interpreted", &["interface", "ir", "lower"]),
     ("emit", &["diagnostics", "interface", "ir"]),
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
     (
