@@ -43,7 +43,7 @@ pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
 }
 
 /// `min(floor(numerator 2^shift / denominator), limit)`, numerator not negative, denominator at least
-/// 1, limit not negative. `shift` is 0 to 31. Divides 64 bits: for rare paths.
+/// 1, limit not negative. `shift` is 0 to 31. Divides 64 bits: for paths off the normal one.
 #[inline(always)]
 #[must_use]
 pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {

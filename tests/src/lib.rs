@@ -12,3 +12,8 @@ pub mod mutation;
 pub mod options;
 pub mod pairwise;
 pub mod states;
+
+/// The README's examples, which the documentation tests of this crate run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Emits the current controller of one motor: a `no_std` type with `new()`, `step()`, set-point and
 /// reset, everything precomputed.
 ///
-/// ```ignore
+/// ```text
 /// hexagen::controller! {
 ///     /// Rear hub drive.
 ///     pub HubDrive {

@@ -264,8 +264,12 @@ fn runs(function: &Function, stage: &Stage) -> String {
     match &stage.guard {
         None => "always".to_owned(),
         Some(guard) => {
-            let rarely = if guard.rare { "rarely, " } else { "" };
-            format!("{rarely}if `{}`", function.node(guard.condition).name)
+            let path = if guard.rare {
+                "off the normal path, "
+            } else {
+                ""
+            };
+            format!("{path}if `{}`", function.node(guard.condition).name)
         }
     }
 }

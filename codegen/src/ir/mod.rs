@@ -12,6 +12,8 @@ pub mod interpret;
 mod prune;
 pub mod text;
 pub mod verify;
+#[cfg(test)]
+mod verify_tests;
 
 pub use build::FunctionBuilder;
 pub use cost::{Cost, PathCost, live_words};

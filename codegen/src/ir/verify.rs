@@ -1,14 +1,22 @@
 //! The verifier: from a program to a [`VerifiedGraph`], or the list of what is wrong with it.
 //!
-//! Invariants: (1) every operand is defined earlier; (2) stages and their joins partition the nodes in
-//! order; (3) values of a guarded stage leave it through its joins only, and joins stand right behind
-//! their stage; (4) operand kinds fit; (5) every stored interval is the one that follows from the
-//! operands (and, at a join, the guard: [`Function::interval_where_not`]), and lies in the 32-bit word; (6) operators stay in their domain: denominators >= 1,
-//! factors and numerators not negative where required, clamp limits in order, shifts and segments in
-//! range; (7) names are unique, and a value without a name is used once, in its own stage; (8) tables
-//! have a power-of-two length; (9) every state word is set once, to a value inside its interval, which
-//! holds its initial value and fits its storage; set-point words likewise in every setter that sets
-//! them; (10) no dead nodes.
+//! Invariants:
+//! 1. Every operand is defined earlier; words, constants, tables and results that are named exist.
+//! 2. Stages and their joins partition the nodes in order.
+//! 3. Values of a guarded stage leave it through its joins only; joins stand right behind their stage, and
+//!    its guard is defined before it.
+//! 4. Operand kinds fit, and results are words.
+//! 5. Every stored interval is the one that follows from the operands (and, at a join, the guard:
+//!    [`Function::interval_where_not`]), and lies in the 32-bit word.
+//! 6. Operators stay in their domain: denominators >= 1, factors and numerators not negative where
+//!    required, clamp limits in order, shifts and segments in range.
+//! 7. Names are unique: of constants and tables, of words, of functions; in a function of inputs, outputs,
+//!    stages and values. A value without a name is used once, in its own stage, but for constants.
+//! 8. Tables have a power-of-two length.
+//! 9. The step sets every state word once and no set-point word; a setter sets no state word, and a set-point
+//!    word at most once. What is set lies in the word's interval, which holds its initial value and fits its
+//!    storage of 16 or 32 bits.
+//! 10. No dead nodes.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -49,16 +57,12 @@ impl VerifiedGraph {
 /// Every violation found.
 pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
     let mut violations = Violations(vec![]);
-    let mut names = HashSet::new();
-    for constant in &program.constants {
-        if !names.insert(constant.name.as_str()) {
-            violations.add(&constant.name, "constant named twice");
-        }
-    }
+    let constants = program.constants.iter().map(|constant| &constant.name);
+    violations.repeated(constants.chain(program.tables.iter().map(|table| &table.name)));
+    let words = program.states.iter().chain(&program.params);
+    violations.repeated(words.map(|word| &word.name));
+    violations.repeated(program.functions().map(|function| &function.name));
     for table in &program.tables {
-        if !names.insert(table.name.as_str()) {
-            violations.add(&table.name, "table named twice");
-        }
         if !table.values.len().is_power_of_two() {
             violations.add(&table.name, "table length is not a power of two");
         }
@@ -74,15 +78,31 @@ pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
         }
         .run();
     }
-    let set: Vec<usize> = program
+    let set = program
         .step
         .next_state
         .iter()
-        .map(|(state, _)| state.index())
-        .collect();
+        .map(|(state, _)| state.index());
+    let set: Vec<usize> = set.collect();
     for (index, word) in program.states.iter().enumerate() {
         if set.iter().filter(|&&state| state == index).count() != 1 {
             violations.add(&word.name, "state word is not set exactly once");
+        }
+    }
+    if !program.step.next_params.is_empty() {
+        violations.add(&program.step.name, "the step sets a set-point word");
+    }
+    for setter in &program.setters {
+        if !setter.next_state.is_empty() {
+            violations.add(&setter.name, "a setter sets a state word");
+        }
+        let mut set = HashSet::new();
+        if !setter
+            .next_params
+            .iter()
+            .all(|(param, _)| set.insert(param.index()))
+        {
+            violations.add(&setter.name, "set-point word is set twice");
         }
     }
     if violations.0.is_empty() {
@@ -114,6 +134,16 @@ impl Violations {
             what: what.to_owned(),
             escaped: None,
         });
+    }
+
+    /// Adds names that come twice.
+    fn repeated<'n>(&mut self, names: impl Iterator<Item = &'n String>) {
+        let mut known = HashSet::new();
+        for name in names {
+            if !known.insert(name) {
+                self.add(name, "named twice");
+            }
+        }
     }
 
     fn escape(&mut self, place: &str, interval: Interval, bits: u32) {
@@ -198,11 +228,17 @@ impl FunctionCheck<'_> {
                 self.fail(index, "names a word, constant or table that does not exist");
             }
         }
-        if self
-            .roots()
+        let (states, params) = (self.program.states.len(), self.program.params.len());
+        let unknown_word = function
+            .next_state
             .iter()
-            .any(|root| root.index() >= function.nodes.len())
-        {
+            .any(|(id, _)| id.index() >= states)
+            || function
+                .next_params
+                .iter()
+                .any(|(id, _)| id.index() >= params);
+        let undefined = |root: &Value| root.index() >= function.nodes.len();
+        if unknown_word || self.roots().iter().any(undefined) {
             self.violations.add(&function.name, "result is not defined");
         }
     }
@@ -347,6 +383,12 @@ impl FunctionCheck<'_> {
 
     fn check_names(&mut self) {
         let function = self.function;
+        self.violations
+            .repeated(function.inputs.iter().map(|input| &input.name));
+        self.violations
+            .repeated(function.outputs.iter().map(|(name, _)| name));
+        self.violations
+            .repeated(function.stages.iter().map(|stage| &stage.name));
         let stage_of = self.stage_of_nodes();
         let mut names = HashSet::new();
         let mut uses: Vec<Vec<Option<usize>>> = vec![vec![]; function.nodes.len()];
@@ -380,6 +422,14 @@ impl FunctionCheck<'_> {
 
     fn check_results(&mut self) {
         let function = self.function;
+        let outputs = function.outputs.iter().map(|&(_, value)| value);
+        let states = function.next_state.iter().map(|&(_, value)| value);
+        let params = function.next_params.iter().map(|&(_, value)| value);
+        for result in outputs.chain(states).chain(params) {
+            if function.node(result).kind != Kind::Word {
+                self.fail(result.index(), "a result is no word");
+            }
+        }
         let states = function
             .next_state
             .iter()

@@ -1,0 +1,228 @@
+//! Each invariant of the verifier, broken in a program that is right but for that.
+
+use super::graph::{Function, Interval, Op, ParamId, Program, StateId, Value};
+use super::{Comparison, FunctionBuilder, verify};
+
+/// A program with all that the invariants speak of, that keeps them.
+fn right() -> Program {
+    let mut program = Program::new("Right");
+    let word = Interval::symmetric(1000);
+    let table = program.table("shape", vec![1, 2, 3, 4], &[]);
+    let gain = program.constant("gain", 3, &[]);
+    let memory = program.state("memory", 0, word, "");
+    let param = program.param("wanted", 0, word, "");
+    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+    b.stage("read", &[]);
+    let x = b.input("x", word, "");
+    let index = b.input("index", Interval::new(0, 3), "");
+    let wanted = b.param(param);
+    let kept = b.state(memory);
+    let entry = b.lookup(table, index);
+    b.name("entry", entry);
+    let gain = b.constant(gain);
+    let scaled = b.mul(gain, x, 1);
+    b.name("scaled", scaled);
+    let error = b.sub(wanted, kept);
+    b.name("error", error);
+    let large = b.compare(Comparison::Less, entry, scaled);
+    b.name("large", large);
+    b.guarded_stage("divide", large, true, &[]);
+    let share = b.divide(entry, 2, entry, entry);
+    b.name("share", share);
+    let [result] = b.join([("result", share, error)]);
+    b.stage("keep", &[]);
+    let (low, high) = (b.literal(-5), b.literal(5));
+    let limited = b.clamp(scaled, low, high);
+    b.name("limited", limited);
+    b.set_state(memory, limited);
+    b.output("result", result);
+    program.step = b.finish();
+    let mut b = FunctionBuilder::new(&mut program, "set_wanted", &[]);
+    b.stage("round", &[]);
+    let given = b.input("given", word, "");
+    b.set_param(param, given);
+    let setter = b.finish();
+    program.setters.push(setter);
+    program
+}
+
+/// That the spoilt program is refused with these words.
+#[track_caller]
+fn refused(words: &str, spoil: impl FnOnce(&mut Program)) {
+    let mut program = right();
+    spoil(&mut program);
+    let violations = verify(program).expect_err("a broken invariant");
+    let told = violations.iter().map(ToString::to_string);
+    let told: Vec<String> = told.collect();
+    assert!(told.iter().any(|what| what.contains(words)), "{told:#?}");
+}
+
+/// The place of a named value.
+fn at(function: &Function, name: &str) -> usize {
+    let found = function.nodes.iter().position(|node| node.name == name);
+    found.expect("a value of that name")
+}
+
+fn value(function: &Function, name: &str) -> Value {
+    Value(at(function, name) as u32)
+}
+
+#[test]
+fn a_right_program_passes() {
+    let violations = verify(right()).err();
+    assert_eq!(violations, None);
+}
+
+#[test]
+fn operands_are_defined_earlier() {
+    refused("operand defined later", |program| {
+        let (from, to) = (at(&program.step, "scaled"), value(&program.step, "limited"));
+        program.step.nodes[from].op = Op::Neg(to);
+    });
+    refused("does not exist", |program| {
+        let wanted = at(&program.step, "wanted");
+        program.step.nodes[wanted].op = Op::Param(ParamId(7));
+    });
+    refused("result is not defined", |program| {
+        program.step.outputs[0].1 = Value(1000);
+    });
+    refused("result is not defined", |program| {
+        program.step.next_state[0].0 = StateId(1);
+    });
+}
+
+#[test]
+fn stages_partition_the_nodes() {
+    refused("do not follow one another", |program| {
+        program.step.stages[2].first += 1;
+    });
+    refused("do not cover all nodes", |program| {
+        program.step.stages[2].end -= 1;
+    });
+}
+
+#[test]
+fn guarded_stages_are_left_through_joins() {
+    refused("leaves its guarded stage other than by a join", |program| {
+        program.step.outputs[0].1 = value(&program.step, "share");
+    });
+    refused("is no join of the stage before it", |program| {
+        let (result, error) = (at(&program.step, "result"), value(&program.step, "error"));
+        program.step.nodes[result].op = Op::Neg(error);
+    });
+    refused("guard is defined after the stage begins", |program| {
+        let limited = value(&program.step, "limited");
+        let guard = program.step.stages[1].guard.as_mut().expect("a guard");
+        guard.condition = limited;
+    });
+}
+
+#[test]
+fn kinds_fit() {
+    refused("operand kinds do not fit", |program| {
+        let (scaled, large) = (at(&program.step, "limited"), value(&program.step, "large"));
+        program.step.nodes[scaled].op = Op::Neg(large);
+    });
+    refused("a result is no word", |program| {
+        program.step.outputs[0].1 = value(&program.step, "large");
+    });
+}
+
+#[test]
+fn intervals_follow_from_operands_and_fit() {
+    refused("does not follow from the operands", |program| {
+        let scaled = at(&program.step, "scaled");
+        program.step.nodes[scaled].interval.high -= 1;
+    });
+    refused("needs 33 bits", |program| {
+        let scaled = at(&program.step, "scaled");
+        program.step.nodes[scaled].interval.high = 1 << 31;
+    });
+}
+
+#[test]
+fn operators_stay_in_their_domain() {
+    refused("may leave the operator's domain", |program| {
+        let (share, scaled) = (at(&program.step, "share"), value(&program.step, "scaled"));
+        let Op::Divide { denominator, .. } = &mut program.step.nodes[share].op else {
+            panic!("a division");
+        };
+        *denominator = scaled;
+    });
+    refused("may leave the operator's domain", |program| {
+        let limited = at(&program.step, "limited");
+        let Op::Clamp { low, high, .. } = &mut program.step.nodes[limited].op else {
+            panic!("a limit");
+        };
+        std::mem::swap(low, high);
+    });
+}
+
+#[test]
+fn names_are_unique() {
+    refused("gain: named twice", |program| {
+        program.tables[0].name = "gain".to_owned();
+    });
+    refused("memory: named twice", |program| {
+        program.params[0].name = "memory".to_owned();
+    });
+    refused("step: named twice", |program| {
+        program.setters[0].name = "step".to_owned();
+    });
+    refused("read: named twice", |program| {
+        program.step.stages[2].name = "read".to_owned();
+    });
+    refused("x: named twice", |program| {
+        program.step.inputs[1].name = "x".to_owned();
+    });
+    refused("named twice", |program| {
+        let scaled = at(&program.step, "scaled");
+        program.step.nodes[scaled].name = "entry".to_owned();
+    });
+    refused("has no name", |program| {
+        let scaled = at(&program.step, "scaled");
+        program.step.nodes[scaled].name.clear();
+    });
+}
+
+#[test]
+fn tables_have_a_power_of_two_length() {
+    refused("not a power of two", |program| {
+        program.tables[0].values.push(5);
+    });
+}
+
+#[test]
+fn words_are_set_once_to_what_they_hold() {
+    refused("not set exactly once", |program| {
+        program.step.next_state.clear();
+    });
+    refused("the step sets a set-point word", |program| {
+        let scaled = value(&program.step, "limited");
+        program.step.next_params.push((ParamId(0), scaled));
+    });
+    refused("a setter sets a state word", |program| {
+        let given = value(&program.setters[0], "given");
+        program.setters[0].next_state.push((StateId(0), given));
+    });
+    refused("set-point word is set twice", |program| {
+        let again = program.setters[0].next_params[0];
+        program.setters[0].next_params.push(again);
+    });
+    refused("set to", |program| {
+        program.states[0].interval = Interval::symmetric(4);
+        let kept = at(&program.step, "memory");
+        program.step.nodes[kept].interval = Interval::symmetric(4);
+    });
+    refused("initial value 2000 outside", |program| {
+        program.params[0].initial = 2000;
+    });
+    refused("the word has 8", |program| {
+        program.states[0].storage_bits = 8;
+    });
+}
+
+#[test]
+fn there_are_no_dead_nodes() {
+    refused("is never used", |program| program.step.outputs.clear());
+}
