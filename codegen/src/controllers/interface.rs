@@ -1,6 +1,7 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
 use super::current_loop::{LoopDesign, StableRange};
+use super::start::start_speed;
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, rpm, significant};
 use crate::interface::{Interface, PublicConstant, PublicValue};
@@ -10,6 +11,7 @@ use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, HallCapture, Spec};
 use nalgebra::Vector2;
+use std::f64::consts::TAU;
 
 /// What is particular to a controller's law.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,11 +119,19 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
             "above the trip level, a Hall code of 000 or 111.".to_owned()
         },
         format!("`calibrate()` averages {} samples with all legs off, at rest, and trips if an offset is more than {} from nominal.", 1 << inverter.calibration_log2, engineering(f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(), "A")),
+        format!("Control may begin, and begin again by `reset()`, on a rotor that turns at up to {} with set-point 0; on a faster one the", rpm(f64::from(start_rpm(spec, design) as u32) * TAU / 60.0)),
+        "first periods, in which the EMF is not known yet, may trip the drive.".to_owned(),
         "`precharge()` holds all lower switches on for".to_owned(),
         format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
         format!("One volt over one period changes a phase current by {}.", engineering(design.plant.gain, "A")),
     ]);
     doc
+}
+
+/// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
+fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
+    let speed = start_speed(spec, design).min(spec.inverter.maximum_speed);
+    (speed * 60.0 / TAU + 1e-6).floor() as i64
 }
 
 /// The options of the normalised specification, with units.
@@ -295,6 +305,7 @@ fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant>
         fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
         fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
         fixed("TORQUE_CONSTANT", spec.torque_constant(), "Nm/A", "Torque per ampere of set-point, k_t"),
+        integer("START_SPEED_RPM", "u32", start_rpm(spec, design), "Greatest speed of the rotor at which control may begin with set-point 0, rpm: no current reaches the trip level before the EMF is met."),
         fixed("POLE", design.plant.pole, "", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
         fixed("GAIN", design.plant.gain, "A/V", "Gain b of the discrete plant"),
         fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),

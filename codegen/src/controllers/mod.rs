@@ -8,6 +8,7 @@ mod interface;
 pub mod pdcc;
 pub mod phcc;
 pub mod pi_pwm;
+mod start;
 mod whole_vectors;
 
 pub use current_loop::StableRange;
