@@ -1,5 +1,5 @@
 //! What the cross-crate tests share: the motor library, the options of a drive, covering arrays,
-//! planted faults, and what the bit-for-bit test is extended by: the interpreter as a subject, and
+//! planted faults, proofs over programs, and what the bit-for-bit test is extended by: the interpreter as a subject, and
 //! arbitrary states.
 
 pub mod cases;
@@ -11,6 +11,7 @@ pub mod library;
 pub mod mutation;
 pub mod options;
 pub mod pairwise;
+pub mod proof;
 pub mod states;
 
 /// The README's examples, which the documentation tests of this crate run.

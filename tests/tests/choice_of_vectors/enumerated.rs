@@ -1,0 +1,171 @@
+//! The choice of a vector as its semantics page words it: one candidate after the other, the first of the
+//! least score.
+
+use hexagen_codegen::spec::Candidates;
+use hexagen_tests::proof::linear::Linear;
+use hexagen_tests::proof::paths::{Contradiction, Path};
+
+/// Legs a, b, c of the vectors by number: high, low or off.
+const LEGS: [&[u8; 3]; 16] = [
+    b"---", b"--+", b"+-+", b"+--", b"++-", b"-+-", b"-++", b"0-+", b"+-0", b"+0-", b"0+-", b"-+0",
+    b"-0+", b"0--", b"-0-", b"--0",
+];
+
+/// The leg that is off in sectors 1 to 6.
+const OFF: [usize; 6] = [0, 2, 1, 0, 2, 1];
+
+/// A leg that is off, as the physical prediction has it.
+#[derive(Clone, Debug)]
+pub struct OffLeg {
+    /// Negative where its predicted current flows into the motor through a diode, and out of it.
+    pub inward: Linear,
+    pub outward: Linear,
+    /// What its EMF lifts it by above the driven legs' mean.
+    pub lift: Linear,
+    /// Twice its terminal beside a pair that is driven high and low, less the bus.
+    pub offset: Linear,
+}
+
+/// What the choice depends on.
+#[derive(Clone, Debug)]
+pub struct Situation {
+    pub candidates: Candidates,
+    pub sector: usize,
+    pub commutating: bool,
+    pub bus: Linear,
+    pub u: [Linear; 3],
+    /// None where they count as lying midway.
+    pub off_legs: Option<[OffLeg; 3]>,
+    /// Shift of the products in scores.
+    pub shift: u32,
+}
+
+impl Situation {
+    /// The number of the vector that is applied.
+    pub fn vector(&self, path: &mut Path) -> Result<usize, Contradiction> {
+        let list = self.list();
+        let rounded = self.off_legs.is_some() && list.iter().any(|&vector| vector >= 7);
+        let list = if rounded {
+            self.first_of_each_kind(&list, path)?
+        } else {
+            list
+        };
+        let mut least = (list[0], self.score(list[0], rounded, path)?);
+        for &vector in &list[1..] {
+            let score = self.score(vector, rounded, path)?;
+            if path.is_negative(&(&score - &least.1))? {
+                least = (vector, score);
+            }
+        }
+        Ok(least.0)
+    }
+
+    fn list(&self) -> Vec<usize> {
+        match (self.sector, self.candidates) {
+            (0, _) => vec![0],
+            (_, Candidates::ThreePhase) => (0..7).collect(),
+            (_, Candidates::All) => (0..13).collect(),
+            (_, Candidates::Table2) if self.commutating => (0..7).collect(),
+            (sector, Candidates::Table2) => {
+                std::iter::once(13 + OFF[sector - 1]).chain(7..13).collect()
+            }
+        }
+    }
+
+    /// Of V1 to V6, and of the two vectors with the same leg off, only the exactly better one.
+    fn first_of_each_kind(
+        &self,
+        list: &[usize],
+        path: &mut Path,
+    ) -> Result<Vec<usize>, Contradiction> {
+        let kind = |vector: usize| match vector {
+            1..7 => 0,
+            7..13 => 1 + (vector - 7) % 3,
+            _ => 4,
+        };
+        let mut kept: Vec<usize> = vec![];
+        for &vector in list {
+            match kept.iter().position(|&known| kind(known) == kind(vector)) {
+                Some(place) if kind(vector) < 4 => {
+                    let [known, new] = [kept[place], vector].map(|vector| self.by_bus(vector));
+                    if path.is_negative(&(&new - &known))? {
+                        kept[place] = vector;
+                    }
+                }
+                _ => kept.push(vector),
+            }
+        }
+        kept.sort_by_key(|&vector| if vector >= 13 { 0 } else { vector });
+        Ok(kept)
+    }
+
+    /// 6 (|v|^2 - 2 u v), the off leg left out, over the bus.
+    fn by_bus(&self, vector: usize) -> Linear {
+        let find = |wanted: u8| LEGS[vector].iter().position(|&leg| leg == wanted);
+        let is_high = |leg: &&u8| **leg == b'+';
+        let high: Vec<&u8> = LEGS[vector].iter().filter(is_high).collect();
+        let bus = &self.bus;
+        match (find(b'+'), find(b'-'), find(b'0')) {
+            (Some(p), Some(q), Some(_)) => &bus.times(3) - &(&self.u[p] - &self.u[q]).times(6),
+            (Some(x), _, None) if high.len() == 1 => &bus.times(4) - &self.u[x].times(12),
+            (Some(_), Some(x), None) => &bus.times(4) + &self.u[x].times(12),
+            _ => Linear::default(),
+        }
+    }
+
+    fn score(
+        &self,
+        vector: usize,
+        rounded: bool,
+        path: &mut Path,
+    ) -> Result<Linear, Contradiction> {
+        let by_bus = self.by_bus(vector);
+        if !rounded || vector == 0 {
+            return Ok(by_bus);
+        }
+        let off = LEGS[vector].iter().position(|&leg| leg == b'0');
+        let off_leg = off.and_then(|off| Some((off, &self.off_legs.as_ref()?[off])));
+        let Some((off, off_leg)) = off_leg else {
+            let score = path.product(&self.bus, &by_bus, self.shift);
+            // The floor of a product with a positive factor has the sign of the other.
+            let negative = path.is_negative(&by_bus)?;
+            path.assume(&if negative {
+                &-&score - &Linear::number(1)
+            } else {
+                score.clone()
+            })?;
+            return Ok(score);
+        };
+        if vector < 13 {
+            let aside = &off_leg.offset - &self.u[off].times(6);
+            let aside = path.product(&off_leg.offset, &aside, self.shift);
+            return Ok(&aside + &path.product(&self.bus, &by_bus, self.shift));
+        }
+        let tau = off_leg.terminal(&self.bus, &Linear::default(), path)?;
+        let aside = &tau.times(4) - &self.u[off].times(12);
+        Ok(path.product(&tau, &aside, self.shift))
+    }
+}
+
+impl OffLeg {
+    /// Where the leg sits beside driven legs with that mean.
+    pub fn terminal(
+        &self,
+        bus: &Linear,
+        mean: &Linear,
+        path: &mut Path,
+    ) -> Result<Linear, Contradiction> {
+        let floating = mean + &self.lift;
+        Ok(if path.is_negative(&self.inward)? {
+            Linear::default()
+        } else if path.is_negative(&self.outward)? {
+            bus.clone()
+        } else if path.is_negative(&floating)? {
+            Linear::default()
+        } else if path.is_negative(&(bus - &floating))? {
+            bus.clone()
+        } else {
+            floating
+        })
+    }
+}

@@ -1,0 +1,416 @@
+//! The emitted choice of a vector equals the enumerated argmin, ties included, for every integer input: proven over the
+//! IR of every kind of drive that the library's motors allow, with any bus voltage and any threshold.
+//!
+//! A drive with off legs is proven in two parts: where each leg would sit, case by case of its current; and the
+//! choice for whatever place that may be. Scores that are rounded are the same numbers on both sides.
+
+mod enumerated;
+
+use enumerated::{OffLeg, Situation};
+use hexagen_codegen::ir::Program;
+use hexagen_codegen::pipeline::Generated;
+use hexagen_codegen::spec::{Candidates, ControllerSpec, FcsMpcSpec, Spec};
+use hexagen_tests::faults::{Fault, faults};
+use hexagen_tests::library::motors;
+use hexagen_tests::options::{Drive, generate_toml, kind};
+use hexagen_tests::proof::linear::Linear;
+use hexagen_tests::proof::paths::{Contradiction, Path, for_all_paths};
+use hexagen_tests::proof::slice::{Slice, Symbol};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Options that have not the first value of their axis.
+type Settings = &'static [(&'static str, &'static str)];
+
+type Verdict = Result<Result<(), String>, Contradiction>;
+
+const PHASES: [&str; 3] = ["a", "b", "c"];
+
+/// What a proof is about: a drive's program.
+#[derive(Clone, Debug)]
+struct Subject {
+    program: Program,
+    options: FcsMpcSpec,
+    /// Shift of the products in scores; 0 without any.
+    shift: u32,
+}
+
+impl Subject {
+    fn new((spec, generated): (Spec, Generated)) -> Self {
+        let ControllerSpec::FcsMpc(options) = spec.controller else {
+            panic!("no drive that chooses vectors");
+        };
+        let formats = &generated.interface.formats;
+        let bits = |name: &str| {
+            let mut formats = formats.iter();
+            formats
+                .find(|format| format.name == name)
+                .map(|format| format.frac_bits)
+        };
+        let shift = bits("score").map_or(0, |score| 2 * bits("voltage").unwrap_or(0) - score);
+        Self {
+            program: generated.graph.program().clone(),
+            options,
+            shift: shift as u32,
+        }
+    }
+
+    fn has(&self, name: &str) -> bool {
+        let mut nodes = self.program.step.nodes.iter();
+        nodes.any(|node| node.name == name)
+    }
+
+    /// Bus and threshold, a number each or any number.
+    fn slice(&self, bus: &Linear, threshold: &Linear) -> Slice<'_> {
+        let mut slice = Slice::new(&self.program);
+        slice.give("v_bus", Symbol::Word(bus.clone()));
+        slice.give("i_comm_volts", Symbol::Word(threshold.clone()));
+        slice
+    }
+
+    /// Part one: where off legs sit.
+    fn off_leg(&self, phase: usize, path: &mut Path) -> Verdict {
+        let bus = positive("v_bus", path)?;
+        let threshold = path.variable("threshold");
+        path.assume(&threshold)?;
+        let mut slice = self.slice(&bus, &threshold);
+        let mut pair = |names: [&'static str; 2]| {
+            let [a, b] = names.map(|name| {
+                let word = path.variable(name);
+                slice.give(name, Symbol::Word(word.clone()));
+                word
+            });
+            let c = -&(&a + &b);
+            [a, b, c]
+        };
+        let (j, e) = (pair(["j_a", "j_b"]), pair(["e_a", "e_b"]));
+        let u = pair(["u_a_unsat", "u_b_unsat"]);
+        let held = &(&j[phase] + &e[phase]) - &u[phase];
+        let half_e = path.floored(&e[phase], 1)?;
+        let mut leg = OffLeg {
+            inward: &threshold - &held,
+            outward: &held + &threshold,
+            lift: &e[phase] + &half_e,
+            offset: Linear::default(),
+        };
+        let half_bus = path.floored(&bus, 1)?;
+        let terminal = leg.terminal(&bus, &half_bus, path)?;
+        leg.offset = &terminal.times(2) - &bus;
+        let x = PHASES[phase];
+        let expected = [
+            (format!("d_{x}"), Symbol::Word(leg.offset)),
+            (format!("lift_{x}"), Symbol::Word(leg.lift)),
+            (
+                format!("{x}_inward"),
+                Symbol::Flag(path.is_negative(&leg.inward)?),
+            ),
+            (
+                format!("{x}_outward"),
+                Symbol::Flag(path.is_negative(&leg.outward)?),
+            ),
+        ];
+        for (name, expected) in expected {
+            if self.has(&name) {
+                let found = slice.named(&name, path)?;
+                let same = match (&found, &expected) {
+                    (Symbol::Word(found), Symbol::Word(expected)) => {
+                        let difference = found - expected;
+                        !path.is_negative(&difference)? && !path.is_negative(&-&difference)?
+                    }
+                    _ => found == expected,
+                };
+                if !same {
+                    return Ok(Err(format!("{name} is {found:?}, not {expected:?}")));
+                }
+            }
+        }
+        Ok(Ok(()))
+    }
+
+    /// Part two: the choice, wherever off legs sit. `plane`: the bus, and u of phases a and b, as numbers.
+    fn choice(&self, plane: Option<[i64; 3]>, path: &mut Path) -> Verdict {
+        let (bus, u) = match plane {
+            None => {
+                let bus = positive("v_bus", path)?;
+                (bus, ["u_a", "u_b"].map(|name| path.variable(name)))
+            }
+            Some([bus, a, b]) => (Linear::number(bus), [a, b].map(Linear::number)),
+        };
+        let mut slice = self.slice(&bus, &Linear::default());
+        slice.give("u_a_unsat", Symbol::Word(u[0].clone()));
+        slice.give("u_b_unsat", Symbol::Word(u[1].clone()));
+        let [u_a, u_b] = u;
+        let u_c = -&(&u_a + &u_b);
+        let sector = path.number("sector", 7)?;
+        let name = if self.has("sector_eff") {
+            "sector_eff"
+        } else {
+            "sector"
+        };
+        slice.give(name, Symbol::Word(Linear::number(sector)));
+        let commutating =
+            self.options.candidates == Candidates::Table2 && path.flag("commutating")?;
+        slice.give("in_commutation", Symbol::Flag(commutating));
+        let off_legs = if self.options.floating() {
+            Some(LEG_NAMES.map(|names| off_leg(names, &mut slice, path)))
+        } else {
+            None
+        };
+        let situation = Situation {
+            candidates: self.options.candidates,
+            sector: sector as usize,
+            commutating,
+            bus,
+            u: [u_a, u_b, u_c],
+            off_legs,
+            shift: self.shift,
+        };
+        let expected = Linear::number(situation.vector(path)? as i64);
+        let found = slice.named("vector", path)?.word();
+        Ok(if found == expected {
+            Ok(())
+        } else {
+            Err(format!("vector {found:?}, not {expected:?}"))
+        })
+    }
+
+    /// The number of paths.
+    fn prove(&self) -> Result<usize, String> {
+        let legs = if self.options.floating() { 3 } else { 0 };
+        let mut paths = for_all_paths(|path| self.choice(None, path))?;
+        for phase in 0..legs {
+            paths += for_all_paths(|path| self.off_leg(phase, path))?;
+        }
+        Ok(paths)
+    }
+
+    /// What the proof rests on, as text: drives of the same text have the same proof.
+    fn key(&self) -> String {
+        let text = self.program.to_string();
+        let stages = ["nearest_vector:", "predict_off_legs:", "nearest_pair:"];
+        let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+        let is_read = |name: &str| matches!(name, "vector_of_gates" | "zero_vector");
+        let tables = self.program.tables.iter();
+        let tables: Vec<_> = tables.filter(|table| is_read(&table.name)).collect();
+        let mut key = format!("{:?} {tables:?}\n", self.options.candidates);
+        // The proof takes the products' shift for a name; that it is the right one is seen here.
+        let shift = format!(">> {})", self.shift);
+        let mut is_inside = false;
+        for line in text.lines() {
+            if !line.starts_with("    ") {
+                is_inside = stages.contains(&line.trim());
+            } else if is_inside {
+                let line = line.split("  ;").next().unwrap_or_default();
+                let line = line.replace(&shift, ">> score)");
+                for word in line.split(' ').filter(|word| !word.is_empty()) {
+                    // Values without name are numbered over the whole step.
+                    let parts = word.split_once('%').map(|(before, rest)| {
+                        let end = rest.find(|c: char| !c.is_ascii_digit());
+                        let (number, after) = rest.split_at(end.unwrap_or(rest.len()));
+                        (before, number.to_owned(), after)
+                    });
+                    let text = match parts {
+                        Some((before, number, after)) => {
+                            let next = numbers.len();
+                            let number = numbers.entry(number).or_insert(next);
+                            format!("{before}%{number}{after}")
+                        }
+                        None => word.to_owned(),
+                    };
+                    key.push_str(&text);
+                    key.push(' ');
+                }
+                key.push('\n');
+            }
+        }
+        key
+    }
+}
+
+/// Names of the flags and words of an off leg: inward, outward, lift, offset.
+const LEG_NAMES: [[&str; 4]; 3] = [
+    ["a_inward", "a_outward", "lift_a", "d_a"],
+    ["b_inward", "b_outward", "lift_b", "d_b"],
+    ["c_inward", "c_outward", "lift_c", "d_c"],
+];
+
+fn positive(name: &str, path: &mut Path) -> Result<Linear, Contradiction> {
+    let word = path.variable(name);
+    path.assume(&(&word - &Linear::number(1)))?;
+    Ok(word)
+}
+
+/// Any off leg.
+fn off_leg(names: [&'static str; 4], slice: &mut Slice, path: &mut Path) -> OffLeg {
+    let [inward, outward, lift, offset] = names.map(|name| path.variable(name));
+    let symbols = [
+        Symbol::Sign(inward.clone()),
+        Symbol::Sign(outward.clone()),
+        Symbol::Word(lift.clone()),
+        Symbol::Word(offset.clone()),
+    ];
+    for (name, symbol) in names.into_iter().zip(symbols) {
+        slice.give(name, symbol);
+    }
+    OffLeg {
+        inward,
+        outward,
+        lift,
+        offset,
+    }
+}
+
+/// Every drive of the library's motors that chooses vectors, once per text that its proof rests on.
+fn subjects() -> BTreeMap<String, (String, Subject)> {
+    const AXES: [(&str, &[&str]); 6] = [
+        ("candidates", &["table2", "three_phase", "all"]),
+        ("off_leg", &["physical", "nominal"]),
+        ("emf", &["estimated", "filtered", "model"]),
+        ("delay", &["1", "0"]),
+        ("word", &["32", "16"]),
+        ("v_bus", &["fixed", "measured"]),
+    ];
+    let kind = kind("fcs-mpc");
+    let mut settings: Vec<Vec<(&str, &str)>> = vec![vec![]];
+    for (axis, values) in AXES {
+        let longer = |known: &Vec<(&'static str, &'static str)>| {
+            let with = |&value| [&known[..], &[(axis, value)]].concat();
+            values.iter().map(with).collect::<Vec<_>>()
+        };
+        settings = settings.iter().flat_map(longer).collect();
+    }
+    let motors = motors();
+    let drives: Vec<_> = motors
+        .iter()
+        .flat_map(|motor| settings.iter().map(move |settings| (motor, settings)))
+        .collect();
+    let found = drives.into_par_iter().filter_map(|(motor, settings)| {
+        let choice = kind.choice_of(settings);
+        let generated = generate_toml(&kind.drive_toml(motor, &choice, None)).ok()?;
+        let subject = Subject::new(generated);
+        let name = format!("{} {}", motor.name, kind.describe(&choice));
+        Some((subject.key(), (name, subject)))
+    });
+    let found: Vec<_> = found.collect();
+    println!("{} drives", found.len());
+    assert!(found.len() > 200, "{} drives", found.len());
+    found.into_iter().rev().collect()
+}
+
+#[test]
+fn the_rule_finds_the_first_of_the_least_score() {
+    let subjects = subjects();
+    println!("{} different choices", subjects.len());
+    let wrong: Vec<String> = subjects
+        .par_iter()
+        .filter_map(|(_, (name, subject))| {
+            let outcome = subject.prove();
+            println!("{name}: {outcome:?}");
+            let wrong = outcome.err()?;
+            Some(format!("{name}: {wrong}"))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Drives in whose choice faults are planted, the most of them that are tried, and how many of these change
+/// the choice at the least: some change what no choice rests on. Together the drives have every stage.
+const PLANTED: [(Settings, usize, usize); 4] = [
+    (&[("off_leg", "nominal")], usize::MAX, 140),
+    (
+        &[("candidates", "all"), ("off_leg", "nominal")],
+        usize::MAX,
+        130,
+    ),
+    (&[], 12, 10),
+    (&[("candidates", "all")], 12, 10),
+];
+
+/// Wrong rules that a few random inputs would hardly show: the order of ties, the edge of the zero vector, a vector
+/// left out, and the sign that tells two of them apart.
+const WRONG_RULES: [(&str, &str); 6] = [
+    ("nearest_vector: b_is_high", "another comparison"),
+    ("nearest_vector: in gates", "0 for 1"),
+    ("nearest_vector: in vector_three", "another comparison"),
+    ("vector_of_gates[5]", "one more"),
+    ("nearest_pair: take_c", "and for or"),
+    ("nearest_pair: in pair_a", "operands swapped"),
+];
+
+#[test]
+fn a_wrong_rule_is_refuted() {
+    for (settings, most, least) in PLANTED {
+        let drive = Drive {
+            kind: "fcs-mpc",
+            motor: "trivedi-keshri-660w",
+            settings,
+        };
+        let subject = Subject::new(generate_toml(&drive.toml(None)).expect("the drive generates"));
+        let planted: Vec<_> = faults(&subject.program)
+            .filter(|fault| {
+                let stage = fault.place.split([':', '[']).next().unwrap_or_default();
+                matches!(
+                    stage,
+                    "nearest_vector"
+                        | "predict_off_legs"
+                        | "nearest_pair"
+                        | "vector_of_gates"
+                        | "zero_vector"
+                )
+            })
+            .collect();
+        let stride = planted.len().div_ceil(most);
+        let chosen: Vec<_> = planted.iter().step_by(stride).collect();
+        let unrefuted: Vec<String> = chosen
+            .par_iter()
+            .filter(|fault| {
+                let faulty = Subject {
+                    program: fault.program.clone(),
+                    ..subject.clone()
+                };
+                faulty.prove().is_ok()
+            })
+            .map(|fault| format!("{}: {}", fault.place, fault.what))
+            .collect();
+        println!(
+            "{settings:?}: {} faults, {} of them unrefuted",
+            chosen.len(),
+            unrefuted.len()
+        );
+        let refuted = chosen.len() - unrefuted.len();
+        assert!(refuted >= least, "{settings:?}: {}", unrefuted.join("\n"));
+        if settings == PLANTED[0].0 {
+            for (place, what) in WRONG_RULES {
+                let is_it = |fault: &&&Fault| fault.place == place && fault.what == what;
+                assert!(chosen.iter().any(|fault| is_it(&fault)), "{place}: {what}");
+                assert!(
+                    !unrefuted.contains(&format!("{place}: {what}")),
+                    "{place}: {what}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_proof_agrees_with_every_point_of_a_small_plane() {
+    for settings in [
+        &[("candidates", "three_phase")][..],
+        &[("off_leg", "nominal")],
+        &[("candidates", "all"), ("off_leg", "nominal")],
+    ] {
+        let drive = Drive {
+            kind: "fcs-mpc",
+            motor: "trivedi-keshri-660w",
+            settings,
+        };
+        let subject = Subject::new(generate_toml(&drive.toml(None)).expect("the drive generates"));
+        for bus in [6, 7, 12] {
+            let points = (-20..=20).flat_map(|a| (-20..=20).map(move |b| [bus, a, b]));
+            for point in points {
+                let outcome = for_all_paths(|path| subject.choice(Some(point), path));
+                assert!(outcome.is_ok(), "{settings:?} {point:?}: {outcome:?}");
+            }
+        }
+    }
+}
