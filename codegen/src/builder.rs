@@ -2,9 +2,9 @@
 //!
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
-use crate::diagnostics::Diagnostics;
+use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::rust::{Surface, emit_rust, format_rust, module_name};
-use crate::pipeline::{Generated, generate};
+use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::{SpecAst, apply_variant, check, parse_toml};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -33,6 +33,7 @@ pub struct Builder {
     out_dir: Option<PathBuf>,
     motors: Vec<Motor>,
     folders: Vec<String>,
+    allowed: Vec<String>,
     /// Whether the last motor was given by a folder, whose files take their own controllers.
     in_folder: bool,
     /// The first call that belongs to no motor, and its place.
@@ -61,6 +62,8 @@ pub struct Written {
     pub file: PathBuf,
     /// Names of the types in it, in the order of the controllers.
     pub types: Vec<String>,
+    /// Warnings, but for those that are allowed.
+    pub warnings: Vec<String>,
 }
 
 /// Why nothing, or not everything, was generated.
@@ -225,8 +228,15 @@ impl Builder {
         None
     }
 
+    /// Silences a warning by its code, such as `HX0601`.
+    #[must_use]
+    pub fn allow(mut self, code: impl Into<String>) -> Self {
+        self.allowed.push(code.into());
+        self
+    }
+
     /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Tells
-    /// cargo which files to watch.
+    /// cargo which files to watch, and warnings.
     ///
     /// # Errors
     /// A call that belongs to no motor, and motors that would be written to the same file; all errors
@@ -245,7 +255,7 @@ impl Builder {
         let motors = self.all_motors()?;
         check_files(&motors)?;
         for motor in motors {
-            match source_of(&self.root, &motor) {
+            match source_of(&self.root, &motor, &self.allowed) {
                 Ok(source) => sources.push((motor.path, source)),
                 Err(BuildError::Specification(more)) => errors.extend(more),
                 Err(other) => return Err(other),
@@ -253,6 +263,9 @@ impl Builder {
         }
         if !errors.is_empty() {
             return Err(BuildError::Specification(errors));
+        }
+        for warning in sources.iter().flat_map(|(_, source)| &source.warnings) {
+            println!("cargo:warning={warning}");
         }
         sources
             .into_iter()
@@ -321,9 +334,10 @@ fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
 struct Source {
     text: String,
     types: Vec<String>,
+    warnings: Vec<String>,
 }
 
-fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
+fn source_of(root: &Path, motor: &Motor, allowed: &[String]) -> Result<Source, BuildError> {
     println!("cargo:rerun-if-changed={}", motor.path);
     let text = fs::read_to_string(root.join(&motor.path)).map_err(|error| BuildError::Io {
         path: motor.path.clone(),
@@ -340,11 +354,18 @@ fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
     let mut source = Source {
         text: String::new(),
         types: vec![],
+        warnings: vec![],
     };
     let mut errors = vec![];
     for wanted in drives {
         match generate_wanted(&ast, wanted) {
-            Ok(generated) => source.add(&generated, &motor.path)?,
+            Ok((generated, warnings)) => {
+                source.add(&generated, &motor.path)?;
+                let warnings = warnings
+                    .iter()
+                    .filter(|warning| !allowed.contains(&warning.code.to_string()));
+                source.warnings.extend(warnings.map(ToString::to_string));
+            }
             Err(more) => errors.push(more),
         }
     }
@@ -355,7 +376,10 @@ fn source_of(root: &Path, motor: &Motor) -> Result<Source, BuildError> {
     }
 }
 
-fn generate_wanted(ast: &SpecAst, wanted: &Wanted) -> Result<Generated, Diagnostics> {
+fn generate_wanted(
+    ast: &SpecAst,
+    wanted: &Wanted,
+) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
     let mut ast = ast.clone();
     if let Some(variant) = &wanted.variant {
         apply_variant(&mut ast, variant)?;
@@ -365,7 +389,7 @@ fn generate_wanted(ast: &SpecAst, wanted: &Wanted) -> Result<Generated, Diagnost
         ast.name.text.clone_from(name);
     }
     let (spec, origins) = check(&ast)?;
-    generate(&spec, &origins)
+    Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
 }
 
 impl Source {
@@ -419,6 +443,7 @@ impl Source {
             motor,
             file,
             types: self.types,
+            warnings: self.warnings,
         })
     }
 }

@@ -1,13 +1,14 @@
-//! The macro's way through the pipeline: tokens in, tokens out, errors as `compile_error!`.
+//! The macro's way through the pipeline: tokens in, tokens out, errors as `compile_error!`, warnings as the
+//! compiler's own.
 //!
 //! On errors the type still appears in its empty shape, with every method and constant, so that
 //! the compiler reports what is wrong with the specification and nothing that follows from it.
 
-use crate::diagnostics::Diagnostics;
+use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::rust::{Surface, emit_rust, module_name};
 use crate::interface::Interface;
 use crate::ir::{Function, Input, Interval, Program, verify};
-use crate::pipeline::{Generated, generate};
+use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
 use crate::spec::{MacroInput, MotorFile, SpecAst, check, parse_macro, parse_toml};
 use proc_macro2::{Ident, TokenStream};
@@ -23,10 +24,14 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     };
     let surface = surface(&input);
     match generate_input(&input, root) {
-        Ok(Generated { graph, interface }) => {
+        Ok((Generated { graph, interface }, warnings)) => {
             let tracking = input.motor_file.iter().map(track);
             let code = emit_rust(&graph, &interface, &surface);
-            quote!(#code #(#tracking)*)
+            let anchor = input.anchor();
+            let warnings = warnings
+                .iter()
+                .map(|warning| warning.to_compile_warning(&anchor));
+            quote!(#code #(#warnings)* #(#tracking)*)
         }
         Err(errors) => {
             let errors = errors.to_compile_errors(&input.anchor());
@@ -65,10 +70,13 @@ pub fn expand_verify(tokens: TokenStream) -> TokenStream {
     quote!(#(#tests)*)
 }
 
-fn generate_input(input: &MacroInput, root: &Path) -> Result<Generated, Diagnostics> {
+fn generate_input(
+    input: &MacroInput,
+    root: &Path,
+) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
     let ast = input.load(root)?;
     let (spec, origins) = check(&ast)?;
-    generate(&spec, &origins)
+    Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
 }
 
 fn surface(input: &MacroInput) -> Surface {

@@ -8,7 +8,7 @@ use crate::diagnostics::{
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::scaling::{Scaled, Unscalable, choose_scale};
-use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec};
+use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec, SwitchingTable};
 
 /// What emitters take.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +66,17 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
     let interface = interface(spec, &design, &scaled, &law);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
+}
+
+/// What the user should know of a drive that is generated as specified.
+pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
+    let mut warnings = vec![];
+    if let ControllerSpec::Phcc(phcc) = &spec.controller
+        && phcc.table == SwitchingTable::Printed
+    {
+        warnings.push(catalogue::printed_table(origins.at("controller.table")));
+    }
+    warnings
 }
 
 /// A vector that lasts a whole period must not move the current by more than the rated current.

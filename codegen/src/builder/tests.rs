@@ -107,3 +107,19 @@ fn variants_name_types() {
     );
     assert_eq!(variant_name("fcs-mpc"), "FcsMpc");
 }
+
+#[test]
+fn a_warning_is_told_unless_it_is_allowed() {
+    let folder = std::env::temp_dir().join(format!("hexagen-warning-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    fs::write(folder.join("hub.toml"), include_str!("../example.toml")).expect("a motor file");
+    let builder = Builder::new().root(&folder).out_dir(&folder);
+    let builder = builder.motor("hub.toml").controller("phcc:table=printed");
+    let told = builder.clone().generate();
+    let allowed = builder.allow("HX0601").generate();
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    let told = told.expect("a warning is no error").remove(0).warnings;
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("warning[HX0601]: `table`: "), "{told:?}");
+    assert!(allowed.expect("generates").remove(0).warnings.is_empty());
+}

@@ -5,7 +5,7 @@ use std::fmt;
 macro_rules! codes {
     ($($(#[$doc:meta])* $name:ident = $number:literal,)*) => {
         /// The kind of an error. 01xx: structure, 02xx: values, 03xx: motor and inverter,
-        /// 04xx: controller, 05xx: design and formats, 09xx: faults of the generator itself.
+        /// 04xx: controller, 05xx: design and formats, 06xx: warnings, 09xx: faults of the generator itself.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $($(#[$doc])* $name,)*
@@ -14,6 +14,11 @@ macro_rules! codes {
         impl Code {
             /// Every code, by number.
             pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+
+            /// Whether the drive is generated all the same.
+            pub fn is_warning(self) -> bool {
+                self.number() / 100 == 6
+            }
 
             /// The number behind `HX`.
             pub fn number(self) -> u16 {
@@ -128,6 +133,8 @@ codes! {
     Unstable = 503,
     /// A signal or coefficient does not fit the word.
     WordTooNarrow = 504,
+    /// A switching table that is known to lose the current.
+    SwitchingTableLosesCurrent = 601,
     /// The generator broke one of its own invariants.
     Internal = 901,
 }

@@ -1,15 +1,21 @@
-//! Errors as text and as `compile_error!` tokens.
+//! Errors and warnings as text, errors as `compile_error!` tokens, warnings as uses of a deprecated constant.
 
 use super::{Diagnostic, Diagnostics, Location};
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
 use std::fmt;
 
-/// One line per error and note: `file:line:col: error[HX0203]: message`.
+/// One line per diagnostic and note: `file:line:col: error[HX0203]: message`.
 impl fmt::Display for Diagnostic {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let severity = if self.code.is_warning() {
+            "warning"
+        } else {
+            "error"
+        };
         write!(
             out,
-            "{}: error[{}]: {}",
+            "{}: {severity}[{}]: {}",
             self.location, self.code, self.message
         )?;
         for note in &self.notes {
@@ -47,6 +53,24 @@ impl Diagnostics {
 }
 
 impl Diagnostic {
+    /// A warning of the compiler: stable Rust lets a macro warn only by the use of something deprecated.
+    pub fn to_compile_warning(&self, anchor: &TokenStream) -> TokenStream {
+        let name = self.code.to_string();
+        let (tokens, message) = match &self.location {
+            Location::Macro(tokens) => (tokens, self.message.clone()),
+            place => (anchor, format!("{place}: {}", self.message)),
+        };
+        let span = tokens.clone().into_iter().next().map(|token| token.span());
+        let name = Ident::new(&name, span.unwrap_or_else(Span::call_site));
+        quote! {
+            const _: () = {
+                #[deprecated(note = #message)]
+                const #name: () = ();
+                #name
+            };
+        }
+    }
+
     fn to_compile_errors(&self, anchor: &TokenStream) -> TokenStream {
         let mut message = format!("[{}] {}", self.code, self.message);
         if !matches!(self.location, Location::Macro(_)) {

@@ -48,7 +48,7 @@ fn expectations_tell_the_specification_only() {
             "{name} tells a place: {text}"
         );
         for error in text.lines().filter(|line| line.starts_with("error")) {
-            assert!(error.contains("[HX"), "{name} follows on: {error}");
+            assert!(error.contains("HX"), "{name} follows on: {error}");
         }
     }
 }

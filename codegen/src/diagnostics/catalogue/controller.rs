@@ -114,6 +114,15 @@ pub fn band_above_rated(band: &Part, rated: &Part) -> Diagnostic {
     .with_note(&rated.location, format!("`{}`: {}", rated.field, rated.given))
 }
 
+/// The printed switching table, which is there for study.
+pub fn printed_table(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::SwitchingTableLosesCurrent,
+        at,
+        "`table`: the printed row of sector 1, turned through the sectors, loses the current until the drive trips; it is there for study, write `derived` for a drive",
+    )
+}
+
 /// A switching table of the wrong length, or with an entry (position from 1, number) that is no vector.
 pub fn switching_table(at: &Location, length: usize, wrong: Option<(usize, i64)>) -> Diagnostic {
     let what = match wrong {

@@ -77,6 +77,7 @@ fn other_stages() -> BTreeSet<Code> {
         Code::ResistanceOutsideStableRange,
         Code::Unstable,
         Code::WordTooNarrow,
+        Code::SwitchingTableLosesCurrent,
         Code::Internal,
     ]
     .into()

@@ -1,6 +1,6 @@
 //! The program's arguments, as clap reads them.
 
-use super::{Failure, quantity, warn};
+use super::{Failure, quantity, tell_warnings, warn};
 use crate::closed_loop::RunOptions;
 use crate::commands::{compare, generate, limit, motors, report, reproduce, simulate, verify};
 use crate::engine::{
@@ -295,7 +295,10 @@ impl RunArguments {
     /// # Errors
     /// All diagnostics.
     pub fn prepare(&self) -> Result<Prepared, Failure> {
-        SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())
+        let drive =
+            SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())?;
+        tell_warnings(&drive);
+        Ok(drive)
     }
 
     /// The demanded torque in newton metres: as given, else the rated one as far as the drive's

@@ -13,7 +13,9 @@ pub use arguments::{
     Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
 };
 pub use failure::Failure;
-pub use output::{TextTable, note, print_json, print_text, significant, warn, write_file};
+pub use output::{
+    TextTable, note, print_json, print_text, significant, tell_warnings, warn, write_file,
+};
 pub use progress::{bar, spinner};
 
 use crate::commands;

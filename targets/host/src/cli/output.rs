@@ -1,6 +1,7 @@
 //! Results as text, tables, JSON and files.
 
 use super::Failure;
+use crate::engine::Prepared;
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use serde::Serialize;
@@ -41,6 +42,13 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 /// A note on stderr.
 pub fn warn(text: &str) {
     note(&format!("warning: {text}"));
+}
+
+/// The generator's warnings on stderr.
+pub fn tell_warnings(drive: &Prepared) {
+    for warning in &drive.warnings {
+        note(warning);
+    }
 }
 
 /// Writes a file beside its place and renames it, so that no reader sees half of it. Makes the

@@ -1,6 +1,8 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
-use crate::cli::{Emit, Failure, PlantArguments, SelectedMotor, note, print_text, write_file};
+use crate::cli::{
+    Emit, Failure, PlantArguments, SelectedMotor, note, print_text, tell_warnings, write_file,
+};
 use crate::engine::Prepared;
 use clap::Args;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
@@ -43,6 +45,7 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let motor = SelectedMotor::find(&options.motor, &PlantArguments::default())?;
     let drive = motor.prepare(options.controller.as_deref())?;
+    tell_warnings(&drive);
     let text = text_of(&drive, options.emit);
     let Some(folder) = &options.out else {
         return print_text(&text);

@@ -2,7 +2,7 @@
 
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, TextTable, bar, print_json, print_text,
-    significant, warn,
+    significant, tell_warnings, warn,
 };
 use crate::engine::{EngineKind, Prepared, Verifier};
 use clap::Args;
@@ -196,7 +196,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     for motor in &motors {
         for variant in &variants {
             match (motor.prepare(variant.as_deref()), variant) {
-                (Ok(drive), _) => drives.push(drive),
+                (Ok(drive), _) => {
+                    tell_warnings(&drive);
+                    drives.push(drive);
+                }
                 // Of all controllers some cannot work with some motors; one that was named must.
                 (Err(reason), Some(controller)) if takes_all => {
                     warn(&format!("{controller} is left out: {reason}"));

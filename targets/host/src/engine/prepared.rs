@@ -7,7 +7,7 @@ use crate::plant::Truth;
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::interface::{self, Interface};
-use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{BusSource, Spec, SpecAst, apply_variant, check, parse_toml};
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 use std::collections::BTreeSet;
@@ -24,6 +24,8 @@ pub struct Prepared {
     pub spec: Spec,
     /// The generated program.
     pub generated: Generated,
+    /// The generator's warnings.
+    pub warnings: Vec<String>,
     /// The specification as the reference reads it.
     pub reference: hexagen_reference::Spec,
     /// Formats in the types of the hardware's boundary.
@@ -67,6 +69,7 @@ pub fn prepare_ast(
     }
     let (spec, origins) = check(&ast)?;
     let generated = generate(&spec, &origins)?;
+    let warnings = warnings(&spec, &origins);
     let formats = format_table(&generated.interface);
     let models = models(&generated.interface.spec_toml, &formats);
     let (reference, bit_true, ideal) = models.map_err(|error| {
@@ -80,6 +83,7 @@ pub fn prepare_ast(
         built_in: built_in(&generated.interface.spec_toml),
         spec,
         generated,
+        warnings: warnings.iter().map(ToString::to_string).collect(),
         reference,
         formats,
         source: ast.source,

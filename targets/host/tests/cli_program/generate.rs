@@ -84,3 +84,20 @@ fn the_library_is_listed() {
         );
     }
 }
+
+#[test]
+fn a_warning_goes_to_stderr_and_the_drive_is_generated() {
+    let variant = ["--controller", "phcc:table=printed"];
+    for command in ["generate", "verify"] {
+        let run = run([command, PAPER].iter().chain(&variant));
+        assert_eq!(run.code, 0, "{command}: {}", run.stderr);
+        assert!(
+            run.stderr
+                .contains("phcc:table=printed:1:12: warning[HX0601]: `table`: ")
+                && run.stderr.contains("write `derived`"),
+            "{command}: {}",
+            run.stderr
+        );
+        assert!(!run.stdout.contains("HX0601"), "{command}");
+    }
+}
