@@ -148,7 +148,7 @@ fn check_stability(
     let remedy = match (&spec.controller, options.emf) {
         (ControllerSpec::PiPwm(_), _) => "lower `bandwidth`",
         (_, EmfSource::Estimated) if options.emf_filter >= 1.0 => {
-            "choose `emf: model`, add an `emf_filter` below 1,"
+            "choose `emf: model`, an `emf_filter` below 1,"
         }
         (_, EmfSource::Estimated) => "choose `emf: model`",
         (_, EmfSource::Model) => "shorten the control period",

@@ -17,7 +17,6 @@ pub const MUTATED: &[Drive] = &[
         settings: &[
             ("modulation", "pair"),
             ("saturation", "nearest"),
-            ("emf", "filtered"),
             ("advance", "1.5"),
             ("v_bus", "measured"),
             ("stall_timeout", "100ms"),

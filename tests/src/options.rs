@@ -125,7 +125,7 @@ const SHARED: &[Row] = &[
         &[
             // Not stated: a PI loop without feed-forward has no say in it.
             ("estimated", &[]),
-            ("filtered", &[("controller", "emf_filter", "0.6")]),
+            ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
         ],
     ),

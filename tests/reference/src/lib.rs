@@ -6,6 +6,7 @@
 //! crosses over from the generator, as data.
 
 mod discrete_phase;
+mod emf_motion;
 mod emf_shape;
 mod error;
 pub mod exact;

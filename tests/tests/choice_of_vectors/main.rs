@@ -265,7 +265,7 @@ fn subjects() -> BTreeMap<String, (String, Subject)> {
     const AXES: [(&str, &[&str]); 6] = [
         ("candidates", &["table2", "three_phase", "all"]),
         ("off_leg", &["physical", "nominal"]),
-        ("emf", &["estimated", "filtered", "model"]),
+        ("emf", &["estimated", "unfiltered", "model"]),
         ("delay", &["1", "0"]),
         ("word", &["32", "16"]),
         ("v_bus", &["fixed", "measured"]),

@@ -166,6 +166,23 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
+        because: "the limit is a multiple of the steps that its last bits are shifted out of",
+        drives: &[PAPER, HOVERBOARD, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC],
+        faults: &[(&["line_min", "line_max"], &["one more", "bit 8"])],
+    },
+    Unnoticed {
+        because: "the limit is a multiple of the steps that its last bits are shifted out of",
+        drives: &[FCS_PAPER],
+        faults: &[(&["line_min", "line_max"], &["one more"])],
+    },
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[
+            PAPER, HOVERBOARD, TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC,
+        ],
+        faults: &[(&["line_a[0]", "line_b[0]"], &["one more"])],
+    },
+    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
         drives: &[
             PAPER,
@@ -387,7 +404,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             HOVERBOARD,
             FCS_PAPER,
             FCS_HOVERBOARD,
-            FCS_ESTUN,
             FCS_TEKNIC,
             PHCC_PAPER,
             PHCC_ESTUN,
@@ -415,18 +431,13 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         faults: &[(&["k_third"], &["one more", "one less"])],
     },
     Unnoticed {
-        because: "0.6 of a whole number is a tenth away from its ties",
-        drives: &[HOVERBOARD, FCS_TEKNIC],
-        faults: &[(&["k_filter"], &["one more", "one less"])],
-    },
-    Unnoticed {
         because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER],
+        drives: &[TEKNIC],
         faults: &[(&["di_min"], &["one more"]), (&["di_max"], &["one less"])],
     },
     Unnoticed {
         because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC],
+        drives: &[TEKNIC],
         faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
     },
     Unnoticed {
@@ -436,21 +447,21 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC, FCS_PAPER, PHCC_PAPER],
+        drives: &[TEKNIC],
         faults: &[(
             &["estimate_emf: di_a", "estimate_emf: di_b"],
             &["lower limit left out", "upper limit left out"],
         )],
     },
     Unnoticed {
-        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[FCS_PAPER, PHCC_PAPER],
-        faults: &[(&["di_min", "di_max"], &["bit 9", "bit 19"])],
+        because: "the product at the limit rounds to the same",
+        drives: &[PAPER, HOVERBOARD, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER],
+        faults: &[(&["di_min", "di_max"], &["one more", "one less"])],
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
-        drives: &[PAPER, HOVERBOARD],
-        faults: &[(&["di_min", "di_max"], &["one more", "one less"])],
+        drives: &[PI_TEKNIC],
+        faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
     },
     Unnoticed {
         because: "the set-point words of all inputs are the same",
@@ -472,35 +483,19 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     Unnoticed {
         because: "the set-point words of all inputs are the same",
         drives: &[FCS_ESTUN],
-        faults: &[(&["k_set"], &["one more"])],
+        faults: &[
+            (&["k_torque"], &["one more", "one less"]),
+            (&["i_max_bits", "t_max_bits"], &["one more"]),
+            (&["i_min_bits", "t_min_bits"], &["one less"]),
+        ],
     },
     Unnoticed {
-        because: "a filter's result lies between its input and its last result, which are within",
-        drives: &[FCS_HOVERBOARD, FCS_TEKNIC, PI_TEKNIC],
-        faults: &[(&["e_min", "e_max"], &["one more", "one less"])],
-    },
-    Unnoticed {
-        because: "a filter's result lies between its input and its last result, which are within",
+        because: "the flux changes by less within a period at the greatest speed",
         drives: &[FCS_HOVERBOARD],
-        faults: &[(&["e_min", "e_max"], &["bit 7", "bit 14"])],
-    },
-    Unnoticed {
-        because: "a filter's result lies between its input and its last result, which are within",
-        drives: &[FCS_TEKNIC],
-        faults: &[(&["e_min", "e_max"], &["bit 8", "bit 17"])],
-    },
-    Unnoticed {
-        because: "a filter's result lies between its input and its last result, which are within",
-        drives: &[FCS_TEKNIC, PI_TEKNIC],
         faults: &[(
-            &["estimate_emf: e_a", "estimate_emf: e_b"],
-            &["lower limit left out", "upper limit left out"],
+            &["e_min", "e_max"],
+            &["one more", "one less", "bit 7", "bit 14"],
         )],
-    },
-    Unnoticed {
-        because: "a filter's result lies between its input and its last result, which are within",
-        drives: &[PI_TEKNIC],
-        faults: &[(&["e_min", "e_max"], &["bit 9", "bit 18"])],
     },
     Unnoticed {
         because: "the flux changes by less within a period at the greatest speed",

@@ -29,7 +29,6 @@ const DRIVES: &[Drive] = &[
         settings: &[
             ("modulation", "pair"),
             ("saturation", "nearest"),
-            ("emf", "filtered"),
             ("advance", "1.5"),
             ("v_bus", "measured"),
             ("stall_timeout", "100ms"),
@@ -54,6 +53,7 @@ const DRIVES: &[Drive] = &[
         settings: &[
             ("modulation", "pair"),
             ("saturation", "keep_angle"),
+            ("emf", "unfiltered"),
             ("delay", "0"),
             ("word", "16"),
             ("discretisation", "euler"),
@@ -93,7 +93,6 @@ const DRIVES: &[Drive] = &[
         motor: "teknic-m2310p",
         settings: &[
             ("off_leg", "nominal"),
-            ("emf", "filtered"),
             ("adc_inverted", "on"),
             ("start_up", "short"),
         ],
@@ -117,11 +116,7 @@ const DRIVES: &[Drive] = &[
     Drive {
         kind: "pi-pwm",
         motor: "teknic-m2310p",
-        settings: &[
-            ("saturation", "nearest"),
-            ("emf", "filtered"),
-            ("start_up", "short"),
-        ],
+        settings: &[("saturation", "nearest"), ("start_up", "short")],
     },
     Drive {
         kind: "pi-pwm",

@@ -36,6 +36,29 @@ pub const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
 /// Faults that change an output or a state in so few states that a run may miss them all.
 pub const RARE: &[Unnoticed] = &[
     Unnoticed {
+        because: "differs only where the EMF is the 256th part of the bus to the last bit",
+        drives: &[PAPER],
+        faults: &[(
+            &["limit_torque_priority: directed"],
+            &["another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "differs only where a compare value is half a count from a whole one to the last bit",
+        drives: &[HOVERBOARD],
+        faults: &[(&["modulate_three: in compare_a_three"], &["rounded down"])],
+    },
+    Unnoticed {
+        because: "moves the EMF by its last bit at the greatest speeds",
+        drives: &[FCS_PAPER],
+        faults: &[(&["k_slope"], &["one more", "one less"])],
+    },
+    Unnoticed {
+        because: "differs only where all samples of a calibration are at full scale",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["calibration_sum_max"], &["one less", "bit 5"])],
+    },
+    Unnoticed {
         because: "differs only where the nearest pair vector has next to no line voltage, with its third leg at a rail",
         drives: &[FCS_PAPER, FCS_HOVERBOARD],
         faults: &[(
@@ -58,7 +81,10 @@ pub const RARE: &[Unnoticed] = &[
     Unnoticed {
         because: "moves the score of the pair's zero vector by no more than its last digits",
         drives: &[FCS_PAPER],
-        faults: &[(&["nearest_pair: in tau_zero"], &["1 for 0 (2)", "1 for 0"])],
+        faults: &[(
+            &["nearest_pair: in tau_zero"],
+            &["1 for 0 (2)", "1 for 0", "-1 for 0", "-1 for 0 (2)"],
+        )],
     },
     Unnoticed {
         because: "differs only where the off leg's EMF is beyond two thirds of the bus and the pair's zero vector is still next to the best",

@@ -2,7 +2,8 @@
 
 use crate::design::DiscretePlant;
 use crate::scaling::Scaled;
-use crate::spec::{LoopOptions, Spec};
+use crate::spec::{EmfShape, LoopOptions, Spec};
+use std::f64::consts::{FRAC_PI_6, PI};
 
 /// Coefficients of prediction, EMF estimate and deadbeat voltage (semantics page of predictive deadbeat), SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +22,17 @@ pub struct LoopDesign {
     pub di_max: f64,
     /// Largest believed zero-sum phase EMF, volt.
     pub e_limit: f64,
+    /// How far an estimated EMF moves in one period, per product of two line EMFs, 1/V.
+    pub slope: f64,
+    /// Line EMF from which on that motion no longer grows, volt.
+    pub line_limit: f64,
+}
+
+/// Largest angle per period, radian, by which an estimate that takes over the share `filter` of what is seen
+/// is moved on: the linearised motion lets an error grow by sqrt(1 + 2 angle^2), and what remains of it must shrink.
+fn greatest_turn(filter: f64) -> f64 {
+    let growth = 1.0 / (1.0 - filter).powi(2);
+    ((growth - 1.0) / 2.0).sqrt().min(0.5)
 }
 
 impl LoopDesign {
@@ -35,6 +47,8 @@ impl LoopDesign {
         );
         let k_di = plant.stiffness();
         let hold = plant.pole.powi(if options.delay == 1 { 2 } else { 1 });
+        let (shape, electrical) = (motor.emf_shape, f64::from(motor.pole_pairs) * inverter.t_s);
+        let line = shape.quasi_square_factor() * motor.emf_constant;
         let adc_span = f64::from((1_u32 << inverter.adc_bits) - 1) * inverter.adc_gain.abs();
         Self {
             plant,
@@ -44,6 +58,14 @@ impl LoopDesign {
             k_decay: 1.0 - plant.pole,
             di_max: (2.0 * adc_span).min(2.0 * plant.gain * 4.0 / 3.0 * inverter.greatest_bus()),
             e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
+            slope: match shape {
+                EmfShape::Sinusoidal => electrical / (3f64.sqrt() * line),
+                EmfShape::Trapezoidal { .. } => {
+                    let turn = electrical / (shape.quasi_square_factor() * line);
+                    2.0 / PI * shape.at(FRAC_PI_6) * turn
+                }
+            },
+            line_limit: line * greatest_turn(options.emf_filter) / electrical,
         }
     }
 

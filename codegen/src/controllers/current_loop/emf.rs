@@ -2,16 +2,17 @@
 //!
 //! An estimate needs the voltage that was applied. Where a leg floated, that voltage was taken from the
 //! leg's own EMF, so its estimate would only integrate noise; the motor's geometry says what it is.
+//! The estimate is as old as the period that it was seen in: `observer` moves it on.
 
 use super::CurrentLoop;
 use super::words::{EmfUse, Words};
 use crate::ir::{Comparison, Value};
-use crate::lower::{Coefficient, Currents, Rotor, product_bound, round_down};
+use crate::lower::{Coefficient, Currents, Hall, Rotor, product_bound, round_down};
 use crate::spec::EmfSource;
 
 type Pair = Option<[Value; 2]>;
 
-/// What the limit of an estimate with floating legs is.
+/// What the limit of an estimate is.
 const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
 
 impl CurrentLoop<'_, '_> {
@@ -21,6 +22,7 @@ impl CurrentLoop<'_, '_> {
         &mut self,
         words: &Words,
         currents: &Currents,
+        hall: &Hall,
         rotor: Option<&Rotor>,
         third: Coefficient,
         outgoing: Option<Value>,
@@ -36,32 +38,26 @@ impl CurrentLoop<'_, '_> {
                 .model_emf(flux, rotor, self.options.delay, e_limit);
             (Some(e.target), Some(e.present))
         } else {
-            // An estimate is taken as constant over both periods.
             let e = self.estimate_emf(words, currents);
             let e = self.meet_emf(words, third, outgoing, e);
-            (Some(e), Some(e))
+            let (target, present) = self.move_emf(hall.sector, e);
+            (Some(target), Some(present))
         }
     }
 
-    /// Largest zero-sum phase EMF of a step, words of voltage. An estimate has the applied voltage, the
-    /// believed current change and the resistive drop at their limits; where a leg may float, what
-    /// [`Self::meet_emf`] makes of estimates up to the bus.
+    /// Largest phase EMF of a step before it is moved on, words of voltage: an estimate up to the bus; where a leg
+    /// may float, what [`Self::meet_emf`] makes of it.
     pub(super) fn e_bound(&mut self) -> i64 {
         let (design, options) = (self.design, self.options);
         if options.emf == EmfSource::Model {
             return self.lowering.volts_word(design.e_limit);
         }
-        let scale = self.lowering.scale;
+        let bus = self.lowering.bus_interval().high;
         if self.needs.off_leg {
-            let bus = self.lowering.bus_interval().high;
-            return bus + 2 * product_bound(1.0 / 3.0, options.word, 2 * bus);
+            bus + 2 * product_bound(1.0 / 3.0, options.word, 2 * bus)
+        } else {
+            bus
         }
-        let di_max = self.di_max();
-        let volts_per_word = scale.voltage() / scale.current();
-        let change = product_bound(design.k_di * volts_per_word, options.word, di_max);
-        let span = self.lowering.current_span();
-        let drop = product_bound(design.k_r * volts_per_word, options.word, span);
-        self.lowering.bus_interval().high + change + drop
     }
 
     fn di_max(&self) -> i64 {
@@ -72,12 +68,8 @@ impl CurrentLoop<'_, '_> {
         let (options, design) = (*self.options, self.design);
         let di_max = self.di_max();
         let floats = words.off_prev.is_some();
-        let e_bound = if floats {
-            self.lowering.bus_interval().high
-        } else {
-            self.e_bound()
-        };
         let l = &mut *self.lowering;
+        let bus = l.bus_interval().high;
         let k_di = l.impedance(
             "k_di",
             design.k_di,
@@ -97,14 +89,15 @@ impl CurrentLoop<'_, '_> {
                 "k_filter",
                 options.emf_filter,
                 options.word,
-                "Weight of the new estimate in the EMF filter.",
+                "Share that the estimate takes over of what is seen in one period.",
                 &format!("{}", options.emf_filter),
             )
         });
         l.b.stage(
             "estimate_emf",
             &[
-                "EMF of the period that just ended: e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form).",
+                "EMF of the period that just ended: seen is e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form),",
+                "of which the estimate takes over a share.",
                 "",
                 "v is the voltage really applied; a change of current larger than the bus can cause is not believed.",
             ],
@@ -127,33 +120,26 @@ impl CurrentLoop<'_, '_> {
             let drop = l.times(k_r, previous);
             let rest = l.b.sub(applied, rise);
             let seen = l.b.sub(rest, drop);
-            let names = if floats {
-                ["e_a_believed", "e_b_believed"]
-            } else {
-                ["e_a", "e_b"]
-            };
+            l.b.name(["e_a_seen", "e_b_seen"][x], seen);
             let news = match (filter, words.e_prev) {
                 (Some(filter), Some(e_prev)) => {
-                    l.b.name(["e_a_seen", "e_b_seen"][x], seen);
                     let old = l.b.state(e_prev[x]);
                     let news = l.b.sub(seen, old);
                     let part = l.times(filter, news);
                     l.b.add(old, part)
                 }
-                _ if floats => l.b.name(["e_a_seen", "e_b_seen"][x], seen),
-                _ => return l.b.name(names[x], seen),
-            };
-            let doc = if floats {
-                BELIEVED
-            } else {
-                // A weighted mean never leaves the interval of its parts; the clamp is for the proof.
-                "Largest EMF that an estimate can reach"
+                _ => seen,
             };
             let (low, high) = (
-                l.voltage("e_min", -e_bound, doc),
-                l.voltage("e_max", e_bound, doc),
+                l.voltage("e_min", -bus, BELIEVED),
+                l.voltage("e_max", bus, BELIEVED),
             );
             let held = l.b.clamp(news, low, high);
+            let names = if floats {
+                ["e_a_believed", "e_b_believed"]
+            } else {
+                ["e_a_past", "e_b_past"]
+            };
             l.b.name(names[x], held)
         })
     }
@@ -244,6 +230,6 @@ impl CurrentLoop<'_, '_> {
             let moved = l.b.add(e[x], way);
             l.b.name(["e_a_met", "e_b_met"][x], moved)
         });
-        l.b.join([("e_a", moved[0], e[0]), ("e_b", moved[1], e[1])])
+        l.b.join([("e_a_past", moved[0], e[0]), ("e_b_past", moved[1], e[1])])
     }
 }

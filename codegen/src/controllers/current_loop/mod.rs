@@ -3,6 +3,7 @@
 
 mod design;
 mod emf;
+mod observer;
 mod stability;
 mod words;
 
@@ -147,7 +148,7 @@ impl CurrentLoop<'_, '_> {
         // Read here, in an open stage: the last one of the EMF may be a guarded one.
         let commanded = words.v_cmd.map(|word| word.map(|word| l.b.state(word)));
         let terminals = self.commanded_terminals(&words);
-        let (e, e_now) = self.emf(&words, &currents, rotor.as_ref(), third, outgoing);
+        let (e, e_now) = self.emf(&words, &currents, &hall, rotor.as_ref(), third, outgoing);
         let off_leg = self.off_leg_of(bus, third);
         let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
@@ -313,7 +314,7 @@ impl CurrentLoop<'_, '_> {
             };
             remembered.extend(off.map(|off| (off_prev, "off_prev_next", off)));
         }
-        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e) {
+        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e_now) {
             remembered.push((e_prev[0], "e_a_prev_next", e[0]));
             remembered.push((e_prev[1], "e_b_prev_next", e[1]));
         }

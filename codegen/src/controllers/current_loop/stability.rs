@@ -56,7 +56,8 @@ pub trait LinearLoop {
     }
 }
 
-/// EMF estimate from the words of the estimator: what it makes of current and voltage alone.
+/// EMF estimate from the words of the estimator at standstill, where it does not move on: what it makes of
+/// current and voltage alone.
 pub fn estimate(
     options: &LoopOptions,
     design: &LoopDesign,

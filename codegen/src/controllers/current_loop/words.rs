@@ -47,7 +47,7 @@ pub struct Words {
     pub v_prev: Option<[StateId; 2]>,
     /// The leg that was off in the period that ended.
     pub off_prev: Option<StateId>,
-    /// EMF of the last step.
+    /// EMF expected of the period that ended.
     pub e_prev: Option<[StateId; 2]>,
 }
 
@@ -58,7 +58,7 @@ impl CurrentLoop<'_, '_> {
             || options.advance > 0.0
             || options.reference == Reference::Proportional;
         let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
-        let e_bound = self.e_bound();
+        let e_expected = self.e_bound() + self.motion_bound();
         let l = &mut *self.lowering;
         let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;
@@ -134,8 +134,8 @@ impl CurrentLoop<'_, '_> {
                 l.state(
                     name,
                     0,
-                    Interval::symmetric(e_bound),
-                    "EMF of the last step.",
+                    Interval::symmetric(e_expected),
+                    "EMF that the last step expects of the period that it began.",
                 )
             })
         });

@@ -49,7 +49,7 @@ pub enum LimitRule {
 pub struct LoopOptions {
     /// EMF source.
     pub emf: EmfSource,
-    /// Weight of the new estimate in the EMF filter, above 0 to 1 (1: no filter).
+    /// Share that the EMF estimate takes over of what is seen in a period, above 0 to 1 (1: all, no filter).
     pub emf_filter: f64,
     /// Current reference.
     pub reference: Reference,
@@ -114,6 +114,10 @@ pub(crate) struct Surroundings {
     /// Ampere per ADC count.
     pub adc_gain: Option<f64>,
 }
+
+/// Share that the EMF estimate takes over in a period where none is stated: stable from 60 % of the stated
+/// inductance up, and quick enough for what the motor's shape does not foresee.
+const EMF_FILTER: f64 = 0.25;
 
 /// The default threshold where the motor is not too small for it, ampere.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
@@ -187,7 +191,11 @@ pub(crate) fn read_common(
     }
     Some(LoopOptions {
         emf: emf.unwrap_or(EmfSource::Estimated),
-        emf_filter: emf_filter.map_or(1.0, |given| given.si),
+        emf_filter: match (emf_filter, emf) {
+            (Some(given), _) => given.si,
+            (None, Some(EmfSource::Model)) => 1.0,
+            (None, _) => EMF_FILTER,
+        },
         reference: reference.unwrap_or(Reference::QuasiSquare),
         advance: advance.map_or(0.0, |given| given.si),
         delay: delay.unwrap_or(1),

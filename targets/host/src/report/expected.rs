@@ -147,7 +147,7 @@ pub fn design_table() -> Vec<DesignRow> {
     vec![
         DesignRow {
             label: "FCS-MPC table2, nominal, estimated EMF",
-            variant: "fcs-mpc:discretisation=euler,candidates=table2,off_leg=nominal,emf=estimated,hall_capture=timer",
+            variant: "fcs-mpc:discretisation=euler,candidates=table2,off_leg=nominal,emf=estimated,emf_filter=1,hall_capture=timer",
             timer: Expected {
                 points: two([point(2.93, 60.0, 13.0), point(2.76, 106.0, 22.0)]),
                 limit_pct: None,
@@ -197,8 +197,13 @@ pub fn design_table() -> Vec<DesignRow> {
             label: "PDCC three_phase, torque_priority, advance 2, estimated EMF",
             variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated,hall_capture=timer",
             timer: Expected {
-                points: vec![at(1500.0, Some(3.30), Some(6.9), None)],
-                limit_pct: Some(105.0.into()),
+                points: vec![ExpectedPoint {
+                    rpm: 1500.0,
+                    mean_torque_nm: Some(3.30.into()),
+                    ripple_pp_pct: Some((0.0, 6.0).into()),
+                    ..ExpectedPoint::default()
+                }],
+                limit_pct: Some((105.0, 109.0).into()),
             },
             sampled: None,
             is_plotted: false,

@@ -10,6 +10,7 @@ mod constants;
 mod emf;
 mod law;
 mod limit;
+mod motion;
 mod rotor;
 mod state;
 mod tables;
@@ -317,7 +318,7 @@ impl BitTrue {
                 } else {
                     seen
                 };
-                (e, e)
+                motion::ahead(k, delayed, sector, e)
             }
             Some(EmfSource::Model) => {
                 let now = k.flux.both(angle.theta);
@@ -392,7 +393,7 @@ impl BitTrue {
             self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
-            self.state.e_prev = e;
+            self.state.e_prev = e_now;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
         } else {

@@ -12,6 +12,7 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation};
 use super::trace::{PhysicalState, Trace};
 use super::variant::Variant;
+use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec};
 use hexagen::{Fault, LegState, Legs, Sample};
@@ -74,6 +75,7 @@ pub struct Ideal {
     timer_period: u16,
     di_max: f64,
     e_max: f64,
+    motion: EmfMotion,
     /// The largest bus voltage.
     v_largest: f64,
     max_current: f64,
@@ -116,6 +118,7 @@ impl Ideal {
             di_max: (2.0 * limits.adc_max * gain.abs())
                 .min(2.0 * phase.b * 4.0 / 3.0 * inverter.v_bus_max()?),
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
+            motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,
             max_current: inverter.max_current,
             k_t: motor.torque_constant,
@@ -266,12 +269,16 @@ impl Ideal {
                     - (d + i_prev * (1.0 - a)) / b;
                 let [e_a, e_b] = self.state.e_prev;
                 let e_prev = from_ab(e_a, e_b);
-                let mut e = e_prev + (raw - e_prev) * self.variant.options.emf_filter;
+                let [e_a, e_b] =
+                    to_ab(&(e_prev + (raw - e_prev) * self.variant.options.emf_filter))
+                        .map(|e| self.believed(e));
+                let mut e = from_ab(e_a, e_b);
                 if self.variant.unseen() {
                     e = self.with_floated(&e, sector_eff);
                 }
-                // Taken as constant over the present and the target period.
-                (e, e)
+                let motion = self.emf_motion(&e, sector);
+                let present = e + motion;
+                (if delayed { present + motion } else { present }, present)
             }
             Some(EmfSource::Model) => {
                 let start = theta + f64::from(self.variant.options.delay) * step_angle;
@@ -342,7 +349,7 @@ impl Ideal {
             self.state.v_cmd = to_ab(&u);
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
-            self.state.e_prev = to_ab(&e);
+            self.state.e_prev = to_ab(&e_now);
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
         } else {
@@ -423,20 +430,18 @@ impl Ideal {
     /// the two others is seen. While its own sector lasts the phase's EMF crosses zero; when another phase
     /// goes off, the two have met.
     fn with_floated(&self, seen: &Vector2<f64>, sector_eff: usize) -> Vector2<f64> {
-        let believed = |e: f64| e.clamp(-self.v_largest, self.v_largest);
-        let [e_a, e_b] = to_ab(seen).map(believed);
-        let seen = from_ab(e_a, e_b);
         let Some(off) = self.state.off_prev else {
-            return seen;
+            return *seen;
         };
+        let [e_a, e_b] = to_ab(seen);
         let [i_a, i_b] = self.state.i_prev;
         let i_prev = [i_a, i_b, -(i_a + i_b)];
-        let e = [e_a, e_b, believed(-(e_a + e_b))];
+        let e = [e_a, e_b, self.believed(-(e_a + e_b))];
         let outgoing = sector::OUT_PHASE[sector_eff];
         let change = if outgoing == off {
             -e[off]
         } else if i_prev[off].abs() > self.end.threshold {
-            return seen;
+            return *seen;
         } else {
             2.0 / 3.0 * (e[outgoing] - e[off])
         };
@@ -444,6 +449,37 @@ impl Ideal {
         let mut axis = Vector3::zeros();
         axis[off] = change;
         seen + clarke(&axis) * 1.5
+    }
+
+    /// An EMF within the largest bus.
+    fn believed(&self, e: f64) -> f64 {
+        e.clamp(-self.v_largest, self.v_largest)
+    }
+
+    /// By how much an estimated EMF moves in one period (section 8): round its circle, or along the side of
+    /// its hexagon that belongs to the sector. The pair's EMF tells the speed.
+    fn emf_motion(&self, e: &Vector2<f64>, sector: usize) -> Vector2<f64> {
+        let EmfMotion {
+            turns,
+            per_product,
+            line_limit,
+        } = self.motion;
+        let limit = line_limit.min(self.v_largest);
+        let [a, b, c]: [f64; 3] = phases(e).into();
+        let pair = Vector3::new(
+            sector::CORNER_A[sector],
+            sector::CORNER_B[sector],
+            -sector::CORNER_A[sector] - sector::CORNER_B[sector],
+        );
+        let line = pair.dot(&phases(e)).clamp(-limit, limit);
+        if turns {
+            let [across_a, across_b] = [c - b, a - c].map(|line| line.clamp(-limit, limit));
+            from_ab(across_a, across_b) * (per_product * line)
+        } else {
+            // Both of the pair against the off phase, whose sign is that of the corner across.
+            let [p, q, r]: [f64; 3] = pair.into();
+            from_ab(r - q, p - r) * (per_product * line * line)
+        }
     }
 
     /// Voltage that a command really applies while the currents are `i` (section 7).

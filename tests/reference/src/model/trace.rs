@@ -70,7 +70,7 @@ pub struct PhysicalState {
     pub v_prev: [f64; 2],
     /// The leg that was off in the period that ends with the next sample.
     pub off_prev: Option<usize>,
-    /// EMF of the last step, phases a, b, volt.
+    /// EMF expected of the period that ends with the next sample, phases a, b, volt.
     pub e_prev: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],

@@ -255,7 +255,11 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         _ => (1.0 / b, 1.0),
     };
     let scale = 2f64.powi(f_v);
+    let bus = inverter.v_bus_max().expect("a bus");
+    let turn = f64::from(motor.pole_pairs) * inverter.t_s / (1.6 * motor.emf_constant);
     let ohm = g / w * 2f64.powi(f_v - f_i);
+    // A turn takes two line EMFs of the bus at most, each of 15 bits or a little more than 14.
+    let slope = turn * w / scale * 4.0 * (bus / w * scale).powi(2) / 32_768.0;
     let shift = |value: f64| (30 - value.log2().ceil() as i32).clamp(0, 62);
     let e_max = 2.0 * motor.emf_constant * inverter.omega_max / w * scale;
     let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w * 1.6;
@@ -268,6 +272,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_hold", shift(ohm * a / b)),
         ("k_decay", shift(b * motor.resistance)),
         ("k_filter", shift(options.emf_filter)),
+        ("k_slope", shift(slope)),
         ("k_third", shift(1.0 / 3.0)),
         ("k_sixth", shift(1.0 / 6.0)),
         ("score", 2 * f_v - 30),

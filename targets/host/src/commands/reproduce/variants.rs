@@ -14,15 +14,15 @@ pub struct Readings {
 /// The controllers in the paper's order: (a) to (d) of its figures.
 pub const READINGS: [Readings; 4] = [
     Readings {
-        literal: "fcs-mpc:off_leg=nominal,emf=estimated,delay=0,discretisation=euler,hall_capture=timer",
+        literal: "fcs-mpc:off_leg=nominal,emf=estimated,emf_filter=1,delay=0,discretisation=euler,hall_capture=timer",
         corrected: "fcs-mpc:off_leg=physical,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {
-        literal: "pdcc:saturation=keep_angle,emf=estimated,discretisation=euler,hall_capture=timer",
+        literal: "pdcc:saturation=keep_angle,emf=estimated,emf_filter=1,discretisation=euler,hall_capture=timer",
         corrected: "pdcc:saturation=torque_priority,advance=2,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {
-        literal: "phcc:table=printed,emf=estimated,discretisation=euler,hall_capture=timer",
+        literal: "phcc:table=printed,emf=estimated,emf_filter=1,discretisation=euler,hall_capture=timer",
         corrected: "phcc:table=derived,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {

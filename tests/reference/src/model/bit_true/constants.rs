@@ -2,7 +2,8 @@
 
 use super::state::{Part, Parts};
 use super::tables::Table;
-use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
+use crate::emf_motion::EmfMotion;
+use crate::exact::{Coefficient, Shift, floor, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation, Spec,
@@ -46,11 +47,16 @@ pub struct Constants {
     pub e_max: f64,
     /// V_LARGEST.
     pub v_largest: f64,
+    /// LINE_MAX and q.
+    pub line_max: f64,
+    pub line_shift: u32,
+    pub emf_turns: bool,
     pub filtered: bool,
     pub advanced: bool,
     pub k_di: Coefficient,
     pub k_r: Coefficient,
     pub k_filter: Coefficient,
+    pub k_slope: Coefficient,
     pub k_third: Coefficient,
     pub k_set: Coefficient,
     pub k_torque: Coefficient,
@@ -235,6 +241,13 @@ impl Constants {
         } else {
             (Table::default(), Shift::default())
         };
+        let v_largest = bus.map_or(timer_period * two_v, |bus| bus.v_max);
+        let motion = EmfMotion::new(spec)?;
+        let line_max = floor_constant(motion.line_limit / w * two_v).min(v_largest);
+        let line_shift = (0..31)
+            .find(|shift| floor(line_max * pow2(-shift)) < 32_768.0)
+            .unwrap_or(0);
+        let slope = motion.per_product * w / two_v * pow2(2 * line_shift + 15);
         Ok(Self {
             parts: Parts::new(&[
                 (Part::Stall, inverter.stall_periods > 0),
@@ -275,12 +288,16 @@ impl Constants {
             t_max_bits,
             comm_timeout: f64::from(end.timeout),
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
-            v_largest: bus.map_or(timer_period * two_v, |bus| bus.v_max),
+            v_largest,
+            line_max,
+            line_shift: line_shift as u32,
+            emf_turns: motion.turns,
             filtered,
             advanced,
             k_di: scale.only_if(estimated, "k_di", ohm / b)?,
             k_r: scale.only_if(estimated, "k_r", ohm * resistance)?,
             k_filter: scale.only_if(filtered, "k_filter", options.emf_filter)?,
+            k_slope: scale.only_if(estimated, "k_slope", slope)?,
             k_third: scale.only_if(
                 (floating && variant.applied())
                     || saturation.is_some_and(|rule| rule != Saturation::KeepAngle),

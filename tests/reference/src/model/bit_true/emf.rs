@@ -5,7 +5,7 @@ use super::state::State;
 use crate::exact::halve;
 use crate::model::sector::OUT_PHASE;
 
-/// EMF of phases a, b in the period that ends with the currents `i`, filtered where the variant asks for it.
+/// EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
 pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let State {
@@ -17,11 +17,12 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|x| {
         let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
         let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
-        if k.filtered {
+        let e = if k.filtered {
             e_prev[x] + k.k_filter.mul(e - e_prev[x])
         } else {
             e
-        }
+        };
+        e.clamp(-k.v_largest, k.v_largest)
     })
 }
 
@@ -29,10 +30,10 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 #[inline]
 pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64; 2]) -> [f64; 2] {
     let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
-    let [a, b] = seen.map(believed);
     let Some(off) = state.off_prev.checked_sub(1).filter(|leg| *leg < 3) else {
-        return [a, b];
+        return seen;
     };
+    let [a, b] = seen;
     let e = [a, b, believed(-(a + b))];
     let [i_a, i_b] = state.i_prev;
     let i_off = [i_a, i_b, -(i_a + i_b)][off];

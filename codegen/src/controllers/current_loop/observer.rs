@@ -1,0 +1,186 @@
+//! How an estimated EMF moves on from the period that it was seen in to the present one and to the target
+//! (semantics page of predictive deadbeat, step 8): by the motor's shape, at the speed that its own magnitude says.
+
+use super::CurrentLoop;
+use crate::design::vectors::SECTOR_CURRENT;
+use crate::ir::Value;
+use crate::lower::{Coefficient, product_bound, round_down};
+use crate::spec::EmfShape;
+
+/// Bits of a line EMF, without its sign, as a factor of the motion: two of them make a word.
+const LINE_BITS: u32 = 15;
+
+/// The line EMF's limit, words of voltage, and the shift that leaves it [`LINE_BITS`] bits.
+#[derive(Clone, Copy, Debug)]
+struct LineRange {
+    limit: i64,
+    shift: u32,
+}
+
+impl CurrentLoop<'_, '_> {
+    fn line_range(&self) -> LineRange {
+        let l = &self.lowering;
+        let limit = round_down(self.design.line_limit * l.scale.voltage()) as i64;
+        let limit = limit.min(l.bus_interval().high);
+        let bits = i64::BITS - limit.leading_zeros();
+        LineRange {
+            limit,
+            shift: bits.saturating_sub(LINE_BITS),
+        }
+    }
+
+    /// `k_slope`: what a product of two line EMFs, both shifted, is worth in words of voltage.
+    fn slope_value(&self, shift: u32) -> f64 {
+        let word = 1.0 / self.lowering.scale.voltage();
+        self.design.slope * word * f64::from(2 * shift + LINE_BITS).exp2()
+    }
+
+    /// Largest motion of a phase EMF over one period, words of voltage.
+    pub(super) fn motion_bound(&self) -> i64 {
+        let value = self.slope_value(self.line_range().shift);
+        let largest = product_bound(value, self.options.word, 1 << LINE_BITS);
+        match self.lowering.spec.motor.emf_shape {
+            EmfShape::Sinusoidal => largest,
+            EmfShape::Trapezoidal { .. } => 2 * largest,
+        }
+    }
+
+    /// The estimate `e` of the period that just ended, moved on to the target period and to the present one.
+    pub(super) fn move_emf(&mut self, sector: Value, e: [Value; 2]) -> ([Value; 2], [Value; 2]) {
+        let range = self.line_range();
+        let value = self.slope_value(range.shift);
+        let shape = self.lowering.spec.motor.emf_shape;
+        let delayed = self.options.delay == 1;
+        let doc = match shape {
+            EmfShape::Sinusoidal => {
+                "Moves the estimate on by a period and more: a sinusoidal EMF turns, at right angles to itself."
+            }
+            EmfShape::Trapezoidal { .. } => {
+                "Moves the estimate on by a period and more: the EMF of the sector's off phase goes from one flat top to the other."
+            }
+        };
+        let slope = self.lowering.scaled_coefficient(
+            "k_slope",
+            value,
+            self.options.word,
+            [
+                "Motion of the EMF in one period, per product of two line EMFs.",
+                &format!("c = {:.4e} 1/V", self.design.slope),
+            ],
+            [
+                &format!("c w 2^({} - f_v)", 2 * range.shift + LINE_BITS),
+                "words of voltage per product, both lines shifted",
+            ],
+        );
+        self.lowering.b.stage(
+            "move_emf",
+            &[
+                doc,
+                "",
+                "The line EMF of the conducting pair tells the speed; its sign, the sense of rotation.",
+            ],
+        );
+        let lines = self.line_signs(sector);
+        let l = &mut *self.lowering;
+        let parts = [0, 1].map(|x| l.b.mul(lines[x], e[x], 0));
+        let line = l.b.add(parts[0], parts[1]);
+        let speed = self.shifted_line(["e_line", "e_line_factor"], line, range);
+        let motion = match shape {
+            EmfShape::Sinusoidal => self.turning(slope, speed, e, range),
+            EmfShape::Trapezoidal { .. } => self.ramping(slope, speed, lines),
+        };
+        let l = &mut *self.lowering;
+        let mut ahead = |e: [Value; 2], names: [&str; 2]| {
+            [0, 1].map(|x| {
+                let moved = l.b.add(e[x], motion[x]);
+                l.b.name(names[x], moved)
+            })
+        };
+        if delayed {
+            let present = ahead(e, ["e_a_now", "e_b_now"]);
+            (ahead(present, ["e_a", "e_b"]), present)
+        } else {
+            let present = ahead(e, ["e_a", "e_b"]);
+            (present, present)
+        }
+    }
+
+    /// Weights of the EMF of phases a and b in the line EMF of the conducting pair (c is minus their sum).
+    fn line_signs(&mut self, sector: Value) -> [Value; 2] {
+        let b = &mut self.lowering.b;
+        let weights = |phase: usize| {
+            let signs = SECTOR_CURRENT.iter();
+            let weights = signs.map(|legs| legs[phase] - legs[2]);
+            std::iter::once(0).chain(weights).collect::<Vec<i32>>()
+        };
+        [("line_a", "a", 0), ("line_b", "b", 1)].map(|(name, phase, index)| {
+            let doc = format!(
+                "Weight of the phase-{phase} EMF in the line EMF of the pair that conducts in sectors 1 to 6."
+            );
+            let table = b.program.table(name, weights(index), &[doc]);
+            let weight = b.lookup(table, sector);
+            b.name(["line_weight_a", "line_weight_b"][index], weight)
+        })
+    }
+
+    /// A line EMF up to its limit, shifted to the bits of a factor.
+    fn shifted_line(&mut self, names: [&str; 2], line: Value, range: LineRange) -> Value {
+        let l = &mut *self.lowering;
+        let doc = "Line EMF from which on its motion no longer grows";
+        let (low, high) = (
+            l.voltage("line_min", -range.limit, doc),
+            l.voltage("line_max", range.limit, doc),
+        );
+        let held = l.b.clamp(line, low, high);
+        l.b.name(names[0], held);
+        let factor = match range.shift {
+            0 => held,
+            shift => l.b.shift_right(held, shift),
+        };
+        l.b.name(names[1], factor)
+    }
+
+    /// Two thirds of the ramp for the phase that is off, a third against it for the two others: against the off
+    /// phase's outgoing sign, which is what the weights of the other phase say.
+    fn ramping(&mut self, slope: Coefficient, speed: Value, lines: [Value; 2]) -> [Value; 2] {
+        let l = &mut *self.lowering;
+        let square = l.b.mul_floor(speed, speed, LINE_BITS);
+        l.b.name("e_line_square", square);
+        let third = l.times(slope, square);
+        l.b.name("ramp_third", third);
+        let against = l.b.mul(lines[1], third, 0);
+        let motion_a = l.b.neg(against);
+        let motion_b = l.b.mul(lines[0], third, 0);
+        [
+            l.b.name("motion_a", motion_a),
+            l.b.name("motion_b", motion_b),
+        ]
+    }
+
+    /// At right angles to the EMF: the line EMF of the two other phases, at the speed.
+    fn turning(
+        &mut self,
+        slope: Coefficient,
+        speed: Value,
+        e: [Value; 2],
+        range: LineRange,
+    ) -> [Value; 2] {
+        let b = &mut self.lowering.b;
+        let twice_b = b.shift_left(e[1], 1);
+        let across = b.add(e[0], twice_b);
+        let across_a = b.neg(across);
+        let twice_a = b.shift_left(e[0], 1);
+        let across_b = b.add(twice_a, e[1]);
+        let names = [
+            ["e_across_a", "across_a_factor"],
+            ["e_across_b", "across_b_factor"],
+        ];
+        [0, 1].map(|x| {
+            let factor = self.shifted_line(names[x], [across_a, across_b][x], range);
+            let l = &mut *self.lowering;
+            let product = l.b.mul_floor(speed, factor, LINE_BITS);
+            let motion = l.times(slope, product);
+            l.b.name(["motion_a", "motion_b"][x], motion)
+        })
+    }
+}
