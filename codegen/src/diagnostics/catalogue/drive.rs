@@ -69,32 +69,51 @@ pub fn period_too_long(
     )
 }
 
-/// The line-to-line EMF at rated speed exceeds the bus; `drop`: 2 R I at rated current, volt;
-/// `reachable`: mechanical speed in rad/s at which the EMF equals the bus.
+/// What a bus that is too low for the rating allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BusRemedy {
+    /// This mechanical speed in rad/s at rated current.
+    Speed(f64),
+    /// No speed at rated current, and less than this current in ampere at standstill.
+    Current(f64),
+}
+
+/// EMF and resistive drop of the rating exceed the bus. `emf`: line to line at rated speed, volt;
+/// `drop`: of rated current in two phases, volt.
 pub fn bus_too_low(
     bus: &Part,
-    speed: &Part,
-    back_emf: &Part,
+    [speed, current, back_emf, resistance]: [&Part; 4],
     emf: f64,
     drop: f64,
-    reachable: f64,
+    remedy: BusRemedy,
 ) -> Diagnostic {
+    let remedy = match remedy {
+        BusRemedy::Speed(reachable) => format!("lower `rated_speed` below {}", rpm(reachable)),
+        BusRemedy::Current(reachable) => {
+            format!(
+                "lower `rated_current` below {}",
+                engineering(reachable, "A")
+            )
+        }
+    };
     with_parts(
         Diagnostic::new(
             Code::BusTooLow,
             &bus.location,
             format!(
-                "`bus_voltage`: {}, but at the rated speed of {} the EMF is {} line to line, and rated current needs another {}; raise the bus above {}, lower `rated_speed` below {}, or check the basis of `back_emf` ({})",
+                "`bus_voltage`: {}, but {} at {} take {}: an EMF of {} line to line and 2 R I = {}; raise the bus above {}, {remedy}, or check the bases of `back_emf` ({}) and `resistance` ({})",
                 bus.given,
-                speed.given,
+                current.quoted(),
+                speed.quoted(),
+                engineering(emf + drop, "V"),
                 engineering(emf, "V"),
                 engineering(drop, "V"),
                 engineering(emf + drop, "V"),
-                rpm(reachable),
                 back_emf.given,
+                resistance.given,
             ),
         ),
-        &[speed, back_emf],
+        &[speed, current, back_emf, resistance],
     )
 }
 

@@ -24,7 +24,7 @@ pub(super) fn check(
     errors: &mut Collector,
 ) {
     check_period(motor_reader, motor, inverter, errors);
-    check_bus(motor, inverter, errors);
+    check_bus(motor_reader, motor, inverter, errors);
 }
 
 /// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
@@ -50,26 +50,37 @@ fn check_period(
     Some(())
 }
 
-/// Accepted: a line-to-line EMF at rated speed below the bus voltage, however little is left to
-/// drive the current.
-fn check_bus(motor: &Motor, inverter: &Inverter, errors: &mut Collector) -> Option<()> {
-    let (bus, speed, back_emf) = (
+/// Accepted: a bus that covers the line-to-line EMF at rated speed and what rated current drops in
+/// two phases. Refused: a rating that no steady state of this bus reaches. Commutations need more
+/// than that, so an accepted rating is not promised to be held.
+fn check_bus(
+    reader: &Reader,
+    motor: &Motor,
+    inverter: &Inverter,
+    errors: &mut Collector,
+) -> Option<()> {
+    let (bus, speed, current, back_emf) = (
         inverter.v_bus.as_ref()?,
         motor.rated_speed.as_ref()?,
+        motor.rated_current.as_ref()?,
         motor.back_emf.as_ref()?,
     );
     let line_to_line = motor.emf_constant? * motor.emf_shape?.line_to_line_peak();
     let emf = line_to_line * speed.si;
-    if emf > bus.si {
-        let drop = 2.0 * motor.resistance? * motor.rated_current.as_ref()?.si;
-        let reachable = bus.si / line_to_line;
+    let drop = 2.0 * motor.resistance? * current.si;
+    if emf + drop > bus.si * (1.0 + 1e-9) {
+        let remedy = if drop < bus.si {
+            catalogue::BusRemedy::Speed((bus.si - drop) / line_to_line)
+        } else {
+            catalogue::BusRemedy::Current(current.si * bus.si / drop)
+        };
+        let resistance = reader.part("resistance", String::new);
         errors.push(catalogue::bus_too_low(
             &bus.part,
-            &speed.part,
-            &back_emf.part,
+            [&speed.part, &current.part, &back_emf.part, &resistance],
             emf,
             drop,
-            reachable,
+            remedy,
         ));
     }
     Some(())
