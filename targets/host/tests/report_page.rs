@@ -24,6 +24,7 @@ fn every_section_is_there_and_linked() {
         ("formats", "Formats"),
         ("errors", "Fixed point against float"),
         ("stability", "Stable ranges"),
+        ("robustness", "Robustness"),
         ("code", "Emitted code"),
         ("data-sheet", "Data sheet"),
         ("spec", "Specification"),
@@ -88,13 +89,56 @@ fn difference_from_the_expected_is_marked() {
 }
 
 #[test]
+fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
+    let (_, sheet) = PAGE
+        .split_once("<section id=\"robustness\">")
+        .expect("the section");
+    let (sheet, _) = sheet.split_once("</section>").expect("its end");
+    // Five disturbances at two speeds; of three controllers one is not there.
+    assert_eq!(sheet.matches("<td").count(), 5 * 2 * 2);
+    for (class, count) in [
+        ("none", 4),
+        ("slight", 4),
+        ("marked", 4),
+        ("strong", 2),
+        ("broken", 4),
+    ] {
+        let cells = sheet
+            .matches(&format!("<td class=\"number {class}\">"))
+            .count();
+        assert_eq!(cells, count, "{class}");
+    }
+    for text in [
+        ">trips</td>",
+        ">oscillates</td>",
+        "3.30 <small>12.0 / 2.5</small>",
+        "R +30 %",
+        "L \u{2212}30 %",
+        "dead time 1 \u{b5}s",
+        "10-bit ADC, 200 mA off",
+        "<code>phcc</code> is not there: one vector moves the current too far",
+        "<code>pdcc</code>, dead time 1 \u{b5}s: the dead time is too long",
+        "A run oscillates where",
+    ] {
+        assert!(sheet.contains(text), "no `{text}` in {sheet}");
+    }
+}
+
+#[test]
 fn page_without_runs_says_so_instead_of_failing() {
     let mut data = DATA.clone();
     data.variants = vec![Variant::default()];
     data.verification = None;
     data.marks.clear();
+    data.robustness = None;
     let page = render(&data).expect("the page renders");
-    for what in ["records", "torque-speed curves", "formats", "emitted code"] {
+    for what in [
+        "records",
+        "torque-speed curves",
+        "formats",
+        "robustness sheet",
+        "emitted code",
+    ] {
         let sentence = format!("This report has no {what}.");
         assert!(page.contains(&sentence), "{sentence}");
     }

@@ -161,6 +161,10 @@ pub struct PlantArguments {
     /// Range of the current ADCs, of plant and controller alike: the specification changes
     #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text, allow_hyphen_values = true)]
     pub adc_range: Option<String>,
+    /// Error of the current ADCs' zero, which the controller does not know of: one current for both
+    /// phases, or two for a and b
+    #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
+    pub adc_offset: Option<[f64; 2]>,
     /// True bus voltage; the controller reckons with the motor file's, or measures
     #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
@@ -230,6 +234,13 @@ impl PlantArguments {
         );
         plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
         plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
+        for (channel, error) in plant
+            .adc
+            .iter_mut()
+            .zip(self.adc_offset.unwrap_or([0.0; 2]))
+        {
+            channel.offset += error / channel.amperes_per_count;
+        }
         plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
         plant.mechanics = self.inertia.map(|inertia| Mechanics {
             inertia,

@@ -10,11 +10,12 @@ mod progress;
 mod quantity;
 
 pub use arguments::{
-    Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
+    Arguments, Command, Emit, KINDS, PlantArguments, RunArguments, SelectedMotor, Selection,
+    parse_rpm,
 };
 pub use failure::Failure;
 pub use output::{
-    TextTable, note, print_json, print_text, significant, tell_warnings, warn, write_file,
+    Ground, TextTable, note, print_json, print_text, significant, tell_warnings, warn, write_file,
 };
 pub use progress::{bar, spinner};
 

@@ -2,8 +2,9 @@
 
 use super::Failure;
 use crate::engine::Prepared;
+use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
+use comfy_table::{Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, Table, Width};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -111,7 +112,16 @@ pub fn significant(value: f64, digits: u32) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A plain table in Markdown; every column but the first `left` ones is right-aligned.
+/// Colours of a cell, by their numbers among the 256 of terminals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ground {
+    /// Of the cell.
+    pub color: u8,
+    /// Of its text.
+    pub ink: u8,
+}
+
+/// A table in Markdown, with colours where a terminal shows them and nobody asked for none; every column but the first `left` ones is right-aligned.
 pub struct TextTable {
     table: Table,
     left: usize,
@@ -122,6 +132,11 @@ impl TextTable {
     pub fn new<T: Into<String>>(left: usize, header: impl IntoIterator<Item = T>) -> Self {
         let mut table = Table::new();
         table.load_style(ASCII_MARKDOWN);
+        // NO_COLOR, CLICOLOR and the kind of stdout decide.
+        match AutoStream::choice(&std::io::stdout()) {
+            ColorChoice::Never => table.force_no_tty(),
+            _ => table.enforce_styling(),
+        };
         table.set_header(header.into_iter().map(Into::into).collect::<Vec<String>>());
         Self { table, left }
     }
@@ -130,6 +145,17 @@ impl TextTable {
     pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
         self.table
             .add_row(cells.into_iter().map(Into::into).collect::<Vec<String>>());
+    }
+
+    /// Adds a row of cells that may have a ground.
+    pub fn painted_row(&mut self, cells: impl IntoIterator<Item = (String, Option<Ground>)>) {
+        let cells = cells.into_iter().map(|(text, ground)| match ground {
+            None => Cell::new(text),
+            Some(Ground { color, ink }) => Cell::new(text)
+                .bg(Color::AnsiValue(color))
+                .fg(Color::AnsiValue(ink)),
+        });
+        self.table.add_row(cells.collect::<Vec<_>>());
     }
 
     /// Breaks the lines of a column's cells where they are longer than so many characters.

@@ -76,6 +76,19 @@ pub(super) fn current_text(text: &str) -> Result<String, String> {
     quantity(text, Dimension::Current).map(|amperes| format!("{amperes} A"))
 }
 
+/// Amperes of one channel or of two, `0.2A` or `0.2A,-0.1A`.
+pub(super) fn adc_offset(text: &str) -> Result<[f64; 2], String> {
+    let list = text
+        .split(',')
+        .map(|part| quantity(part, Dimension::Current))
+        .collect::<Result<Vec<_>, _>>()?;
+    match list[..] {
+        [both] => Ok([both; 2]),
+        [a, b] => Ok([a, b]),
+        _ => Err("one current for both phases, or two for a and b".to_owned()),
+    }
+}
+
 /// kg m2.
 pub(super) fn inertia(text: &str) -> Result<f64, String> {
     within(quantity(text, Dimension::Inertia)?, 1e-9, 100.0, " kg m2")
@@ -134,6 +147,8 @@ mod tests {
         assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
         assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
         assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
+        assert_eq!(adc_offset("200mA"), Ok([0.2; 2]));
+        assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0]));
     }
 
     #[test]
@@ -155,7 +170,7 @@ mod tests {
             torque("-1e300"),
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
         );
-        assert!(hall_error("1,2").is_err());
+        assert!(hall_error("1,2").is_err() && adc_offset("1,2,3").is_err());
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }
 }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Fraction of the demanded torque that counts as held.
-const HELD: f64 = 0.97;
+pub const HELD: f64 = 0.97;
 
 /// The grid of a scan. Speeds are magnitudes; the direction is that of the run's speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

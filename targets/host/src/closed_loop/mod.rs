@@ -8,13 +8,15 @@ mod harmonics;
 mod limit;
 mod measure;
 mod merits;
+mod swing;
 mod trace;
 mod trip;
 
 pub use harmonics::amplitudes;
-pub use limit::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
+pub use limit::{HELD, LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
 pub use measure::{Measurement, RunOptions, STARTS, mean_torque, measure, record};
 pub use merits::{Merits, merits};
+pub use swing::Swing;
 pub use trace::{PeriodRow, Trace, quasi_square};
 pub use trip::{Cause, Trip};
 

@@ -11,5 +11,6 @@ pub mod motors;
 pub mod report;
 pub mod reproduce;
 pub mod results;
+pub mod robustness;
 pub mod simulate;
 pub mod verify;

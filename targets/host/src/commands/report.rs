@@ -1,8 +1,11 @@
 //! `hexagen report`: the result table and the page of one motor.
 
 use super::results::{Planned, SPEEDS};
+use super::robustness;
 use super::verify::{self, Checked};
-use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
+use crate::cli::{
+    Failure, KINDS, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant,
+};
 use crate::engine::{EngineKind, Prepared};
 use crate::report::{
     self, Capture, Judged, Model, ReportData, Run, SpeedMark, Variant, Verification, design_table,
@@ -88,6 +91,12 @@ pub fn collect(
     progress.finish_and_clear();
     let variants = variants?;
 
+    let kinds = KINDS.map(str::to_owned);
+    let as_given = PlantArguments::default();
+    let robustness = robustness::collect(given, &kinds, &as_given)
+        .map_err(|failure| notes.push(format!("Robustness: {failure}")))
+        .ok();
+
     let data = ReportData {
         generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
         name: own.spec.name.clone(),
@@ -100,6 +109,7 @@ pub fn collect(
         speeds_rpm: SPEEDS.map(|part| part * own.rated_rpm()).to_vec(),
         verification: Some(verification(&checked)),
         variants,
+        robustness,
         marks: if is_paper { paper_marks() } else { vec![] },
         notes,
     };

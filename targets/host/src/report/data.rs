@@ -5,6 +5,7 @@
 //! empty leaves its part of the page out.
 
 use super::expected::Expected;
+use super::robustness::Robustness;
 use crate::closed_loop::{Merits, SpeedLimit, Trace};
 use hexagen_codegen::controllers::StableRange;
 use hexagen_codegen::interface::FormatEntry;
@@ -35,6 +36,8 @@ pub struct ReportData {
     pub verification: Option<Verification>,
     /// The variants in the table's order.
     pub variants: Vec<Variant>,
+    /// The default controllers on plants that differ from the motor file, where they were run.
+    pub robustness: Option<Robustness>,
     /// Marks along the speed axis of the torque-speed plot (the paper's claims, the bound).
     pub marks: Vec<SpeedMark>,
     /// Paragraphs below the result table: known differences and their reasons.

@@ -11,6 +11,7 @@ mod highlight;
 mod page;
 mod plot;
 pub mod reproduction;
+mod robustness;
 mod sections;
 mod window;
 
@@ -22,6 +23,7 @@ pub use expected::{
     Band, DesignRow, Expected, ExpectedPoint, Judged, design_table, judge_limit, judge_mean,
     judge_pp, judge_rms,
 };
+pub use robustness::{Cell, Column, Figures, Heat, Measured, Outcome, Robustness, SWING_RULE};
 
 use std::fs;
 use std::io;

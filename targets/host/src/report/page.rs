@@ -2,7 +2,9 @@
 
 use super::document::{Section, document};
 use super::highlight::Highlighter;
-use super::sections::{header, numbers, results, spectra, stability, texts, torque_speed, waves};
+use super::sections::{
+    header, numbers, results, robustness, spectra, stability, texts, torque_speed, waves,
+};
 use super::{ReportData, ReportError};
 
 /// The whole page.
@@ -31,6 +33,7 @@ pub fn render(data: &ReportData) -> Result<String, ReportError> {
         section("formats", "Formats", numbers::formats(data)),
         section("errors", "Fixed point against float", numbers::errors(data)),
         section("stability", "Stable ranges", stability::section(data)?),
+        section("robustness", "Robustness", robustness::section(data)),
         section("code", "Emitted code", texts::code(data, &highlighter)?),
         section("data-sheet", "Data sheet", texts::data_sheet(data)),
         section("spec", "Specification", texts::spec(data)),

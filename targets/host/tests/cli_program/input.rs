@@ -151,6 +151,32 @@ fn options_out_of_range_or_at_odds_are_told() {
             &["simulate", PAPER, "--rpm", "1", "--adc-range", "-4A"],
             "adc_range",
         ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1V"],
+            "is a voltage",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1,2,3"],
+            "one current for both phases, or two",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "41A"],
+            "adc offset",
+        ),
+        (
+            &["compare", PAPER, "--robustness", "--adc-offset", "-41A"],
+            "adc offset",
+        ),
+        (
+            &["compare", PAPER, "--robustness", "--inertia", "1"],
+            "--inertia",
+        ),
+        (&["compare", PAPER, "--csv", "sheet.csv"], "--robustness"),
+        (
+            &["compare", PAPER, "--robustness", "--controller", "pdcc:a=1"],
+            "pdcc:a=1:1:6",
+        ),
+        (&["compare", "unheard-of", "--robustness"], "unheard-of"),
         (&["verify", PAPER, "--steps", "-5"], "--steps"),
         (&["report", PAPER, "--out", "/proc/nowhere"], "cannot write"),
         (

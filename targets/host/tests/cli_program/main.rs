@@ -4,6 +4,7 @@ mod generate;
 mod input;
 mod output;
 mod reproduce;
+mod robustness;
 mod rows;
 mod simulate;
 mod support;

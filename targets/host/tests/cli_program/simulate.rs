@@ -145,6 +145,8 @@ fn plant_options_reach_the_plant() {
         ["--dead-time", "1us"],
         ["--adc-bits", "8"],
         ["--adc-range", "50A"],
+        ["--adc-offset", "0.5A"],
+        ["--adc-offset", "0.5A,-0.5A"],
         ["--v-bus", "40"],
         ["--scale-r", "2"],
         ["--scale-l", "0.9"],

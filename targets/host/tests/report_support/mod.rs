@@ -10,11 +10,12 @@ use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
 use hexagen_host::closed_loop::{
     CurrentLoop, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
+use hexagen_host::engine::EngineKind;
 use hexagen_host::plant::{PlantParams, Truth};
 use hexagen_host::report::{
-    Capture, DesignRow, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint,
-    SameWords, SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
-    design_table,
+    Capture, Cell, Column, DesignRow, Figures, GeneratedTexts, Heat, Model, Outcome, Parameter,
+    Record, ReportData, Robustness, Run, RunPoint, SameWords, SignalError, SpeedMark, Stability,
+    StabilityCheck, Variant, Verification, design_table,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -256,6 +257,66 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
     }
 }
 
+/// A sheet with every heat, every outcome, and what was refused.
+fn robustness() -> Robustness {
+    let disturbances = [
+        "none",
+        "R +30 %",
+        "L -30 %",
+        "dead time 1 us",
+        "10-bit ADC, 200 mA off",
+    ];
+    let column = |controller: &str| {
+        let cells = disturbances.iter().enumerate().flat_map(|(place, name)| {
+            SPEEDS.map(|rpm| {
+                let heat = Heat::ALL[place];
+                let outcome = match (heat, rpm == SPEEDS[0]) {
+                    (Heat::Broken, true) => Outcome::Trips,
+                    (Heat::Broken, false) => Outcome::Oscillates,
+                    _ => Outcome::Runs,
+                };
+                let is_refused = controller == "pdcc" && place == 3;
+                let figures = Figures {
+                    engine: EngineKind::Compiled,
+                    expected_torque_nm: TORQUE,
+                    mean_torque_nm: TORQUE - 0.1 * place as f64,
+                    ripple_pp_pct: 12.0,
+                    ripple_rms_pct: 2.5,
+                    swing_current_pct: 1.0,
+                    swing_voltage_pct: 1.0,
+                    outcome,
+                    tripped: None,
+                    heat,
+                };
+                Cell {
+                    disturbance: (*name).to_owned(),
+                    rpm,
+                    refused: is_refused.then(|| "the dead time is too long".to_owned()),
+                    figures: (!is_refused).then_some(figures),
+                }
+            })
+        });
+        Column {
+            controller: controller.to_owned(),
+            refused: None,
+            cells: cells.collect(),
+        }
+    };
+    Robustness {
+        speeds_rpm: SPEEDS.to_vec(),
+        disturbances: disturbances.map(str::to_owned).to_vec(),
+        controllers: vec![
+            column("pdcc"),
+            Column {
+                controller: "phcc".to_owned(),
+                refused: Some("one vector moves the current too far".to_owned()),
+                cells: Vec::new(),
+            },
+            column("pi-pwm:bandwidth=1kHz,emf=model"),
+        ],
+    }
+}
+
 /// Data of a page with three variants.
 pub fn data() -> ReportData {
     let fine = Options {
@@ -301,6 +362,7 @@ pub fn data() -> ReportData {
                 false,
             ),
         ],
+        robustness: Some(robustness()),
         marks: vec![
             mark("PI-PWM (paper)", 67.0),
             mark("predictive (paper)", 85.0),

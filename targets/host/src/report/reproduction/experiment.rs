@@ -5,9 +5,7 @@
 
 use super::data::Method;
 use super::judge::Finding;
-
-/// Fraction of the demand that counts as held; as in the speed limit's search.
-const HELD: f64 = 0.97;
+use crate::closed_loop::HELD;
 
 /// Fraction of the demand below which a drive has lost its current.
 const LOST: f64 = 0.5;

@@ -1,7 +1,7 @@
 //! Figures of runs: 4 and 14 to 20.
 
 use super::data::{Method, Point, Reading, Reproduction};
-use crate::closed_loop::LimitOutcome;
+use crate::closed_loop::{HELD, LimitOutcome};
 use crate::report::harmonics::{of_current, of_quasi_square};
 use crate::report::plot::{
     Bars, Curve, Group, Path, Plane, TorqueSpeed, Wave, bars, corners, dash, hexagon, means,
@@ -20,9 +20,6 @@ const ORDERS: [usize; 8] = [5, 7, 11, 13, 17, 19, 23, 25];
 
 /// Highest order that is computed.
 const HIGHEST: usize = 25;
-
-/// Fraction of the demand that counts as held.
-const HELD: f64 = 0.97;
 
 /// A record in a figure.
 struct Panel<'a> {

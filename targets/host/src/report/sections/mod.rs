@@ -3,6 +3,7 @@
 pub mod header;
 pub mod numbers;
 pub mod results;
+pub mod robustness;
 pub mod spectra;
 pub mod stability;
 pub mod texts;

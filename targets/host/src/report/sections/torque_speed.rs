@@ -1,14 +1,11 @@
 //! Mean torque over speed, all variants.
 
 use super::{TorqueScale, legend, nothing, number, swatch};
-use crate::closed_loop::LimitOutcome;
+use crate::closed_loop::{HELD, LimitOutcome};
 use crate::report::plot::{Curve, TorqueSpeed, dash, palette, torque_speed};
 use crate::report::{ReportData, ReportError, Variant};
 use maud::{Markup, html};
 use std::f64::consts::TAU;
-
-/// Fraction of the demand that counts as held.
-const HELD: f64 = 0.97;
 
 fn limit_rpm(variant: &Variant) -> Option<f64> {
     let run = variant.runs.first()?;

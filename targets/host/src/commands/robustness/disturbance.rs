@@ -1,0 +1,89 @@
+//! The disturbances of the robustness sheet, as changes of the plant options.
+
+use crate::cli::PlantArguments;
+use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::InverterSpec;
+
+/// Dead times in seconds; the motor file's own is the undisturbed plant's.
+const DEAD_TIMES: [f64; 4] = [0.0, 0.5e-6, 1e-6, 2e-6];
+
+/// Placement errors of the Hall sensors in electrical degrees: all alike, and each another.
+const HALL_ERRORS: [(&str, [f64; 3]); 3] = [
+    ("Hall -5 deg", [-5.0; 3]),
+    ("Hall +5 deg", [5.0; 3]),
+    ("Hall +5, -5, 0 deg", [5.0, -5.0, 0.0]),
+];
+
+/// Resolutions of the current converters in bits.
+const ADC_BITS: [u32; 2] = [10, 12];
+
+/// Error of the converters' zero, of both alike, in parts of the largest current they read.
+const ADC_OFFSET: f64 = 0.005;
+
+/// One disturbance.
+#[derive(Clone, Debug)]
+pub struct Disturbance {
+    /// What readers call it.
+    pub name: String,
+    /// Plant options with it.
+    pub plant: PlantArguments,
+}
+
+/// The undisturbed plant, then every disturbance of it. `inverter` is that of the drives on the
+/// undisturbed plant.
+pub fn disturbances(undisturbed: &PlantArguments, inverter: &InverterSpec) -> Vec<Disturbance> {
+    let mut all = Vec::new();
+    let mut add = |name: &str, change: &dyn Fn(&mut PlantArguments)| {
+        let mut plant = undisturbed.clone();
+        change(&mut plant);
+        let name = name.to_owned();
+        all.push(Disturbance { name, plant });
+    };
+    add("none", &|_| {});
+    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
+        add(&format!("R {sign}30 %"), &|plant| {
+            scale(&mut plant.scale_r, factor);
+        });
+    }
+    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
+        add(&format!("L {sign}30 %"), &|plant| {
+            scale(&mut plant.scale_l, factor);
+        });
+    }
+    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
+        add(&format!("k_b {sign}30 %"), &|plant| {
+            scale(&mut plant.scale_kb, factor);
+        });
+    }
+    add("bus -10 %", &|plant| {
+        plant.v_bus = Some(0.9 * plant.v_bus.unwrap_or(inverter.v_bus));
+    });
+    let known = undisturbed.dead_time.unwrap_or(inverter.dead_time);
+    for dead_time in DEAD_TIMES {
+        if (dead_time - known).abs() > 1e-12 {
+            let name = format!("dead time {}", engineering(dead_time, "s"));
+            add(&name, &|plant| plant.dead_time = Some(dead_time));
+        }
+    }
+    for (name, error) in HALL_ERRORS {
+        add(name, &|plant| {
+            let known = plant.hall_error.unwrap_or([0.0; 3]);
+            plant.hall_error = Some(std::array::from_fn(|x| known[x] + error[x]));
+        });
+    }
+    let largest = inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1));
+    let offset = ADC_OFFSET * largest;
+    for bits in ADC_BITS {
+        let name = format!("{bits}-bit ADC, {} off", engineering(offset, "A"));
+        add(&name, &|plant| {
+            plant.adc_bits = Some(bits);
+            let known = plant.adc_offset.unwrap_or([0.0; 2]);
+            plant.adc_offset = Some(known.map(|known| known + offset));
+        });
+    }
+    all
+}
+
+fn scale(option: &mut Option<f64>, factor: f64) {
+    *option = Some(factor * option.unwrap_or(1.0));
+}

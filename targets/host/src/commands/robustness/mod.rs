@@ -1,0 +1,209 @@
+//! `hexagen compare --robustness`: every controller in closed loop on plants that are not as the
+//! motor file says.
+//!
+//! Drives are generated for the motor as given; only the plant changes, by the options that
+//! `simulate` has. (Bits of the converters are the exception: they are the drive's, too.)
+
+mod csv;
+mod disturbance;
+mod print;
+
+pub use csv::csv;
+pub use print::print;
+
+use crate::cli::{Failure, PlantArguments, SelectedMotor, bar};
+use crate::closed_loop::{Swing, measure};
+use crate::engine::{Model, Prepared};
+use crate::report::{Cell, Column, Measured, Robustness};
+use disturbance::{Disturbance, disturbances};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+/// Speeds in parts of rated speed.
+const SPEEDS: [f64; 2] = [0.2, 0.75];
+
+/// Runs every variant under every disturbance.
+///
+/// # Errors
+/// No such motor, no variant that generates, or a plant option out of range. A single disturbance
+/// that this motor cannot have is a cell with the reason.
+pub fn collect(
+    motor: &str,
+    variants: &[String],
+    undisturbed: &PlantArguments,
+) -> Result<Robustness, Failure> {
+    if undisturbed.inertia.is_some() {
+        return Err(Failure::Argument(
+            "--inertia: the sheet is about fixed speeds; leave the inertia out".to_owned(),
+        ));
+    }
+    let drive = first_that_generates(&SelectedMotor::find(motor, undisturbed)?, variants)?;
+    undisturbed.plant(&drive)?;
+    let disturbances = disturbances(undisturbed, &drive.spec.inverter);
+    // Syntax trees do not go to other threads: drives are prepared here.
+    let motors = motors(motor, &disturbances)?;
+    let drives: Vec<Drives> = variants
+        .iter()
+        .map(|variant| Drives::prepare(&motors, variant))
+        .collect();
+    let sheet = Sheet {
+        speeds_rpm: SPEEDS.map(|part| part * drive.rated_rpm()),
+        disturbances,
+        progress: bar(0, "disturbing"),
+    };
+    let cells = variants.len() * sheet.places().count();
+    sheet.progress.set_length(cells as u64);
+    let controllers = drives.par_iter().map(|drives| sheet.column(drives));
+    let controllers = controllers.collect();
+    sheet.progress.finish_and_clear();
+    Ok(Robustness {
+        speeds_rpm: sheet.speeds_rpm.to_vec(),
+        disturbances: sheet
+            .disturbances
+            .into_iter()
+            .map(|disturbance| disturbance.name)
+            .collect(),
+        controllers,
+    })
+}
+
+/// The drive of the first variant that generates.
+///
+/// # Errors
+/// All diagnostics of the first variant, where none does.
+fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Prepared, Failure> {
+    let mut reason = None;
+    for variant in variants {
+        match motor.prepare(Some(variant)) {
+            Ok(drive) => return Ok(drive),
+            Err(failure) => reason = reason.or(Some(failure)),
+        }
+    }
+    Err(reason.unwrap_or_else(|| Failure::Argument("no controller to compare".to_owned())))
+}
+
+/// The motor with each resolution of the converters that a disturbance has.
+fn motors(
+    motor: &str,
+    disturbances: &[Disturbance],
+) -> Result<Vec<(Option<u32>, SelectedMotor)>, Failure> {
+    let mut motors: Vec<(Option<u32>, SelectedMotor)> = Vec::new();
+    for Disturbance { plant, .. } in disturbances {
+        if motors.iter().all(|(bits, _)| *bits != plant.adc_bits) {
+            motors.push((plant.adc_bits, SelectedMotor::find(motor, plant)?));
+        }
+    }
+    Ok(motors)
+}
+
+/// One controller, by the resolution of the converters; the undisturbed one first.
+struct Drives<'v> {
+    variant: &'v str,
+    by_bits: Vec<(Option<u32>, Result<Prepared, String>)>,
+}
+
+impl<'v> Drives<'v> {
+    fn prepare(motors: &[(Option<u32>, SelectedMotor)], variant: &'v str) -> Self {
+        let by_bits = motors.iter().map(|(bits, motor)| {
+            let drive = motor.prepare(Some(variant));
+            (*bits, drive.map_err(|failure| failure.to_string()))
+        });
+        Self {
+            variant,
+            by_bits: by_bits.collect(),
+        }
+    }
+
+    /// The drive for a plant, or why there is none.
+    fn of(&self, plant: &PlantArguments) -> Result<&Prepared, String> {
+        let drive = self
+            .by_bits
+            .iter()
+            .find(|(bits, _)| *bits == plant.adc_bits);
+        match drive {
+            Some((_, drive)) => drive.as_ref().map_err(Clone::clone),
+            None => Err("no drive with this resolution".to_owned()),
+        }
+    }
+}
+
+/// What is run.
+struct Sheet {
+    speeds_rpm: [f64; 2],
+    disturbances: Vec<Disturbance>,
+    progress: ProgressBar,
+}
+
+impl Sheet {
+    /// Every disturbance with every speed.
+    fn places(&self) -> impl Iterator<Item = (&Disturbance, f64)> {
+        self.disturbances
+            .iter()
+            .flat_map(|disturbance| self.speeds_rpm.map(|rpm| (disturbance, rpm)))
+    }
+
+    /// One controller under all disturbances.
+    fn column(&self, drives: &Drives) -> Column {
+        let controller = drives.variant.to_owned();
+        let places: Vec<(&Disturbance, f64)> = self.places().collect();
+        if let Some((_, Err(reason))) = drives.by_bits.first() {
+            self.progress.inc(places.len() as u64);
+            return Column {
+                controller,
+                refused: Some(reason.clone()),
+                cells: Vec::new(),
+            };
+        }
+        let measured: Vec<Result<Measured, String>> = places
+            .par_iter()
+            .map(|(Disturbance { plant, .. }, rpm)| {
+                let run = drives.of(plant).and_then(|drive| {
+                    let run = run(drive, plant, *rpm);
+                    run.map_err(|failure| failure.to_string())
+                });
+                self.progress.inc(1);
+                run
+            })
+            .collect();
+        let cells = places.iter().zip(&measured).enumerate();
+        let cells = cells.map(|(place, ((disturbance, rpm), run))| {
+            let undisturbed = &measured[place % self.speeds_rpm.len()];
+            let (figures, refused) = match (run, undisturbed) {
+                (Ok(run), Ok(undisturbed)) => (Some(run.judged(undisturbed)), None),
+                (Err(reason), _) | (_, Err(reason)) => (None, Some(reason.clone())),
+            };
+            Cell {
+                disturbance: disturbance.name.clone(),
+                rpm: *rpm,
+                refused,
+                figures,
+            }
+        });
+        Column {
+            controller,
+            refused: None,
+            cells: cells.collect(),
+        }
+    }
+}
+
+/// Measures a drive at the torque that it is measured at elsewhere.
+fn run(drive: &Prepared, plant: &PlantArguments, rpm: f64) -> Result<Measured, Failure> {
+    let params = plant.plant(drive)?;
+    let torque = drive.demand();
+    let run = plant.run(drive, rpm, torque);
+    let set_point = plant.set_point(drive, torque);
+    let measured = measure(&params, &run, drive.maker(Model::Fixed, set_point))?;
+    let swings = measured
+        .traces
+        .iter()
+        .map(|trace| Swing::of(&trace.periods, run.current, params.v_bus));
+    Ok(Measured {
+        engine: drive.engine_kind(),
+        modulates: drive.spec.controller.modulates(),
+        expected_torque: torque * params.k_phase[0] / drive.spec.motor.emf_constant,
+        merits: measured.merits,
+        swing: swings.reduce(Swing::max).unwrap_or_default(),
+        tripped: measured.tripped,
+    })
+}

@@ -1,0 +1,342 @@
+//! The robustness sheet as data: controllers in closed loop on plants that differ from the motor
+//! file in one point each, and what such a run is called.
+
+use crate::closed_loop::{Merits, Swing, Trip};
+use crate::engine::EngineKind;
+use serde::Serialize;
+
+/// Swing of the current, in percent, above which the loop of a controller that modulates counts as
+/// oscillating. Stable loops of the library stay below 11 at every speed of the sheet.
+const SWINGING_CURRENT: f64 = 15.0;
+
+/// The same of the voltage: high inductances keep the current calm while the voltage goes from one
+/// limit to the other.
+const SWINGING_VOLTAGE: f64 = 40.0;
+
+/// Times of the undisturbed ripple above which a controller that chooses whole vectors counts as
+/// oscillating: it swings by a vector in every period whatever the plant.
+const SWINGING_RIPPLE: f64 = 2.5;
+
+/// Distances in points at which a deeper colour begins.
+const STEPS: [f64; 3] = [1.0, 3.0, 10.0];
+
+/// The rule by which a run is called oscillating, for readers.
+pub const SWING_RULE: &str = "A run oscillates where the median, over its control periods, of the second difference of the sampled \
+    current exceeds 15 % of the current's amplitude, or that of the mean voltage 40 % of the bus: so does a loop whose poles \
+    have left the unit circle, while commutations are too rare to show in a median. FCS-MPC and PHCC swing by a whole vector \
+    each period by nature; they oscillate where their RMS ripple exceeds 2.5 times that of the undisturbed plant at this speed.";
+
+/// Controllers over disturbances.
+#[derive(Clone, Debug, Serialize)]
+pub struct Robustness {
+    /// Mechanical speeds in rpm, ascending.
+    pub speeds_rpm: Vec<f64>,
+    /// Names of the disturbances; the first one is none.
+    pub disturbances: Vec<String>,
+    /// One column of the sheet per controller.
+    pub controllers: Vec<Column>,
+}
+
+/// One controller over all disturbances and speeds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Column {
+    /// Controller variant.
+    pub controller: String,
+    /// Why it does not generate; then it has no cells.
+    pub refused: Option<String>,
+    /// One cell per disturbance and speed, in the order of the disturbances.
+    pub cells: Vec<Cell>,
+}
+
+/// One controller under one disturbance at one speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cell {
+    /// Name of the disturbance.
+    pub disturbance: String,
+    /// Mechanical speed in rpm.
+    pub rpm: f64,
+    /// Why this plant or its drive cannot be: a specification that is refused, a value out of range.
+    pub refused: Option<String>,
+    /// What was measured otherwise.
+    #[serde(flatten)]
+    pub figures: Option<Figures>,
+}
+
+/// What a run gave.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// What ran the fixed-point program.
+    pub engine: EngineKind,
+    /// Torque in newton metres of the demanded current on this plant's EMF constant.
+    pub expected_torque_nm: f64,
+    /// Mean torque in newton metres.
+    pub mean_torque_nm: f64,
+    /// Peak-to-peak ripple in percent of the mean.
+    pub ripple_pp_pct: f64,
+    /// RMS ripple in percent of the mean.
+    pub ripple_rms_pct: f64,
+    /// Swing of the sampled current in percent of the reference's length.
+    pub swing_current_pct: f64,
+    /// Swing of the mean voltage in percent of the bus voltage.
+    pub swing_voltage_pct: f64,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// What tripped the drive.
+    pub tripped: Option<Trip>,
+    /// How far it is from the undisturbed run.
+    pub heat: Heat,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// In control.
+    Runs,
+    /// With a loop that oscillates: see [`SWING_RULE`].
+    Oscillates,
+    /// By a trip.
+    Trips,
+}
+
+impl Outcome {
+    /// As files and cells say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Runs => "runs",
+            Self::Oscillates => "oscillates",
+            Self::Trips => "trips",
+        }
+    }
+}
+
+/// Distance of a cell from the undisturbed run of the same controller at the same speed: the larger
+/// of the change of mean torque in percent of what the current should give, and of the RMS ripple
+/// that was added, in points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Heat {
+    /// Below 1 point.
+    None,
+    /// Below 3.
+    Slight,
+    /// Below 10.
+    Marked,
+    /// 10 and more.
+    Strong,
+    /// It oscillates or trips.
+    Broken,
+}
+
+impl Heat {
+    /// All of them, from the least.
+    pub const ALL: [Self; 5] = [
+        Self::None,
+        Self::Slight,
+        Self::Marked,
+        Self::Strong,
+        Self::Broken,
+    ];
+
+    /// As files and style sheets say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Slight => "slight",
+            Self::Marked => "marked",
+            Self::Strong => "strong",
+            Self::Broken => "broken",
+        }
+    }
+
+    /// What a legend says of it.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::None => "within 1 point of the undisturbed run",
+            Self::Slight => "1 to 3 points",
+            Self::Marked => "3 to 10 points",
+            Self::Strong => "10 points or more",
+            Self::Broken => "oscillates or trips",
+        }
+    }
+}
+
+/// A run before it is compared with the undisturbed one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// What ran the fixed-point program.
+    pub engine: EngineKind,
+    /// Whether the controller modulates; else it chooses whole vectors.
+    pub modulates: bool,
+    /// Torque in newton metres of the demanded current on this plant's EMF constant.
+    pub expected_torque: f64,
+    /// Merits.
+    pub merits: Merits,
+    /// The largest swing of the starts.
+    pub swing: Swing,
+    /// What tripped the drive.
+    pub tripped: Option<Trip>,
+}
+
+impl Measured {
+    /// Compares with the undisturbed run at the same speed.
+    pub fn judged(&self, undisturbed: &Self) -> Figures {
+        let (merits, swing) = (&self.merits, self.swing);
+        let outcome = if self.tripped.is_some() {
+            Outcome::Trips
+        } else if self.oscillates(undisturbed) {
+            Outcome::Oscillates
+        } else {
+            Outcome::Runs
+        };
+        Figures {
+            engine: self.engine,
+            expected_torque_nm: self.expected_torque,
+            mean_torque_nm: merits.mean_torque_nm,
+            ripple_pp_pct: merits.ripple_pp_pct,
+            ripple_rms_pct: merits.ripple_rms_pct,
+            swing_current_pct: swing.current_pct,
+            swing_voltage_pct: swing.voltage_pct,
+            outcome,
+            tripped: self.tripped,
+            heat: match outcome {
+                Outcome::Runs => self.heat(undisturbed),
+                Outcome::Oscillates | Outcome::Trips => Heat::Broken,
+            },
+        }
+    }
+
+    fn oscillates(&self, undisturbed: &Self) -> bool {
+        if self.modulates {
+            self.swing.current_pct > SWINGING_CURRENT || self.swing.voltage_pct > SWINGING_VOLTAGE
+        } else {
+            self.merits.ripple_rms_pct > SWINGING_RIPPLE * undisturbed.merits.ripple_rms_pct
+        }
+    }
+
+    fn heat(&self, undisturbed: &Self) -> Heat {
+        let held = |run: &Self| 100.0 * run.merits.mean_torque_nm / run.expected_torque;
+        let torque = (held(self) - held(undisturbed)).abs();
+        let ripple = self.merits.ripple_rms_pct - undisturbed.merits.ripple_rms_pct;
+        // A run without torque has no ripple in percent of it: it is far away.
+        let is_within = |points: &f64| torque < *points && ripple < *points;
+        match STEPS.iter().position(is_within) {
+            Some(0) => Heat::None,
+            Some(1) => Heat::Slight,
+            Some(_) => Heat::Marked,
+            None => Heat::Strong,
+        }
+    }
+}
+
+impl Robustness {
+    /// The cell of a controller, by the places of its disturbance and speed.
+    pub fn cell<'c>(
+        &self,
+        column: &'c Column,
+        disturbance: usize,
+        speed: usize,
+    ) -> Option<&'c Cell> {
+        column
+            .cells
+            .get(disturbance * self.speeds_rpm.len() + speed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_loop::Cause;
+
+    fn run(mean_torque: f64, ripple_rms_pct: f64) -> Measured {
+        Measured {
+            engine: EngineKind::Compiled,
+            modulates: true,
+            expected_torque: 2.0,
+            merits: Merits {
+                mean_torque_nm: mean_torque,
+                ripple_pp_pct: 4.0 * ripple_rms_pct,
+                ripple_rms_pct,
+                h6_pct: 0.0,
+                h12_pct: 0.0,
+                i5_pct: 0.0,
+                i7_pct: 0.0,
+                i11_pct: 0.0,
+                i13_pct: 0.0,
+                thd_pct: 0.0,
+                tracking_rms_a: 0.0,
+                commutation_us: 0.0,
+                switching_hz: 0.0,
+                saturated_pct: 0.0,
+            },
+            swing: Swing::default(),
+            tripped: None,
+        }
+    }
+
+    #[test]
+    fn heat_is_the_larger_distance_of_torque_and_added_ripple() {
+        let undisturbed = run(1.98, 1.0);
+        let heat = |measured: Measured| measured.judged(&undisturbed).heat;
+        for (torque, ripple, expected) in [
+            (1.98, 1.0, Heat::None),
+            (1.97, 1.9, Heat::None),
+            (2.01, 1.0, Heat::Slight),
+            (1.98, 3.5, Heat::Slight),
+            (1.80, 1.0, Heat::Marked),
+            (1.98, 12.0, Heat::Strong),
+            (1.70, 1.0, Heat::Strong),
+            (0.0, f64::NAN, Heat::Strong),
+            // Less ripple is no distance.
+            (1.98, 0.0, Heat::None),
+        ] {
+            assert_eq!(heat(run(torque, ripple)), expected, "{torque} {ripple}");
+        }
+        // Another EMF constant gives another torque from the same current.
+        let stronger = Measured {
+            expected_torque: 2.6,
+            ..run(2.6 * 0.99, 1.0)
+        };
+        assert_eq!(heat(stronger), Heat::None);
+    }
+
+    #[test]
+    fn outcomes_follow_the_documented_rule() {
+        let undisturbed = run(2.0, 4.0);
+        let swing = |current_pct, voltage_pct| Measured {
+            swing: Swing {
+                current_pct,
+                voltage_pct,
+            },
+            ..undisturbed
+        };
+        let outcome = |measured: Measured| measured.judged(&undisturbed).outcome;
+        assert_eq!(outcome(swing(14.9, 39.9)), Outcome::Runs);
+        assert_eq!(outcome(swing(15.1, 0.0)), Outcome::Oscillates);
+        assert_eq!(outcome(swing(0.0, 40.1)), Outcome::Oscillates);
+        for part in ["15 %", "40 % of the bus", "2.5 times"] {
+            assert!(SWING_RULE.contains(part), "{part}");
+        }
+        // Whole vectors swing by nature: only ripple counts.
+        let chooses = |ripple| Measured {
+            modulates: false,
+            swing: swing(50.0, 90.0).swing,
+            ..run(2.0, ripple)
+        };
+        assert_eq!(outcome(chooses(9.9)), Outcome::Runs);
+        assert_eq!(outcome(chooses(10.1)), Outcome::Oscillates);
+        let tripped = Measured {
+            tripped: Some(Trip {
+                fault: Cause::OverCurrent,
+                time_s: 0.01,
+                rpm: 100.0,
+            }),
+            ..chooses(10.1)
+        };
+        let figures = tripped.judged(&undisturbed);
+        assert_eq!(
+            (figures.outcome, figures.heat),
+            (Outcome::Trips, Heat::Broken)
+        );
+    }
+}
