@@ -1,8 +1,16 @@
-//! `hexagen motors`: the library.
+//! `hexagen motors`: the library, and whether each motor's default drive holds its rating.
 
-use crate::cli::{Failure, SelectedMotor, TextTable, note, print_json, print_text, significant};
+use crate::cli::{
+    Failure, SelectedMotor, TextTable, bar, note, print_json, print_text, significant,
+};
+use crate::closed_loop::{HELD, RunOptions, STARTS, Trip, mean_torque};
+use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use clap::Args;
+use rayon::prelude::*;
 use serde::Serialize;
+
+/// The controller that is asked for the rating.
+const CONTROLLER: &str = "pdcc";
 
 /// Options of `motors`.
 #[derive(Args, Clone, Debug, Default)]
@@ -41,6 +49,12 @@ pub struct Entry {
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
+    /// Whether PDCC with its defaults holds rated torque at rated speed from the nominal bus.
+    pub holds_rating: Option<bool>,
+    /// Mean torque that it reaches there, in percent of the rated one.
+    pub rated_speed_torque_pct: Option<f64>,
+    /// What trips it there.
+    pub tripped: Option<Trip>,
 }
 
 /// The library, by name.
@@ -48,10 +62,44 @@ pub struct Entry {
 /// # Errors
 /// When a file of the library cannot be read.
 pub fn collect() -> Result<Vec<Entry>, Failure> {
-    Ok(SelectedMotor::library()?.iter().map(entry).collect())
+    let motors = SelectedMotor::library()?;
+    // A motor that cannot have this controller holds nothing with it.
+    let drives: Vec<Option<Prepared>> = motors
+        .iter()
+        .map(|motor| motor.prepare(Some(CONTROLLER)).ok())
+        .collect();
+    let progress = bar(motors.len() as u64, "running at the rating");
+    let ratings = drives.par_iter().map(|drive| {
+        let rating = drive.as_ref().map(at_rating).transpose();
+        progress.inc(1);
+        rating
+    });
+    let ratings = ratings.collect::<Result<Vec<_>, _>>();
+    progress.finish_and_clear();
+    let entries = motors.iter().zip(ratings?);
+    Ok(entries
+        .map(|(motor, rating)| entry(motor, rating))
+        .collect())
 }
 
-fn entry(motor: &SelectedMotor) -> Entry {
+/// Runs a drive at rated speed with the set-point of rated torque, as far as that reaches, on the
+/// plant of its motor's file: the mean torque in percent of the rated one, and what tripped it.
+fn at_rating(drive: &Prepared) -> Result<(f64, Option<Trip>), Failure> {
+    let plant = plant_of(&drive.spec);
+    let set_point = SetPoint {
+        current: drive.demand() / drive.spec.torque_constant(),
+        v_bus: plant.v_bus,
+    };
+    let rated = RunOptions {
+        starts: vec![STARTS[0]],
+        ..run_of(&drive.spec, drive.spec.motor.rated_speed, drive.demand())
+    };
+    let maker = drive.maker(Model::Fixed, set_point);
+    let (torque, tripped) = mean_torque(&plant, &rated, &maker)?;
+    Ok((100.0 * torque / drive.rated_torque(), tripped))
+}
+
+fn entry(motor: &SelectedMotor, rating: Option<(f64, Option<Trip>)>) -> Entry {
     let none = Entry {
         name: motor.source.name.clone(),
         description: None,
@@ -66,6 +114,9 @@ fn entry(motor: &SelectedMotor) -> Entry {
         t_s: None,
         generates: false,
         reason: None,
+        holds_rating: None,
+        rated_speed_torque_pct: None,
+        tripped: None,
     };
     match motor.prepare(None) {
         Ok(drive) => {
@@ -82,6 +133,9 @@ fn entry(motor: &SelectedMotor) -> Entry {
                 rated_rpm: Some(spec.rated_speed * 30.0 / std::f64::consts::PI),
                 t_s: Some(inverter.t_s),
                 generates: true,
+                holds_rating: rating.map(|(percent, _)| percent >= 100.0 * HELD),
+                rated_speed_torque_pct: rating.map(|(percent, _)| percent),
+                tripped: rating.and_then(|(_, tripped)| tripped),
                 ..none
             }
         }
@@ -119,6 +173,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "rated Nm",
             "rated rpm",
             "generates",
+            "reached %",
+            "holds",
         ],
     );
     for motor in &motors {
@@ -139,10 +195,24 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             number(motor.rated_torque_nm, 1.0),
             number(motor.rated_rpm, 1.0),
             if motor.generates { "yes" } else { "no" }.to_owned(),
+            motor
+                .rated_speed_torque_pct
+                .map_or("-".to_owned(), |percent| format!("{percent:.1}")),
+            match (motor.holds_rating, motor.tripped) {
+                (_, Some(_)) => "trips",
+                (Some(true), None) => "yes",
+                (Some(false), None) => "no",
+                (None, None) => "-",
+            }
+            .to_owned(),
         ]);
     }
     print_text(&table.render())?;
-    print_text("R, L per phase of the star; EMF: phase peak per mechanical rad/s.")?;
+    print_text(&format!(
+        "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
+         speed from the nominal bus, in percent of the rated one; it holds from {:.0} % on.",
+        100.0 * HELD
+    ))?;
     for motor in &motors {
         if let Some(reason) = &motor.reason {
             note(reason);

@@ -73,8 +73,22 @@ fn the_library_is_listed() {
     assert_eq!(number(paper, "v_bus_v"), 48.0);
     assert_eq!(number(paper, "emf_constant_v_s"), 0.0824);
     assert_eq!(paper["generates"], true);
+    assert_eq!(paper["holds_rating"], true);
+    let simulated = ["simulate", PAPER, "--controller", "pdcc", "--rpm", "2000"];
+    let alone = run(simulated.iter().chain(&["--start-angle", "0.1", "--json"])).json();
+    let (percent, torque) = (
+        number(paper, "rated_speed_torque_pct"),
+        number(&alone, "mean_torque_nm"),
+    );
+    assert!(
+        (percent / 100.0 * 3.3 / torque - 1.0).abs() < 1e-4,
+        "{percent} % {torque} Nm"
+    );
     let table = run(["motors"]).stdout;
     for motor in motors {
+        let percent = number(motor, "rated_speed_torque_pct");
+        assert_eq!(motor["holds_rating"] == true, percent >= 97.0, "{motor}");
+        assert!(motor["tripped"].is_null() || percent < 97.0, "{motor}");
         let name = motor["name"].as_str().expect("a name");
         assert!(table.contains(&format!("| {name} ")), "{name}");
         assert_eq!(
