@@ -25,7 +25,7 @@ const VARIANTS: [&str; 11] = [
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
     "pdcc:modulation=pair,saturation=torque_priority,advance=1.5,emf=model",
     "pdcc:modulation=three_phase,saturation=nearest,reference=proportional,emf=model",
-    "fcs-mpc:candidates=table2,off_leg=nominal,emf=estimated",
+    "fcs-mpc:candidates=table2,off_leg=nominal,emf=estimated,emf_filter=1",
     "fcs-mpc:candidates=table2,off_leg=physical,emf=model",
     "phcc:table=derived,off_leg=physical,emf=model",
     "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest",
