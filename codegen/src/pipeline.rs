@@ -38,9 +38,13 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
     let rounded = design.rounded(&scaled);
     let mut errors = Collector::new();
     let law = match &spec.controller {
-        ControllerSpec::FcsMpc(_) => {
-            check_stride(spec, &design, origins, &mut errors);
-            fcs_mpc::law(spec, &design)
+        ControllerSpec::FcsMpc(options) => {
+            if options.modulated {
+                check_miss(spec, &design, origins, &mut errors);
+            } else {
+                check_stride(spec, &design, origins, &mut errors);
+            }
+            fcs_mpc::law(spec, options, &design)
         }
         ControllerSpec::Pdcc(options) => {
             let linear = pdcc::DeadbeatLoop {
@@ -91,6 +95,24 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
             stride,
             motor.rated_current,
             inverter.t_s * motor.rated_current / stride,
+        ));
+    }
+}
+
+/// Where two vectors share a period, the wanted voltage may lie as far from the line between them as the centre of a
+/// triangle from its edges.
+fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let side = 2.0 / 3.0 * inverter.greatest_bus();
+    let miss = design.plant.gain * side / 12_f64.sqrt();
+    if miss > motor.rated_current {
+        let at = origins.at("controller.modulated");
+        let t_s = inverter.t_s * motor.rated_current / miss;
+        errors.push(catalogue::vectors_too_coarse(
+            at,
+            miss,
+            motor.rated_current,
+            t_s,
         ));
     }
 }
@@ -225,6 +247,9 @@ kind = "pdcc"
                 ["physical", "nominal"].map(|off| format!("fcs-mpc:candidates={set},off_leg={off}"))
             })
             .chain(["fcs-mpc:candidates=three_phase".to_owned()]);
+        let fcs = fcs.flat_map(|kind| {
+            ["off", "on"].map(|modulated| format!("{kind},modulated={modulated}"))
+        });
         let pi = ["keep_angle", "nearest", "torque_priority"]
             .into_iter()
             .map(|rule| format!("pi-pwm:saturation={rule}"))

@@ -102,6 +102,13 @@ const OWN: &[Row] = &[
         ],
     ),
     (
+        "modulated",
+        &[
+            ("off", &[("controller", "modulated", "\"off\"")]),
+            ("on", &[("controller", "modulated", "\"on\"")]),
+        ],
+    ),
+    (
         "table",
         &[
             ("derived", &[]),

@@ -26,7 +26,7 @@ const OWN_KIND: &str = "pdcc";
 const MOTORS_OF_KINDS: [&str; 2] = ["velineon-3500", "estun-emj-04apb22"];
 
 /// Variants of the paper's motor: the name in the snapshot's file, and the options.
-const VARIANTS: [(&str, &str); 8] = [
+const VARIANTS: [(&str, &str); 9] = [
     ("pair", "pdcc:modulation=pair"),
     (
         "model-advance",
@@ -46,6 +46,7 @@ const VARIANTS: [(&str, &str); 8] = [
         "fcs-mpc:candidates=all,emf=model,reference=proportional",
     ),
     ("fcs-mpc.nominal", "fcs-mpc:off_leg=nominal,delay=0,word=16"),
+    ("fcs-mpc.modulated", "fcs-mpc:modulated=on,emf=model"),
     ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),
 ];
 

@@ -9,7 +9,7 @@ use crate::scaling::Scaled;
 use crate::spec::controller::common::OPTIONS;
 use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, HallCapture, Spec};
+use crate::spec::{BusSource, ControllerSpec, FcsMpcSpec, HallCapture, Spec};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
@@ -325,10 +325,16 @@ fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant>
             vec![
                 "Coefficients of the paper's (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
                 String::new(),
-                if spec.controller.modulates() {
-                    "The step reaches the same times by min/max injection, which needs none of them."
-                } else {
-                    "The step applies whole vectors and modulates none: these times are for comparison."
+                match spec.controller {
+                    ControllerSpec::Pdcc(_) | ControllerSpec::PiPwm(_) => {
+                        "The step reaches the same times by min/max injection, which needs none of them."
+                    }
+                    ControllerSpec::FcsMpc(FcsMpcSpec { modulated: true, .. }) => {
+                        "The step divides a period between two vectors, not three: these times are for comparison."
+                    }
+                    ControllerSpec::FcsMpc(_) | ControllerSpec::Phcc(_) => {
+                        "The step applies whole vectors and modulates none: these times are for comparison."
+                    }
                 }
                 .to_owned(),
             ],

@@ -138,15 +138,20 @@ fn terminals(l: &mut Lowering<'_>, front: &Front, vector: Value) -> Applied {
         let volts = l.b.mul(high, front.bus.volts, 0);
         l.b.name(["t_a_chosen", "t_b_chosen", "t_c_chosen"][x], volts)
     });
-    let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
-    let table = over_vectors(l, "vector_off", doc, |legs| {
-        legs.iter()
-            .position(|&sign| sign == 0)
-            .map_or(0, |phase| phase as i32 + 1)
-    });
+    let table = off_leg_table(l);
     let off = l.b.lookup(table, vector);
     l.b.name("off_chosen", off);
     Applied { terminals, off }
+}
+
+/// The leg that a vector turns off: 1 a, 2 b, 3 c, 0 none.
+pub(super) fn off_leg_table(l: &mut Lowering<'_>) -> TableId {
+    let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
+    over_vectors(l, "vector_off", doc, |legs| {
+        legs.iter()
+            .position(|&sign| sign == 0)
+            .map_or(0, |phase| phase as i32 + 1)
+    })
 }
 
 #[cfg(test)]

@@ -8,13 +8,14 @@ use crate::pipeline::{Generated, generate};
 use crate::spec::{apply_variant, check, parse_toml};
 
 /// Every kind of controller, word length, table and limit.
-const VARIANTS: [&str; 9] = [
+const VARIANTS: [&str; 10] = [
     "pdcc:word=32",
     "pdcc:word=16,saturation=keep_angle",
     "pdcc:word=16,modulation=pair,emf_filter=0.5,saturation=keep_angle",
     "pdcc:emf=model,advance=2",
     "pdcc:reference=proportional,emf=model",
     "fcs-mpc",
+    "fcs-mpc:modulated=on,off_leg=nominal",
     "phcc",
     "pi-pwm",
     "pi-pwm:word=16,saturation=keep_angle",

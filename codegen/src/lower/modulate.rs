@@ -81,6 +81,14 @@ impl Lowering<'_> {
         self.counts(name, lifted)
     }
 
+    /// Compare value of a leg that is high for the share of the period that `volts` is of the bus.
+    pub fn compare_of(&mut self, name: &str, volts: Value, bus: Bus) -> Value {
+        let nominal = self.nominal_share(volts, bus);
+        let round = self.b.literal(1 << (self.scale.voltage_bits - 1));
+        let lifted = self.b.add(nominal, round);
+        self.counts(name, lifted)
+    }
+
     /// A voltage of the measured bus as a share of the nominal one, which the timer period stands for.
     fn nominal_share(&mut self, volts: Value, bus: Bus) -> Value {
         match bus.ratio {
@@ -283,11 +291,7 @@ impl Lowering<'_> {
         self.b.name("line_forward", forward);
         let volts = self.b.abs(line);
         self.b.name("line_volts", volts);
-        let bits = self.scale.voltage_bits;
-        let nominal = self.nominal_share(volts, bus);
-        let round = self.b.literal(1 << (bits - 1));
-        let lifted = self.b.add(nominal, round);
-        let compare = self.counts("compare_line", lifted);
+        let compare = self.compare_of("compare_line", volts, bus);
         let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
         let pulsed_sign = self.b.select(forward, plus, minus);
         self.b.name("pulsed_sign", pulsed_sign);

@@ -93,6 +93,7 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
                 },
             );
             text.word("off_leg", off_leg(options.off_leg));
+            text.word("modulated", flag(options.modulated));
         }
         ControllerSpec::Pdcc(options) => {
             text.word(
@@ -123,14 +124,15 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
         ControllerSpec::PiPwm(options) => {
             text.number("bandwidth", options.bandwidth);
             text.number("integral_time", options.integral_time);
-            text.word(
-                "feed_forward",
-                if options.feed_forward { "on" } else { "off" },
-            );
+            text.word("feed_forward", flag(options.feed_forward));
             text.word("saturation", saturation(options.saturation));
         }
     }
     write_common(text, controller);
+}
+
+fn flag(is_on: bool) -> &'static str {
+    if is_on { "on" } else { "off" }
 }
 
 fn off_leg(model: OffLegModel) -> &'static str {

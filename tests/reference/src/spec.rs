@@ -12,7 +12,8 @@ use serde::Deserialize;
 
 pub use controller::{
     Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, FeedForward,
-    LoopOptions, Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation, SwitchingTable,
+    LoopOptions, Modulated, Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation,
+    SwitchingTable,
 };
 
 /// A whole normalised specification.

@@ -60,6 +60,77 @@ impl Situation {
         Ok(least.0)
     }
 
+    /// The vector that shares the period with `vector`, and the terminals of the legs: their share of the bus.
+    pub fn shared(&self, vector: usize, path: &mut Path) -> Result<[Linear; 3], Contradiction> {
+        let mut terminals = [(); 3].map(|()| Linear::default());
+        if self.sector == 0 {
+            return Ok(terminals);
+        }
+        if vector < 7 {
+            let mut others = (0..7).filter(|&other| other != vector);
+            let mut partner = others.next().unwrap_or(0);
+            for other in others {
+                let difference = &self.by_bus(other) - &self.by_bus(partner);
+                if path.is_negative(&difference)? {
+                    partner = other;
+                }
+            }
+            let is_high = |vector: usize, x: usize| LEGS[vector][x] == b'+';
+            let high = |vector: usize| (0..3).filter(|&x| is_high(vector, x)).count();
+            let (lower, upper) = if high(vector) < high(partner) {
+                (vector, partner)
+            } else {
+                (partner, vector)
+            };
+            assert!((0..3).all(|x| !is_high(lower, x) || is_high(upper, x)));
+            let twice = &self.by_bus(lower) - &self.by_bus(upper);
+            let t = path.floored(&(&self.bus.times(4) + &twice), 3)?;
+            let t = self.within_rails(&t, path)?;
+            for (x, terminal) in terminals.iter_mut().enumerate() {
+                if is_high(lower, x) {
+                    *terminal = self.bus.clone();
+                } else if is_high(upper, x) {
+                    *terminal = t.clone();
+                }
+            }
+            return Ok(terminals);
+        }
+        let off = LEGS[vector]
+            .iter()
+            .position(|&leg| leg == b'0')
+            .unwrap_or(0);
+        let mut pairs = (7..13).filter(|&pair| LEGS[pair][off] == b'0');
+        let leg = |pair: usize, wanted: u8| LEGS[pair].iter().position(|&leg| leg == wanted);
+        let first = pairs.next().unwrap_or(7);
+        let (Some(mut p), Some(mut q)) = (leg(first, b'+'), leg(first, b'-')) else {
+            return Ok(terminals);
+        };
+        if path.is_negative(&(&self.u[p] - &self.u[q]))? {
+            (p, q) = (q, p);
+        }
+        let mut t = &self.u[p] - &self.u[q];
+        if let Some(off_legs) = &self.off_legs {
+            let leg = &off_legs[off];
+            if path.is_negative(&leg.inward)? {
+                t = &self.u[p] + &path.floored(&self.u[p], 1)?;
+            } else if path.is_negative(&leg.outward)? {
+                t = &self.u[p] + &path.floored(&(&self.bus + &self.u[p]), 1)?;
+            }
+        }
+        terminals[p] = self.within_rails(&t, path)?;
+        Ok(terminals)
+    }
+
+    fn within_rails(&self, t: &Linear, path: &mut Path) -> Result<Linear, Contradiction> {
+        Ok(if path.is_negative(t)? {
+            Linear::default()
+        } else if path.is_negative(&(&self.bus - t))? {
+            self.bus.clone()
+        } else {
+            t.clone()
+        })
+    }
+
     fn list(&self) -> Vec<usize> {
         match (self.sector, self.candidates) {
             (0, _) => vec![0],

@@ -14,6 +14,32 @@ use crate::spec::{Candidates, FcsMpcSpec};
 /// Off phase, the phase that is high in the first vector, the phase that is low in it.
 const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
 
+/// The chosen vector, and what else is known of the voltage asked for.
+pub(super) struct Choice {
+    /// Its number.
+    pub vector: Value,
+    /// Phase voltages.
+    pub u: [Value; 3],
+    /// Flags: the legs that are high in the nearest of V1 to V6.
+    pub is_high: [Value; 3],
+    /// The greatest phase voltage, and that of the other sign.
+    pub heights: [Value; 2],
+    /// The greatest magnitude of a phase voltage.
+    pub largest: Value,
+    /// Per leg, whether its predicted current would flow through a diode inward or outward were it off.
+    pub conducting: Option<[[Value; 2]; 3]>,
+}
+
+/// Where each leg would sit if it were off.
+struct OffLegs {
+    /// Flags: the diode conducts inward, outward.
+    conducting: [[Value; 2]; 3],
+    /// Twice the terminal beside a driven pair, less the bus.
+    offsets: [Value; 3],
+    /// What the EMF lifts it by above the driven legs' mean.
+    lifts: [Value; 3],
+}
+
 /// A vector and its score, six times (|v|^2 - 2 u v).
 #[derive(Clone, Copy)]
 struct Candidate {
@@ -22,8 +48,8 @@ struct Candidate {
 }
 
 impl CurrentLoop<'_, '_> {
-    /// The number of the allowed vector nearest to `u`.
-    pub(super) fn choose(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 2]) -> Value {
+    /// The allowed vector nearest to `u`.
+    pub(super) fn choose(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 2]) -> Choice {
         let l = &mut *self.lowering;
         l.b.stage(
             "nearest_vector",
@@ -39,36 +65,47 @@ impl CurrentLoop<'_, '_> {
         let depth = l.b.neg(low);
         let largest = l.b.max(high, depth);
         l.b.name("u_largest", largest);
-        let three = nearest_three_phase(l, phases, largest, front.bus.volts);
+        let (three, is_high) = nearest_three_phase(l, phases, largest, front.bus.volts);
+        if options.modulated {
+            l.b.name("u_depth", depth);
+            for (name, flag) in ["a_is_high", "b_is_high", "c_is_high"]
+                .into_iter()
+                .zip(is_high)
+            {
+                l.b.name(name, flag);
+            }
+        }
+        let off_legs = (options.floating() && front.commutation.is_some())
+            .then(|| self.predict_off_legs(options, front, phases));
         let vector = match (options.candidates, front.commutation) {
             (Candidates::ThreePhase, _) | (_, None) => three,
             (Candidates::Table2, Some([commutating, ..])) => {
-                let pair = if options.floating() {
-                    self.nearest_physical(options, front, phases, None)
-                } else {
-                    nearest_nominal(&mut *self.lowering, front, phases)
+                let pair = match &off_legs {
+                    Some(off_legs) => self.nearest_physical(off_legs, front, phases, None),
+                    None => nearest_nominal(&mut *self.lowering, front, phases),
                 };
                 let l = &mut *self.lowering;
                 l.b.select(commutating, three, pair)
             }
-            (Candidates::All, Some(_)) if options.floating() => {
-                self.nearest_physical(options, front, phases, Some((three, largest)))
-            }
-            (Candidates::All, Some(_)) => {
-                nearest_of_all(&mut *self.lowering, front, phases, three, largest)
-            }
+            (Candidates::All, Some(_)) => match &off_legs {
+                Some(off_legs) => {
+                    self.nearest_physical(off_legs, front, phases, Some((three, largest)))
+                }
+                None => nearest_of_all(&mut *self.lowering, front, phases, three, largest),
+            },
         };
-        unless_lost(&mut *self.lowering, front.sector, vector)
+        Choice {
+            vector: unless_lost(&mut *self.lowering, front.sector, vector),
+            u: phases,
+            is_high,
+            heights: [high, depth],
+            largest,
+            conducting: off_legs.map(|off_legs| off_legs.conducting),
+        }
     }
 
-    /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`.
-    fn nearest_physical(
-        &mut self,
-        options: &FcsMpcSpec,
-        front: &Front,
-        u: [Value; 3],
-        three_phase: Option<(Value, Value)>,
-    ) -> Value {
+    /// Where each leg would sit if it were off in the target period.
+    fn predict_off_legs(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 3]) -> OffLegs {
         let threshold_volts = if options.common.delay == 1 {
             self.design.k_hold / self.design.plant.pole
         } else {
@@ -124,6 +161,23 @@ impl CurrentLoop<'_, '_> {
             offsets.push(offset);
             lifts.push(lift);
         }
+        OffLegs {
+            conducting: [flags[0], flags[1], flags[2]],
+            offsets: [offsets[0], offsets[1], offsets[2]],
+            lifts: [lifts[0], lifts[1], lifts[2]],
+        }
+    }
+
+    /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`.
+    fn nearest_physical(
+        &mut self,
+        off_legs: &OffLegs,
+        front: &Front,
+        u: [Value; 3],
+        three_phase: Option<(Value, Value)>,
+    ) -> Value {
+        let l = &mut *self.lowering;
+        let (bus, offsets) = (front.bus.volts, off_legs.offsets);
         let rival = match three_phase {
             Some(_) => "the three-phase vector",
             None => "the zero vector",
@@ -158,12 +212,7 @@ impl CurrentLoop<'_, '_> {
                 l.b.name("along_three", along);
                 (vector, [bus, along])
             }
-            None => self.pair_zero(
-                front,
-                [flags[0], flags[1], flags[2]],
-                [lifts[0], lifts[1], lifts[2]],
-                u,
-            ),
+            None => self.pair_zero(front, off_legs.conducting, off_legs.lifts, u),
         };
         let l = &mut *self.lowering;
         let widths: Vec<u32> = factors
@@ -252,8 +301,13 @@ fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
     l.b.name("pair_zero_vector", vector)
 }
 
-/// V0 to V6: the nearest to `u`.
-fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], largest: Value, bus: Value) -> Value {
+/// V0 to V6: the nearest to `u`, and the legs that are high in the nearest of V1 to V6.
+fn nearest_three_phase(
+    l: &mut Lowering<'_>,
+    u: [Value; 3],
+    largest: Value,
+    bus: Value,
+) -> (Value, [Value; 3]) {
     let table = l.b.program.table(
         "vector_of_gates",
         vec![0, 3, 5, 4, 1, 2, 6, 0],
@@ -267,30 +321,28 @@ fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], largest: Value, bus:
     l.b.name("b_is_high", b_high);
     let zero = l.zero();
     let b_low = l.b.compare(Comparison::Less, u[1], zero);
-    let bits: Vec<Value> = [(0, b_high, 1), (2, b_low, 4)]
-        .into_iter()
-        .map(|(x, on_zero, bit)| {
-            // u_x > 0, or u_x = 0 and the first of the two tied vectors has the leg high.
-            let (one, zero) = (l.b.literal(1), l.zero());
-            let tie = l.b.select(on_zero, one, zero);
-            let lifted = l.b.add(u[x], tie);
-            let zero = l.zero();
-            let is_high = l.b.compare(Comparison::Less, zero, lifted);
-            let (on, off) = (l.b.literal(bit), l.zero());
-            l.b.select(is_high, on, off)
-        })
-        .collect();
+    let bits = [(0, b_high, 1), (2, b_low, 4)].map(|(x, on_zero, bit)| {
+        // u_x > 0, or u_x = 0 and the first of the two tied vectors has the leg high.
+        let (one, zero) = (l.b.literal(1), l.zero());
+        let tie = l.b.select(on_zero, one, zero);
+        let lifted = l.b.add(u[x], tie);
+        let zero = l.zero();
+        let is_high = l.b.compare(Comparison::Less, zero, lifted);
+        let (on, off) = (l.b.literal(bit), l.zero());
+        (is_high, l.b.select(is_high, on, off))
+    });
     let (on, off) = (l.b.literal(2), l.zero());
     let bit_b = l.b.select(b_high, on, off);
-    let gates = l.b.add(bits[0], bit_b);
-    let gates = l.b.add(gates, bits[1]);
+    let gates = l.b.add(bits[0].1, bit_b);
+    let gates = l.b.add(gates, bits[1].1);
     l.b.name("gates", gates);
     let active = l.b.lookup(table, gates);
     let triple = l.b.mul_by(3, largest);
     let idle = l.b.compare(Comparison::LessEqual, triple, bus);
     let zero = l.zero();
     let vector = l.b.select(idle, zero, active);
-    l.b.name("vector_three", vector)
+    l.b.name("vector_three", vector);
+    (vector, [bits[0].0, b_high, bits[1].0])
 }
 
 /// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.

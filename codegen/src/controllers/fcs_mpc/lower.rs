@@ -20,7 +20,11 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
         };
         let front = step.front(set_point);
         let u = step.deadbeat(&front);
-        let vector = step.choose(options, &front, u);
-        step.apply_vector(&front, vector, vec![]);
+        let choice = step.choose(options, &front, u);
+        if options.modulated {
+            step.apply_two_vectors(&front, &choice);
+        } else {
+            step.apply_vector(&front, choice.vector, vec![]);
+        }
     })
 }

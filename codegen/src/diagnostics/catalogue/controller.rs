@@ -84,6 +84,24 @@ pub fn vector_too_strong(
     )
 }
 
+/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the period at which
+/// it would be the `rated` current.
+pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::VectorTooStrong,
+        at,
+        format!(
+            "`modulated`: two vectors that share a period miss the wanted current of this motor by up to {}, more \
+             than its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, whose \
+             modulator reaches every voltage",
+            engineering(miss, "A"),
+            engineering(rated, "A"),
+            engineering(t_s, "s"),
+            engineering(1.0 / t_s, "Hz"),
+        ),
+    )
+}
+
 /// An option that has no effect beside another setting; `why` is a clause.
 pub fn option_without_effect(
     at: &Location,

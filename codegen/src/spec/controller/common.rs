@@ -90,6 +90,7 @@ pub(crate) const OPTIONS: &[Rule] = &[
     schema::word("saturation", "torque_priority"),
     schema::word("candidates", "table2"),
     schema::word("off_leg", "physical"),
+    schema::word("modulated", "off"),
     schema::word("table", "derived"),
     schema::quantity("band", &[D::Current], 1e-4, 1e4, "0.5 A"),
     schema::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz"),

@@ -23,6 +23,8 @@ pub struct FcsMpcSpec {
     pub candidates: Candidates,
     /// Model of an off leg; of no effect with [`Candidates::ThreePhase`].
     pub off_leg: OffLegModel,
+    /// Whether a second vector shares the period with the chosen one.
+    pub modulated: bool,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -58,9 +60,11 @@ pub(crate) fn check_options(
         .unwrap_or(Candidates::Table2);
     let without_sectors = candidates == Candidates::ThreePhase;
     let off_leg = read_off_leg(reader, without_sectors, errors);
+    let modulated = reader.word(errors, "modulated", &[("on", true), ("off", false)]);
     Some(FcsMpcSpec {
         candidates,
         off_leg,
+        modulated: modulated.unwrap_or(false),
         common: read_common(reader, surroundings, without_sectors, errors)?,
     })
 }

@@ -18,7 +18,7 @@ pub use pi_pwm::PiPwmSpec;
 
 /// The kinds of controllers, with the options that not all of them take.
 pub const KINDS: [(&str, &[&str]); 4] = [
-    ("fcs-mpc", &["candidates", "off_leg"]),
+    ("fcs-mpc", &["candidates", "modulated", "off_leg"]),
     ("pdcc", &["modulation", "saturation"]),
     ("phcc", &["band", "candidates", "off_leg", "table"]),
     (
@@ -59,7 +59,11 @@ impl ControllerSpec {
 
     /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
     pub fn modulates(&self) -> bool {
-        matches!(self, Self::Pdcc(_) | Self::PiPwm(_))
+        match self {
+            Self::FcsMpc(options) => options.modulated,
+            Self::Pdcc(_) | Self::PiPwm(_) => true,
+            Self::Phcc(_) => false,
+        }
     }
 
     /// The name that the specification calls it by.

@@ -1,8 +1,8 @@
 //! Which steps and state words a variant has, for both models.
 
 use crate::spec::{
-    Candidates, CommutationEnd, Controller, EmfSource, FeedForward, LoopOptions, Modulation,
-    OffLeg, Reference, Saturation, Spec,
+    Candidates, CommutationEnd, Controller, EmfSource, FeedForward, LoopOptions, Modulated,
+    Modulation, OffLeg, Reference, Saturation, Spec,
 };
 
 /// What follows from a specification's choice of controller and options.
@@ -20,6 +20,8 @@ pub struct Variant {
     pub floating: bool,
     /// Section 7: the voltage of the period that starts now is known.
     pub applied_now: bool,
+    /// Section 10a: two vectors share the period.
+    pub modulated: Modulated,
     /// Section 10: what gives way outside the hexagon, if anything can lie there.
     pub saturation: Option<Saturation>,
 }
@@ -28,6 +30,7 @@ impl Variant {
     pub fn new(spec: &Spec) -> Self {
         let options = spec.loop_options();
         let (mut emf, mut predicts) = (Some(options.emf), true);
+        let mut modulated = Modulated::Off;
         let (commutates, floating, saturation) = match &spec.controller {
             Controller::Pdcc(pdcc) => {
                 let pair = pdcc.modulation == Modulation::Pair;
@@ -35,6 +38,7 @@ impl Variant {
             }
             Controller::FcsMpc(fcs_mpc) => {
                 let pairs = fcs_mpc.candidates != Candidates::ThreePhase;
+                modulated = fcs_mpc.modulated;
                 (pairs, pairs && fcs_mpc.off_leg == OffLeg::Physical, None)
             }
             Controller::Phcc(phcc) => {
@@ -65,8 +69,14 @@ impl Variant {
             emf,
             floating,
             applied_now: options.delay == 1 && (predicts || estimated),
+            modulated,
             saturation,
         }
+    }
+
+    /// Section 11: legs are pulsed for a part of the period.
+    pub fn pulsed(&self) -> bool {
+        self.saturation.is_some() || self.modulated == Modulated::On
     }
 
     /// A command takes effect one period after its sample.

@@ -105,6 +105,8 @@ options! {
         candidates: Candidates,
         /// Where a leg that is off is taken to sit.
         off_leg: OffLeg,
+        /// Whether a second vector shares the period.
+        modulated: Modulated,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
         /// Periods after which a commutation is taken as ended.
@@ -164,6 +166,16 @@ pub enum OffLeg {
     Physical,
     /// In the middle of the two others.
     Nominal,
+}
+
+/// Whether FCS-MPC divides the period between two vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Modulated {
+    /// One vector lasts the whole period.
+    Off,
+    /// Two vectors share it.
+    On,
 }
 
 /// The switching table of PHCC.

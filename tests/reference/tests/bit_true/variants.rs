@@ -162,7 +162,10 @@ pub fn others() -> Vec<Variant> {
                     "off_leg = \"{second}\"\ncommutation_threshold = 0.1\ncommutation_timeout = 8"
                 );
                 let own = match (kind, first) {
-                    ("fcs-mpc", _) => format!("candidates = \"{first}\"\n{choosing}"),
+                    ("fcs-mpc", _) => {
+                        let modulated = ["off", "on"][index % 17 % 2];
+                        format!("candidates = \"{first}\"\nmodulated = \"{modulated}\"\n{choosing}")
+                    }
                     ("phcc", "three_phase") => format!(
                         "table = \"derived\"\ncandidates = \"three_phase\"\nband = 0.1\n{choosing}"
                     ),

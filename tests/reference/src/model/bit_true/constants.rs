@@ -6,7 +6,8 @@ use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, floor, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
-    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation, Spec,
+    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Modulated, Reference,
+    Saturation, Spec,
 };
 
 /// Largest magnitude of a coefficient's word.
@@ -300,6 +301,7 @@ impl Constants {
             k_slope: scale.only_if(estimated, "k_slope", slope)?,
             k_third: scale.only_if(
                 (floating && variant.applied())
+                    || variant.modulated == Modulated::On
                     || saturation.is_some_and(|rule| rule != Saturation::KeepAngle),
                 "k_third",
                 1.0 / 3.0,
@@ -311,7 +313,7 @@ impl Constants {
             )?,
             k_advance: scale.only_if(advanced, "k_advance", options.advance)?,
             // Only pulses narrower than the period depend on the measured bus.
-            ratio_bits: scale.bits_if(bus.is_some() && saturation.is_some(), "ratio")?,
+            ratio_bits: scale.bits_if(bus.is_some() && variant.pulsed(), "ratio")?,
             scale_bits: scale.bits_if(saturation == Some(Saturation::KeepAngle), "scale")?,
             emf_product: scale.product_if(
                 saturation == Some(Saturation::TorquePriority),

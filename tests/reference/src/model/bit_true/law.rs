@@ -1,6 +1,7 @@
 //! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
 
 mod deadbeat;
+mod divided;
 mod fcs_mpc;
 mod pdcc;
 mod phcc;

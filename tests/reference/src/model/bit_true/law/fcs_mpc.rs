@@ -2,19 +2,22 @@
 //! after the other.
 
 use super::deadbeat::Deadbeat;
+use super::divided;
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
 use crate::exact::{Shift, floor, halve, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use crate::{Candidates, Error};
+use crate::{Candidates, Error, Modulated};
 
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     candidates: Candidates,
     /// Pairs are allowed and their off leg sits where current or EMF put it.
     floating: bool,
+    /// A second vector shares the period.
+    modulated: bool,
     deadbeat: Deadbeat,
     sixth: Sixth,
     score: Shift,
@@ -29,6 +32,7 @@ impl FcsMpc {
         Ok(Self {
             candidates: options.candidates,
             floating,
+            modulated: options.modulated == Modulated::On,
             deadbeat: Deadbeat::new(scale)?,
             sixth: Sixth::new(scale)?,
             score: scale.product_if(floating, "score")?,
@@ -50,6 +54,9 @@ impl FcsMpc {
             if score < least {
                 (vector, least) = (other, score);
             }
+        }
+        if self.modulated {
+            return choice.divide(now, vector);
         }
         // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
         let u = if self.floating {
@@ -131,6 +138,77 @@ impl<'a> Choice<'a> {
             }
             _ => 0.0,
         }
+    }
+
+    /// The decision with a second vector (10a).
+    fn divide(&self, now: &Inputs, vector: usize) -> Decision {
+        let command = if now.sector_eff == 0 {
+            divided::command(now, [0.0; 3], None)
+        } else if let Some(off) = vectors::off_leg(vector) {
+            let [first, second] = divided::with_off_leg(off);
+            let line = |vector: usize| {
+                let (p, q) = divided::high_and_low(vector);
+                self.u[p] - self.u[q]
+            };
+            let pair = if line(second) > line(first) {
+                second
+            } else {
+                first
+            };
+            let (p, _) = divided::high_and_low(pair);
+            let rail = if !self.law.floating {
+                None
+            } else if self.held[off] > self.law.i_comm_volts {
+                Some(0.0)
+            } else if self.held[off] < -self.law.i_comm_volts {
+                Some(self.v_bus)
+            } else {
+                None
+            };
+            let t = match rail {
+                None => line(pair),
+                Some(rail) => self.u[p] + halve(rail + self.u[p]),
+            };
+            let mut terminal = [0.0; 3];
+            terminal[p] = t.clamp(0.0, self.v_bus);
+            divided::command(now, terminal, Some(off))
+        } else {
+            let partner = (0..vectors::FIRST_PAIR)
+                .filter(|other| *other != vector)
+                .min_by(|one, two| self.score(*one, true).total_cmp(&self.score(*two, true)))
+                .unwrap_or(0);
+            let scores = [vector, partner].map(|vector| self.score(vector, true));
+            divided::command(
+                now,
+                divided::between(self.v_bus, [vector, partner], scores),
+                None,
+            )
+        };
+        let u = if self.law.floating {
+            self.judged(&command)
+        } else {
+            divided::mean(now, &command)
+        };
+        Decision {
+            u_unsat: [self.u[0], self.u[1]],
+            u,
+            reach: Reach::Inside,
+            vector,
+            command,
+            integral: now.integral,
+            rises: now.rises,
+        }
+    }
+
+    /// Voltages of phases a, b with the off leg where it is predicted, for the trace.
+    fn judged(&self, command: &super::Command) -> [f64; 2] {
+        let mut terminal = command.terminal;
+        if let Some(off) = command.off.checked_sub(1) {
+            let driven = halve(terminal[0] + terminal[1] + terminal[2]);
+            terminal[off] = self.off_terminal(off, driven);
+        }
+        let mean = floor((terminal[0] + terminal[1] + terminal[2]) / 3.0);
+        [terminal[0] - mean, terminal[1] - mean]
     }
 
     /// Voltages of phases a, b as the score takes them, for the trace.

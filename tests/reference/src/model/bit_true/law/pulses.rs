@@ -22,6 +22,12 @@ fn nominal(now: &Inputs, t: f64) -> f64 {
     }
 }
 
+/// The compare value of a leg that is high for the share of the period that `t` is of the bus.
+#[inline]
+pub fn compare_of(now: &Inputs, t: f64) -> u16 {
+    compare(now, nominal(now, t))
+}
+
 /// Three pulsed legs, their common mode in the middle of the bus; with terminal voltages where the
 /// variant keeps them.
 #[inline]
@@ -60,7 +66,7 @@ pub fn pair(now: &Inputs, u: [f64; 2]) -> Command {
     } else {
         (minus, plus, -v)
     };
-    command.legs.compare[pulsed] = compare(now, nominal(now, t));
+    command.legs.compare[pulsed] = compare_of(now, t);
     command.legs.state[pulsed] = LegState::Pulsed;
     command.legs.state[low] = LegState::Low;
     command.terminal[pulsed] = t;

@@ -31,7 +31,8 @@ pub struct Sixth {
 
 impl Sixth {
     pub fn new(scale: &Scale) -> Result<Self, Error> {
-        let is_kept = !scale.variant.floating && scale.variant.applied();
+        let variant = &scale.variant;
+        let is_kept = !variant.floating && !variant.pulsed() && variant.applied();
         let k_sixth = is_kept.then(|| scale.coefficient("k_sixth", 1.0 / 6.0));
         Ok(Self {
             k_sixth: k_sixth.transpose()?,

@@ -1,15 +1,15 @@
 //! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by trying.
 
-use super::{Decision, Inputs, deadbeat, whole};
+use super::{Decision, Inputs, deadbeat, divided, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
-use crate::{Candidates, FcsMpc, OffLeg};
+use crate::{Candidates, FcsMpc, Modulated, OffLeg};
 use nalgebra::{Vector2, Vector3};
 
 /// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
 /// below that of any word. Corner references put the demand exactly between two vectors.
-const TIE: f64 = 1e-12;
+pub const TIE: f64 = 1e-12;
 
 pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
     let u_unsat = deadbeat::voltage(now);
@@ -23,12 +23,16 @@ pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
             (vector, least) = (other, found);
         }
     }
+    let (u, command) = match options.modulated {
+        Modulated::Off => (voltage(options, now, vector), whole::command(now, vector)),
+        Modulated::On => divided::command(options, now, &u_unsat, vector),
+    };
     Decision {
         u_unsat,
-        u: voltage(options, now, vector),
+        u,
         reach: Reach::Inside,
         vector,
-        command: whole::command(now, vector),
+        command,
         integral: [0.0; 2],
         rises: now.rises,
     }
@@ -36,21 +40,40 @@ pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
 
 /// The voltage that a vector is taken to apply.
 fn voltage(options: &FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
-    let floats =
-        options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase;
-    let Some(off) = vectors::off_leg(vector).filter(|_| floats) else {
+    let Some(off) = vectors::off_leg(vector).filter(|_| floats(options)) else {
         return whole::voltage(now, vector);
     };
-    let mut terminal =
+    let terminal =
         Vector3::from(vectors::LEGS[vector].map(|leg| if leg > 0 { now.v_bus } else { 0.0 }));
-    let driven = terminal.sum() / 2.0;
+    with_off_leg(options, now, terminal, off)
+}
+
+/// Whether the voltage of a leg that is off is predicted.
+pub fn floats(options: &FcsMpc) -> bool {
+    options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase
+}
+
+/// The rail at which a diode is predicted to hold the leg, if it is off.
+pub fn rail(options: &FcsMpc, now: &Inputs, off: usize) -> Option<f64> {
     let current = phases(&deadbeat::current_then(now))[off];
-    terminal[off] = if current > options.commutation_threshold {
-        0.0
+    if current > options.commutation_threshold {
+        Some(0.0)
     } else if current < -options.commutation_threshold {
-        now.v_bus
+        Some(now.v_bus)
     } else {
-        (driven + 1.5 * phases(&now.e)[off]).clamp(0.0, now.v_bus)
-    };
+        None
+    }
+}
+
+/// The voltage of driven terminals with the off leg where it is predicted.
+pub fn with_off_leg(
+    options: &FcsMpc,
+    now: &Inputs,
+    mut terminal: Vector3<f64>,
+    off: usize,
+) -> Vector2<f64> {
+    terminal[off] = 0.0;
+    let floating = || terminal.sum() / 2.0 + 1.5 * phases(&now.e)[off];
+    terminal[off] = rail(options, now, off).unwrap_or_else(|| floating().clamp(0.0, now.v_bus));
     clarke(&terminal)
 }

@@ -1,0 +1,69 @@
+//! Two vectors in one period: the shares of the period for which legs are high (sections 10a to 12 of FCS-MPC).
+
+use super::{Command, Inputs, pulses};
+use crate::exact::{floor_shift, halve};
+use crate::model::vectors;
+use hexagen::{LegState, Legs};
+
+/// The two vectors with a leg off, in their order.
+pub fn with_off_leg(off: usize) -> [usize; 2] {
+    let mut found = (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO)
+        .filter(|vector| vectors::off_leg(*vector) == Some(off));
+    [0, 1].map(|_| found.next().unwrap_or(vectors::FIRST_PAIR))
+}
+
+/// The legs that a pair vector drives high and low.
+pub fn high_and_low(vector: usize) -> (usize, usize) {
+    let find = |wanted: i8| {
+        let mut legs = vectors::LEGS[vector].iter();
+        legs.position(|leg| *leg == wanted).unwrap_or(0)
+    };
+    (find(1), find(-1))
+}
+
+/// Terminals between two vectors of three driven legs with those exact scores.
+pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
+    let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
+    let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
+    let t = floor_shift(4.0 * v_bus + scores[lower] - scores[upper], 3).clamp(0.0, v_bus);
+    [0, 1, 2].map(|x| {
+        let [in_lower, in_upper] = [lower, upper].map(|place| vectors::LEGS[pair[place]][x] > 0);
+        if in_lower {
+            v_bus
+        } else if in_upper {
+            t
+        } else {
+            0.0
+        }
+    })
+}
+
+/// The command for these terminals.
+pub fn command(now: &Inputs, terminal: [f64; 3], off: Option<usize>) -> Command {
+    Command {
+        legs: Legs {
+            compare: terminal.map(|t| pulses::compare_of(now, t)),
+            state: [0, 1, 2].map(|x| {
+                if off == Some(x) {
+                    LegState::Off
+                } else if terminal[x] > 0.0 {
+                    LegState::Pulsed
+                } else {
+                    LegState::Low
+                }
+            }),
+        },
+        terminal,
+        off: off.map_or(0, |leg| leg + 1),
+    }
+}
+
+/// Phase voltages a, b of the command, a leg that is off midway between the two others.
+pub fn mean(now: &Inputs, command: &Command) -> [f64; 2] {
+    let mut t = command.terminal;
+    if let Some(off) = command.off.checked_sub(1) {
+        t[off] = halve(t[0] + t[1] + t[2]);
+    }
+    let mean = now.k.k_third.mul(t[0] + t[1] + t[2]);
+    [t[0] - mean, t[1] - mean]
+}
