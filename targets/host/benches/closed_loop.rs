@@ -1,0 +1,54 @@
+//! A second of closed loop on one core: the 660 W motor at 1500 rpm under rated torque, sampled every 50 us.
+//!
+//! `cargo bench -p hexagen-host`; a second of one controller should take less than 0.2 s.
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use hexagen_host::closed_loop::{ClosedLoop, Delay};
+use hexagen_host::engine::{EngineKind, Model, MotorSource, Prepared, SetPoint, plant_of, prepare};
+use hexagen_host::plant::Plant;
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+/// Every kind of controller in its default variant, which is compiled in.
+const CONTROLLERS: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+
+const RPM: f64 = 1500.0;
+
+/// A loop from rest, and the periods of a second.
+fn closed_loop(drive: &Prepared) -> (ClosedLoop<hexagen_host::engine::Engine<'_>>, usize) {
+    let params = plant_of(&drive.spec);
+    let periods = (1.0 / params.t_s).round() as usize;
+    let set_point = SetPoint {
+        current: drive.demand() / drive.spec.torque_constant(),
+        v_bus: params.v_bus,
+    };
+    let plant = Plant::new(params, 0.1, RPM * TAU / 60.0).expect("a plant of the library");
+    let engine = drive.engine(Model::Fixed, set_point);
+    (ClosedLoop::new(plant, engine, Delay::OnePeriod), periods)
+}
+
+fn second(criterion: &mut Criterion) {
+    let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
+    let mut group = criterion.benchmark_group("closed-loop second");
+    group
+        .sample_size(20)
+        .measurement_time(Duration::from_secs(5));
+    for controller in CONTROLLERS {
+        let drive = prepare(&motor, Some(controller)).expect("generates");
+        assert_eq!(drive.engine_kind(), EngineKind::Compiled, "{controller}");
+        group.bench_function(controller, |bencher| {
+            bencher.iter_batched(
+                || closed_loop(&drive),
+                |(mut closed, periods)| {
+                    closed.run(periods, &mut ());
+                    closed.plant().truth()
+                },
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, second);
+criterion_main!(benches);
