@@ -133,7 +133,8 @@ fn entry(motor: &SelectedMotor, rating: Option<(f64, Option<Trip>)>) -> Entry {
                 rated_rpm: Some(spec.rated_speed * 30.0 / std::f64::consts::PI),
                 t_s: Some(inverter.t_s),
                 generates: true,
-                holds_rating: rating.map(|(percent, _)| percent >= 100.0 * HELD),
+                holds_rating: rating
+                    .map(|(percent, _)| (percent - 100.0).abs() <= 100.0 * (1.0 - HELD)),
                 rated_speed_torque_pct: rating.map(|(percent, _)| percent),
                 tripped: rating.and_then(|(_, tripped)| tripped),
                 ..none
@@ -210,8 +211,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_text(&table.render())?;
     print_text(&format!(
         "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
-         speed from the nominal bus, in percent of the rated one; it holds from {:.0} % on.",
-        100.0 * HELD
+         speed from the nominal bus, in percent of the rated one; it holds within {:.0} %.",
+        100.0 * (1.0 - HELD)
     ))?;
     for motor in &motors {
         if let Some(reason) = &motor.reason {

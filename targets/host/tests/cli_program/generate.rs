@@ -87,8 +87,10 @@ fn the_library_is_listed() {
     let table = run(["motors"]).stdout;
     for motor in motors {
         let percent = number(motor, "rated_speed_torque_pct");
-        assert_eq!(motor["holds_rating"] == true, percent >= 97.0, "{motor}");
-        assert!(motor["tripped"].is_null() || percent < 97.0, "{motor}");
+        // More than the rated torque is out of control, too.
+        let is_held = (percent - 100.0).abs() <= 3.0;
+        assert_eq!(motor["holds_rating"] == true, is_held, "{motor}");
+        assert!(motor["tripped"].is_null() || !is_held, "{motor}");
         let name = motor["name"].as_str().expect("a name");
         assert!(table.contains(&format!("| {name} ")), "{name}");
         assert_eq!(
