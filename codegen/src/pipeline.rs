@@ -48,7 +48,7 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
         }
         ControllerSpec::Pdcc(options) => {
             let linear = pdcc::DeadbeatLoop {
-                options: &options.common,
+                options,
                 design: &rounded,
             };
             pdcc::law(check_stability(spec, common, &linear, origins, &mut errors))
@@ -287,7 +287,12 @@ kind = "pdcc"
         let mut generated = 0;
         for modulation in ["three_phase", "pair"] {
             for saturation in ["keep_angle", "nearest", "torque_priority"] {
-                for emf in ["emf=estimated", "emf=model", "emf=estimated,emf_filter=0.7"] {
+                for emf in [
+                    "emf=estimated",
+                    "emf=model",
+                    "emf=estimated,emf_filter=0.7",
+                    "emf=model,integral=on",
+                ] {
                     for reference in ["quasi_square", "proportional"] {
                         for advance in ["0", "1.5"] {
                             for rest in [

@@ -50,6 +50,9 @@ const BUS_RANGE: &str = "\"bus range\"";
 const UNAVAILABLE: &[(&str, &str, &str)] = &[
     ("pi-pwm", "modulation", "pair"),
     ("phcc", "candidates", "all"),
+    ("fcs-mpc", "emf", "integral"),
+    ("phcc", "emf", "integral"),
+    ("pi-pwm", "emf", "integral"),
 ];
 
 /// A switching table that no derivation gives: every vector occurs.
@@ -134,6 +137,13 @@ const SHARED: &[Row] = &[
             ("estimated", &[]),
             ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
+            (
+                "integral",
+                &[
+                    ("controller", "emf", "\"model\""),
+                    ("controller", "integral", "\"on\""),
+                ],
+            ),
         ],
     ),
     (
@@ -221,6 +231,19 @@ const LOOSE: &[Row] = &[
         &[
             ("default", &[]),
             ("narrow", &[("controller", "band", "\"20 mA\"")]),
+        ],
+    ),
+    (
+        "dead_time",
+        &[
+            ("ignored", &[]),
+            (
+                "compensated",
+                &[
+                    ("inverter", "dead_time", "\"900 ns\""),
+                    ("controller", "dead_time_compensation", "\"on\""),
+                ],
+            ),
         ],
     ),
     (
@@ -318,7 +341,11 @@ fn axis(kind: &str, (name, values): &Row) -> Axis {
 
 /// Options that no axis sets, but some kind takes.
 pub fn untested_options() -> Vec<&'static str> {
-    let rows = OWN.iter().chain(LOOSE).flat_map(|(_, values)| *values);
+    let rows = OWN
+        .iter()
+        .chain(SHARED)
+        .chain(LOOSE)
+        .flat_map(|(_, values)| *values);
     let settings: Vec<&Setting> = rows.flat_map(|(_, settings)| *settings).collect();
     let is_set = |option: &&str| settings.iter().any(|(_, field, _)| field == option);
     let options = KINDS.iter().flat_map(|(_, own)| *own).copied();

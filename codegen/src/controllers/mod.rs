@@ -23,8 +23,7 @@ pub fn stable_range(spec: &Spec) -> Option<StableRange> {
     let design = &LoopDesign::new(spec, spec.controller.common());
     match &spec.controller {
         ControllerSpec::FcsMpc(_) | ControllerSpec::Phcc(_) => None,
-        ControllerSpec::Pdcc(pdcc) => {
-            let options = &pdcc.common;
+        ControllerSpec::Pdcc(options) => {
             Some(pdcc::DeadbeatLoop { options, design }.stable_range(spec))
         }
         ControllerSpec::PiPwm(options) => Some(

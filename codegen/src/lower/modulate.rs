@@ -46,8 +46,8 @@ pub struct PairModulation {
 }
 
 impl Lowering<'_> {
-    /// Three centred pulses from a limited voltage.
-    pub fn modulate(&mut self, limited: Limited, bus: Bus) -> Command {
+    /// Three centred pulses from a limited voltage; `shifts` are against the dead time.
+    pub fn modulate(&mut self, limited: Limited, bus: Bus, shifts: Option<[Value; 3]>) -> Command {
         self.b.stage(
             "modulate",
             &["Compare values of a centre-aligned timer; (max + min)/2 as offset centres the pulses as space-vector modulation does."],
@@ -59,15 +59,23 @@ impl Lowering<'_> {
                 ["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x],
                 centred,
                 bus,
+                shifts.map(|shifts| shifts[x]),
             )
         });
         let legs = [0; 3].map(|pulsed| self.b.literal(pulsed));
         Command { compares, legs }
     }
 
-    fn compare_centred(&mut self, name: &str, centred: Value, bus: Bus) -> Value {
+    fn compare_centred(
+        &mut self,
+        name: &str,
+        centred: Value,
+        bus: Bus,
+        shift: Option<Value>,
+    ) -> Value {
         let bits = self.scale.voltage_bits;
         let scaled = self.nominal_share(centred, bus);
+        let scaled = self.shifted(scaled, shift);
         let half = i64::from(self.spec.inverter.timer_period) << (bits - 1);
         let offset = self.number(
             "half_period",
@@ -81,12 +89,27 @@ impl Lowering<'_> {
         self.counts(name, lifted)
     }
 
-    /// Compare value of a leg that is high for the share of the period that `volts` is of the bus.
-    pub fn compare_of(&mut self, name: &str, volts: Value, bus: Bus) -> Value {
+    /// Compare value of a leg that is high for the share of the period that `volts` is of the bus; `shift` is against
+    /// the dead time.
+    pub fn compare_of(
+        &mut self,
+        name: &str,
+        volts: Value,
+        bus: Bus,
+        shift: Option<Value>,
+    ) -> Value {
         let nominal = self.nominal_share(volts, bus);
+        let nominal = self.shifted(nominal, shift);
         let round = self.b.literal(1 << (self.scale.voltage_bits - 1));
         let lifted = self.b.add(nominal, round);
         self.counts(name, lifted)
+    }
+
+    fn shifted(&mut self, volts: Value, shift: Option<Value>) -> Value {
+        match shift {
+            None => volts,
+            Some(shift) => self.b.add(volts, shift),
+        }
     }
 
     /// A voltage of the measured bus as a share of the nominal one, which the timer period stands for.
@@ -223,6 +246,7 @@ impl Lowering<'_> {
         unlimited: [Value; 2],
         limited: Limited,
         bus: Bus,
+        shifts: Option<[Value; 3]>,
     ) -> (Command, Applied) {
         self.b.stage(
             "modulate_three",
@@ -239,6 +263,7 @@ impl Lowering<'_> {
                 ["compare_a_three", "compare_b_three", "compare_c_three"][x],
                 centred,
                 bus,
+                shifts.map(|shifts| shifts[x]),
             );
             let lifted = self.b.add(voltage[x], lift);
             let zero = self.zero();
@@ -291,15 +316,19 @@ impl Lowering<'_> {
         self.b.name("line_forward", forward);
         let volts = self.b.abs(line);
         self.b.name("line_volts", volts);
-        let compare = self.compare_of("compare_line", volts, bus);
         let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
         let pulsed_sign = self.b.select(forward, plus, minus);
         self.b.name("pulsed_sign", pulsed_sign);
-        let mut results: Vec<(&str, Value, Value)> = vec![];
-        for x in 0..3 {
+        let is_pulsed = [0, 1, 2].map(|x| {
             let is_pulsed = self.b.compare(Comparison::Equal, sign[x], pulsed_sign);
             self.b
-                .name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed);
+                .name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed)
+        });
+        let shift = shifts.map(|shifts| self.pick(is_pulsed[0], is_pulsed[1], shifts));
+        let compare = self.compare_of("compare_line", volts, bus, shift);
+        let mut results: Vec<(&str, Value, Value)> = vec![];
+        for x in 0..3 {
+            let is_pulsed = is_pulsed[x];
             let zero = self.zero();
             let own_compare = self.b.select(is_pulsed, compare, zero);
             let zero = self.zero();

@@ -55,6 +55,9 @@ impl Spec {
             }
         }
         text.number("t_s", inverter.t_s);
+        if inverter.dead_time > 0.0 {
+            text.number("dead_time", inverter.dead_time);
+        }
         text.number("timer_period", inverter.timer_period);
         text.number("adc_bits", inverter.adc_bits);
         text.number("adc_gain", inverter.adc_gain);
@@ -104,6 +107,12 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
                 },
             );
             text.word("saturation", saturation(options.saturation));
+            if options.dead_time_compensation {
+                text.word("dead_time_compensation", "on");
+            }
+            if options.integral {
+                text.word("integral", "on");
+            }
         }
         ControllerSpec::Phcc(options) => {
             match options.table {
@@ -126,6 +135,9 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
             text.number("integral_time", options.integral_time);
             text.word("feed_forward", flag(options.feed_forward));
             text.word("saturation", saturation(options.saturation));
+            if options.dead_time_compensation {
+                text.word("dead_time_compensation", "on");
+            }
         }
     }
     write_common(text, controller);
@@ -255,6 +267,8 @@ mod tests {
             controller: ControllerSpec::Pdcc(PdccSpec {
                 modulation: Modulation::ThreePhase,
                 saturation: LimitRule::TorquePriority,
+                integral: false,
+                dead_time_compensation: false,
                 common: LoopOptions {
                     emf: EmfSource::Estimated,
                     emf_filter: 1.0,

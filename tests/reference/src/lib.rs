@@ -22,7 +22,7 @@ pub use formats::FormatTable;
 pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Trace};
 pub use spec::{
     Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
-    FcsMpc, FeedForward, HallCapture, Inverter, LoopOptions, Modulated, Modulation, Motor, OffLeg,
-    Pdcc, Phcc, PiPwm, Reference, Saturation, Spec, SwitchingTable,
+    FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, Pdcc, Phcc, PiPwm,
+    Reference, Saturation, Spec, Switch, SwitchingTable,
 };
 pub use verify::assert_bit_true;

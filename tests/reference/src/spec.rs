@@ -11,9 +11,8 @@ use crate::Error;
 use serde::Deserialize;
 
 pub use controller::{
-    Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, FeedForward,
-    LoopOptions, Modulated, Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation,
-    SwitchingTable,
+    Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, LoopOptions,
+    Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch, SwitchingTable,
 };
 
 /// A whole normalised specification.
@@ -94,6 +93,9 @@ pub struct Inverter {
     pub trip_current: f64,
     /// Largest current set-point, ampere.
     pub max_current: f64,
+    /// Time between the two switches of a leg, second; only where it is above 0.
+    #[serde(default)]
+    pub dead_time: f64,
     /// How Hall edges are timed.
     pub hall_capture: HallCapture,
     /// Timer ticks per control period (2 when the edges are sampled).
@@ -308,8 +310,7 @@ impl Spec {
                     ));
                 }
             }
-            if pi_pwm.saturation == Saturation::TorquePriority
-                && pi_pwm.feed_forward == FeedForward::Off
+            if pi_pwm.saturation == Saturation::TorquePriority && pi_pwm.feed_forward == Switch::Off
             {
                 return Err(Error::field(
                     "controller.saturation",

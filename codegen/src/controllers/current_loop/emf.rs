@@ -4,13 +4,29 @@
 //! leg's own EMF, so its estimate would only integrate noise; the motor's geometry says what it is.
 //! The estimate is as old as the period that it was seen in: `observer` moves it on.
 
-use super::CurrentLoop;
 use super::words::{EmfUse, Words};
+use super::{CurrentLoop, EMF_INTEGRAL_SHARE};
 use crate::ir::{Comparison, Value};
-use crate::lower::{Coefficient, Currents, Hall, Rotor, product_bound, round_down};
+use crate::lower::{Coefficient, Currents, Hall, ModelledEmf, Rotor, product_bound, round_down};
 use crate::spec::EmfSource;
 
-type Pair = Option<[Value; 2]>;
+/// EMF of phases a and b over the target period and over the present one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Emf {
+    pub target: [Value; 2],
+    pub present: [Value; 2],
+    /// What the next step compares with what it sees of the present period.
+    pub expected: [Value; 2],
+    /// The integral's new words.
+    pub integral: Option<[Value; 2]>,
+}
+
+/// Coefficients of what a period shows of its EMF.
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    k_di: Coefficient,
+    k_r: Coefficient,
+}
 
 /// What the limit of an estimate is.
 const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
@@ -26,9 +42,9 @@ impl CurrentLoop<'_, '_> {
         rotor: Option<&Rotor>,
         third: Coefficient,
         outgoing: Option<Value>,
-    ) -> (Pair, Pair) {
+    ) -> Option<Emf> {
         if self.needs.emf == EmfUse::None {
-            return (None, None);
+            return None;
         }
         if let (Some(rotor), EmfSource::Model) = (rotor, self.options.emf) {
             let flux = self.lowering.flux_model();
@@ -36,12 +52,17 @@ impl CurrentLoop<'_, '_> {
             let e = self
                 .lowering
                 .model_emf(flux, rotor, self.options.delay, e_limit);
-            (Some(e.target), Some(e.present))
+            Some(self.integrate_emf(words, currents, e))
         } else {
             let e = self.estimate_emf(words, currents);
             let e = self.meet_emf(words, third, outgoing, e);
             let (target, present) = self.move_emf(hall.sector, e);
-            (Some(target), Some(present))
+            Some(Emf {
+                target,
+                present,
+                expected: present,
+                integral: None,
+            })
         }
     }
 
@@ -64,12 +85,9 @@ impl CurrentLoop<'_, '_> {
         round_down(self.design.di_max * self.lowering.scale.current()) as i64
     }
 
-    fn estimate_emf(&mut self, words: &Words, currents: &Currents) -> [Value; 2] {
+    fn sight(&mut self) -> Sight {
         let (options, design) = (*self.options, self.design);
-        let di_max = self.di_max();
-        let floats = words.off_prev.is_some();
         let l = &mut *self.lowering;
-        let bus = l.bus_interval().high;
         let k_di = l.impedance(
             "k_di",
             design.k_di,
@@ -84,6 +102,107 @@ impl CurrentLoop<'_, '_> {
             "(1 - a)/b = R: resistive drop.",
             ["R", "ohm"],
         );
+        Sight { k_di, k_r }
+    }
+
+    /// The EMF of phase `x`, 0 or 1, that the period shows which just ended, added to the open stage.
+    fn see_emf(&mut self, words: &Words, currents: &Currents, sight: Sight, x: usize) -> Value {
+        let di_max = self.di_max();
+        let l = &mut *self.lowering;
+        let (Some(i_prev), Some(v_prev)) = (words.i_prev, words.v_prev) else {
+            return currents.phases[x];
+        };
+        let previous = l.b.state(i_prev[x]);
+        let change = l.b.sub(currents.phases[x], previous);
+        let doc = "Limit of the change of current in one period that is believed";
+        let (low, high) = (
+            l.current("di_min", -di_max, doc),
+            l.current("di_max", di_max, doc),
+        );
+        let change = l.b.clamp(change, low, high);
+        l.b.name(["di_a", "di_b"][x], change);
+        let applied = l.b.state(v_prev[x]);
+        let rise = l.times(sight.k_di, change);
+        let drop = l.times(sight.k_r, previous);
+        let rest = l.b.sub(applied, rise);
+        let seen = l.b.sub(rest, drop);
+        l.b.name(["e_a_seen", "e_b_seen"][x], seen)
+    }
+
+    /// The modelled EMF with what it lacked so far, where the law integrates that.
+    fn integrate_emf(&mut self, words: &Words, currents: &Currents, model: ModelledEmf) -> Emf {
+        let expected = model.present;
+        let (Some(e_prev), Some(integral)) = (words.e_prev, words.integral) else {
+            return Emf {
+                target: model.target,
+                present: model.present,
+                expected,
+                integral: None,
+            };
+        };
+        let sight = self.sight();
+        let (share, word) = (EMF_INTEGRAL_SHARE, self.options.word);
+        let l = &mut *self.lowering;
+        let k_integral = l.coefficient(
+            "k_integral",
+            share,
+            word,
+            "Share that the integral takes over of what the modelled EMF lacks.",
+            &format!("{share}"),
+        );
+        l.b.stage(
+            "integrate_emf",
+            &[
+                "What the modelled EMF lacked in the period that just ended, against the one that voltage and currents show,",
+                "goes slowly into an integral per phase, which stands for errors of the EMF constant, the angle, R and L.",
+            ],
+        );
+        let sums = [0, 1].map(|x| {
+            let seen = self.see_emf(words, currents, sight, x);
+            let l = &mut *self.lowering;
+            let bus = l.bus_interval().high;
+            let (low, high) = (
+                l.voltage("integral_min", -bus, BELIEVED),
+                l.voltage("integral_max", bus, BELIEVED),
+            );
+            let expected = l.b.state(e_prev[x]);
+            let lack = l.b.sub(seen, expected);
+            let lack = l.b.clamp(lack, low, high);
+            l.b.name(["lack_a", "lack_b"][x], lack);
+            let sum = l.b.state(integral[x]);
+            let news = l.b.sub(lack, sum);
+            let part = l.times(k_integral, news);
+            let sum = l.b.add(sum, part);
+            let sum = l.b.clamp(sum, low, high);
+            l.b.name(["integral_a_now", "integral_b_now"][x], sum)
+        });
+        let l = &mut *self.lowering;
+        let mut corrected = |e: [Value; 2], names: [&str; 2]| {
+            [0, 1].map(|x| {
+                let e = l.b.add(e[x], sums[x]);
+                l.b.name(names[x], e)
+            })
+        };
+        let target = corrected(model.target, ["e_a_corrected", "e_b_corrected"]);
+        let present = if self.options.delay == 0 {
+            target
+        } else {
+            corrected(model.present, ["e_a_now_corrected", "e_b_now_corrected"])
+        };
+        Emf {
+            target,
+            present,
+            expected,
+            integral: Some(sums),
+        }
+    }
+
+    fn estimate_emf(&mut self, words: &Words, currents: &Currents) -> [Value; 2] {
+        let options = *self.options;
+        let floats = words.off_prev.is_some();
+        let sight = self.sight();
+        let l = &mut *self.lowering;
+        let bus = l.bus_interval().high;
         let filter = (options.emf_filter < 1.0).then(|| {
             l.coefficient(
                 "k_filter",
@@ -102,25 +221,9 @@ impl CurrentLoop<'_, '_> {
                 "v is the voltage really applied; a change of current larger than the bus can cause is not believed.",
             ],
         );
-        let (Some(i_prev), Some(v_prev)) = (words.i_prev, words.v_prev) else {
-            return [currents.phases[0], currents.phases[1]];
-        };
         [0, 1].map(|x| {
-            let previous = l.b.state(i_prev[x]);
-            let change = l.b.sub(currents.phases[x], previous);
-            let doc = "Limit of the change of current in one period that is believed";
-            let (low, high) = (
-                l.current("di_min", -di_max, doc),
-                l.current("di_max", di_max, doc),
-            );
-            let change = l.b.clamp(change, low, high);
-            l.b.name(["di_a", "di_b"][x], change);
-            let applied = l.b.state(v_prev[x]);
-            let rise = l.times(k_di, change);
-            let drop = l.times(k_r, previous);
-            let rest = l.b.sub(applied, rise);
-            let seen = l.b.sub(rest, drop);
-            l.b.name(["e_a_seen", "e_b_seen"][x], seen);
+            let seen = self.see_emf(words, currents, sight, x);
+            let l = &mut *self.lowering;
             let news = match (filter, words.e_prev) {
                 (Some(filter), Some(e_prev)) => {
                     let old = l.b.state(e_prev[x]);

@@ -1,6 +1,7 @@
 //! The step that all controllers share: from the sample to the voltage asked for, and what the next
 //! step needs to know (semantics page of predictive deadbeat, steps 1 to 9 and 12).
 
+mod dead_time;
 mod design;
 mod emf;
 mod observer;
@@ -45,6 +46,10 @@ pub fn lower_with(
     }
 }
 
+/// Share that the integral of a modelled EMF takes over in a period of what the model lacks: slow against the
+/// current, quick against the commutations of an EMF whose constant is off.
+pub const EMF_INTEGRAL_SHARE: f64 = 0.125;
+
 /// A step under construction.
 pub struct CurrentLoop<'l, 'p> {
     /// The builder.
@@ -55,6 +60,15 @@ pub struct CurrentLoop<'l, 'p> {
     pub design: &'l LoopDesign,
     /// What the law needs.
     pub needs: Needs,
+}
+
+/// The deadbeat voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct Deadbeat {
+    /// Voltages of phases a and b, not limited.
+    pub u: [Value; 2],
+    /// Shifts of the compare values against the dead time, where the law compensates it.
+    pub shifts: Option<[Value; 3]>,
 }
 
 /// What the shared part of a step knows.
@@ -85,6 +99,10 @@ pub struct Front {
     pub e: Option<[Value; 2]>,
     /// EMF over the period that begins now.
     pub e_now: Option<[Value; 2]>,
+    /// The same as the next step shall compare it with what it sees.
+    pub e_expected: Option<[Value; 2]>,
+    /// What the modelled EMF lacks; where the law integrates that.
+    pub integral: Option<[Value; 2]>,
 }
 
 /// State words and their new values while the drive runs; zero otherwise.
@@ -148,7 +166,8 @@ impl CurrentLoop<'_, '_> {
         // Read here, in an open stage: the last one of the EMF may be a guarded one.
         let commanded = words.v_cmd.map(|word| word.map(|word| l.b.state(word)));
         let terminals = self.commanded_terminals(&words);
-        let (e, e_now) = self.emf(&words, &currents, &hall, rotor.as_ref(), third, outgoing);
+        let emf = self.emf(&words, &currents, &hall, rotor.as_ref(), third, outgoing);
+        let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
         let off_leg = self.off_leg_of(bus, third);
         let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
@@ -165,6 +184,8 @@ impl CurrentLoop<'_, '_> {
             now,
             e,
             e_now,
+            e_expected: emf.map(|emf| emf.expected),
+            integral: emf.and_then(|emf| emf.integral),
         }
     }
 
@@ -207,8 +228,8 @@ impl CurrentLoop<'_, '_> {
         )
     }
 
-    /// Step 9: the deadbeat voltage of phases a, b.
-    pub fn deadbeat(&mut self, front: &Front) -> [Value; 2] {
+    /// Step 9: the deadbeat voltage of phases a, b, with shifts against the dead time where it is compensated.
+    pub fn deadbeat(&mut self, front: &Front, compensates: bool) -> Deadbeat {
         let (reference, currents, now) = (front.reference, &front.currents, front.now);
         let (options, design) = (*self.options, self.design);
         let l = &mut *self.lowering;
@@ -239,9 +260,13 @@ impl CurrentLoop<'_, '_> {
             &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
         };
         l.b.stage("deadbeat_voltage", doc);
-        [0, 1].map(|x| {
-            let held = l.times(k_hold, currents.phases[x]);
-            let open = l.b.sub(reference[x], held);
+        let mut held = [None; 2];
+        let u = [0, 1].map(|x| {
+            let own = l.times(k_hold, currents.phases[x]);
+            if compensates {
+                held[x] = Some(l.b.name(["held_a", "held_b"][x], own));
+            }
+            let open = l.b.sub(reference[x], own);
             let volts = match (k_decay, now, front.e, front.e_now) {
                 (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
                     let driving = l.b.sub(now[x], e_now[x]);
@@ -255,7 +280,12 @@ impl CurrentLoop<'_, '_> {
                 _ => open,
             };
             l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
-        })
+        });
+        let shifts = match held {
+            [Some(a), Some(b)] => Some(self.dead_time_shifts(reference, [a, b], design.k_di)),
+            _ => None,
+        };
+        Deadbeat { u, shifts }
     }
 
     /// Step 12: closes the step. `v_cmd` are the commanded voltages; `applied` are the terminals instead, where a
@@ -314,9 +344,13 @@ impl CurrentLoop<'_, '_> {
             };
             remembered.extend(off.map(|off| (off_prev, "off_prev_next", off)));
         }
-        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e_now) {
+        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e_expected) {
             remembered.push((e_prev[0], "e_a_prev_next", e[0]));
             remembered.push((e_prev[1], "e_b_prev_next", e[1]));
+        }
+        if let (Some(words), Some(integral)) = (words.integral, front.integral) {
+            remembered.push((words[0], "integral_a_next", integral[0]));
+            remembered.push((words[1], "integral_b_next", integral[1]));
         }
         let l = &mut *self.lowering;
         if let Some(i_prev) = words.i_prev {

@@ -2,7 +2,7 @@
 
 use super::LoopDesign;
 use crate::design::DiscretePlant;
-use crate::spec::{EmfSource, LoopOptions, Spec};
+use crate::spec::Spec;
 use nalgebra::{DMatrix, DVector};
 
 /// Stable ranges of true over stated inductance and resistance.
@@ -56,21 +56,15 @@ pub trait LinearLoop {
     }
 }
 
-/// EMF estimate from the words of the estimator at standstill, where it does not move on: what it makes of
-/// current and voltage alone.
-pub fn estimate(
-    options: &LoopOptions,
-    design: &LoopDesign,
-    i: [f64; 2],
-    v_prev: f64,
-    e_prev: f64,
-) -> f64 {
-    match options.emf {
-        EmfSource::Model => 0.0,
-        EmfSource::Estimated => {
-            let seen = v_prev - design.k_di * (i[0] - i[1]) - design.k_r * i[1];
-            e_prev + options.emf_filter * (seen - e_prev)
-        }
+/// What an estimate of the EMF that takes over a share of what is seen makes of current and voltage alone: at
+/// standstill, where it does not move on.
+pub fn estimate(share: f64, design: &LoopDesign, i: [f64; 2], v_prev: f64, e_prev: f64) -> f64 {
+    let seen = v_prev - design.k_di * (i[0] - i[1]) - design.k_r * i[1];
+    // A share of 0 says that nothing is estimated.
+    if share > 0.0 {
+        e_prev + share * (seen - e_prev)
+    } else {
+        0.0
     }
 }
 

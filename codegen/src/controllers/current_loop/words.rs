@@ -14,6 +14,8 @@ pub struct Needs {
     pub off_leg: bool,
     /// The EMF.
     pub emf: EmfUse,
+    /// What the modelled EMF lacks, integrated.
+    pub integral: bool,
 }
 
 /// What a law uses the EMF for.
@@ -49,6 +51,8 @@ pub struct Words {
     pub off_prev: Option<StateId>,
     /// EMF expected of the period that ended.
     pub e_prev: Option<[StateId; 2]>,
+    /// What the modelled EMF lacks.
+    pub integral: Option<[StateId; 2]>,
 }
 
 impl CurrentLoop<'_, '_> {
@@ -58,7 +62,9 @@ impl CurrentLoop<'_, '_> {
             || options.advance > 0.0
             || options.reference == Reference::Proportional;
         let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
-        let e_expected = self.e_bound() + self.motion_bound();
+        // What a period shows of its EMF takes part.
+        let sees = estimated || needs.integral;
+        let e_expected = self.e_bound() + if estimated { self.motion_bound() } else { 0 };
         let l = &mut *self.lowering;
         let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;
@@ -69,7 +75,7 @@ impl CurrentLoop<'_, '_> {
         let pair_words = needs
             .commutation
             .then(|| l.pair_words(options.commutation_timeout));
-        let i_prev = estimated.then(|| {
+        let i_prev = sees.then(|| {
             ["i_a_prev", "i_b_prev"].map(|name| {
                 l.state(
                     name,
@@ -79,19 +85,18 @@ impl CurrentLoop<'_, '_> {
                 )
             })
         });
-        let v_cmd = (options.delay == 1
-            && !needs.off_leg
-            && (needs.emf == EmfUse::Prediction || estimated))
-            .then(|| {
-                ["v_a_cmd", "v_b_cmd"].map(|name| {
-                    l.state(
-                        name,
-                        0,
-                        volts,
-                        "Limited voltage of the last step, applied during this period.",
-                    )
-                })
-            });
+        let v_cmd =
+            (options.delay == 1 && !needs.off_leg && (needs.emf == EmfUse::Prediction || sees))
+                .then(|| {
+                    ["v_a_cmd", "v_b_cmd"].map(|name| {
+                        l.state(
+                            name,
+                            0,
+                            volts,
+                            "Limited voltage of the last step, applied during this period.",
+                        )
+                    })
+                });
         let t_cmd = (options.delay == 1 && needs.off_leg).then(|| {
             let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"].map(|name| {
                 l.state(
@@ -111,7 +116,7 @@ impl CurrentLoop<'_, '_> {
                 ),
             )
         });
-        let v_prev = estimated.then(|| {
+        let v_prev = sees.then(|| {
             ["v_a_prev", "v_b_prev"].map(|name| {
                 l.state(
                     name,
@@ -129,7 +134,7 @@ impl CurrentLoop<'_, '_> {
                 "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.",
             )
         });
-        let e_prev = (estimated && options.emf_filter < 1.0).then(|| {
+        let e_prev = (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
             ["e_a_prev", "e_b_prev"].map(|name| {
                 l.state(
                     name,
@@ -137,6 +142,12 @@ impl CurrentLoop<'_, '_> {
                     Interval::symmetric(e_expected),
                     "EMF that the last step expects of the period that it began.",
                 )
+            })
+        });
+        let integral = needs.integral.then(|| {
+            ["integral_a", "integral_b"].map(|name| {
+                let doc = "What the modelled EMF lacks, words of voltage.";
+                l.state(name, 0, volts, doc)
             })
         });
         Words {
@@ -150,6 +161,7 @@ impl CurrentLoop<'_, '_> {
             v_prev,
             off_prev,
             e_prev,
+            integral,
         }
     }
 }

@@ -54,7 +54,7 @@ impl CurrentLoop<'_, '_> {
         let command = Command {
             compares: [0, 1, 2].map(|x| {
                 let name = ["compare_a_chosen", "compare_b_chosen", "compare_c_chosen"][x];
-                l.compare_of(name, terminals[x], front.bus)
+                l.compare_of(name, terminals[x], front.bus, None)
             }),
             legs: [0, 1, 2].map(|x| {
                 let zero = l.zero();

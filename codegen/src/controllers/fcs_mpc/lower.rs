@@ -16,10 +16,11 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
                 commutation: options.pairs(),
                 off_leg: options.floating(),
                 emf: EmfUse::Prediction,
+                integral: false,
             },
         };
         let front = step.front(set_point);
-        let u = step.deadbeat(&front);
+        let u = step.deadbeat(&front, false).u;
         let choice = step.choose(options, &front, u);
         if options.modulated {
             step.apply_two_vectors(&front, &choice);

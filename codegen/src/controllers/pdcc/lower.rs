@@ -1,6 +1,8 @@
 //! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
 
-use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
+use crate::controllers::current_loop::{
+    CurrentLoop, Deadbeat, EmfUse, LoopDesign, Needs, lower_with,
+};
 use crate::lower::Scale;
 use crate::scaling::Lowered;
 use crate::spec::{Modulation, PdccSpec, Spec};
@@ -17,20 +19,25 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
                 commutation: pair,
                 off_leg: pair,
                 emf: EmfUse::Prediction,
+                integral: options.integral,
             },
         };
         let front = step.front(set_point);
-        let u = step.deadbeat(&front);
+        let Deadbeat { u, shifts } = step.deadbeat(&front, options.dead_time_compensation);
         let e = front.e.unwrap_or(u);
         let limited = step
             .lowering
             .limit_voltage(options.saturation, u, e, front.bus, front.third);
         let (command, applied) = match front.commutation {
-            None => (step.lowering.modulate(limited, front.bus), None),
+            None => (step.lowering.modulate(limited, front.bus, shifts), None),
             Some([flag, ..]) => {
-                let (command, applied) =
-                    step.lowering
-                        .modulate_pair([front.sector, flag], u, limited, front.bus);
+                let (command, applied) = step.lowering.modulate_pair(
+                    [front.sector, flag],
+                    u,
+                    limited,
+                    front.bus,
+                    shifts,
+                );
                 (command, Some(applied))
             }
         };

@@ -23,6 +23,7 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
                 } else {
                     EmfUse::None
                 },
+                integral: false,
             },
         };
         let front = step.front(set_point);

@@ -22,6 +22,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                 } else {
                     EmfUse::None
                 },
+                integral: false,
             },
         };
         let front = step.front(set_point);
@@ -51,8 +52,12 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             "regulate",
             &["PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward."],
         );
+        let mut held = [None; 2];
         let parts = [0, 1].map(|x| {
             let drop = l.times(k_p, front.currents.phases[x]);
+            if options.dead_time_compensation {
+                held[x] = Some(l.b.name(["held_a", "held_b"][x], drop));
+            }
             let part = l.b.sub(front.reference[x], drop);
             l.b.name(["p_a", "p_b"][x], part)
         });
@@ -65,6 +70,11 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             };
             l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
         });
+        let shifts = match held {
+            [Some(a), Some(b)] => Some(step.dead_time_shifts(front.reference, [a, b], gain)),
+            _ => None,
+        };
+        let l = &mut *step.lowering;
         let e = front.e.unwrap_or(u);
         let limited = l.limit_voltage(options.saturation, u, e, front.bus, front.third);
         l.b.stage(
@@ -98,7 +108,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                 held,
             ));
         }
-        let command = l.modulate(limited, front.bus);
+        let command = l.modulate(limited, front.bus, shifts);
         step.remember(&front, &command, Some(limited.u), None, remembered);
     })
 }

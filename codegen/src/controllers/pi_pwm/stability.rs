@@ -2,7 +2,7 @@
 
 use crate::controllers::current_loop::{LinearLoop, LoopDesign, estimate};
 use crate::design::DiscretePlant;
-use crate::spec::{PiPwmSpec, Spec};
+use crate::spec::{EmfSource, PiPwmSpec, Spec};
 use nalgebra::DVector;
 
 /// Whether the loop would be stable with the default integral time, L/R.
@@ -38,11 +38,12 @@ impl LinearLoop for PiLoop<'_> {
     fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64> {
         let [i, i_prev, v_now, v_prev, e_prev, integral] = [x[0], x[1], x[2], x[3], x[4], x[5]];
         let common = &self.options.common;
-        let e = if self.options.feed_forward {
-            estimate(common, self.design, [i, i_prev], v_prev, e_prev)
+        let share = if self.options.feed_forward && common.emf == EmfSource::Estimated {
+            common.emf_filter
         } else {
             0.0
         };
+        let e = estimate(share, self.design, [i, i_prev], v_prev, e_prev);
         let proportional = -self.options.proportional_gain(&self.spec.motor) * i;
         let u = proportional + integral + e;
         let integral = integral + self.options.integral_share(self.spec) * proportional;

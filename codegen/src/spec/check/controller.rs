@@ -10,7 +10,7 @@ use crate::spec::controller::{fcs_mpc, pdcc, phcc, pi_pwm};
 use crate::spec::{ControllerSpec, HallCapture, KINDS};
 
 /// Options that are known and that this version does not have.
-const PLANNED_OPTIONS: [&str; 4] = ["horizon", "zero", "six_step", "integral"];
+const PLANNED_OPTIONS: [&str; 3] = ["horizon", "zero", "six_step"];
 
 /// The controller with its options, and how Hall edges reach it.
 pub(super) fn read(
@@ -50,6 +50,7 @@ pub(super) fn read(
             .rated_current
             .as_ref()
             .map(|given| (given.si, given.part.clone())),
+        dead_time: inverter.dead_time.as_ref().map_or(0.0, |given| given.si),
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = match kind {

@@ -96,6 +96,8 @@ pub(crate) const OPTIONS: &[Rule] = &[
     schema::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz"),
     schema::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms"),
     schema::word("feed_forward", "on"),
+    schema::word("integral", "on"),
+    schema::word("dead_time_compensation", "on"),
 ];
 
 /// What the defaults and limits of the options need to know of the drive; none where it is itself
@@ -114,6 +116,8 @@ pub(crate) struct Surroundings {
     pub rated_current: Option<(f64, Part)>,
     /// Ampere per ADC count.
     pub adc_gain: Option<f64>,
+    /// Dead time, second; 0 where none is stated.
+    pub dead_time: f64,
 }
 
 /// Share that the EMF estimate takes over in a period where none is stated: stable from 60 % of the stated
@@ -266,6 +270,29 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
         return None;
     }
     Some(whole as u32)
+}
+
+/// Whether compare values are shifted against the dead time, which must be stated for it.
+pub(crate) fn read_dead_time_compensation(
+    reader: &Reader,
+    drive: &Surroundings,
+    errors: &mut Collector,
+) -> bool {
+    const OPTION: &str = "dead_time_compensation";
+    let is_on = reader.word(errors, OPTION, &[("on", true), ("off", false)]) == Some(true);
+    if is_on
+        && drive.dead_time <= 0.0
+        && let Some(field) = reader.field(OPTION)
+    {
+        let setting = format!("{OPTION}: on");
+        errors.push(catalogue::needed_field(
+            &field.location,
+            &setting,
+            "dead_time",
+            "500 ns",
+        ));
+    }
+    is_on
 }
 
 /// Which rule limits the voltage, where the controller has one.

@@ -19,12 +19,21 @@ pub use pi_pwm::PiPwmSpec;
 /// The kinds of controllers, with the options that not all of them take.
 pub const KINDS: [(&str, &[&str]); 4] = [
     ("fcs-mpc", &["candidates", "modulated", "off_leg"]),
-    ("pdcc", &["modulation", "saturation"]),
+    (
+        "pdcc",
+        &[
+            "dead_time_compensation",
+            "integral",
+            "modulation",
+            "saturation",
+        ],
+    ),
     ("phcc", &["band", "candidates", "off_leg", "table"]),
     (
         "pi-pwm",
         &[
             "bandwidth",
+            "dead_time_compensation",
             "feed_forward",
             "integral_time",
             "modulation",

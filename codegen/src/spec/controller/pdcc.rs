@@ -1,6 +1,9 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
-use super::common::{LimitRule, LoopOptions, Surroundings, read_common, read_saturation};
+use super::common::{
+    EmfSource, LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
+    read_saturation,
+};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
@@ -21,6 +24,10 @@ pub struct PdccSpec {
     pub modulation: Modulation,
     /// Saturation rule.
     pub saturation: LimitRule,
+    /// Whether what the modelled EMF lacks is integrated.
+    pub integral: bool,
+    /// Whether compare values are shifted against the dead time.
+    pub dead_time_compensation: bool,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -34,11 +41,36 @@ pub(crate) fn check_options(
     let modulation = read_modulation(reader, errors).unwrap_or(Modulation::ThreePhase);
     let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::TorquePriority);
     let without_sectors = modulation == Modulation::ThreePhase;
+    let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
+    let common = read_common(reader, surroundings, without_sectors, errors)?;
     Some(PdccSpec {
         modulation,
         saturation,
-        common: read_common(reader, surroundings, without_sectors, errors)?,
+        integral: read_integral(reader, common.emf, errors),
+        dead_time_compensation,
+        common,
     })
+}
+
+/// An integral needs the modelled EMF: an estimate finds by itself what it would.
+fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> bool {
+    let is_on = reader.word(errors, "integral", &[("on", true), ("off", false)]) == Some(true);
+    if is_on
+        && emf == EmfSource::Estimated
+        && let Some(field) = reader.field("integral")
+    {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            "integral",
+            "on",
+            reader
+                .field("emf")
+                .map_or(reader.location(), |field| &field.location),
+            "emf: estimated",
+            "the estimate finds by itself what the integral adds to `emf: model`",
+        ));
+    }
+    is_on
 }
 
 /// `table2` is a modulation of this controller in the literature, but not in this version.

@@ -1,6 +1,8 @@
 //! Options of PI control, and how they are read.
 
-use super::common::{LimitRule, LoopOptions, Surroundings, read_common, read_saturation};
+use super::common::{
+    LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation, read_saturation,
+};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
@@ -21,6 +23,8 @@ pub struct PiPwmSpec {
     pub feed_forward: bool,
     /// Saturation rule.
     pub saturation: LimitRule,
+    /// Whether compare values are shifted against the dead time.
+    pub dead_time_compensation: bool,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -104,6 +108,7 @@ pub(crate) fn check_options(
         integral_time: integral_time.map_or(time_constant, |given| given.si),
         feed_forward,
         saturation,
+        dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
         common,
     })
 }

@@ -309,7 +309,7 @@ impl BitTrue {
         };
 
         // 8 EMF
-        let (e, e_now) = match self.variant.emf {
+        let (mut e, mut e_now) = match self.variant.emf {
             None => ([0.0; 2], [0.0; 2]),
             Some(EmfSource::Estimated) => {
                 let seen = emf::estimate(k, &self.state, i);
@@ -338,6 +338,16 @@ impl BitTrue {
             }
         };
 
+        let expected = if delayed { e_now } else { e };
+        let mut integral = self.state.integral;
+        if self.variant.integrates() {
+            integral = emf::integrate(k, &self.state, i);
+            for x in 0..2 {
+                e[x] += integral[x];
+                e_now[x] += integral[x];
+            }
+        }
+
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
             (false, _) => [0.0; 2],
@@ -360,7 +370,7 @@ impl BitTrue {
             e_now,
             sector_eff,
             commutating: self.state.commutating,
-            integral: self.state.integral,
+            integral,
             set_point: self.j,
             direction: self.state.timing.direction,
             rises: self.state.rises,
@@ -393,7 +403,7 @@ impl BitTrue {
             self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
-            self.state.e_prev = e_now;
+            self.state.e_prev = expected;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
         } else {

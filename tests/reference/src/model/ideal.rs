@@ -3,6 +3,7 @@
 //! Vectors are amplitude-invariant alpha-beta (DESIGN section 3); the inputs are the same ADC
 //! counts, Hall codes and timer ticks that the generated code reads, the outputs exact duties.
 
+mod emf;
 mod law;
 mod limit;
 mod vector;
@@ -254,19 +255,10 @@ impl Ideal {
 
         // 8 EMF
         let delayed = self.variant.delayed();
-        let (e, e_now) = match self.variant.emf {
+        let (mut e, mut e_now) = match self.variant.emf {
             None => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
-                let [pa, pb] = self.state.i_prev;
-                let d = from_ab(
-                    (i_a - pa).clamp(-self.di_max, self.di_max),
-                    (i_b - pb).clamp(-self.di_max, self.di_max),
-                );
-                let i_prev = from_ab(pa, pb);
-                let DiscretePhase { a, b } = self.phase;
-                // v - (i - a i_prev)/b, with i - a i_prev = d + (1 - a) i_prev.
-                let raw = from_ab(self.state.v_prev[0], self.state.v_prev[1])
-                    - (d + i_prev * (1.0 - a)) / b;
+                let raw = self.emf_seen([i_a, i_b]);
                 let [e_a, e_b] = self.state.e_prev;
                 let e_prev = from_ab(e_a, e_b);
                 let [e_a, e_b] =
@@ -294,6 +286,15 @@ impl Ideal {
             }
         };
 
+        let expected = if delayed { e_now } else { e };
+        let [s_a, s_b] = self.state.integral;
+        let mut integral = from_ab(s_a, s_b);
+        if self.variant.integrates() {
+            integral = self.integrated([i_a, i_b]);
+            e += integral;
+            e_now += integral;
+        }
+
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
             (false, _) => Vector2::zeros(),
@@ -307,7 +308,6 @@ impl Ideal {
         };
 
         // 9 to 11, the controller's own
-        let [s_a, s_b] = self.state.integral;
         let decision = self.law.decide(&Inputs {
             phase: self.phase,
             delayed,
@@ -319,7 +319,7 @@ impl Ideal {
             e_now,
             sector_eff,
             commutating: self.state.commutating,
-            integral: from_ab(s_a, s_b),
+            integral,
             set_point: self.current,
             direction: self.state.timing.direction,
             rises: self.state.rises,
@@ -349,7 +349,7 @@ impl Ideal {
             self.state.v_cmd = to_ab(&u);
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
-            self.state.e_prev = to_ab(&e_now);
+            self.state.e_prev = to_ab(&expected);
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
         } else {
@@ -424,62 +424,6 @@ impl Ideal {
         } else {
             (state.commutation_age + 1.0).min(timeout)
         };
-    }
-
-    /// The estimate `seen` with what is known of a leg that floated (section 8), of which only the EMF between
-    /// the two others is seen. While its own sector lasts the phase's EMF crosses zero; when another phase
-    /// goes off, the two have met.
-    fn with_floated(&self, seen: &Vector2<f64>, sector_eff: usize) -> Vector2<f64> {
-        let Some(off) = self.state.off_prev else {
-            return *seen;
-        };
-        let [e_a, e_b] = to_ab(seen);
-        let [i_a, i_b] = self.state.i_prev;
-        let i_prev = [i_a, i_b, -(i_a + i_b)];
-        let e = [e_a, e_b, self.believed(-(e_a + e_b))];
-        let outgoing = sector::OUT_PHASE[sector_eff];
-        let change = if outgoing == off {
-            -e[off]
-        } else if i_prev[off].abs() > self.end.threshold {
-            return *seen;
-        } else {
-            2.0 / 3.0 * (e[outgoing] - e[off])
-        };
-        // Along the phase's own axis the difference of the two others stays.
-        let mut axis = Vector3::zeros();
-        axis[off] = change;
-        seen + clarke(&axis) * 1.5
-    }
-
-    /// An EMF within the largest bus.
-    fn believed(&self, e: f64) -> f64 {
-        e.clamp(-self.v_largest, self.v_largest)
-    }
-
-    /// By how much an estimated EMF moves in one period (section 8): round its circle, or along the side of
-    /// its hexagon that belongs to the sector. The pair's EMF tells the speed.
-    fn emf_motion(&self, e: &Vector2<f64>, sector: usize) -> Vector2<f64> {
-        let EmfMotion {
-            turns,
-            per_product,
-            line_limit,
-        } = self.motion;
-        let limit = line_limit.min(self.v_largest);
-        let [a, b, c]: [f64; 3] = phases(e).into();
-        let pair = Vector3::new(
-            sector::CORNER_A[sector],
-            sector::CORNER_B[sector],
-            -sector::CORNER_A[sector] - sector::CORNER_B[sector],
-        );
-        let line = pair.dot(&phases(e)).clamp(-limit, limit);
-        if turns {
-            let [across_a, across_b] = [c - b, a - c].map(|line| line.clamp(-limit, limit));
-            from_ab(across_a, across_b) * (per_product * line)
-        } else {
-            // Both of the pair against the off phase, whose sign is that of the corner across.
-            let [p, q, r]: [f64; 3] = pair.into();
-            from_ab(r - q, p - r) * (per_product * line * line)
-        }
     }
 
     /// Voltage that a command really applies while the currents are `i` (section 7).

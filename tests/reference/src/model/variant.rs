@@ -1,8 +1,8 @@
 //! Which steps and state words a variant has, for both models.
 
 use crate::spec::{
-    Candidates, CommutationEnd, Controller, EmfSource, FeedForward, LoopOptions, Modulated,
-    Modulation, OffLeg, Reference, Saturation, Spec,
+    Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg, Reference,
+    Saturation, Spec, Switch,
 };
 
 /// What follows from a specification's choice of controller and options.
@@ -21,7 +21,11 @@ pub struct Variant {
     /// Section 7: the voltage of the period that starts now is known.
     pub applied_now: bool,
     /// Section 10a: two vectors share the period.
-    pub modulated: Modulated,
+    pub modulated: Switch,
+    /// Section 8: what the modelled EMF lacks is integrated.
+    pub integral: Switch,
+    /// Section 11: compare values are shifted against the dead time.
+    pub dead_time: Switch,
     /// Section 10: what gives way outside the hexagon, if anything can lie there.
     pub saturation: Option<Saturation>,
 }
@@ -30,10 +34,13 @@ impl Variant {
     pub fn new(spec: &Spec) -> Self {
         let options = spec.loop_options();
         let (mut emf, mut predicts) = (Some(options.emf), true);
-        let mut modulated = Modulated::Off;
+        let mut modulated = Switch::Off;
+        let (mut integral, mut dead_time) = (Switch::Off, Switch::Off);
         let (commutates, floating, saturation) = match &spec.controller {
             Controller::Pdcc(pdcc) => {
                 let pair = pdcc.modulation == Modulation::Pair;
+                integral = pdcc.integral;
+                dead_time = pdcc.dead_time_compensation;
                 (pair, pair, Some(pdcc.saturation))
             }
             Controller::FcsMpc(fcs_mpc) => {
@@ -53,7 +60,8 @@ impl Variant {
             }
             Controller::PiPwm(pi_pwm) => {
                 predicts = false;
-                if pi_pwm.feed_forward == FeedForward::Off {
+                dead_time = pi_pwm.dead_time_compensation;
+                if pi_pwm.feed_forward == Switch::Off {
                     emf = None;
                 }
                 (false, false, Some(pi_pwm.saturation))
@@ -70,13 +78,15 @@ impl Variant {
             floating,
             applied_now: options.delay == 1 && (predicts || estimated),
             modulated,
+            integral,
+            dead_time,
             saturation,
         }
     }
 
     /// Section 11: legs are pulsed for a part of the period.
     pub fn pulsed(&self) -> bool {
-        self.saturation.is_some() || self.modulated == Modulated::On
+        self.saturation.is_some() || self.modulated == Switch::On
     }
 
     /// A command takes effect one period after its sample.
@@ -94,6 +104,21 @@ impl Variant {
         self.emf == Some(EmfSource::Estimated)
     }
 
+    /// Section 8: what the last period shows of its EMF takes part.
+    pub fn sees(&self) -> bool {
+        self.estimated() || self.integrates()
+    }
+
+    /// Section 8: what the modelled EMF lacks is integrated.
+    pub fn integrates(&self) -> bool {
+        self.integral == Switch::On
+    }
+
+    /// Section 11: compare values are shifted against the dead time.
+    pub fn compensates(&self) -> bool {
+        self.dead_time == Switch::On
+    }
+
     /// Section 8: a leg that was off may leave a phase's EMF unseen.
     pub fn unseen(&self) -> bool {
         self.estimated() && self.floating
@@ -101,7 +126,7 @@ impl Variant {
 
     /// Some step needs the voltage that a command really applies (section 7).
     pub fn applied(&self) -> bool {
-        self.applied_now || self.estimated()
+        self.applied_now || self.sees()
     }
 }
 

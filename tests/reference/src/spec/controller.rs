@@ -91,6 +91,12 @@ options! {
         modulation: Modulation,
         /// What gives way outside the hexagon.
         saturation: Saturation,
+        /// Whether what the modelled EMF lacks is integrated.
+        #[serde(default)]
+        integral: Switch,
+        /// Whether compare values are shifted against the dead time.
+        #[serde(default)]
+        dead_time_compensation: Switch,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
         /// Periods after which a commutation is taken as ended.
@@ -106,7 +112,7 @@ options! {
         /// Where a leg that is off is taken to sit.
         off_leg: OffLeg,
         /// Whether a second vector shares the period.
-        modulated: Modulated,
+        modulated: Switch,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
         /// Periods after which a commutation is taken as ended.
@@ -140,9 +146,12 @@ options! {
         /// Integral time and tracking time of the anti-windup, seconds.
         integral_time: f64,
         /// Whether the EMF is added to the voltage.
-        feed_forward: FeedForward,
+        feed_forward: Switch,
         /// What gives way outside the hexagon.
         saturation: Saturation,
+        /// Whether compare values are shifted against the dead time.
+        #[serde(default)]
+        dead_time_compensation: Switch,
     }
 }
 
@@ -166,16 +175,6 @@ pub enum OffLeg {
     Physical,
     /// In the middle of the two others.
     Nominal,
-}
-
-/// Whether FCS-MPC divides the period between two vectors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Modulated {
-    /// One vector lasts the whole period.
-    Off,
-    /// Two vectors share it.
-    On,
 }
 
 /// The switching table of PHCC.
@@ -223,13 +222,14 @@ impl TryFrom<TableText> for SwitchingTable {
     }
 }
 
-/// Whether the PI controller adds the EMF to its voltage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+/// An option that is on or off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum FeedForward {
-    /// It does.
+pub enum Switch {
+    /// It is on.
     On,
-    /// It does not; the integral has to find it.
+    /// It is off.
+    #[default]
     Off,
 }
 

@@ -4,7 +4,7 @@ use crate::variants::{self, Variant};
 use hexagen::{LegState, Sample};
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{
-    BitTrue, Candidates, Controller, Duties, FcsMpc, Ideal, Modulated, OffLeg, Reference,
+    BitTrue, Candidates, Controller, Duties, FcsMpc, Ideal, OffLeg, Reference, Switch,
 };
 
 /// The vectors' legs as the paper names them, by number.
@@ -89,7 +89,7 @@ fn the_nearest_of_the_list_is_chosen() {
                 variant.name
             );
             seen[trace.vector] += 1;
-            if options.modulated == Modulated::On {
+            if options.modulated == Switch::On {
                 shares_the_period(trace.vector, &list, &duties, &cost, v_bus);
                 continue;
             }
@@ -161,7 +161,7 @@ fn equals_go_to_the_first() {
     for (variant, options) in fcs_mpc() {
         let (inverter, common) = (&variant.spec.inverter, variant.spec.loop_options());
         if options.candidates != Candidates::ThreePhase
-            || options.modulated == Modulated::On
+            || options.modulated == Switch::On
             || common.reference != Reference::QuasiSquare
             || variants::has_rotor(&variant)
         {

@@ -4,7 +4,7 @@
 use crate::variants;
 use hexagen::Sample;
 use hexagen_reference::{
-    BitTrue, Controller, FeedForward, FormatTable, Ideal, Reference, Saturation, Spec,
+    BitTrue, Controller, FormatTable, Ideal, Reference, Saturation, Spec, Switch,
 };
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ fn follows_a_textbook_controller() {
         let Controller::PiPwm(options) = spec.controller else {
             continue;
         };
-        if options.feed_forward == FeedForward::On
+        if options.feed_forward == Switch::On
             || options.saturation != Saturation::Nearest
             || common.reference != Reference::QuasiSquare
             || variants::has_rotor(&variant)

@@ -2,8 +2,8 @@
 
 use hexagen::{Format, Rounding};
 use hexagen_reference::{
-    Candidates, Controller, DiscretePhase, EmfSource, FeedForward, FormatTable, Modulation,
-    Reference, Spec,
+    Candidates, Controller, DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec,
+    Switch,
 };
 use std::f64::consts::TAU;
 
@@ -79,7 +79,7 @@ calibration_log2 = 5
 pub fn all() -> Vec<Variant> {
     let mut variants = Vec::new();
     for (motor, text) in MOTORS {
-        for index in 0..1152 {
+        for index in 0..1536 {
             let mut left = index;
             let mut pick = |count: usize| {
                 let picked = left % count;
@@ -88,7 +88,12 @@ pub fn all() -> Vec<Variant> {
             };
             let modulation = ["three_phase", "pair"][pick(2)];
             let saturation = ["keep_angle", "nearest", "torque_priority"][pick(3)];
-            let (emf, filter) = [("estimated", 1.0), ("estimated", 0.4), ("model", 1.0)][pick(3)];
+            let (emf, filter, integral) = [
+                ("estimated", 1.0, "off"),
+                ("estimated", 0.4, "off"),
+                ("model", 1.0, "off"),
+                ("model", 1.0, "on"),
+            ][pick(4)];
             let reference = ["quasi_square", "proportional"][pick(2)];
             let advance = [0.0, 1.5][pick(2)];
             let delay = [1, 0][pick(2)];
@@ -103,6 +108,7 @@ modulation = "{modulation}"
 saturation = "{saturation}"
 emf = "{emf}"
 emf_filter = {filter:?}
+integral = "{integral}"
 reference = "{reference}"
 advance = {advance:?}
 delay = {delay}
@@ -113,7 +119,7 @@ commutation_timeout = 8
 "#
             );
             let name = format!(
-                "{motor}: {modulation} {saturation} {emf} {filter} {reference} advance {advance} delay {delay} \
+                "{motor}: {modulation} {saturation} {emf} {filter} integral {integral} {reference} advance {advance} delay {delay} \
                  {discretisation} {capture} {bus}"
             );
             variants.push(variant(name, text, capture, bus, &options));
@@ -276,6 +282,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_decay", shift(b * motor.resistance)),
         ("k_filter", shift(options.emf_filter)),
         ("k_slope", shift(slope)),
+        ("k_integral", shift(1.0 / 8.0)),
         ("k_third", shift(1.0 / 3.0)),
         ("k_sixth", shift(1.0 / 6.0)),
         ("score", 2 * f_v - 30),
@@ -338,7 +345,7 @@ pub fn saturates(variant: &Variant) -> bool {
 pub fn has_rotor(variant: &Variant) -> bool {
     let options = variant.spec.loop_options();
     let needs_emf = match &variant.spec.controller {
-        Controller::PiPwm(pi_pwm) => pi_pwm.feed_forward == FeedForward::On,
+        Controller::PiPwm(pi_pwm) => pi_pwm.feed_forward == Switch::On,
         Controller::Phcc(_) => options.delay == 1,
         Controller::Pdcc(_) | Controller::FcsMpc(_) => true,
     };

@@ -6,8 +6,8 @@ use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, floor, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
-    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Modulated, Reference,
-    Saturation, Spec,
+    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation,
+    Spec, Switch,
 };
 
 /// Largest magnitude of a coefficient's word.
@@ -58,6 +58,7 @@ pub struct Constants {
     pub k_r: Coefficient,
     pub k_filter: Coefficient,
     pub k_slope: Coefficient,
+    pub k_integral: Coefficient,
     pub k_third: Coefficient,
     pub k_set: Coefficient,
     pub k_torque: Coefficient,
@@ -255,14 +256,14 @@ impl Constants {
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
                 (Part::Commutation, commutation.is_some()),
-                (Part::Estimated, estimated),
+                (Part::Sight, variant.sees()),
                 (Part::VoltageCommand, variant.applied_now && !floating),
                 (Part::TerminalCommand, variant.applied_now && floating),
                 (Part::OffMemory, variant.unseen()),
-                (Part::EmfMemory, filtered),
+                (Part::EmfMemory, filtered || variant.integrates()),
                 (
                     Part::Integral,
-                    matches!(spec.controller, Controller::PiPwm(_)),
+                    variant.integrates() || matches!(spec.controller, Controller::PiPwm(_)),
                 ),
                 (
                     Part::Hysteresis,
@@ -295,13 +296,14 @@ impl Constants {
             emf_turns: motion.turns,
             filtered,
             advanced,
-            k_di: scale.only_if(estimated, "k_di", ohm / b)?,
-            k_r: scale.only_if(estimated, "k_r", ohm * resistance)?,
+            k_di: scale.only_if(variant.sees(), "k_di", ohm / b)?,
+            k_r: scale.only_if(variant.sees(), "k_r", ohm * resistance)?,
             k_filter: scale.only_if(filtered, "k_filter", options.emf_filter)?,
+            k_integral: scale.only_if(variant.integrates(), "k_integral", 1.0 / 8.0)?,
             k_slope: scale.only_if(estimated, "k_slope", slope)?,
             k_third: scale.only_if(
                 (floating && variant.applied())
-                    || variant.modulated == Modulated::On
+                    || variant.modulated == Switch::On
                     || saturation.is_some_and(|rule| rule != Saturation::KeepAngle),
                 "k_third",
                 1.0 / 3.0,

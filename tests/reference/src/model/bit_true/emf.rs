@@ -5,24 +5,39 @@ use super::state::State;
 use crate::exact::halve;
 use crate::model::sector::OUT_PHASE;
 
+/// What the period that ends with the currents `i` shows of the EMF of phases a, b.
+#[inline]
+fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+    let State { i_prev, v_prev, .. } = state;
+    [0, 1].map(|x| {
+        let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
+        v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
+    })
+}
+
 /// EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
 pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
-    let State {
-        i_prev,
-        v_prev,
-        e_prev,
-        ..
-    } = state;
+    let (seen, e_prev) = (seen(k, state, i), &state.e_prev);
     [0, 1].map(|x| {
-        let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
-        let e = v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x]);
         let e = if k.filtered {
-            e_prev[x] + k.k_filter.mul(e - e_prev[x])
+            e_prev[x] + k.k_filter.mul(seen[x] - e_prev[x])
         } else {
-            e
+            seen[x]
         };
         e.clamp(-k.v_largest, k.v_largest)
+    })
+}
+
+/// What the modelled EMF of phases a, b lacks, with what the period that ends with the currents `i` adds to it.
+#[inline]
+pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+    let seen = seen(k, state, i);
+    let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
+    [0, 1].map(|x| {
+        let lack = believed(seen[x] - state.e_prev[x]);
+        let sum = state.integral[x];
+        believed(sum + k.k_integral.mul(lack - sum))
     })
 }
 

@@ -1,5 +1,6 @@
 //! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
 
+mod dead_time;
 mod deadbeat;
 mod divided;
 mod fcs_mpc;
@@ -89,7 +90,7 @@ pub enum Law {
 impl Law {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         Ok(match &spec.controller {
-            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(options, scale)?),
+            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options, scale)?),
             Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(options, scale)?),
             Controller::Phcc(options) => {
                 Self::Phcc(Box::new(phcc::Phcc::new(spec, options, scale)?))

@@ -38,7 +38,7 @@ pub enum Part {
     Direction,
     Rotor,
     Commutation,
-    Estimated,
+    Sight,
     VoltageCommand,
     TerminalCommand,
     OffMemory,
@@ -177,7 +177,7 @@ macro_rules! for_each_word {
             $show!("commutating", $state.commutating);
             $show!("commutation_age", $state.commutation_age);
         }
-        if $parts.has(Part::Estimated) {
+        if $parts.has(Part::Sight) {
             $show!("i_a_prev", $state.i_prev[0]);
             $show!("i_b_prev", $state.i_prev[1]);
         }
@@ -191,7 +191,7 @@ macro_rules! for_each_word {
             $show!("t_c_cmd", $state.t_cmd[2]);
             $show!("off_cmd", $state.off_cmd);
         }
-        if $parts.has(Part::Estimated) {
+        if $parts.has(Part::Sight) {
             $show!("v_a_prev", $state.v_prev[0]);
             $show!("v_b_prev", $state.v_prev[1]);
         }

@@ -1,5 +1,6 @@
 //! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
 
+mod dead_time;
 mod deadbeat;
 mod divided;
 mod fcs_mpc;
@@ -77,7 +78,7 @@ impl Command {
 /// A controller's own part of the step.
 #[derive(Clone, Debug)]
 pub enum Law {
-    Pdcc(crate::Pdcc),
+    Pdcc(pdcc::Pdcc),
     FcsMpc(crate::FcsMpc),
     Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
@@ -86,7 +87,7 @@ pub enum Law {
 impl Law {
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         Ok(match &spec.controller {
-            Controller::Pdcc(options) => Self::Pdcc(*options),
+            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options)),
             Controller::FcsMpc(options) => Self::FcsMpc(*options),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
@@ -95,7 +96,7 @@ impl Law {
 
     pub fn decide(&self, now: &Inputs) -> Decision {
         match self {
-            Self::Pdcc(options) => pdcc::decide(options, now),
+            Self::Pdcc(law) => law.decide(now),
             Self::FcsMpc(options) => fcs_mpc::decide(options, now),
             Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),

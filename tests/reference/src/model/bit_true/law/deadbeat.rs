@@ -25,11 +25,18 @@ impl Deadbeat {
         })
     }
 
+    /// The measured current as a voltage, phases a, b.
+    #[inline]
+    pub fn held(&self, now: &Inputs) -> [f64; 2] {
+        now.i.map(|i| self.k_hold.mul(i))
+    }
+
     /// Phases a, b, not limited.
     #[inline]
     pub fn voltage(&self, now: &Inputs) -> [f64; 2] {
+        let held = self.held(now);
         [0, 1].map(|x| {
-            let held = now.j[x] - self.k_hold.mul(now.i[x]);
+            let held = now.j[x] - held[x];
             if self.delayed {
                 held + self.k_decay.mul(now.v_now[x] - now.e_now[x]) + now.e[x] + now.e_now[x]
                     - now.v_now[x]

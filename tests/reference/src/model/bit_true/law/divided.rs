@@ -42,7 +42,7 @@ pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
 pub fn command(now: &Inputs, terminal: [f64; 3], off: Option<usize>) -> Command {
     Command {
         legs: Legs {
-            compare: terminal.map(|t| pulses::compare_of(now, t)),
+            compare: terminal.map(|t| pulses::compare_of(now, t, 0.0)),
             state: [0, 1, 2].map(|x| {
                 if off == Some(x) {
                     LegState::Off

@@ -9,7 +9,7 @@ use crate::exact::{Shift, floor, halve, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use crate::{Candidates, Error, Modulated};
+use crate::{Candidates, Error, Switch};
 
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
@@ -32,7 +32,7 @@ impl FcsMpc {
         Ok(Self {
             candidates: options.candidates,
             floating,
-            modulated: options.modulated == Modulated::On,
+            modulated: options.modulated == Switch::On,
             deadbeat: Deadbeat::new(scale)?,
             sixth: Sixth::new(scale)?,
             score: scale.product_if(floating, "score")?,

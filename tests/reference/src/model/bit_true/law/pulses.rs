@@ -22,16 +22,17 @@ fn nominal(now: &Inputs, t: f64) -> f64 {
     }
 }
 
-/// The compare value of a leg that is high for the share of the period that `t` is of the bus.
+/// The compare value of a leg that is high for the share of the period that `t` is of the bus; `shift` is against the
+/// dead time.
 #[inline]
-pub fn compare_of(now: &Inputs, t: f64) -> u16 {
-    compare(now, nominal(now, t))
+pub fn compare_of(now: &Inputs, t: f64, shift: f64) -> u16 {
+    compare(now, nominal(now, t) + shift)
 }
 
 /// Three pulsed legs, their common mode in the middle of the bus; with terminal voltages where the
-/// variant keeps them.
+/// variant keeps them. `shifts` are against the dead time.
 #[inline]
-pub fn three(now: &Inputs, u: [f64; 2], terminals: bool) -> Command {
+pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Command {
     let u = [u[0], u[1], -(u[0] + u[1])];
     let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
     let terminal = if terminals {
@@ -42,7 +43,8 @@ pub fn three(now: &Inputs, u: [f64; 2], terminals: bool) -> Command {
     };
     Command {
         legs: Legs {
-            compare: u.map(|u_x| compare(now, nominal(now, u_x - middle) + now.k.half)),
+            compare: [0, 1, 2]
+                .map(|x| compare(now, nominal(now, u[x] - middle) + shifts[x] + now.k.half)),
             state: [LegState::Pulsed; 3],
         },
         terminal,
@@ -50,9 +52,9 @@ pub fn three(now: &Inputs, u: [f64; 2], terminals: bool) -> Command {
     }
 }
 
-/// One pulsed leg of the conducting pair, the other low, the third off.
+/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are against the dead time.
 #[inline]
-pub fn pair(now: &Inputs, u: [f64; 2]) -> Command {
+pub fn pair(now: &Inputs, u: [f64; 2], shifts: [f64; 3]) -> Command {
     let mut command = Command::idle(Legs::OFF);
     let sector_eff = now.sector_eff;
     if sector_eff == 0 {
@@ -66,7 +68,7 @@ pub fn pair(now: &Inputs, u: [f64; 2]) -> Command {
     } else {
         (minus, plus, -v)
     };
-    command.legs.compare[pulsed] = compare_of(now, t);
+    command.legs.compare[pulsed] = compare_of(now, t, shifts[pulsed]);
     command.legs.state[pulsed] = LegState::Pulsed;
     command.legs.state[low] = LegState::Low;
     command.terminal[pulsed] = t;

@@ -4,7 +4,7 @@ use super::{Decision, Inputs, deadbeat, divided, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
-use crate::{Candidates, FcsMpc, Modulated, OffLeg};
+use crate::{Candidates, FcsMpc, OffLeg, Switch};
 use nalgebra::{Vector2, Vector3};
 
 /// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
@@ -24,8 +24,8 @@ pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
         }
     }
     let (u, command) = match options.modulated {
-        Modulated::Off => (voltage(options, now, vector), whole::command(now, vector)),
-        Modulated::On => divided::command(options, now, &u_unsat, vector),
+        Switch::Off => (voltage(options, now, vector), whole::command(now, vector)),
+        Switch::On => divided::command(options, now, &u_unsat, vector),
     };
     Decision {
         u_unsat,

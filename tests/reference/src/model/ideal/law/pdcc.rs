@@ -1,30 +1,48 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
+use super::dead_time::{DeadTime, kept_by_deadbeat};
 use super::{Decision, Inputs, deadbeat, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
-use crate::{Modulation, Pdcc};
+use crate::{Modulation, Spec};
 
-pub fn decide(options: &Pdcc, now: &Inputs) -> Decision {
-    let u_unsat = deadbeat::voltage(now);
-    let limited = limit::limit(
-        options.saturation,
-        &phases(&u_unsat),
-        &phases(&now.e),
-        now.v_bus,
-    );
-    let command = if options.modulation == Modulation::Pair && !now.commutating {
-        pulses::pair(now, &phases(&u_unsat))
-    } else {
-        pulses::three(now, &limited.u)
-    };
-    Decision {
-        u_unsat,
-        u: clarke(&limited.u),
-        reach: limited.reach,
-        vector: 0,
-        command,
-        integral: to_ab(&now.integral),
-        rises: now.rises,
+#[derive(Clone, Copy, Debug)]
+pub struct Pdcc {
+    options: crate::Pdcc,
+    dead_time: DeadTime,
+}
+
+impl Pdcc {
+    pub fn new(spec: &Spec, options: &crate::Pdcc) -> Self {
+        Self {
+            options: *options,
+            dead_time: DeadTime::new(spec),
+        }
+    }
+
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        let options = &self.options;
+        let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
+        let u_unsat = deadbeat::voltage(now);
+        let limited = limit::limit(
+            options.saturation,
+            &phases(&u_unsat),
+            &phases(&now.e),
+            now.v_bus,
+        );
+        let command = if options.modulation == Modulation::Pair && !now.commutating {
+            pulses::pair(now, &phases(&u_unsat), &shifts)
+        } else {
+            pulses::three(now, &limited.u, &shifts)
+        };
+        Decision {
+            u_unsat,
+            u: clarke(&limited.u),
+            reach: limited.reach,
+            vector: 0,
+            command,
+            integral: to_ab(&now.integral),
+            rises: now.rises,
+        }
     }
 }

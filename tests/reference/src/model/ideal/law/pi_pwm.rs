@@ -1,5 +1,6 @@
 //! PI control: proportional share, integral and fed-forward EMF, limited and pulsed.
 
+use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
@@ -15,6 +16,7 @@ pub struct PiPwm {
     k_i: f64,
     /// Largest integral, volt.
     integral_max: f64,
+    dead_time: DeadTime,
 }
 
 impl PiPwm {
@@ -23,6 +25,7 @@ impl PiPwm {
             saturation: options.saturation,
             k_p: reference_gain(spec),
             k_i: spec.inverter.t_s / options.integral_time,
+            dead_time: DeadTime::new(spec),
             integral_max: spec.inverter.v_bus_max()?,
         })
     }
@@ -43,7 +46,7 @@ impl PiPwm {
             u,
             reach: limited.reach,
             vector: 0,
-            command: pulses::three(now, &limited.u),
+            command: pulses::three(now, &limited.u, &self.dead_time.shifts(now, 1.0)),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
             rises: now.rises,
         }

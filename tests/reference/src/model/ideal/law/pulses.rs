@@ -6,12 +6,14 @@ use crate::model::sector;
 use hexagen::LegState;
 use nalgebra::Vector3;
 
-/// Three pulsed legs, their common mode in the middle of the bus.
-pub fn three(now: &Inputs, u: &Vector3<f64>) -> Command {
+/// Three pulsed legs, their common mode in the middle of the bus; `shifts` are shares of the period.
+pub fn three(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     let v_bus = now.v_bus;
     let terminal = u.map(|u_x| (u_x - u.max().midpoint(u.min()) + v_bus / 2.0).clamp(0.0, v_bus));
     let duties = Duties {
-        duty: (terminal / v_bus).into(),
+        duty: (terminal / v_bus + shifts)
+            .map(|duty| duty.clamp(0.0, 1.0))
+            .into(),
         state: [LegState::Pulsed; 3],
     };
     Command {
@@ -21,8 +23,8 @@ pub fn three(now: &Inputs, u: &Vector3<f64>) -> Command {
     }
 }
 
-/// One pulsed leg of the conducting pair, the other low, the third off.
-pub fn pair(now: &Inputs, u: &Vector3<f64>) -> Command {
+/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are shares of the period.
+pub fn pair(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     let mut command = Command::idle(Duties::OFF);
     let (sector_eff, v_bus) = (now.sector_eff, now.v_bus);
     if sector_eff == 0 {
@@ -36,7 +38,7 @@ pub fn pair(now: &Inputs, u: &Vector3<f64>) -> Command {
         (minus, plus)
     };
     command.terminal[pulsed] = v.abs();
-    command.duties.duty[pulsed] = v.abs() / v_bus;
+    command.duties.duty[pulsed] = (v.abs() / v_bus + shifts[pulsed]).clamp(0.0, 1.0);
     command.duties.state[pulsed] = LegState::Pulsed;
     command.duties.state[low] = LegState::Low;
     command.off = Some(sector::OUT_PHASE[sector_eff]);

@@ -1,0 +1,39 @@
+//! Shifts of the compare values against the dead time (section 11).
+
+use super::Inputs;
+use crate::exact::{Coefficient, round_half_up};
+use crate::model::bit_true::constants::Scale;
+use crate::model::variant::reference_gain;
+use crate::{Error, Spec};
+
+/// Share of the largest set-point within which the shift is in proportion to the current.
+const SOFT_BAND: f64 = 0.1;
+
+/// Coefficient and limit; zero where nothing is compensated.
+#[derive(Clone, Debug)]
+pub struct DeadTime {
+    k_dead: Coefficient,
+    limit: f64,
+}
+
+impl DeadTime {
+    pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        let inverter = &spec.inverter;
+        let lost = inverter.dead_time / inverter.t_s;
+        let slope =
+            lost * inverter.v_bus / (2.0 * reference_gain(spec) * SOFT_BAND * inverter.max_current);
+        let limit = round_half_up(lost * f64::from(inverter.timer_period) * scale.two_v);
+        let compensated = scale.variant.compensates();
+        Ok(Self {
+            k_dead: scale.only_if(compensated, "k_dead", slope)?,
+            limit: if compensated { limit } else { 0.0 },
+        })
+    }
+
+    /// Shifts of legs a, b, c; `held` is the measured current as a voltage, phases a, b.
+    #[inline]
+    pub fn shifts(&self, now: &Inputs, held: [f64; 2]) -> [f64; 3] {
+        let [a, b] = [now.j[0] + held[0], now.j[1] + held[1]];
+        [a, b, -(a + b)].map(|flow| self.k_dead.mul(flow).clamp(-self.limit, self.limit))
+    }
+}

@@ -1,0 +1,89 @@
+//! The EMF from what a period shows of it, moved on by the motor's shape (section 8).
+
+use super::Ideal;
+use super::vector::{clarke, from_ab, phases, to_ab};
+use crate::DiscretePhase;
+use crate::emf_motion::EmfMotion;
+use crate::model::sector;
+use nalgebra::{Vector2, Vector3};
+
+/// Share that the integral of a modelled EMF takes over of what it lacks.
+const INTEGRAL_SHARE: f64 = 1.0 / 8.0;
+
+impl Ideal {
+    /// The estimate `seen` with what is known of a leg that floated (section 8), of which only the EMF between
+    /// the two others is seen. While its own sector lasts the phase's EMF crosses zero; when another phase
+    /// goes off, the two have met.
+    pub(super) fn with_floated(&self, seen: &Vector2<f64>, sector_eff: usize) -> Vector2<f64> {
+        let Some(off) = self.state.off_prev else {
+            return *seen;
+        };
+        let [e_a, e_b] = to_ab(seen);
+        let [i_a, i_b] = self.state.i_prev;
+        let i_prev = [i_a, i_b, -(i_a + i_b)];
+        let e = [e_a, e_b, self.believed(-(e_a + e_b))];
+        let outgoing = sector::OUT_PHASE[sector_eff];
+        let change = if outgoing == off {
+            -e[off]
+        } else if i_prev[off].abs() > self.end.threshold {
+            return *seen;
+        } else {
+            2.0 / 3.0 * (e[outgoing] - e[off])
+        };
+        // Along the phase's own axis the difference of the two others stays.
+        let mut axis = Vector3::zeros();
+        axis[off] = change;
+        seen + clarke(&axis) * 1.5
+    }
+
+    /// What the period shows of its EMF that ends with the currents `i` of phases a, b: v - (i - a i_prev)/b.
+    pub(super) fn emf_seen(&self, i: [f64; 2]) -> Vector2<f64> {
+        let [pa, pb] = self.state.i_prev;
+        let change = |now: f64, before: f64| (now - before).clamp(-self.di_max, self.di_max);
+        let d = from_ab(change(i[0], pa), change(i[1], pb));
+        let i_prev = from_ab(pa, pb);
+        let DiscretePhase { a, b } = self.phase;
+        // i - a i_prev = d + (1 - a) i_prev.
+        from_ab(self.state.v_prev[0], self.state.v_prev[1]) - (d + i_prev * (1.0 - a)) / b
+    }
+
+    /// An EMF within the largest bus.
+    pub(super) fn believed(&self, e: f64) -> f64 {
+        e.clamp(-self.v_largest, self.v_largest)
+    }
+
+    /// By how much an estimated EMF moves in one period (section 8): round its circle, or along the side of
+    /// its hexagon that belongs to the sector. The pair's EMF tells the speed.
+    pub(super) fn emf_motion(&self, e: &Vector2<f64>, sector: usize) -> Vector2<f64> {
+        let EmfMotion {
+            turns,
+            per_product,
+            line_limit,
+        } = self.motion;
+        let limit = line_limit.min(self.v_largest);
+        let [a, b, c]: [f64; 3] = phases(e).into();
+        let pair = Vector3::new(
+            sector::CORNER_A[sector],
+            sector::CORNER_B[sector],
+            -sector::CORNER_A[sector] - sector::CORNER_B[sector],
+        );
+        let line = pair.dot(&phases(e)).clamp(-limit, limit);
+        if turns {
+            let [across_a, across_b] = [c - b, a - c].map(|line| line.clamp(-limit, limit));
+            from_ab(across_a, across_b) * (per_product * line)
+        } else {
+            // Both of the pair against the off phase, whose sign is that of the corner across.
+            let [p, q, r]: [f64; 3] = pair.into();
+            from_ab(r - q, p - r) * (per_product * line * line)
+        }
+    }
+
+    /// What the modelled EMF lacks, with what the period adds to it that ends with the currents `i`.
+    pub(super) fn integrated(&self, i: [f64; 2]) -> Vector2<f64> {
+        let pair = |[a, b]: [f64; 2]| from_ab(a, b);
+        let lack = self.emf_seen(i) - pair(self.state.e_prev);
+        let lack = pair(to_ab(&lack).map(|lack| self.believed(lack)));
+        let sum = pair(self.state.integral);
+        sum + (lack - sum) * INTEGRAL_SHARE
+    }
+}
