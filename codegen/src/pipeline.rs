@@ -233,7 +233,13 @@ kind = "pdcc"
 
     #[test]
     fn every_controller_generates_for_the_paper_motor() {
-        let common = ["emf=estimated", "emf=model", "emf=estimated,emf_filter=0.7"];
+        // The second is for regulators that have no use for the EMF.
+        let common = [
+            "emf=estimated",
+            "discretisation=exact",
+            "emf=model",
+            "emf=estimated,emf_filter=0.7",
+        ];
         let rest = [
             "delay=1",
             "delay=0",
@@ -253,7 +259,10 @@ kind = "pdcc"
         let pi = ["keep_angle", "nearest", "torque_priority"]
             .into_iter()
             .map(|rule| format!("pi-pwm:saturation={rule}"))
-            .chain(["pi-pwm:feed_forward=off".to_owned()]);
+            .chain([
+                "pi-pwm:feed_forward=off".to_owned(),
+                "pi-pwm:six_step=on".to_owned(),
+            ]);
         let ph = [
             "phcc",
             "phcc:table=printed",

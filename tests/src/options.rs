@@ -55,6 +55,12 @@ const UNAVAILABLE: &[(&str, &str, &str)] = &[
     ("pi-pwm", "emf", "integral"),
 ];
 
+/// Defaults that are left unstated, because another option rules their statement out: kind, option, value.
+const UNSTATED: &[(&str, &str, &str)] = &[
+    ("pi-pwm", "feed_forward", "on"),
+    ("pi-pwm", "saturation", "nearest"),
+];
+
 /// A switching table that no derivation gives: every vector occurs.
 const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
     2, 2, 9, 9, 0, 13, 6, 12, 3, 8, 1, 11, 10, 5, 14, 7, 4, 0, 15, 3, 12, 6, 8, 1, 9, 10, 13, 2, 5, 11, 7, 4]";
@@ -124,6 +130,13 @@ const OWN: &[Row] = &[
         &[
             ("on", &[("controller", "feed_forward", "\"on\"")]),
             ("off", &[("controller", "feed_forward", "\"off\"")]),
+        ],
+    ),
+    (
+        "six_step",
+        &[
+            ("off", &[]),
+            ("on", &[("controller", "six_step", "\"on\"")]),
         ],
     ),
 ];
@@ -333,9 +346,17 @@ pub fn kind(name: &str) -> Kind {
 
 fn axis(kind: &str, (name, values): &Row) -> Axis {
     let is_available = |value: &&Value| !UNAVAILABLE.contains(&(kind, *name, value.0));
+    let stated = |value: &Value| {
+        let is_unstated = UNSTATED.contains(&(kind, *name, value.0));
+        if is_unstated {
+            (value.0, &[][..])
+        } else {
+            *value
+        }
+    };
     Axis {
         name,
-        values: values.iter().filter(is_available).copied().collect(),
+        values: values.iter().filter(is_available).map(stated).collect(),
     }
 }
 

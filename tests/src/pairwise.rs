@@ -30,10 +30,13 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
         if witnesses.contains_key(&pair) {
             continue;
         }
-        // Where few rows are accepted, random ones may all miss; that of the first values is the likeliest.
+        // Where few rows are accepted, random ones may all miss; that of the first values and those that
+        // are known to be accepted are likelier.
         let first = std::iter::once(vec![0; lengths.len()]);
         let random = (0..ATTEMPTS).map(|_| order.row(lengths));
-        let mut rows = first.chain(random).map(|row| with_pair(row, pair));
+        let known: BTreeSet<Vec<usize>> = witnesses.values().cloned().collect();
+        let rows = first.chain(random).chain(known);
+        let mut rows = rows.map(|row| with_pair(row, pair));
         if let Some(row) = rows.find(|row| accepts(row)) {
             let known = pairs(lengths)
                 .into_iter()

@@ -30,8 +30,13 @@ const WITHOUT_EFFECT: &[&str] = &[
     "phcc emf=unfiltered delay=0",
     "phcc emf=model delay=0",
     "pi-pwm saturation=torque_priority feed_forward=off",
+    "pi-pwm saturation=torque_priority six_step=on",
+    "pi-pwm saturation=keep_angle six_step=on",
     "pi-pwm feed_forward=off emf=unfiltered",
     "pi-pwm feed_forward=off emf=model",
+    "pi-pwm six_step=on emf=unfiltered",
+    "pi-pwm six_step=on emf=model",
+    "pi-pwm six_step=on reference=proportional",
     "pi-pwm reference=proportional advance=1.5",
     "pi-pwm reference=proportional advance=2",
 ];

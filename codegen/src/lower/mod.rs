@@ -16,7 +16,7 @@ mod supervise;
 pub use emf::{FluxModel, ModelledEmf};
 pub use limit::Limited;
 pub use measure::{Currents, Hall};
-pub use modulate::{Applied, Command, OffLeg, PairModulation};
+pub use modulate::{Applied, Command, OffLeg, PairModulation, PairPulses};
 use number::round_half_up;
 pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};

@@ -3,7 +3,18 @@
 use super::measure::Currents;
 use super::{Bus, Coefficient, Limited, Lowering};
 use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN, SECTOR_CURRENT};
-use crate::ir::{Comparison, Interval, StateId, Value};
+use crate::ir::{Comparison, Interval, StateId, TableId, Value};
+
+/// Pulses of a conducting pair, per leg.
+#[derive(Clone, Copy, Debug)]
+pub struct PairPulses {
+    /// Compare values.
+    pub compares: [Value; 3],
+    /// Leg words: 0 pulsed, 1 low, 2 off.
+    pub legs: [Value; 3],
+    /// Terminal voltages; of an off leg 0.
+    pub terminals: [Value; 3],
+}
 
 /// Compare values and leg states of phases a, b, c.
 #[derive(Clone, Copy, Debug)]
@@ -239,6 +250,82 @@ impl Lowering<'_> {
         self.pick(is_a, is_b, values)
     }
 
+    /// Per leg a table of its sign by sector.
+    pub fn pair_signs(&mut self) -> [TableId; 3] {
+        [0, 1, 2].map(|phase| {
+            let column = std::iter::once(0)
+                .chain(SECTOR_CURRENT.iter().map(|legs| legs[phase]))
+                .collect();
+            let name = ["pair_sign_a", "pair_sign_b", "pair_sign_c"][phase];
+            let doc = format!(
+                "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
+                ["a", "b", "c"][phase]
+            );
+            self.b.program.table(name, column, &[doc])
+        })
+    }
+
+    /// A line voltage within the bus.
+    pub fn limit_line(&mut self, line: Value, bus: Bus) -> Value {
+        let low = self.b.neg(bus.volts);
+        let line = self.b.max(line, low);
+        let line = self.b.min(line, bus.volts);
+        self.b.name("line", line)
+    }
+
+    /// The limited line voltage of the pair with these signs: one leg pulsed, its partner low, the third off.
+    pub fn pulse_pair(
+        &mut self,
+        sign: [Value; 3],
+        line: Value,
+        bus: Bus,
+        shifts: Option<[Value; 3]>,
+    ) -> PairPulses {
+        let zero = self.zero();
+        let forward = self.b.compare(Comparison::LessEqual, zero, line);
+        self.b.name("line_forward", forward);
+        let volts = self.b.abs(line);
+        self.b.name("line_volts", volts);
+        let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
+        let pulsed_sign = self.b.select(forward, plus, minus);
+        self.b.name("pulsed_sign", pulsed_sign);
+        let is_pulsed = [0, 1, 2].map(|x| {
+            let is_pulsed = self.b.compare(Comparison::Equal, sign[x], pulsed_sign);
+            self.b
+                .name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed)
+        });
+        let shift = shifts.map(|shifts| self.pick(is_pulsed[0], is_pulsed[1], shifts));
+        let compare = self.compare_of("compare_line", volts, bus, shift);
+        let legs = [0, 1, 2].map(|x| {
+            let is_pulsed = is_pulsed[x];
+            let zero = self.zero();
+            let own_compare = self.b.select(is_pulsed, compare, zero);
+            let zero = self.zero();
+            let own_terminal = self.b.select(is_pulsed, volts, zero);
+            let zero = self.zero();
+            let is_off = self.b.compare(Comparison::Equal, sign[x], zero);
+            let (pulsed, low, off) = (self.b.literal(0), self.b.literal(1), self.b.literal(2));
+            let driven = self.b.select(is_pulsed, pulsed, low);
+            let leg = self.b.select(is_off, off, driven);
+            self.b.name(
+                ["compare_a_pair", "compare_b_pair", "compare_c_pair"][x],
+                own_compare,
+            );
+            self.b
+                .name(["leg_a_pair", "leg_b_pair", "leg_c_pair"][x], leg);
+            self.b.name(
+                ["terminal_a_pair", "terminal_b_pair", "terminal_c_pair"][x],
+                own_terminal,
+            );
+            [own_compare, leg, own_terminal]
+        });
+        PairPulses {
+            compares: legs.map(|[compare, ..]| compare),
+            legs: legs.map(|[_, leg, _]| leg),
+            terminals: legs.map(|[.., terminal]| terminal),
+        }
+    }
+
     /// Three pulses while commutating, else the conducting pair alone: one leg pulsed, its partner low, the third off.
     pub fn modulate_pair(
         &mut self,
@@ -281,17 +368,7 @@ impl Lowering<'_> {
         let none = self.b.literal(0);
         let outside = self.b.literal(0);
 
-        let signs = [0, 1, 2].map(|phase| {
-            let column = std::iter::once(0)
-                .chain(SECTOR_CURRENT.iter().map(|legs| legs[phase]))
-                .collect();
-            let name = ["pair_sign_a", "pair_sign_b", "pair_sign_c"][phase];
-            let doc = format!(
-                "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
-                ["a", "b", "c"][phase]
-            );
-            self.b.program.table(name, column, &[doc])
-        });
+        let signs = self.pair_signs();
         self.b.guarded_stage(
             "modulate_pair",
             pairing,
@@ -307,56 +384,23 @@ impl Lowering<'_> {
         let terms = [0, 1, 2].map(|x| self.b.mul(sign[x], voltages[x], 0));
         let line = self.b.add(terms[0], terms[1]);
         let line = self.b.add(line, terms[2]);
-        let low = self.b.neg(bus.volts);
-        let line = self.b.max(line, low);
-        let line = self.b.min(line, bus.volts);
-        self.b.name("line", line);
-        let zero = self.zero();
-        let forward = self.b.compare(Comparison::LessEqual, zero, line);
-        self.b.name("line_forward", forward);
-        let volts = self.b.abs(line);
-        self.b.name("line_volts", volts);
-        let (plus, minus) = (self.b.literal(1), self.b.literal(-1));
-        let pulsed_sign = self.b.select(forward, plus, minus);
-        self.b.name("pulsed_sign", pulsed_sign);
-        let is_pulsed = [0, 1, 2].map(|x| {
-            let is_pulsed = self.b.compare(Comparison::Equal, sign[x], pulsed_sign);
-            self.b
-                .name(["pulsed_a", "pulsed_b", "pulsed_c"][x], is_pulsed)
-        });
-        let shift = shifts.map(|shifts| self.pick(is_pulsed[0], is_pulsed[1], shifts));
-        let compare = self.compare_of("compare_line", volts, bus, shift);
+        let line = self.limit_line(line, bus);
+        let pulses = self.pulse_pair(sign, line, bus, shifts);
         let mut results: Vec<(&str, Value, Value)> = vec![];
         for x in 0..3 {
-            let is_pulsed = is_pulsed[x];
-            let zero = self.zero();
-            let own_compare = self.b.select(is_pulsed, compare, zero);
-            let zero = self.zero();
-            let own_terminal = self.b.select(is_pulsed, volts, zero);
-            let zero = self.zero();
-            let is_off = self.b.compare(Comparison::Equal, sign[x], zero);
-            let (pulsed, low, off) = (self.b.literal(0), self.b.literal(1), self.b.literal(2));
-            let driven = self.b.select(is_pulsed, pulsed, low);
-            let leg = self.b.select(is_off, off, driven);
-            self.b.name(
-                ["compare_a_pair", "compare_b_pair", "compare_c_pair"][x],
-                own_compare,
-            );
-            self.b
-                .name(["leg_a_pair", "leg_b_pair", "leg_c_pair"][x], leg);
-            self.b.name(
-                ["terminal_a_pair", "terminal_b_pair", "terminal_c_pair"][x],
-                own_terminal,
-            );
             results.push((
                 ["compare_a_run", "compare_b_run", "compare_c_run"][x],
-                own_compare,
+                pulses.compares[x],
                 three[x].0,
             ));
-            results.push((["leg_a_run", "leg_b_run", "leg_c_run"][x], leg, outside));
+            results.push((
+                ["leg_a_run", "leg_b_run", "leg_c_run"][x],
+                pulses.legs[x],
+                outside,
+            ));
             results.push((
                 ["terminal_a_run", "terminal_b_run", "terminal_c_run"][x],
-                own_terminal,
+                pulses.terminals[x],
                 three[x].1,
             ));
         }

@@ -134,6 +134,7 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
             text.number("bandwidth", options.bandwidth);
             text.number("integral_time", options.integral_time);
             text.word("feed_forward", flag(options.feed_forward));
+            text.word("six_step", flag(options.six_step));
             text.word("saturation", saturation(options.saturation));
             if options.dead_time_compensation {
                 text.word("dead_time_compensation", "on");

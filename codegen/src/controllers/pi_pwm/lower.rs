@@ -1,8 +1,8 @@
 //! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
 
-use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
-use crate::ir::Interval;
-use crate::lower::Scale;
+use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
+use crate::ir::{Interval, Value};
+use crate::lower::{Coefficient, Command, Lowering, Scale};
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, PiPwmSpec, Spec};
 
@@ -26,28 +26,16 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             },
         };
         let front = step.front(set_point);
+        if options.six_step {
+            return six_step(&mut step, &front, spec, options);
+        }
         let l = &mut *step.lowering;
         let bound = l.bus_interval().high;
         let integrals = ["integral_a", "integral_b"].map(|name| {
             let doc = "Integral part of the regulator, words of voltage.";
             l.state(name, 0, Interval::symmetric(bound), doc)
         });
-        let word = options.common.word;
-        let k_p = l.impedance(
-            "k_p",
-            gain,
-            word,
-            "Proportional gain 2 pi f L.",
-            ["k_p", "V/A"],
-        );
-        let share = options.integral_share(spec);
-        let k_i = l.coefficient(
-            "k_i",
-            share,
-            word,
-            "Share of the proportional voltage that one period integrates, T_s/T_i; also the weight of the anti-windup.",
-            &format!("T_s/T_i = {share:.6}"),
-        );
+        let [k_p, k_i] = gains(l, spec, options);
         l.b.stage(
             "regulate",
             &["PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward."],
@@ -88,19 +76,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             l.b.name(["drive_a", "drive_b"][x], drive);
             let change = l.times(k_i, drive);
             let sum = l.b.add(sums[x], change);
-            let doc = format!(
-                "Largest integral part, the {}bus",
-                if spec.inverter.bus == BusSource::Fixed {
-                    ""
-                } else {
-                    "greatest "
-                },
-            );
-            let (low, high) = (
-                l.voltage("integral_min", -bound, &doc),
-                l.voltage("integral_max", bound, &doc),
-            );
-            let held = l.b.clamp(sum, low, high);
+            let held = hold_integral(l, spec, sum);
             l.b.name(["integral_a_now", "integral_b_now"][x], held);
             remembered.push((
                 integrals[x],
@@ -111,4 +87,103 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
         let command = l.modulate(limited, front.bus, shifts);
         step.remember(&front, &command, Some(limited.u), None, remembered);
     })
+}
+
+/// k_p and k_i.
+fn gains(l: &mut Lowering<'_>, spec: &Spec, options: &PiPwmSpec) -> [Coefficient; 2] {
+    let gain = options.proportional_gain(&spec.motor);
+    let word = options.common.word;
+    let k_p = l.impedance(
+        "k_p",
+        gain,
+        word,
+        "Proportional gain 2 pi f L.",
+        ["k_p", "V/A"],
+    );
+    let share = options.integral_share(spec);
+    let k_i = l.coefficient(
+        "k_i",
+        share,
+        word,
+        "Share of the proportional voltage that one period integrates, T_s/T_i; also the weight of the anti-windup.",
+        &format!("T_s/T_i = {share:.6}"),
+    );
+    [k_p, k_i]
+}
+
+/// An integral part within the greatest bus.
+fn hold_integral(l: &mut Lowering<'_>, spec: &Spec, sum: Value) -> Value {
+    let bound = l.bus_interval().high;
+    let doc = format!(
+        "Largest integral part, the {}bus",
+        if spec.inverter.bus == BusSource::Fixed {
+            ""
+        } else {
+            "greatest "
+        },
+    );
+    let (low, high) = (
+        l.voltage("integral_min", -bound, &doc),
+        l.voltage("integral_max", bound, &doc),
+    );
+    l.b.clamp(sum, low, high)
+}
+
+/// One regulator for the current of the conducting pair, and the pulses of its line voltage.
+fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options: &PiPwmSpec) {
+    let l = &mut *step.lowering;
+    let bound = Interval::symmetric(l.bus_interval().high);
+    let doc = "Integral part of the regulator, words of voltage.";
+    let integral = l.state("integral", 0, bound, doc);
+    let [k_p, k_i] = gains(l, spec, options);
+    let signs = l.pair_signs();
+    l.b.stage(
+        "regulate",
+        &["PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding."],
+    );
+    let sign = [0, 1, 2].map(|x| {
+        let sign = l.b.lookup(signs[x], front.sector);
+        l.b.name(["sign_a", "sign_b", "sign_c"][x], sign)
+    });
+    let halves = [0, 1, 2].map(|x| l.b.shift_right(front.currents.phases[x], 1));
+    let terms = [0, 1, 2].map(|x| l.b.mul(sign[x], halves[x], 0));
+    let current = l.b.add(terms[0], terms[1]);
+    let current = l.b.add(current, terms[2]);
+    l.b.name("pair_current", current);
+    let drop = l.times(k_p, current);
+    let part = l.b.sub(front.set_point, drop);
+    l.b.name("part", part);
+    let sum = l.b.state(integral);
+    let u = l.b.add(part, sum);
+    l.b.name("u", u);
+    let line = l.b.shift_left(u, 1);
+    let line = l.limit_line(line, front.bus);
+    l.b.stage(
+        "integrate",
+        &["Integration and tracking anti-windup in one product: what the limit cut off is taken back with the same time constant."],
+    );
+    let limited = l.b.shift_right(line, 1);
+    let cut = l.b.sub(limited, u);
+    let drive = l.b.add(part, cut);
+    l.b.name("drive", drive);
+    let change = l.times(k_i, drive);
+    let sum = l.b.add(sum, change);
+    let held = hold_integral(l, spec, sum);
+    l.b.name("integral_now", held);
+    l.b.stage(
+        "modulate_pair",
+        &["One leg of the pair pulsed, its partner low, the third off, in commutation as well."],
+    );
+    let pulses = l.pulse_pair(sign, line, front.bus, None);
+    let command = Command {
+        compares: pulses.compares,
+        legs: pulses.legs,
+    };
+    step.remember(
+        front,
+        &command,
+        None,
+        None,
+        vec![(integral, "integral_next", held)],
+    );
 }

@@ -14,7 +14,11 @@ use crate::spec::{PiPwmSpec, Spec};
 pub fn law(spec: &Spec, options: &PiPwmSpec, stable: StableRange) -> Law {
     let gain = options.proportional_gain(&spec.motor);
     Law {
-        title: "PI current controller in the stationary plane",
+        title: if options.six_step {
+            "Six-step PI current controller"
+        } else {
+            "PI current controller in the stationary plane"
+        },
         notes: vec![
             format!(
                 "Tuning: the proportional gain 2 pi f L = {} puts the crossover of the current loop at {};",

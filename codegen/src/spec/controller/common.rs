@@ -98,6 +98,7 @@ pub(crate) const OPTIONS: &[Rule] = &[
     schema::word("feed_forward", "on"),
     schema::word("integral", "on"),
     schema::word("dead_time_compensation", "on"),
+    schema::word("six_step", "off"),
 ];
 
 /// What the defaults and limits of the options need to know of the drive; none where it is itself

@@ -38,6 +38,7 @@ pub const KINDS: [(&str, &[&str]); 4] = [
             "integral_time",
             "modulation",
             "saturation",
+            "six_step",
         ],
     ),
 ];

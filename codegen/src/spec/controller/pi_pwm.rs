@@ -21,7 +21,9 @@ pub struct PiPwmSpec {
     pub integral_time: f64,
     /// Whether the EMF is added to the voltage.
     pub feed_forward: bool,
-    /// Saturation rule.
+    /// Whether one regulator holds the current of the conducting pair, instead of one per axis.
+    pub six_step: bool,
+    /// Saturation rule; of no effect with [`Self::six_step`].
     pub saturation: LimitRule,
     /// Whether compare values are shifted against the dead time.
     pub dead_time_compensation: bool,
@@ -49,9 +51,12 @@ pub(crate) fn check_options(
 ) -> Option<PiPwmSpec> {
     let bandwidth = reader.plain_quantity(errors, "bandwidth");
     let integral_time = reader.plain_quantity(errors, "integral_time");
+    let six_step = reader
+        .word(errors, "six_step", &[("on", true), ("off", false)])
+        .unwrap_or(false);
     let feed_forward = reader
         .word(errors, "feed_forward", &[("on", true), ("off", false)])
-        .unwrap_or(true);
+        .unwrap_or(!six_step);
     let modulation = reader.word(
         errors,
         "modulation",
@@ -84,6 +89,9 @@ pub(crate) fn check_options(
             "it keeps the component along the EMF, which is known with `feed_forward: on` only",
         ));
     }
+    if six_step {
+        check_six_step(reader, errors);
+    }
     if !feed_forward {
         for name in ["emf", "emf_filter"] {
             let Some(field) = reader.field(name) else {
@@ -106,9 +114,54 @@ pub(crate) fn check_options(
     Some(PiPwmSpec {
         bandwidth: bandwidth.map_or(BANDWIDTH, |given| given.si),
         integral_time: integral_time.map_or(time_constant, |given| given.si),
-        feed_forward,
+        feed_forward: feed_forward && !six_step,
+        six_step,
         saturation,
         dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
         common,
     })
+}
+
+/// What a six-step drive has no use for.
+fn check_six_step(reader: &Reader, errors: &mut Collector) {
+    let idle = [
+        (
+            "saturation",
+            None,
+            "one line voltage has a size only, which the bus limits",
+        ),
+        (
+            "feed_forward",
+            Some("on"),
+            "the leg that is off hides its EMF, and the regulator does without",
+        ),
+        (
+            "dead_time_compensation",
+            Some("on"),
+            "the regulator takes up what the dead time costs its one pulsed leg",
+        ),
+        (
+            "reference",
+            Some("proportional"),
+            "one current through two windings is quasi-square",
+        ),
+    ];
+    for (name, value, why) in idle {
+        let Some(field) = reader.field(name) else {
+            continue;
+        };
+        let given = field.value.to_string();
+        if value.is_none_or(|value| value == given) {
+            errors.push(catalogue::option_without_effect(
+                &field.location,
+                name,
+                &given,
+                reader
+                    .field("six_step")
+                    .map_or(reader.location(), |field| &field.location),
+                "six_step: on",
+                why,
+            ));
+        }
+    }
 }

@@ -26,6 +26,8 @@ pub struct Variant {
     pub integral: Switch,
     /// Section 11: compare values are shifted against the dead time.
     pub dead_time: Switch,
+    /// PI: whether one regulator serves the pair, or one each axis.
+    pub six_step: Option<Switch>,
     /// Section 10: what gives way outside the hexagon, if anything can lie there.
     pub saturation: Option<Saturation>,
 }
@@ -64,7 +66,8 @@ impl Variant {
                 if pi_pwm.feed_forward == Switch::Off {
                     emf = None;
                 }
-                (false, false, Some(pi_pwm.saturation))
+                let hexagon = pi_pwm.six_step == Switch::Off;
+                (false, false, hexagon.then_some(pi_pwm.saturation))
             }
         };
         let estimated = emf == Some(EmfSource::Estimated);
@@ -80,13 +83,19 @@ impl Variant {
             modulated,
             integral,
             dead_time,
+            six_step: match &spec.controller {
+                Controller::PiPwm(pi_pwm) => Some(pi_pwm.six_step),
+                _ => None,
+            },
             saturation,
         }
     }
 
     /// Section 11: legs are pulsed for a part of the period.
     pub fn pulsed(&self) -> bool {
-        self.saturation.is_some() || self.modulated == Switch::On
+        self.saturation.is_some()
+            || self.modulated == Switch::On
+            || self.six_step == Some(Switch::On)
     }
 
     /// A command takes effect one period after its sample.

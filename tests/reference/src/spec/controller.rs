@@ -147,6 +147,8 @@ options! {
         integral_time: f64,
         /// Whether the EMF is added to the voltage.
         feed_forward: Switch,
+        /// Whether one regulator holds the current of the conducting pair.
+        six_step: Switch,
         /// What gives way outside the hexagon.
         saturation: Saturation,
         /// Whether compare values are shifted against the dead time.

@@ -263,8 +263,9 @@ impl Constants {
                 (Part::EmfMemory, filtered || variant.integrates()),
                 (
                     Part::Integral,
-                    variant.integrates() || matches!(spec.controller, Controller::PiPwm(_)),
+                    variant.integrates() || variant.six_step == Some(Switch::Off),
                 ),
+                (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (
                     Part::Hysteresis,
                     matches!(spec.controller, Controller::Phcc(_)),

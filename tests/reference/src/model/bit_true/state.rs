@@ -44,6 +44,7 @@ pub enum Part {
     OffMemory,
     EmfMemory,
     Integral,
+    PairIntegral,
     Hysteresis,
 }
 
@@ -205,6 +206,9 @@ macro_rules! for_each_word {
         if $parts.has(Part::Integral) {
             $show!("integral_a", $state.integral[0]);
             $show!("integral_b", $state.integral[1]);
+        }
+        if $parts.has(Part::PairIntegral) {
+            $show!("integral", $state.integral[0]);
         }
         if $parts.has(Part::Hysteresis) {
             $show!("h_a", $state.rises[0]);

@@ -2,14 +2,17 @@
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
-use crate::exact::{Coefficient, round_half_up};
+use crate::exact::{Coefficient, halve, round_half_up};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit;
 use crate::model::variant::reference_gain;
-use crate::{Error, Saturation, Spec};
+use crate::model::{Reach, sector};
+use crate::{Error, Saturation, Spec, Switch};
 
 #[derive(Clone, Debug)]
 pub struct PiPwm {
+    /// One regulator, for the pair.
+    six_step: bool,
     saturation: Saturation,
     k_p: Coefficient,
     k_i: Coefficient,
@@ -20,6 +23,7 @@ pub struct PiPwm {
 impl PiPwm {
     pub fn new(spec: &Spec, options: &crate::PiPwm, scale: &Scale) -> Result<Self, Error> {
         Ok(Self {
+            six_step: options.six_step == Switch::On,
             saturation: options.saturation,
             k_p: scale.coefficient("k_p", scale.ohm * reference_gain(spec))?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
@@ -30,6 +34,9 @@ impl PiPwm {
 
     #[inline]
     pub fn decide(&self, now: &Inputs) -> Decision {
+        if self.six_step {
+            return self.decide_pair(now);
+        }
         // 9; without feed-forward the EMF is 0.
         let held = now.i.map(|i| self.k_p.mul(i));
         let p = [0, 1].map(|x| now.j[x] - held[x]);
@@ -48,6 +55,42 @@ impl PiPwm {
             vector: 0,
             command: pulses::three(now, u, self.dead_time.shifts(now, held), false),
             integral,
+            rises: now.rises,
+        }
+    }
+    /// One regulator on the current of the conducting pair.
+    fn decide_pair(&self, now: &Inputs) -> Decision {
+        // 9
+        let i = [now.i[0], now.i[1], -(now.i[0] + now.i[1])];
+        let ends = (now.sector_eff != 0)
+            .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
+        let pair_current = ends.map_or(0.0, |(plus, minus)| halve(i[plus]) - halve(i[minus]));
+        let part = now.set_point - self.k_p.mul(pair_current);
+        let u = part + now.integral[0];
+        // 10
+        let line = (2.0 * u).clamp(-now.v_bus, now.v_bus);
+        // 12
+        let limited = halve(line);
+        let integral = (now.integral[0] + self.k_i.mul(part + limited - u))
+            .clamp(-self.integral_max, self.integral_max);
+        let phases = |u: f64| {
+            let mut phases = [0.0; 3];
+            if let Some((plus, minus)) = ends {
+                (phases[plus], phases[minus]) = (u, -u);
+            }
+            [phases[0], phases[1]]
+        };
+        Decision {
+            u_unsat: phases(u),
+            u: phases(limited),
+            reach: if line == 2.0 * u {
+                Reach::Inside
+            } else {
+                Reach::Outside
+            },
+            vector: 0,
+            command: pulses::line(now, line, [0.0; 3]),
+            integral: [integral, 0.0],
             rises: now.rises,
         }
     }

@@ -55,14 +55,23 @@ pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Co
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are against the dead time.
 #[inline]
 pub fn pair(now: &Inputs, u: [f64; 2], shifts: [f64; 3]) -> Command {
+    if now.sector_eff == 0 {
+        return Command::idle(Legs::OFF);
+    }
+    let u = [u[0], u[1], -(u[0] + u[1])];
+    let v = u[sector::PLUS[now.sector_eff]] - u[sector::MINUS[now.sector_eff]];
+    line(now, v.clamp(-now.v_bus, now.v_bus), shifts)
+}
+
+/// The line voltage `v` of the conducting pair, within the bus.
+#[inline]
+pub fn line(now: &Inputs, v: f64, shifts: [f64; 3]) -> Command {
     let mut command = Command::idle(Legs::OFF);
     let sector_eff = now.sector_eff;
     if sector_eff == 0 {
         return command;
     }
-    let u = [u[0], u[1], -(u[0] + u[1])];
     let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
-    let v = (u[plus] - u[minus]).clamp(-now.v_bus, now.v_bus);
     let (pulsed, low, t) = if v >= 0.0 {
         (plus, minus, v)
     } else {

@@ -5,10 +5,14 @@ use super::{Decision, Inputs, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
 use crate::model::variant::reference_gain;
-use crate::{Error, Saturation, Spec};
+use crate::model::{Reach, sector};
+use crate::{Error, Saturation, Spec, Switch};
+use nalgebra::Vector3;
 
 #[derive(Clone, Copy, Debug)]
 pub struct PiPwm {
+    /// One regulator, for the pair.
+    six_step: bool,
     saturation: Saturation,
     /// Proportional gain, V/A.
     k_p: f64,
@@ -22,6 +26,7 @@ pub struct PiPwm {
 impl PiPwm {
     pub fn new(spec: &Spec, options: &crate::PiPwm) -> Result<Self, Error> {
         Ok(Self {
+            six_step: options.six_step == Switch::On,
             saturation: options.saturation,
             k_p: reference_gain(spec),
             k_i: spec.inverter.t_s / options.integral_time,
@@ -31,6 +36,9 @@ impl PiPwm {
     }
 
     pub fn decide(&self, now: &Inputs) -> Decision {
+        if self.six_step {
+            return self.decide_pair(now);
+        }
         let p = (now.i_ref - now.i) * self.k_p;
         let u_unsat = p + now.integral + now.e;
         let limited = limit::limit(
@@ -48,6 +56,39 @@ impl PiPwm {
             vector: 0,
             command: pulses::three(now, &limited.u, &self.dead_time.shifts(now, 1.0)),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
+            rises: now.rises,
+        }
+    }
+    /// One regulator on the current of the conducting pair.
+    fn decide_pair(&self, now: &Inputs) -> Decision {
+        let i = phases(&now.i);
+        let ends = (now.sector_eff != 0)
+            .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
+        let pair_current = ends.map_or(0.0, |(plus, minus)| (i[plus] - i[minus]) / 2.0);
+        let [held, _] = to_ab(&now.integral);
+        let part = (now.set_point - pair_current) * self.k_p;
+        let u = part + held;
+        let line = (2.0 * u).clamp(-now.v_bus, now.v_bus);
+        let integral = (held + (part + line / 2.0 - u) * self.k_i)
+            .clamp(-self.integral_max, self.integral_max);
+        let of_pair = |u: f64| {
+            let mut of_pair = Vector3::zeros();
+            if let Some((plus, minus)) = ends {
+                (of_pair[plus], of_pair[minus]) = (u, -u);
+            }
+            clarke(&of_pair)
+        };
+        Decision {
+            u_unsat: of_pair(u),
+            u: of_pair(line / 2.0),
+            reach: if line == 2.0 * u {
+                Reach::Inside
+            } else {
+                Reach::Outside
+            },
+            vector: 0,
+            command: pulses::line(now, line, &Vector3::zeros()),
+            integral: [integral, 0.0],
             rises: now.rises,
         }
     }

@@ -25,13 +25,21 @@ pub fn three(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
 
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are shares of the period.
 pub fn pair(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
+    if now.sector_eff == 0 {
+        return Command::idle(Duties::OFF);
+    }
+    let v = u[sector::PLUS[now.sector_eff]] - u[sector::MINUS[now.sector_eff]];
+    line(now, v.clamp(-now.v_bus, now.v_bus), shifts)
+}
+
+/// The line voltage `v` of the conducting pair, within the bus.
+pub fn line(now: &Inputs, v: f64, shifts: &Vector3<f64>) -> Command {
     let mut command = Command::idle(Duties::OFF);
     let (sector_eff, v_bus) = (now.sector_eff, now.v_bus);
     if sector_eff == 0 {
         return command;
     }
     let (plus, minus) = (sector::PLUS[sector_eff], sector::MINUS[sector_eff]);
-    let v = (u[plus] - u[minus]).clamp(-v_bus, v_bus);
     let (pulsed, low) = if v >= 0.0 {
         (plus, minus)
     } else {
