@@ -167,7 +167,7 @@ fn readme_shows_emitted_code() {
     let generated = generate_variant(&paper.text, &paper.name, "pdcc").expect("it generates");
     let surface = Surface::public(&generated.interface.type_name);
     let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
-    let code = rustfmt(&format_rust(&tokens)).expect("rustfmt");
+    let code = format_rust(&tokens);
     // The code stands in a module.
     let code = code.replace("\n    ", "\n");
     let items: Vec<&str> = excerpt.split("\n\n").map(str::trim).collect();

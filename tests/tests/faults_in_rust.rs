@@ -38,6 +38,11 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
         "there is no sector 0 but before the first valid Hall code, and that trips",
     ),
     (
+        1,
+        "table entry one more: CORNER_B[0]",
+        "there is no sector 0 but before the first valid Hall code, and that trips",
+    ),
+    (
         2,
         "table entry one more: SHAPE_C2[116]",
         "the table has 96 entries, padded to a power of two",

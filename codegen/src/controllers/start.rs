@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 /// Angles at which the EMF is looked at.
 const ANGLES: u32 = 720;
 
-/// A proportional regulator that meets the EMF through a dead time overshoots; so much of what it settles at.
+/// A proportional regulator that meets an EMF that it learns late, or not at all, overshoots what it settles at
+/// by this factor.
 const OVERSHOOT: f64 = 1.3;
 
 /// Greatest speed of the rotor, mechanical rad/s, at which control may begin with set-point 0 without a trip.
@@ -33,7 +34,8 @@ pub(super) fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
         ControllerSpec::PiPwm(pi) => {
             let settled = OVERSHOOT / pi.proportional_gain(motor);
             let at_once = design.plant.gain * periods;
-            let knows = pi.feed_forward && options.emf == EmfSource::Estimated;
+            let knows =
+                pi.feed_forward && options.emf == EmfSource::Estimated && options.emf_filter >= 1.0;
             (if knows { at_once } else { settled.max(at_once) }, 0.0)
         }
     };

@@ -311,14 +311,12 @@ impl Spec {
                 }
             }
             if pi_pwm.six_step == Switch::On
-                && (pi_pwm.feed_forward == Switch::On
-                    || pi_pwm.dead_time_compensation == Switch::On
-                    || pi_pwm.reference != Reference::QuasiSquare)
+                && (pi_pwm.feed_forward == Switch::On || pi_pwm.reference != Reference::QuasiSquare)
             {
                 return Err(Error::field(
                     "controller.six_step",
                     "on",
-                    "expected feed_forward = off, reference = quasi_square and no dead-time compensation beside it",
+                    "expected feed_forward = off and reference = quasi_square beside it",
                 ));
             }
             if pi_pwm.saturation == Saturation::TorquePriority && pi_pwm.feed_forward == Switch::Off

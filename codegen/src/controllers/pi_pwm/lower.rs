@@ -153,6 +153,12 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let drop = l.times(k_p, current);
     let part = l.b.sub(front.set_point, drop);
     l.b.name("part", part);
+    let flow = options.dead_time_compensation.then(|| {
+        [0, 1].map(|x| {
+            let flow = l.times(k_p, front.currents.phases[x]);
+            l.b.name(["held_a", "held_b"][x], flow)
+        })
+    });
     let sum = l.b.state(integral);
     let u = l.b.add(part, sum);
     l.b.name("u", u);
@@ -170,11 +176,14 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let sum = l.b.add(sum, change);
     let held = hold_integral(l, spec, sum);
     l.b.name("integral_now", held);
+    let gain = options.proportional_gain(&spec.motor);
+    let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, gain));
+    let l = &mut *step.lowering;
     l.b.stage(
         "modulate_pair",
         &["One leg of the pair pulsed, its partner low, the third off, in commutation as well."],
     );
-    let pulses = l.pulse_pair(sign, line, front.bus, None);
+    let pulses = l.pulse_pair(sign, line, front.bus, shifts);
     let command = Command {
         compares: pulses.compares,
         legs: pulses.legs,

@@ -136,11 +136,6 @@ fn check_six_step(reader: &Reader, errors: &mut Collector) {
             "the leg that is off hides its EMF, and the regulator does without",
         ),
         (
-            "dead_time_compensation",
-            Some("on"),
-            "the regulator takes up what the dead time costs its one pulsed leg",
-        ),
-        (
             "reference",
             Some("proportional"),
             "one current through two windings is quasi-square",

@@ -73,9 +73,10 @@ fn torque_priority_with_estimated_emf() {
             pct / 100.0 * RATED_RPM,
         )
     };
-    assert_row(run(75.0), 3.30, 6.9);
-    assert!(run(104.0).mean > 0.97 * DEMAND);
-    assert!(run(106.0).mean < 0.97 * DEMAND);
+    // As with the model: the estimate is moved on by the motor's shape.
+    assert_row(run(75.0), 3.30, 1.9);
+    assert!(run(106.0).mean > 0.97 * DEMAND);
+    assert!(run(109.0).mean < 0.97 * DEMAND);
 }
 
 #[test]

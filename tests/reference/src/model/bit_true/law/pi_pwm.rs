@@ -65,6 +65,7 @@ impl PiPwm {
         let ends = (now.sector_eff != 0)
             .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
         let pair_current = ends.map_or(0.0, |(plus, minus)| halve(i[plus]) - halve(i[minus]));
+        let flow = now.i.map(|i| self.k_p.mul(i));
         let part = now.set_point - self.k_p.mul(pair_current);
         let u = part + now.integral[0];
         // 10
@@ -89,7 +90,7 @@ impl PiPwm {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, [0.0; 3]),
+            command: pulses::line(now, line, self.dead_time.shifts(now, flow)),
             integral: [integral, 0.0],
             rises: now.rises,
         }

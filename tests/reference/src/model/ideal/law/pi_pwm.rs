@@ -87,7 +87,7 @@ impl PiPwm {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, &Vector3::zeros()),
+            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0)),
             integral: [integral, 0.0],
             rises: now.rises,
         }
