@@ -179,7 +179,7 @@ pub fn others() -> Vec<Variant> {
                         "table = \"{first}\"\ncandidates = \"table2\"\nband = 0.1\n{choosing}"
                     ),
                     _ => format!(
-                        "saturation = \"{first}\"\nfeed_forward = \"{second}\"\n\
+                        "saturation = \"{first}\"\nfeed_forward = \"{second}\"\nsix_step = \"off\"\n\
                          bandwidth = 1000.0\nintegral_time = 0.0016"
                     ),
                 };
