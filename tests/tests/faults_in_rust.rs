@@ -34,11 +34,6 @@ const STEPS: u64 = 200_000;
 const EQUIVALENT: &[(usize, &str, &str)] = &[
     (
         1,
-        "table entry one more: CORNER_A[0]",
-        "there is no sector 0 but before the first valid Hall code, and that trips",
-    ),
-    (
-        1,
         "table entry one more: CORNER_B[0]",
         "there is no sector 0 but before the first valid Hall code, and that trips",
     ),
@@ -46,11 +41,6 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
         2,
         "table entry one more: SHAPE_C2[116]",
         "the table has 96 entries, padded to a power of two",
-    ),
-    (
-        4,
-        "table entry one more: SWITCHING[184]",
-        "there is no seventh sector",
     ),
 ];
 
