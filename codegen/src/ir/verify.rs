@@ -193,16 +193,22 @@ impl FunctionCheck<'_> {
         }
     }
 
-    fn roots(&self) -> Vec<Value> {
+    /// Outputs, new state words and new set-point words.
+    fn results(&self) -> impl Iterator<Item = Value> {
         let function = self.function;
         let outputs = function.outputs.iter().map(|&(_, value)| value);
         let states = function.next_state.iter().map(|&(_, value)| value);
         let params = function.next_params.iter().map(|&(_, value)| value);
-        let guards = function
+        outputs.chain(states).chain(params)
+    }
+
+    fn roots(&self) -> Vec<Value> {
+        let guards = self
+            .function
             .stages
             .iter()
             .filter_map(|stage| stage.guard.as_ref().map(|guard| guard.condition));
-        outputs.chain(states).chain(params).chain(guards).collect()
+        self.results().chain(guards).collect()
     }
 
     fn check_order(&mut self) {
@@ -422,10 +428,8 @@ impl FunctionCheck<'_> {
 
     fn check_results(&mut self) {
         let function = self.function;
-        let outputs = function.outputs.iter().map(|&(_, value)| value);
-        let states = function.next_state.iter().map(|&(_, value)| value);
-        let params = function.next_params.iter().map(|&(_, value)| value);
-        for result in outputs.chain(states).chain(params) {
+        let results: Vec<Value> = self.results().collect();
+        for result in results {
             if function.node(result).kind != Kind::Word {
                 self.fail(result.index(), "a result is no word");
             }

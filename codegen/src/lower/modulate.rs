@@ -3,7 +3,7 @@
 use super::measure::Currents;
 use super::{Bus, Coefficient, Limited, Lowering};
 use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN, SECTOR_CURRENT};
-use crate::ir::{Comparison, Interval, StateId, TableId, Value};
+use crate::ir::{Comparison, Interval, StateId, Value};
 
 /// Pulses of a conducting pair, per leg.
 #[derive(Clone, Copy, Debug)]
@@ -250,8 +250,8 @@ impl Lowering<'_> {
         self.pick(is_a, is_b, values)
     }
 
-    /// Per leg a table of its sign by sector.
-    pub fn pair_signs(&mut self) -> [TableId; 3] {
+    /// Per leg its sign in the conducting pair of a sector, added to the open stage.
+    pub fn pair_signs(&mut self, sector: Value) -> [Value; 3] {
         [0, 1, 2].map(|phase| {
             let column = std::iter::once(0)
                 .chain(SECTOR_CURRENT.iter().map(|legs| legs[phase]))
@@ -261,8 +261,17 @@ impl Lowering<'_> {
                 "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
                 ["a", "b", "c"][phase]
             );
-            self.b.program.table(name, column, &[doc])
+            let table = self.b.program.table(name, column, &[doc]);
+            let sign = self.b.lookup(table, sector);
+            self.b.name(["sign_a", "sign_b", "sign_c"][phase], sign)
         })
+    }
+
+    /// What the pair with these signs has of zero-sum values: that of the plus leg less that of the minus leg.
+    pub fn across_pair(&mut self, sign: [Value; 3], values: [Value; 3]) -> Value {
+        let terms = [0, 1, 2].map(|x| self.b.mul(sign[x], values[x], 0));
+        let sum = self.b.add(terms[0], terms[1]);
+        self.b.add(sum, terms[2])
     }
 
     /// A line voltage within the bus.
@@ -368,7 +377,6 @@ impl Lowering<'_> {
         let none = self.b.literal(0);
         let outside = self.b.literal(0);
 
-        let signs = self.pair_signs();
         self.b.guarded_stage(
             "modulate_pair",
             pairing,
@@ -377,13 +385,8 @@ impl Lowering<'_> {
         );
         let u_c = self.third_phase("u_c_pair", unlimited[0], unlimited[1]);
         let voltages = [unlimited[0], unlimited[1], u_c];
-        let sign = [0, 1, 2].map(|x| {
-            let sign = self.b.lookup(signs[x], sector);
-            self.b.name(["sign_a", "sign_b", "sign_c"][x], sign)
-        });
-        let terms = [0, 1, 2].map(|x| self.b.mul(sign[x], voltages[x], 0));
-        let line = self.b.add(terms[0], terms[1]);
-        let line = self.b.add(line, terms[2]);
+        let sign = self.pair_signs(sector);
+        let line = self.across_pair(sign, voltages);
         let line = self.limit_line(line, bus);
         let pulses = self.pulse_pair(sign, line, bus, shifts);
         let mut results: Vec<(&str, Value, Value)> = vec![];

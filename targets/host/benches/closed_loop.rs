@@ -4,7 +4,7 @@
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use hexagen_host::closed_loop::{ClosedLoop, Delay};
-use hexagen_host::engine::{EngineKind, Model, MotorSource, Prepared, SetPoint, plant_of, prepare};
+use hexagen_host::engine::{EngineKind, Model, MotorSource, Prepared, plant_of, prepare};
 use hexagen_host::plant::Plant;
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -18,10 +18,7 @@ const RPM: f64 = 1500.0;
 fn closed_loop(drive: &Prepared) -> (ClosedLoop<hexagen_host::engine::Engine<'_>>, usize) {
     let params = plant_of(&drive.spec);
     let periods = (1.0 / params.t_s).round() as usize;
-    let set_point = SetPoint {
-        current: drive.demand() / drive.spec.torque_constant(),
-        v_bus: params.v_bus,
-    };
+    let set_point = drive.set_point(drive.demand());
     let plant = Plant::new(params, 0.1, RPM * TAU / 60.0).expect("a plant of the library");
     let engine = drive.engine(Model::Fixed, set_point);
     (ClosedLoop::new(plant, engine, Delay::OnePeriod), periods)

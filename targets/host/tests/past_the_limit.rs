@@ -2,7 +2,7 @@
 //! the same options, which loses what it must and no more, but for one rule: listed with what it reaches.
 
 use hexagen_host::closed_loop::{RunOptions, mean_torque};
-use hexagen_host::engine::{Model, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::engine::{Model, MotorSource, plant_of, prepare, run_of};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -28,10 +28,7 @@ fn torque(motor: &MotorSource, variant: &str) -> f64 {
     let drive = prepare(motor, Some(variant)).expect("generates");
     let plant = plant_of(&drive.spec);
     let demand = drive.demand();
-    let set_point = SetPoint {
-        current: demand / drive.spec.torque_constant(),
-        v_bus: plant.v_bus,
-    };
+    let set_point = drive.set_point(demand);
     let run = RunOptions {
         starts: vec![0.1],
         ..run_of(&drive.spec, SPEED * drive.spec.motor.rated_speed, demand)

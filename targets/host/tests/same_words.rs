@@ -5,7 +5,7 @@
 //! in the tests of `hexagen-reference`.
 
 use hexagen_host::commands::accuracy::{differences, side_by_side};
-use hexagen_host::engine::{EngineKind, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};
 use hexagen_host::report::design_table;
 use std::f64::consts::TAU;
 
@@ -22,10 +22,7 @@ fn fixed_and_ideal_agree_in_every_merit_of_every_row() {
             let drive = prepare(&motor, Some(&variant)).expect("generates");
             assert_eq!(drive.engine_kind(), EngineKind::Compiled, "{variant}");
             let plant = plant_of(&drive.spec);
-            let set_point = SetPoint {
-                current: TORQUE / drive.spec.torque_constant(),
-                v_bus: drive.spec.inverter.v_bus,
-            };
+            let set_point = drive.set_point(TORQUE);
             for rpm in [400.0, 1500.0] {
                 let run = run_of(&drive.spec, rpm * TAU / 60.0, TORQUE);
                 let both = side_by_side(&drive, &plant, &run, set_point).expect("runs");

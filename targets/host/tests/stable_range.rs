@@ -3,7 +3,7 @@
 
 use hexagen_codegen::controllers::{StableRange, stable_range};
 use hexagen_host::closed_loop::{RunOptions, Swing, measure};
-use hexagen_host::engine::{Model, MotorSource, Prepared, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::engine::{Model, MotorSource, Prepared, plant_of, prepare, run_of};
 use hexagen_host::report::{Measured, Outcome};
 use rayon::prelude::*;
 
@@ -40,10 +40,7 @@ const SPEED: f64 = 0.1;
 fn outcome(drive: &Prepared, resistance: f64, inductance: f64) -> (Outcome, Swing) {
     let nominal = plant_of(&drive.spec);
     let torque = drive.demand();
-    let set_point = SetPoint {
-        current: torque / drive.spec.torque_constant(),
-        v_bus: nominal.v_bus,
-    };
+    let set_point = drive.set_point(torque);
     let run = RunOptions {
         starts: vec![0.1],
         ..run_of(&drive.spec, SPEED * drive.spec.motor.rated_speed, torque)

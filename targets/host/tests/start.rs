@@ -1,9 +1,7 @@
 //! Control begins on a rotor that turns: without a trip up to the speed that the type states.
 
 use hexagen_host::closed_loop::ClosedLoop;
-use hexagen_host::engine::{
-    Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare, run_of,
-};
+use hexagen_host::engine::{Model, MotorSource, Prepared, library, plant_of, prepare, run_of};
 use hexagen_host::plant::Plant;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -39,10 +37,7 @@ fn start_speed(drive: &Prepared) -> f64 {
 
 /// Whether control that begins at this speed, either way, trips from some angle.
 fn trips(drive: &Prepared, rpm: f64) -> bool {
-    let set_point = SetPoint {
-        current: 0.0,
-        v_bus: drive.spec.inverter.v_bus,
-    };
+    let set_point = drive.set_point(0.0);
     (0..ANGLES).any(|n| {
         let omega = if n % 2 == 0 { rpm } else { -rpm } * TAU / 60.0;
         let angle = f64::from(n) * TAU / f64::from(ANGLES);

@@ -1,28 +1,15 @@
 //! Planted faults that change no output and no state, each with its reason.
 
 use crate::unnoticed::{
-    ESTUN, FCS_ESTUN, FCS_HOVERBOARD, FCS_PAPER, FCS_TEKNIC, HOVERBOARD, PAPER, PHCC_ESTUN,
-    PHCC_PAPER, PI_ANAHEIM, PI_TEKNIC, TEKNIC, Unnoticed,
+    ALL, ESTUN, FCS, FCS_ESTUN, FCS_HOVERBOARD, FCS_PAPER, FCS_TEKNIC, HOVERBOARD, PAPER,
+    PHCC_ESTUN, PHCC_PAPER, PI_ANAHEIM, PI_TEKNIC, TEKNIC, Unnoticed,
 };
 
 /// All of them.
 pub const EQUIVALENT: &[Unnoticed] = &[
     Unnoticed {
         because: "a sum of full-scale samples is the limit itself",
-        drives: &[
-            PAPER,
-            HOVERBOARD,
-            ESTUN,
-            TEKNIC,
-            FCS_PAPER,
-            FCS_HOVERBOARD,
-            FCS_ESTUN,
-            FCS_TEKNIC,
-            PHCC_PAPER,
-            PHCC_ESTUN,
-            PI_TEKNIC,
-            PI_ANAHEIM,
-        ],
+        drives: ALL,
         faults: &[
             (&["calibration_sum_max"], &["one more"]),
             (
@@ -41,20 +28,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "a distance is the same from either end",
-        drives: &[
-            PAPER,
-            HOVERBOARD,
-            ESTUN,
-            TEKNIC,
-            FCS_PAPER,
-            FCS_HOVERBOARD,
-            FCS_ESTUN,
-            FCS_TEKNIC,
-            PHCC_PAPER,
-            PHCC_ESTUN,
-            PI_TEKNIC,
-            PI_ANAHEIM,
-        ],
+        drives: ALL,
         faults: &[(
             &["advance_sequence: in offset_is_bad"],
             &["operands swapped", "operands swapped (3)"],
@@ -62,20 +36,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "a drive in control takes the sequence's branch without effect",
-        drives: &[
-            PAPER,
-            HOVERBOARD,
-            ESTUN,
-            TEKNIC,
-            FCS_PAPER,
-            FCS_HOVERBOARD,
-            FCS_ESTUN,
-            FCS_TEKNIC,
-            PHCC_PAPER,
-            PHCC_ESTUN,
-            PI_TEKNIC,
-            PI_ANAHEIM,
-        ],
+        drives: ALL,
         faults: &[(&["detect_faults: in sequencing"], &["-1 for 0"])],
     },
     Unnoticed {
@@ -107,20 +68,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "every leg word but 0 and 1 is off",
-        drives: &[
-            PAPER,
-            HOVERBOARD,
-            ESTUN,
-            TEKNIC,
-            FCS_PAPER,
-            FCS_HOVERBOARD,
-            FCS_ESTUN,
-            FCS_TEKNIC,
-            PHCC_PAPER,
-            PHCC_ESTUN,
-            PI_TEKNIC,
-            PI_ANAHEIM,
-        ],
+        drives: ALL,
         faults: &[(&["rest: in leg_resting"], &["3 for 2 (2)"])],
     },
     Unnoticed {
@@ -257,7 +205,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        drives: FCS,
         faults: &[(&["nearest_pair: in vector"], &["-1 for 0 (2)"])],
     },
     Unnoticed {
@@ -735,7 +683,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "where the third phase is at zero and the second next to it, V0 is nearest",
-        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        drives: FCS,
         faults: &[(
             &["nearest_vector: in gates"],
             &["1 for 0", "-1 for 0", "another comparison"],
@@ -743,17 +691,17 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "four less and four more are the same entry of eight",
-        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        drives: FCS,
         faults: &[(&["nearest_vector: gates"], &["- for +"])],
     },
     Unnoticed {
         because: "three phases that sum to zero are neither all high nor all low, but at zero",
-        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        drives: FCS,
         faults: &[(&["vector_of_gates[0]", "vector_of_gates[7]"], &["one more"])],
     },
     Unnoticed {
         because: "two vectors have different numbers",
-        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC],
+        drives: FCS,
         faults: &[(
             &["nearest_pair: in take_c", "nearest_pair: in take_b"],
             &["another comparison (3)"],

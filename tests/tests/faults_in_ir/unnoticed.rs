@@ -33,6 +33,25 @@ pub const PHCC_ESTUN: &str = "phcc estun-emj-04apb22";
 pub const PI_TEKNIC: &str = "pi-pwm teknic-m2310p";
 pub const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
 
+/// Those of FCS-MPC.
+pub const FCS: &[&str] = &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC];
+
+/// Every drive.
+pub const ALL: &[&str] = &[
+    PAPER,
+    HOVERBOARD,
+    ESTUN,
+    TEKNIC,
+    FCS_PAPER,
+    FCS_HOVERBOARD,
+    FCS_ESTUN,
+    FCS_TEKNIC,
+    PHCC_PAPER,
+    PHCC_ESTUN,
+    PI_TEKNIC,
+    PI_ANAHEIM,
+];
+
 /// Faults that change an output or a state in so few states that a run may miss them all.
 pub const RARE: &[Unnoticed] = &[
     Unnoticed {

@@ -260,13 +260,12 @@ impl CurrentLoop<'_, '_> {
             &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
         };
         l.b.stage("deadbeat_voltage", doc);
-        let mut held = [None; 2];
-        let u = [0, 1].map(|x| {
-            let own = l.times(k_hold, currents.phases[x]);
+        let found = [0, 1].map(|x| {
+            let held = l.times(k_hold, currents.phases[x]);
             if compensates {
-                held[x] = Some(l.b.name(["held_a", "held_b"][x], own));
+                l.b.name(["held_a", "held_b"][x], held);
             }
-            let open = l.b.sub(reference[x], own);
+            let open = l.b.sub(reference[x], held);
             let volts = match (k_decay, now, front.e, front.e_now) {
                 (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
                     let driving = l.b.sub(now[x], e_now[x]);
@@ -279,12 +278,11 @@ impl CurrentLoop<'_, '_> {
                 (_, _, Some(e), _) => l.b.add(open, e[x]),
                 _ => open,
             };
-            l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+            [held, l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)]
         });
-        let shifts = match held {
-            [Some(a), Some(b)] => Some(self.dead_time_shifts(reference, [a, b], design.k_di)),
-            _ => None,
-        };
+        let held = found.map(|[held, _]| held);
+        let shifts = compensates.then(|| self.dead_time_shifts(reference, held, design.k_di));
+        let u = found.map(|[_, u]| u);
         Deadbeat { u, shifts }
     }
 

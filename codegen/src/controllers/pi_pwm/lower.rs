@@ -6,6 +6,11 @@ use crate::lower::{Coefficient, Command, Lowering, Scale};
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, PiPwmSpec, Spec};
 
+/// What the stage that integrates is about.
+const INTEGRATION: &[&str] = &[
+    "Integration and tracking anti-windup in one product: what the limit cut off is taken back with the same time constant.",
+];
+
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     let gain = options.proportional_gain(&spec.motor);
@@ -40,15 +45,15 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             "regulate",
             &["PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward."],
         );
-        let mut held = [None; 2];
-        let parts = [0, 1].map(|x| {
-            let drop = l.times(k_p, front.currents.phases[x]);
+        let regulated = [0, 1].map(|x| {
+            let held = l.times(k_p, front.currents.phases[x]);
             if options.dead_time_compensation {
-                held[x] = Some(l.b.name(["held_a", "held_b"][x], drop));
+                l.b.name(["held_a", "held_b"][x], held);
             }
-            let part = l.b.sub(front.reference[x], drop);
-            l.b.name(["p_a", "p_b"][x], part)
+            let part = l.b.sub(front.reference[x], held);
+            [held, l.b.name(["p_a", "p_b"][x], part)]
         });
+        let parts = regulated.map(|[_, part]| part);
         let sums = [0, 1].map(|x| l.b.state(integrals[x]));
         let u = [0, 1].map(|x| {
             let volts = l.b.add(parts[x], sums[x]);
@@ -58,26 +63,24 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             };
             l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
         });
-        let shifts = match held {
-            [Some(a), Some(b)] => Some(step.dead_time_shifts(front.reference, [a, b], gain)),
-            _ => None,
-        };
+        let held = regulated.map(|[held, _]| held);
+        let shifts = options
+            .dead_time_compensation
+            .then(|| step.dead_time_shifts(front.reference, held, gain));
         let l = &mut *step.lowering;
         let e = front.e.unwrap_or(u);
         let limited = l.limit_voltage(options.saturation, u, e, front.bus, front.third);
-        l.b.stage(
-            "integrate",
-            &["Integration and tracking anti-windup in one product: what the limit cut off is taken back with the same time constant."],
-        );
+        l.b.stage("integrate", INTEGRATION);
         let mut remembered = vec![];
         for x in 0..2 {
-            let cut = l.b.sub(limited.u[x], u[x]);
-            let drive = l.b.add(parts[x], cut);
-            l.b.name(["drive_a", "drive_b"][x], drive);
-            let change = l.times(k_i, drive);
-            let sum = l.b.add(sums[x], change);
-            let held = hold_integral(l, spec, sum);
-            l.b.name(["integral_a_now", "integral_b_now"][x], held);
+            let regulated = Regulated {
+                part: parts[x],
+                sum: sums[x],
+                u: u[x],
+                limited: limited.u[x],
+            };
+            let names = [["drive_a", "integral_a_now"], ["drive_b", "integral_b_now"]][x];
+            let held = integrate(l, spec, k_i, &regulated, names);
             remembered.push((
                 integrals[x],
                 ["integral_a_next", "integral_b_next"][x],
@@ -111,8 +114,31 @@ fn gains(l: &mut Lowering<'_>, spec: &Spec, options: &PiPwmSpec) -> [Coefficient
     [k_p, k_i]
 }
 
-/// An integral part within the greatest bus.
-fn hold_integral(l: &mut Lowering<'_>, spec: &Spec, sum: Value) -> Value {
+/// What a regulator made of its error.
+struct Regulated {
+    /// Proportional part.
+    part: Value,
+    /// Integral part.
+    sum: Value,
+    /// Voltage asked for.
+    u: Value,
+    /// Voltage within the limit.
+    limited: Value,
+}
+
+/// The new integral part, within the greatest bus; `names` are those of what drives it and of itself.
+fn integrate(
+    l: &mut Lowering<'_>,
+    spec: &Spec,
+    k_i: Coefficient,
+    regulated: &Regulated,
+    names: [&str; 2],
+) -> Value {
+    let cut = l.b.sub(regulated.limited, regulated.u);
+    let drive = l.b.add(regulated.part, cut);
+    l.b.name(names[0], drive);
+    let change = l.times(k_i, drive);
+    let sum = l.b.add(regulated.sum, change);
     let bound = l.bus_interval().high;
     let doc = format!(
         "Largest integral part, the {}bus",
@@ -126,7 +152,8 @@ fn hold_integral(l: &mut Lowering<'_>, spec: &Spec, sum: Value) -> Value {
         l.voltage("integral_min", -bound, &doc),
         l.voltage("integral_max", bound, &doc),
     );
-    l.b.clamp(sum, low, high)
+    let held = l.b.clamp(sum, low, high);
+    l.b.name(names[1], held)
 }
 
 /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
@@ -136,19 +163,13 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let doc = "Integral part of the regulator, words of voltage.";
     let integral = l.state("integral", 0, bound, doc);
     let [k_p, k_i] = gains(l, spec, options);
-    let signs = l.pair_signs();
     l.b.stage(
         "regulate",
         &["PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding."],
     );
-    let sign = [0, 1, 2].map(|x| {
-        let sign = l.b.lookup(signs[x], front.sector);
-        l.b.name(["sign_a", "sign_b", "sign_c"][x], sign)
-    });
+    let sign = l.pair_signs(front.sector);
     let halves = [0, 1, 2].map(|x| l.b.shift_right(front.currents.phases[x], 1));
-    let terms = [0, 1, 2].map(|x| l.b.mul(sign[x], halves[x], 0));
-    let current = l.b.add(terms[0], terms[1]);
-    let current = l.b.add(current, terms[2]);
+    let current = l.across_pair(sign, halves);
     l.b.name("pair_current", current);
     let drop = l.times(k_p, current);
     let part = l.b.sub(front.set_point, drop);
@@ -164,18 +185,15 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     l.b.name("u", u);
     let line = l.b.shift_left(u, 1);
     let line = l.limit_line(line, front.bus);
-    l.b.stage(
-        "integrate",
-        &["Integration and tracking anti-windup in one product: what the limit cut off is taken back with the same time constant."],
-    );
+    l.b.stage("integrate", INTEGRATION);
     let limited = l.b.shift_right(line, 1);
-    let cut = l.b.sub(limited, u);
-    let drive = l.b.add(part, cut);
-    l.b.name("drive", drive);
-    let change = l.times(k_i, drive);
-    let sum = l.b.add(sum, change);
-    let held = hold_integral(l, spec, sum);
-    l.b.name("integral_now", held);
+    let regulated = Regulated {
+        part,
+        sum,
+        u,
+        limited,
+    };
+    let held = integrate(l, spec, k_i, &regulated, ["drive", "integral_now"]);
     let gain = options.proportional_gain(&spec.motor);
     let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, gain));
     let l = &mut *step.lowering;

@@ -312,6 +312,11 @@ impl<'a> Reader<'a> {
             .then_some(given.si as u32)
     }
 
+    /// A word that is `on` or `off`.
+    pub fn switch(&self, errors: &mut Collector, name: &'static str) -> Option<bool> {
+        self.word(errors, name, &[("on", true), ("off", false)])
+    }
+
     /// One of some words.
     pub fn word<T: Copy>(
         &self,

@@ -280,7 +280,7 @@ pub(crate) fn read_dead_time_compensation(
     errors: &mut Collector,
 ) -> bool {
     const OPTION: &str = "dead_time_compensation";
-    let is_on = reader.word(errors, OPTION, &[("on", true), ("off", false)]) == Some(true);
+    let is_on = reader.switch(errors, OPTION) == Some(true);
     if is_on
         && drive.dead_time <= 0.0
         && let Some(field) = reader.field(OPTION)

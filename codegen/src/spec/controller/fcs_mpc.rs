@@ -60,7 +60,7 @@ pub(crate) fn check_options(
         .unwrap_or(Candidates::Table2);
     let without_sectors = candidates == Candidates::ThreePhase;
     let off_leg = read_off_leg(reader, without_sectors, errors);
-    let modulated = reader.word(errors, "modulated", &[("on", true), ("off", false)]);
+    let modulated = reader.switch(errors, "modulated");
     Some(FcsMpcSpec {
         candidates,
         off_leg,

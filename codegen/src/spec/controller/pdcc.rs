@@ -54,7 +54,7 @@ pub(crate) fn check_options(
 
 /// An integral needs the modelled EMF: an estimate finds by itself what it would.
 fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> bool {
-    let is_on = reader.word(errors, "integral", &[("on", true), ("off", false)]) == Some(true);
+    let is_on = reader.switch(errors, "integral") == Some(true);
     if is_on
         && emf == EmfSource::Estimated
         && let Some(field) = reader.field("integral")

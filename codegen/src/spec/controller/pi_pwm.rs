@@ -51,12 +51,8 @@ pub(crate) fn check_options(
 ) -> Option<PiPwmSpec> {
     let bandwidth = reader.plain_quantity(errors, "bandwidth");
     let integral_time = reader.plain_quantity(errors, "integral_time");
-    let six_step = reader
-        .word(errors, "six_step", &[("on", true), ("off", false)])
-        .unwrap_or(false);
-    let feed_forward = reader
-        .word(errors, "feed_forward", &[("on", true), ("off", false)])
-        .unwrap_or(!six_step);
+    let six_step = reader.switch(errors, "six_step").unwrap_or(false);
+    let feed_forward = reader.switch(errors, "feed_forward").unwrap_or(!six_step);
     let modulation = reader.word(
         errors,
         "modulation",

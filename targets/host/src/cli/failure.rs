@@ -1,5 +1,6 @@
 //! Why a command did not succeed.
 
+use crate::closed_loop::Trip;
 use crate::engine::SourceError;
 use crate::plant::PlantError;
 use crate::report::ReportError;
@@ -45,6 +46,14 @@ impl From<Diagnostics> for Failure {
 }
 
 impl Failure {
+    /// The failure that a trip is, where a drive tripped.
+    ///
+    /// # Errors
+    /// When it did.
+    pub fn of_trip(trip: Option<Trip>) -> Result<(), Self> {
+        trip.map_or(Ok(()), |trip| Err(Self::Check(format!("error: {trip}"))))
+    }
+
     /// Tells the failure on stderr.
     pub fn print(&self) {
         super::note(&self.to_string());

@@ -1,6 +1,7 @@
 //! `hexagen compare`: fixed against floating point, per controller and word length.
 
 use super::accuracy::{MeritDifference, OneStep, SideBySide, differences, side_by_side};
+use super::results::SPEEDS;
 use super::robustness;
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, TextTable, print_json, print_text,
@@ -15,9 +16,6 @@ use std::path::PathBuf;
 
 /// Word lengths that are compared.
 const WORDS: [u32; 2] = [32, 16];
-
-/// Speeds in parts of rated speed.
-const SPEEDS: [f64; 2] = [0.2, 0.75];
 
 /// Options of `compare`.
 #[derive(Args, Clone, Debug)]

@@ -80,10 +80,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print_found(&outcome, &drive)?;
     }
-    match outcome.limit.tripped {
-        None => Ok(()),
-        Some(trip) => Err(Failure::Check(format!("error: {trip}"))),
-    }
+    Failure::of_trip(outcome.limit.tripped)
 }
 
 fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {

@@ -4,7 +4,7 @@ use crate::cli::{
     Failure, SelectedMotor, TextTable, bar, note, print_json, print_text, significant,
 };
 use crate::closed_loop::{HELD, RunOptions, STARTS, Trip, mean_torque};
-use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
+use crate::engine::{Model, Prepared, plant_of, run_of};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -86,10 +86,7 @@ pub fn collect() -> Result<Vec<Entry>, Failure> {
 /// plant of its motor's file: the mean torque in percent of the rated one, and what tripped it.
 fn at_rating(drive: &Prepared) -> Result<(f64, Option<Trip>), Failure> {
     let plant = plant_of(&drive.spec);
-    let set_point = SetPoint {
-        current: drive.demand() / drive.spec.torque_constant(),
-        v_bus: plant.v_bus,
-    };
+    let set_point = drive.set_point(drive.demand());
     let rated = RunOptions {
         starts: vec![STARTS[0]],
         ..run_of(&drive.spec, drive.spec.motor.rated_speed, drive.demand())

@@ -16,10 +16,10 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// The motor of the paper.
-const PAPER_MOTOR: &str = "trivedi-keshri-660w";
+pub(super) const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// Where the page goes.
-const FOLDER: &str = "target/hexagen";
+pub(super) const FOLDER: &str = "target/hexagen";
 
 /// Steps of the bit-for-bit check per variant.
 const VERIFY_STEPS: u64 = 1_000_000;

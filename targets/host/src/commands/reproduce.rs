@@ -6,31 +6,25 @@ mod variants;
 
 pub use variants::{READINGS, Readings};
 
+use super::report::{FOLDER, PAPER_MOTOR};
 use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
 use crate::closed_loop::{
-    ClosedLoop, Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
+    Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
 };
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
-use crate::plant::{Plant, PlantParams, Truth};
+use crate::plant::PlantParams;
 use crate::report;
 use crate::report::reproduction::{
-    self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables, Trip,
-    cycles, cycles_text, distance_rms,
+    self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables,
+    cycles, cycles_text, distance_rms, times,
 };
 use clap::Args;
-use hexagen::{Fault, Sample};
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::ir::PathCost;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-
-/// The motor of the paper.
-const MOTOR: &str = "trivedi-keshri-660w";
-
-/// Where the page goes.
-const FOLDER: &str = "target/hexagen";
 
 /// The two speeds in rpm.
 const SPEEDS: [f64; 2] = [400.0, 1500.0];
@@ -76,7 +70,7 @@ pub fn collect(effort: &Effort, folder: Option<&Path>) -> Result<Reproduction, F
     if let Some(folder) = folder {
         report::prepare_folder(folder)?;
     }
-    let motor = SelectedMotor::find(MOTOR, &PlantArguments::default())?;
+    let motor = SelectedMotor::find(PAPER_MOTOR, &PlantArguments::default())?;
     let texts: Vec<&str> = READINGS
         .iter()
         .flat_map(|readings| [readings.literal, readings.corrected])
@@ -148,10 +142,7 @@ impl<'p> Bench<'p> {
             drive,
             effort,
             plant: plant_of(&drive.spec),
-            set_point: SetPoint {
-                current: TORQUE / drive.spec.torque_constant(),
-                v_bus: drive.spec.inverter.v_bus,
-            },
+            set_point: drive.set_point(TORQUE),
         }
     }
 
@@ -218,7 +209,6 @@ impl<'p> Bench<'p> {
             .map(|trace| distance_rms(trace, run.current))
             .sum();
         let hexagon_rms_a = distance / measured.traces.len() as f64;
-        let trip = self.trip(&run)?;
         let Some(trace) = measured.traces.into_iter().next() else {
             return Err(Failure::Argument("a run needs a start".to_owned()));
         };
@@ -227,31 +217,8 @@ impl<'p> Bench<'p> {
             merits: measured.merits,
             hexagon_rms_a,
             trace,
-            trip,
+            trip: measured.tripped,
         })
-    }
-
-    /// When the first start trips before the measured window.
-    fn trip(&self, run: &RunOptions) -> Result<Option<Trip>, Failure> {
-        let start = run.starts.first().copied().unwrap_or(STARTS[0]);
-        let plant = Plant::new(self.plant.clone(), start, run.omega_m)?;
-        let mut engine = self.drive.engine(Model::Fixed, self.set_point);
-        let mut trip = None;
-        let controller = |sample: &Sample, truth: &Truth| {
-            use crate::closed_loop::CurrentLoop;
-            let legs = engine.step(sample, truth);
-            let why = engine.fault();
-            if trip.is_none() && why != Fault::None {
-                trip = Some(Trip {
-                    after: truth.t,
-                    why,
-                });
-            }
-            legs
-        };
-        let (settling, _) = run.periods(&self.plant);
-        ClosedLoop::new(plant, controller, run.delay).run(settling, &mut ());
-        Ok(trip)
     }
 }
 
@@ -317,8 +284,7 @@ fn table_5(data: &Reproduction) -> String {
     for method in Method::ALL {
         for reading in Reading::ALL {
             let run = data.methods[method.index()].of(reading);
-            let cycles = cycles(&run.cost.worst);
-            let t_c = 1e6 * f64::from(cycles) / CLOCK_HZ;
+            let (t_c, t_f) = times(run, data.inverter.t_s);
             let switching = run.points.iter().map(|point| match point.trip {
                 None => format!("{:.1}", point.merits.switching_hz / 1e3),
                 Some(_) => "-".to_owned(),
@@ -328,9 +294,9 @@ fn table_5(data: &Reproduction) -> String {
                 reading.name().to_owned(),
                 run.cost.normal.total().to_string(),
                 run.cost.worst.total().to_string(),
-                cycles.to_string(),
-                format!("{t_c:.1}"),
-                format!("{:.1}", 1e6 * data.inverter.t_s - t_c),
+                cycles(&run.cost.worst).to_string(),
+                format!("{:.1}", 1e6 * t_c),
+                format!("{:.1}", 1e6 * t_f),
             ];
             table.row(cells.into_iter().chain(switching));
         }

@@ -244,10 +244,7 @@ impl Conditions {
         Self {
             plant: plant_of(&drive.spec),
             torque,
-            set_point: SetPoint {
-                current: torque / drive.spec.torque_constant(),
-                v_bus: drive.spec.inverter.v_bus,
-            },
+            set_point: drive.set_point(torque),
         }
     }
 

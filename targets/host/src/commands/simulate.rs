@@ -128,10 +128,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print_table(&outcome)?;
     }
-    match outcome.tripped {
-        None => Ok(()),
-        Some(trip) => Err(Failure::Check(format!("error: {trip}"))),
-    }
+    Failure::of_trip(outcome.tripped)
 }
 
 fn print_table(outcome: &Outcome) -> Result<(), Failure> {

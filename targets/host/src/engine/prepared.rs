@@ -207,6 +207,14 @@ impl Prepared {
             .unwrap_or(motor.rated_current * per_ampere)
     }
 
+    /// The set-point of a torque in newton metres, at the nominal bus.
+    pub fn set_point(&self, torque: f64) -> SetPoint {
+        SetPoint {
+            current: torque / self.spec.torque_constant(),
+            v_bus: self.spec.inverter.v_bus,
+        }
+    }
+
     /// Largest torque in newton metres that the limited set-point asks for.
     pub fn reach(&self) -> f64 {
         self.spec.inverter.max_current * self.spec.torque_constant()

@@ -1,7 +1,7 @@
 //! The rows of the design document's table, in fixed point through 12-bit converters.
 
 use hexagen_host::closed_loop::{LimitOptions, measure, speed_limit};
-use hexagen_host::engine::{EngineKind, Model, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::engine::{EngineKind, Model, MotorSource, plant_of, prepare, run_of};
 use hexagen_host::report::{design_table, judge_limit, judge_mean, judge_pp, judge_rms};
 use std::f64::consts::TAU;
 
@@ -27,10 +27,7 @@ fn rows_of_the_design_document_are_met() {
         let drive = prepare(&motor, Some(row.variant)).expect("generates");
         assert_eq!(drive.engine_kind(), EngineKind::Compiled, "{}", row.label);
         let plant = plant_of(&drive.spec);
-        let set_point = SetPoint {
-            current: TORQUE / drive.spec.torque_constant(),
-            v_bus: drive.spec.inverter.v_bus,
-        };
+        let set_point = drive.set_point(TORQUE);
         let maker = || drive.maker(Model::Fixed, set_point);
         let other = OTHER_READINGS.iter().find(|other| other.0 == row.label);
         if let Some(&(_, least, most)) = other {

@@ -4,6 +4,16 @@ use crate::cli::PlantArguments;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::InverterSpec;
 
+/// A plant option.
+type Scale = fn(&mut PlantArguments) -> &mut Option<f64>;
+
+/// Parameters of the motor, each with the option that scales it.
+const SCALES: [(&str, Scale); 3] = [
+    ("R", |plant| &mut plant.scale_r),
+    ("L", |plant| &mut plant.scale_l),
+    ("k_b", |plant| &mut plant.scale_kb),
+];
+
 /// Dead times in seconds; the motor file's own is the undisturbed plant's.
 const DEAD_TIMES: [f64; 4] = [0.0, 0.5e-6, 1e-6, 2e-6];
 
@@ -40,20 +50,13 @@ pub fn disturbances(undisturbed: &PlantArguments, inverter: &InverterSpec) -> Ve
         all.push(Disturbance { name, plant });
     };
     add("none", &|_| {});
-    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
-        add(&format!("R {sign}30 %"), &|plant| {
-            scale(&mut plant.scale_r, factor);
-        });
-    }
-    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
-        add(&format!("L {sign}30 %"), &|plant| {
-            scale(&mut plant.scale_l, factor);
-        });
-    }
-    for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
-        add(&format!("k_b {sign}30 %"), &|plant| {
-            scale(&mut plant.scale_kb, factor);
-        });
+    for (parameter, scale) in SCALES {
+        for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
+            add(&format!("{parameter} {sign}30 %"), &|plant| {
+                let scale = scale(plant);
+                *scale = Some(factor * scale.unwrap_or(1.0));
+            });
+        }
     }
     add("bus -10 %", &|plant| {
         plant.v_bus = Some(0.9 * plant.v_bus.unwrap_or(inverter.v_bus));
@@ -82,8 +85,4 @@ pub fn disturbances(undisturbed: &PlantArguments, inverter: &InverterSpec) -> Ve
         });
     }
     all
-}
-
-fn scale(option: &mut Option<f64>, factor: f64) {
-    *option = Some(factor * option.unwrap_or(1.0));
 }

@@ -11,6 +11,7 @@ mod print;
 pub use csv::csv;
 pub use print::print;
 
+use super::results::SPEEDS;
 use crate::cli::{Failure, PlantArguments, SelectedMotor, bar};
 use crate::closed_loop::{Swing, measure};
 use crate::engine::{Model, Prepared};
@@ -18,9 +19,6 @@ use crate::report::{Cell, Column, Measured, Robustness};
 use disturbance::{Disturbance, disturbances};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-
-/// Speeds in parts of rated speed.
-const SPEEDS: [f64; 2] = [0.2, 0.75];
 
 /// Runs every variant under every disturbance.
 ///

@@ -2,8 +2,7 @@
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
 use super::timing::{CLOCK_HZ, cycles};
-use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace};
-use hexagen::Fault;
+use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace, Trip};
 use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 
@@ -140,31 +139,8 @@ pub struct Point {
     pub hexagon_rms_a: f64,
     /// Record of the first start.
     pub trace: Trace,
-    /// When the first start tripped, if it did.
+    /// The trip of the first start that tripped.
     pub trip: Option<Trip>,
-}
-
-/// The trip of a drive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trip {
-    /// Time from the start in seconds.
-    pub after: f64,
-    /// Why.
-    pub why: Fault,
-}
-
-impl Trip {
-    /// What happened, after "the drive trips".
-    pub fn text(&self) -> String {
-        let why = match self.why {
-            Fault::AdcRange => "a current converter reached an end of its range",
-            Fault::OverCurrent => "a phase current exceeded the trip level",
-            Fault::Hall => "the Hall code was none",
-            Fault::Stall => "no Hall edge came",
-            _ => "it says no reason",
-        };
-        format!("{:.2} ms after the start: {why}", 1e3 * self.after)
-    }
 }
 
 /// Forward motoring rows of PHCC's switching table, per sector: vector numbers by

@@ -56,7 +56,7 @@ impl Panel<'_> {
             Some(trip) => html! {
                 figure.nothing {
                     figcaption { (self.caption()) }
-                    p.note { "Nothing to show: the drive trips " (trip.text()) "." }
+                    p.note { "Nothing to show: " (trip) "." }
                 }
             },
         })

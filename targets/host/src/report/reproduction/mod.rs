@@ -17,10 +17,11 @@ mod timing;
 mod verdicts;
 
 pub use claims::claims;
-pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables, Trip};
+pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables};
 pub use experiment::{AtSpeed, Experiment, Figures, Setting};
 pub use judge::{Claim, Finding, Statement, Verdict};
 pub use outline::distance_rms;
+pub use tables::times;
 pub use timing::{CLOCK_HZ, cycles, cycles_text};
 
 use super::ReportError;
