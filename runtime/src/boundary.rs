@@ -45,8 +45,9 @@ impl LegState {
 /// The three legs' commands: compare values for a centre-aligned timer and a state per leg.
 ///
 /// A compare value is the time during which the upper switch is on, in counts, from 0 to the
-/// timer's period; it is 0 for a leg that is not pulsed.
+/// timer's period; it is 0 for a leg that is not pulsed. Laid out as in C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct Legs {
     /// Compare values of phases a, b, c, in timer counts.
     pub compare: [u16; 3],

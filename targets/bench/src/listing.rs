@@ -1,0 +1,84 @@
+//! What the firmware says of its drives.
+
+/// A drive of the firmware.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listed {
+    /// Place in the firmware's list.
+    pub place: u16,
+    /// Symbol of the step function.
+    pub symbol: String,
+    /// Name of the library's motor.
+    pub motor: String,
+    /// Controller and options as the command line writes them.
+    pub variant: String,
+    /// Names of the state words.
+    pub words: Vec<String>,
+    /// Bytes of the drive's type.
+    pub size: usize,
+    /// Normalised specification.
+    pub spec: String,
+}
+
+/// Reads the firmware's list; none where it is none.
+pub fn parse(text: &str) -> Option<Vec<Listed>> {
+    let mut lines = text.lines();
+    let mut drives = Vec::new();
+    while let Some(first) = lines.next() {
+        let symbol = first.strip_prefix("drive ")?.to_owned();
+        let file = lines.next()?.strip_prefix("motor ")?;
+        let motor = file.rsplit('/').next()?.strip_suffix(".toml")?.to_owned();
+        let kind = lines.next()?.strip_prefix("kind ")?.replace('_', "-");
+        let options = options(lines.next()?.strip_prefix("options")?);
+        let words = lines.next()?.strip_prefix("words")?;
+        let size = lines.next()?.strip_prefix("size ")?.parse().ok()?;
+        let mut spec = String::new();
+        loop {
+            match lines.next()? {
+                "end" => break,
+                line => {
+                    spec.push_str(line);
+                    spec.push('\n');
+                }
+            }
+        }
+        drives.push(Listed {
+            place: u16::try_from(drives.len()).ok()?,
+            symbol,
+            motor,
+            variant: if options.is_empty() {
+                kind
+            } else {
+                format!("{kind}:{options}")
+            },
+            words: words.split_whitespace().map(str::to_owned).collect(),
+            size,
+            spec,
+        });
+    }
+    Some(drives)
+}
+
+/// Options of a macro call (`saturation : keep_angle, emf_filter : 1`) as the command line writes them.
+fn options(written: &str) -> String {
+    let dense: String = written.chars().filter(|c| !c.is_whitespace()).collect();
+    dense.replace(':', "=").trim_end_matches(',').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_what_the_firmware_writes() {
+        let text = "drive step_x\nmotor ../motors/x-1.toml\nkind fcs_mpc\noptions emf : model, advance : 1.5,\n\
+                    words mode fault\nsize 000068\nname = \"X\"\n[motor]\nend\n";
+        let drives = parse(text).expect("a list");
+        assert_eq!(drives.len(), 1);
+        assert_eq!(drives[0].motor, "x-1");
+        assert_eq!(drives[0].variant, "fcs-mpc:emf=model,advance=1.5");
+        assert_eq!(drives[0].words, ["mode", "fault"]);
+        assert_eq!(drives[0].size, 68);
+        assert_eq!(drives[0].spec, "name = \"X\"\n[motor]\n");
+        assert_eq!(parse("drive step_x\nmotor"), None);
+    }
+}

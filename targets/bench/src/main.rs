@@ -1,0 +1,98 @@
+//! The test bench: builds the firmware of every target, runs it on emulated cores, compares every word with the host,
+//! counts what a step costs.
+//!
+//! `cargo xtask firmware`, `cargo xtask pil` and `cargo xtask cost` come here.
+
+mod cost;
+mod firmware;
+mod listing;
+mod pil;
+mod targets;
+mod toolchain;
+mod vectors;
+
+use clap::{Parser, Subcommand};
+use std::process::{ExitCode, ExitStatus};
+use targets::Target;
+
+#[derive(Parser)]
+#[command(
+    name = "cargo xtask",
+    about = "Builds firmware, runs it on emulated cores, compares and counts"
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Targets; all unless named
+    #[arg(long, global = true, value_enum)]
+    target: Vec<Target>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Builds the firmware of every target
+    Firmware,
+    /// Processor in the loop: replays closed-loop vectors on the emulated cores and compares every word
+    Pil(pil::Options),
+    /// Counts instructions, code, tables, state and stack of every step
+    Cost(cost::Options),
+}
+
+/// Why the bench stopped.
+#[derive(Debug, thiserror::Error)]
+enum BenchError {
+    #[error(transparent)]
+    Missing(#[from] toolchain::Missing),
+    #[error("the firmware of {0} does not build")]
+    Build(&'static str),
+    #[error("the emulator of {0} hangs")]
+    Hangs(&'static str),
+    #[error("the emulator of {0} ended with {1}: {2}")]
+    Ended(&'static str, ExitStatus, String),
+    #[error("the firmware's list of drives cannot be read")]
+    Listing,
+    #[error("the library has no motor `{0}`")]
+    Motor(String),
+    #[error("`{0}` cannot be made on the host:\n{1}")]
+    Drive(String, String),
+    #[error("`{0}` is another drive on the host: the firmware was built from other sources")]
+    Other(String),
+    #[error("no stimulus: {0}")]
+    Stimulus(String),
+    #[error(transparent)]
+    Plant(#[from] hexagen_host::plant::PlantError),
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    #[error("the ELF cannot be read: {0}")]
+    Elf(#[from] object::Error),
+    #[error("{0}")]
+    Failed(String),
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let targets = match arguments.target.as_slice() {
+        [] => &Target::ALL,
+        named => named,
+    };
+    let outcome = match arguments.command {
+        Command::Firmware => targets.iter().try_for_each(|&target| {
+            let built = firmware::Firmware::build(target)?;
+            println!(
+                "{}: built with {}",
+                target.name(),
+                built.toolchain.version()
+            );
+            Ok(())
+        }),
+        Command::Pil(options) => pil::run(targets, &options),
+        Command::Cost(options) => cost::run(targets, &options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

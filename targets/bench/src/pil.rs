@@ -1,0 +1,159 @@
+//! Processor in the loop: the host's closed-loop vectors on the emulated core, every output and state word compared.
+
+use crate::BenchError;
+use crate::firmware::Firmware;
+use crate::listing::Listed;
+use crate::targets::Target;
+use crate::vectors::{Answer, Vectors, drive_of, record};
+use hexagen_firmware::wire::{ANSWER, Mode, Task};
+use rayon::prelude::*;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+/// What to replay.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Steps per controller and target, at least
+    #[arg(long, default_value_t = 50_000)]
+    pub steps: usize,
+    /// Only drives whose symbol contains this
+    #[arg(long)]
+    pub only: Option<String>,
+}
+
+/// Replays vectors on every drive of every target.
+///
+/// # Errors
+/// When a tool is missing, or a word differs.
+pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
+    let mut differing = 0;
+    for &target in targets {
+        let firmware = Firmware::build(target)?;
+        let begin = Instant::now();
+        let mut drives = firmware.drives()?;
+        if let Some(part) = &options.only {
+            drives.retain(|drive| drive.symbol.contains(part));
+        }
+        let outcomes: Vec<_> = drives
+            .par_iter()
+            .map(|listed| compare(&firmware, listed, options.steps))
+            .collect::<Result<_, BenchError>>()?;
+        let mut steps = 0;
+        for (listed, outcome) in drives.iter().zip(outcomes) {
+            steps += outcome.steps;
+            if let Some(report) = outcome.difference {
+                differing += 1;
+                println!("{}: {} differs\n{report}", target.name(), listed.symbol);
+            }
+        }
+        println!(
+            "{}: {} drives, {steps} steps, {} s",
+            target.name(),
+            drives.len(),
+            begin.elapsed().as_secs()
+        );
+    }
+    match differing {
+        0 => Ok(()),
+        _ => Err(BenchError::Failed(format!(
+            "{differing} drives differ from the host"
+        ))),
+    }
+}
+
+/// What became of a drive.
+struct Outcome {
+    steps: usize,
+    /// The first step that differs, in full.
+    difference: Option<String>,
+}
+
+fn compare(firmware: &Firmware, listed: &Listed, steps: usize) -> Result<Outcome, BenchError> {
+    let drive = drive_of(listed)?;
+    let vectors = record(&drive, steps, None)?;
+    let task = Task {
+        mode: Mode::Digest,
+        drive: listed.place,
+        block: 0,
+    };
+    let found = firmware.run(&task, &vectors.records)?;
+    let difference = match first_block(&vectors, &found) {
+        None => None,
+        Some(block) => {
+            let task = Task {
+                mode: Mode::Full,
+                block: block as u32,
+                ..task
+            };
+            let found = firmware.run(&task, &vectors.records)?;
+            let expected = record(&drive, steps, Some(block))?.full;
+            Some(
+                first_step(&expected, &found, &listed.words)
+                    .unwrap_or_else(|| format!("block {block} differs in its digest only")),
+            )
+        }
+    };
+    Ok(Outcome {
+        steps: vectors.steps,
+        difference,
+    })
+}
+
+/// The first block whose digest differs, or that was not answered.
+fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
+    let mut found = found.chunks(8);
+    vectors
+        .digests
+        .iter()
+        .position(|digest| found.next() != Some(digest))
+}
+
+/// The first step that differs, with all its words.
+fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option<String> {
+    let length = ANSWER + 4 * names.len();
+    let mut found = found.chunks(length);
+    let (answer, found) = expected
+        .iter()
+        .map(|answer| (answer, found.next().unwrap_or_default()))
+        .find(|(answer, found)| answer.bytes != *found)?;
+    let mut text = format!("step {}, {:?}\n", answer.step, answer.sample);
+    let mut line = |name: &str, [expected, found]: [Option<i32>; 2]| {
+        let mark = if expected == found { ' ' } else { '*' };
+        let shown = |word: Option<i32>| word.map_or("nothing".to_owned(), |word| word.to_string());
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{mark} {name:20} {:>12} {:>12}",
+            shown(expected),
+            shown(found)
+        );
+    };
+    let sides = [answer.bytes.as_slice(), found];
+    for (phase, name) in ["compare_a", "compare_b", "compare_c"]
+        .into_iter()
+        .enumerate()
+    {
+        line(name, sides.map(|bytes| number::<2>(bytes, 2 * phase)));
+    }
+    for (leg, name) in ["state_a", "state_b", "state_c", "fault"]
+        .into_iter()
+        .enumerate()
+    {
+        line(name, sides.map(|bytes| number::<1>(bytes, 6 + leg)));
+    }
+    for (index, name) in names.iter().enumerate() {
+        line(
+            name,
+            sides.map(|bytes| number::<4>(bytes, ANSWER + 4 * index)),
+        );
+    }
+    Some(format!("  {:20} {:>12} {:>12}\n{text}", "", "host", "core"))
+}
+
+/// A little-endian number of `N` bytes.
+fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<i32> {
+    let bytes = bytes.get(at..at + N)?;
+    let mut word = [0; 4];
+    word[..N].copy_from_slice(bytes);
+    Some(i32::from_le_bytes(word))
+}

@@ -1,0 +1,74 @@
+//! The targets: their compiler's name, their folder, the machine that runs them.
+
+use clap::ValueEnum;
+
+/// A core that firmware is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// ARMv7E-M, as `mps2-an386`
+    CortexM4,
+    /// ARMv6-M, as `microbit`; counted on `mps2-an385`
+    CortexM0,
+    /// RV32IMC, as `virt`
+    Riscv32,
+}
+
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Answers only: as fast as the emulator goes.
+    Answers,
+    /// Counts of instructions: the emulator's clock follows them.
+    Counts,
+}
+
+impl Target {
+    /// All, in the order of reports.
+    pub const ALL: [Self; 3] = [Self::CortexM4, Self::CortexM0, Self::Riscv32];
+
+    /// Folder under `targets/`, and name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CortexM4 => "cortex-m4",
+            Self::CortexM0 => "cortex-m0",
+            Self::Riscv32 => "riscv32",
+        }
+    }
+
+    /// The compiler's name.
+    pub fn triple(self) -> &'static str {
+        match self {
+            Self::CortexM4 => "thumbv7em-none-eabi",
+            Self::CortexM0 => "thumbv6m-none-eabi",
+            Self::Riscv32 => "riscv32imc-unknown-none-elf",
+        }
+    }
+
+    /// The emulator's program.
+    pub fn emulator(self) -> &'static str {
+        match self {
+            Self::CortexM4 | Self::CortexM0 => "qemu-system-arm",
+            Self::Riscv32 => "qemu-system-riscv32",
+        }
+    }
+
+    /// The emulator's machine and clock. SysTick of the MPS2 boards ticks every 40 ns, so that `shift=10`,
+    /// 1024 ns per instruction, resolves each; the `microbit` has none that fits, and the Cortex-M3 of
+    /// `mps2-an385` executes all instructions of a Cortex-M0, from the same addresses.
+    pub fn machine(self, purpose: Purpose) -> Vec<&'static str> {
+        let mut arguments = match (self, purpose) {
+            (Self::CortexM4, _) => vec!["-machine", "mps2-an386"],
+            (Self::CortexM0, Purpose::Answers) => vec!["-machine", "microbit"],
+            (Self::CortexM0, Purpose::Counts) => vec!["-machine", "mps2-an385"],
+            (Self::Riscv32, _) => vec!["-machine", "virt", "-bios", "none"],
+        };
+        if purpose == Purpose::Counts {
+            let shift = match self {
+                Self::CortexM4 | Self::CortexM0 => "shift=10",
+                Self::Riscv32 => "shift=0",
+            };
+            arguments.extend(["-icount", shift]);
+        }
+        arguments
+    }
+}

@@ -1,0 +1,191 @@
+//! Finds what compiles for a target and what runs the result: what is installed first, then Debian's own Rust,
+//! which builds `core` from its sources.
+
+use crate::targets::Target;
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Debian's packages of all targets.
+const PACKAGES: [&str; 5] = [
+    "rustc-web",
+    "cargo-web",
+    "rust-web-src",
+    "qemu-system-arm",
+    "qemu-system-misc",
+];
+
+/// Debian's compiler and package tool; those on the path may be others.
+const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
+const DEBIAN_CARGO: &str = "/usr/bin/cargo";
+
+/// What compiles for a target.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Toolchain {
+    /// The compiler on the path has the target.
+    Installed {
+        /// As `rustc --version` says.
+        version: String,
+    },
+    /// Debian's compiler, with the sources of `core`.
+    Debian {
+        /// As `rustc --version` says.
+        version: String,
+        /// A linker of the LLVM project.
+        linker: PathBuf,
+    },
+}
+
+/// Nothing compiles or runs firmware of a target.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "firmware for {target} cannot be {what} here: {reason}\n\
+     install: rustup target add {triple}, and {emulator}\n\
+     or, on Debian: apt-get install --no-install-recommends {packages}"
+)]
+pub struct Missing {
+    target: &'static str,
+    triple: &'static str,
+    emulator: &'static str,
+    what: &'static str,
+    reason: String,
+    packages: String,
+}
+
+impl Missing {
+    fn new(target: Target, what: &'static str, reason: impl Into<String>) -> Self {
+        Self {
+            target: target.name(),
+            triple: target.triple(),
+            emulator: target.emulator(),
+            what,
+            reason: reason.into(),
+            packages: PACKAGES.join(" "),
+        }
+    }
+}
+
+/// The toolchain of a target, whose emulator is there, too. Where one is missing and this is a continuous
+/// integration run of root's, Debian's packages are installed first.
+///
+/// # Errors
+/// What is missing and how to get it.
+pub fn find(target: Target) -> Result<Toolchain, Missing> {
+    let found = look(target);
+    if found.is_err() && env::var_os("CI").is_some() && install() {
+        return look(target);
+    }
+    found
+}
+
+fn look(target: Target) -> Result<Toolchain, Missing> {
+    let emulator = target.emulator();
+    if output(Command::new(emulator).arg("--version")).is_none() {
+        let reason = format!("`{emulator}` is not on the path");
+        return Err(Missing::new(target, "run", reason));
+    }
+    compiler(target)
+}
+
+fn compiler(target: Target) -> Result<Toolchain, Missing> {
+    let mut rustc = plain("rustc");
+    let sysroot = output(rustc.args(["--print", "sysroot"])).unwrap_or_default();
+    let libraries = Path::new(sysroot.trim()).join("lib/rustlib");
+    if libraries.join(target.triple()).join("lib").is_dir()
+        && let Some(version) = output(plain("rustc").arg("--version"))
+    {
+        let version = version.trim().to_owned();
+        return Ok(Toolchain::Installed { version });
+    }
+    let absent = |reason: &str| Err(Missing::new(target, "compiled", reason));
+    let Some(version) = output(Command::new(DEBIAN_RUSTC).arg("--version")) else {
+        return absent("the compiler on the path lacks the target, and Debian's is not there");
+    };
+    let root = output(Command::new(DEBIAN_RUSTC).args(["--print", "sysroot"])).unwrap_or_default();
+    let sources = Path::new(root.trim()).join("lib/rustlib/src/rust/library/core");
+    if !sources.is_dir() || !Path::new(DEBIAN_CARGO).is_file() {
+        return absent("Debian's Rust is there without cargo or the sources of `core`");
+    }
+    let Some(linker) = linker(&libraries) else {
+        return absent("neither the compiler on the path nor Debian has a linker `lld`");
+    };
+    Ok(Toolchain::Debian {
+        version: version.trim().to_owned(),
+        linker,
+    })
+}
+
+/// `rust-lld` of the compiler on the path, else Debian's `lld`.
+fn linker(libraries: &Path) -> Option<PathBuf> {
+    let hosts = libraries.read_dir().into_iter().flatten().flatten();
+    hosts
+        .map(|host| host.path().join("bin/rust-lld"))
+        .chain([PathBuf::from("/usr/bin/ld.lld")])
+        .find(|path| path.is_file())
+}
+
+/// Installs Debian's packages; whether that went well.
+fn install() -> bool {
+    let run = |arguments: &[&str]| {
+        println!("== set-up: apt-get {}", arguments.join(" "));
+        Command::new("apt-get")
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .args(arguments)
+            .status()
+            .is_ok_and(|status| status.success())
+    };
+    let mut install = vec!["install", "-y", "-qq", "--no-install-recommends"];
+    install.extend(PACKAGES);
+    run(&["update", "-qq"]) && run(&install)
+}
+
+/// A program of the path, free of what an outer cargo told this process.
+fn plain(program: &str) -> Command {
+    let mut command = Command::new(program);
+    for name in [
+        "RUSTUP_TOOLCHAIN",
+        "CARGO",
+        "RUSTC",
+        "RUSTFLAGS",
+        "CARGO_ENCODED_RUSTFLAGS",
+    ] {
+        command.env_remove(name);
+    }
+    command
+}
+
+fn output(command: &mut Command) -> Option<String> {
+    let output = command.output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then_some(text)
+}
+
+impl Toolchain {
+    /// As `rustc --version` says.
+    pub fn version(&self) -> &str {
+        match self {
+            Self::Installed { version } | Self::Debian { version, .. } => version,
+        }
+    }
+
+    /// `cargo build` for a target.
+    pub fn cargo_build(&self, target: Target) -> Command {
+        let mut command = match self {
+            Self::Installed { .. } => plain("cargo"),
+            Self::Debian { linker, .. } => {
+                let triple = target.triple().replace('-', "_").to_uppercase();
+                let mut command = plain(DEBIAN_CARGO);
+                command
+                    .env("RUSTC", DEBIAN_RUSTC)
+                    .env("RUSTC_BOOTSTRAP", "1")
+                    .env(format!("CARGO_TARGET_{triple}_LINKER"), linker);
+                command
+            }
+        };
+        command.args(["build", "--release", "--target", target.triple()]);
+        if matches!(self, Self::Debian { .. }) {
+            command.arg("-Zbuild-std=core");
+        }
+        command
+    }
+}

@@ -1,0 +1,280 @@
+//! Vectors: what a drive reads in closed loop on the simulated plant, and at the edges of its inputs, with what it
+//! answers on the host.
+//!
+//! Nine stretches in ten run on the switched plant of the `hexagen` program: start-up, then speeds and set-points of
+//! both signs, up to past the speed limit. The tenth is the stimulus of the bit-for-bit test: arbitrary words,
+//! corners, calls strewn in.
+
+use crate::BenchError;
+use crate::listing::Listed;
+use hexagen::{Fault, Legs, Sample};
+use hexagen_firmware::wire::{BLOCK, Digest, Record, encode_outputs};
+use hexagen_host::closed_loop::{ClosedLoop, CurrentLoop, Delay};
+use hexagen_host::engine::{MotorSource, Prepared, plant_of, prepare};
+use hexagen_host::plant::{Plant, Truth};
+use hexagen_reference::verify::{Action, Context, Stimulus, Subject};
+use std::f64::consts::TAU;
+
+/// Steps of a stretch.
+const STRETCH: usize = 2048;
+
+/// The recorded run of a drive.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vectors {
+    /// Records as they go to the core.
+    pub records: Vec<u8>,
+    /// Digest of each block's answers.
+    pub digests: Vec<[u8; 8]>,
+    /// Answers of the block that was asked for, step by step.
+    pub full: Vec<Answer>,
+    /// Steps among the records.
+    pub steps: usize,
+}
+
+/// What a step put out, and its state words after it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// What the step read.
+    pub sample: Sample,
+    /// Step from the begin of the run.
+    pub step: usize,
+    /// Outputs and state words as they come from the core.
+    pub bytes: Vec<u8>,
+}
+
+/// The drive of the firmware's list on the host.
+///
+/// # Errors
+/// When the host makes another drive of the same motor and options, or none.
+pub fn drive_of(listed: &Listed) -> Result<Prepared, BenchError> {
+    let motor = MotorSource::of_library(&listed.motor)
+        .ok_or_else(|| BenchError::Motor(listed.motor.clone()))?;
+    let drive = prepare(&motor, Some(&listed.variant))
+        .map_err(|errors| BenchError::Drive(listed.symbol.clone(), errors.to_string()))?;
+    let nameless = |spec: &str| spec.split_once('\n').map(|(_, rest)| rest.to_owned());
+    if nameless(&drive.generated.interface.spec_toml) != nameless(&listed.spec) {
+        return Err(BenchError::Other(listed.symbol.clone()));
+    }
+    Ok(drive)
+}
+
+/// Records a run of at least `steps` steps; with the full answers of one block, if asked for.
+///
+/// # Errors
+/// When the plant cannot be made, which a specification that generates does not cause.
+pub fn record(drive: &Prepared, steps: usize, full: Option<usize>) -> Result<Vectors, BenchError> {
+    let mut recorder = Recorder::new(drive, full);
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut stretch = 0;
+    while recorder.vectors.steps < steps {
+        if stretch % 10 == 9 {
+            recorder.edges(drive, stretch as u64)?;
+        } else {
+            let speed = match stretch {
+                0 => 0.0,
+                _ => 1.3 * (2.0 * random.f64() - 1.0),
+            };
+            let currents = [random.f64(), random.f64()].map(|share| 2.0 * share - 1.0);
+            let stretch = Stretch {
+                starts_up: stretch == 0,
+                speed,
+                currents,
+                steps: STRETCH,
+            };
+            recorder.closed_loop(drive, &stretch)?;
+        }
+        stretch += 1;
+    }
+    Ok(recorder.finish())
+}
+
+/// A stretch in closed loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Whether calibration and pre-charge come first.
+    pub starts_up: bool,
+    /// Share of the rated speed.
+    pub speed: f64,
+    /// Set-points of the halves, shares of the largest one.
+    pub currents: [f64; 2],
+    /// Steps under control.
+    pub steps: usize,
+}
+
+/// A recorder in the place of the controller.
+struct InLoop<'r, 'g>(&'r mut Recorder<'g>);
+
+impl CurrentLoop for InLoop<'_, '_> {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+        self.0.step(sample)
+    }
+}
+
+/// A drive of the host that notes all calls and answers.
+pub struct Recorder<'g> {
+    subject: Box<dyn Subject + 'g>,
+    words: Vec<i32>,
+    digest: Digest,
+    in_block: usize,
+    full: Option<usize>,
+    vectors: Vectors,
+    fresh: Box<dyn Fn() -> Box<dyn Subject + 'g> + 'g>,
+}
+
+impl<'g> Recorder<'g> {
+    /// A drive at rest; compiled code where it is built in, else the interpreted program, which equals it.
+    pub fn new(drive: &'g Prepared, full: Option<usize>) -> Self {
+        let fresh = move || -> Box<dyn Subject + 'g> {
+            match drive.compiled() {
+                Some(compiled) => Box::new(compiled),
+                None => Box::new(drive.interpreted()),
+            }
+        };
+        Self {
+            subject: fresh(),
+            words: vec![0; drive.state_names().len()],
+            digest: Digest::default(),
+            in_block: 0,
+            full,
+            vectors: Vectors::default(),
+            fresh: Box::new(fresh),
+        }
+    }
+
+    /// Ends the run.
+    pub fn finish(mut self) -> Vectors {
+        if self.in_block > 0 {
+            self.vectors.digests.push(self.digest.encode());
+        }
+        self.vectors
+    }
+
+    fn note(&mut self, record: Record) {
+        if self.in_block == BLOCK {
+            let digest = std::mem::take(&mut self.digest);
+            self.vectors.digests.push(digest.encode());
+            self.in_block = 0;
+        }
+        self.in_block += 1;
+        self.vectors.records.extend(record.encode());
+    }
+
+    /// A call other than a step.
+    pub fn call(&mut self, record: Record) {
+        self.note(record);
+        match record {
+            Record::New => self.subject = (self.fresh)(),
+            Record::SetCurrent(bits) => self.subject.set_current(bits),
+            Record::SetTorque(bits) => self.subject.set_torque(bits),
+            Record::SetBus(counts) => self.subject.set_bus(counts),
+            Record::Reset => self.subject.reset(),
+            Record::Calibrate => self.subject.calibrate(),
+            Record::Precharge => self.subject.precharge(),
+            Record::Step(_) | Record::SetStateWord { .. } => {}
+        }
+    }
+
+    /// Overwrites all state words.
+    fn recall(&mut self, words: &[i32]) {
+        for (index, &value) in words.iter().enumerate() {
+            let index = index as u8;
+            self.note(Record::SetStateWord { index, value });
+        }
+        self.subject.set_state_words(words);
+    }
+
+    /// A control period.
+    pub fn step(&mut self, sample: &Sample) -> Legs {
+        self.note(Record::Step(*sample));
+        let legs = self.subject.step(sample);
+        let fault = self.subject.fault();
+        self.subject.state_words(&mut self.words);
+        self.digest.answer(&legs, fault);
+        for &word in &self.words {
+            self.digest.word(word as u32);
+        }
+        if self.full == Some(self.vectors.digests.len()) {
+            let words = self.words.iter().flat_map(|word| word.to_le_bytes());
+            self.vectors.full.push(Answer {
+                sample: *sample,
+                step: self.vectors.steps,
+                bytes: encode_outputs(&legs, fault)
+                    .into_iter()
+                    .chain(words)
+                    .collect(),
+            });
+        }
+        self.vectors.steps += 1;
+        legs
+    }
+
+    /// Why the drive is tripped.
+    pub fn fault(&self) -> Fault {
+        self.subject.fault()
+    }
+
+    /// A stretch on the simulated plant, from a drive at rest on.
+    ///
+    /// # Errors
+    /// When the plant cannot be made.
+    pub fn closed_loop(&mut self, drive: &Prepared, stretch: &Stretch) -> Result<(), BenchError> {
+        self.call(Record::New);
+        if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
+            self.call(Record::SetBus(counts));
+        }
+        let inverter = &drive.spec.inverter;
+        let omega = stretch.speed * drive.rated_rpm() * TAU / 60.0;
+        let plant = Plant::new(plant_of(&drive.spec), 0.1, omega)?;
+        let delay = match drive.spec.controller.common().delay {
+            0 => Delay::None,
+            _ => Delay::OnePeriod,
+        };
+        let mut closed = ClosedLoop::new(plant, InLoop(self), delay);
+        if stretch.starts_up {
+            closed.controller().0.call(Record::Calibrate);
+            closed.run(1 << inverter.calibration_log2, &mut ());
+            closed.controller().0.call(Record::Precharge);
+            closed.run(inverter.precharge_periods as usize, &mut ());
+        }
+        for share in stretch.currents {
+            let bits = (share * inverter.max_current * 65_536.0) as i32;
+            closed.controller().0.call(Record::SetCurrent(bits));
+            closed.run(stretch.steps / 2, &mut ());
+        }
+        Ok(())
+    }
+
+    /// A stretch of the bit-for-bit test's stimulus.
+    fn edges(&mut self, drive: &Prepared, seed: u64) -> Result<(), BenchError> {
+        let mut stimulus = Stimulus::new(&drive.reference, seed)
+            .map_err(|error| BenchError::Stimulus(error.to_string()))?;
+        self.call(Record::New);
+        let mut remembered: Option<Vec<i32>> = None;
+        let offset = f64::from(drive.spec.inverter.adc_offset);
+        for _ in 0..STRETCH {
+            let context = Context {
+                offset: [offset; 2],
+                tripped: self.fault() != Fault::None,
+            };
+            let (action, sample) = stimulus.next(&context);
+            match action {
+                Some(Action::SetCurrent(bits)) => self.call(Record::SetCurrent(bits)),
+                Some(Action::SetTorque(bits)) => self.call(Record::SetTorque(bits)),
+                Some(Action::SetBus(counts)) => self.call(Record::SetBus(counts)),
+                Some(Action::Reset) => self.call(Record::Reset),
+                Some(Action::Calibrate) => self.call(Record::Calibrate),
+                Some(Action::Precharge) => self.call(Record::Precharge),
+                Some(Action::Remember) => remembered = Some(self.words.clone()),
+                Some(Action::Recall) => {
+                    if let Some(words) = remembered.clone() {
+                        self.recall(&words);
+                    }
+                }
+                None => {}
+            }
+            let legs = self.step(&sample);
+            stimulus.respond(&legs);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,4 @@
+//! Firmware for a Cortex-M4: drives of two motors and the board.
+#![no_std]
+
+pub mod drives;

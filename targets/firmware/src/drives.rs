@@ -1,0 +1,110 @@
+//! The list of a firmware's drives, and the step functions that stand in the ELF.
+
+use crate::session::{Broken, Link};
+use crate::wire::Task;
+use hexagen::Legs;
+
+/// A step function as it stands in the ELF: drive, counts of phases a and b, Hall code, ticks since the last
+/// Hall edge.
+pub type StepFn<D> = extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs;
+
+/// All drives of a firmware.
+pub type Drives = &'static [Listed];
+
+/// A drive of the list.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed {
+    /// Symbol of the step function.
+    pub symbol: &'static str,
+    /// Motor file, relative to the firmware crate.
+    pub motor: &'static str,
+    /// Kind of controller.
+    pub kind: &'static str,
+    /// Options as the macro call writes them.
+    pub options: &'static str,
+    /// Bytes of the drive's type.
+    pub size: usize,
+    /// Names of the state words.
+    pub state_names: &'static [&'static str],
+    /// Normalised specification.
+    pub spec: &'static str,
+    /// Replays a task on this drive.
+    pub replay: fn(&mut dyn Link, &Task) -> Result<(), Broken>,
+}
+
+impl Listed {
+    /// Writes what the bench must know: lines of a key and a value, the specification, and a line `end`.
+    ///
+    /// # Errors
+    /// When the output cannot be written.
+    pub fn list(&self, link: &mut dyn Link) -> Result<(), Broken> {
+        let mut line = |key: &str, values: &[&str]| {
+            link.write(key.as_bytes())?;
+            for value in values {
+                link.write(b" ")?;
+                link.write(value.as_bytes())?;
+            }
+            link.write(b"\n")
+        };
+        line("drive", &[self.symbol])?;
+        line("motor", &[self.motor])?;
+        line("kind", &[self.kind])?;
+        line("options", &[self.options])?;
+        line("words", self.state_names)?;
+        link.write(b"size ")?;
+        link.write(&decimal(self.size))?;
+        link.write(b"\n")?;
+        link.write(self.spec.as_bytes())?;
+        link.write(b"end\n")
+    }
+}
+
+/// Six decimal digits.
+fn decimal(mut number: usize) -> [u8; 6] {
+    let mut digits = [b'0'; 6];
+    for digit in digits.iter_mut().rev() {
+        *digit += (number % 10) as u8;
+        number /= 10;
+    }
+    digits
+}
+
+/// The drives of a firmware: for each a type by `hexagen::controller!`, its step function in the ELF, and a row of
+/// the list `DRIVES`.
+///
+/// The line `Name, symbol: "motor file", controller { options };` makes a type `Name` and a function `symbol`.
+#[macro_export]
+macro_rules! drives {
+    ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* };)*) => {
+        $(
+            $crate::hexagen::controller! {
+                pub $name { motor: $motor, controller: $kind { $($options)* } }
+            }
+
+            /// One control period of the drive.
+            #[unsafe(no_mangle)]
+            pub extern "C" fn $symbol(
+                drive: &mut $name,
+                adc_a: u16,
+                adc_b: u16,
+                hall: u8,
+                hall_ticks: u16,
+            ) -> $crate::hexagen::Legs {
+                let sample = $crate::hexagen::Sample { adc_a, adc_b, hall, hall_ticks };
+                $crate::hexagen::Drive::step(drive, &sample)
+            }
+        )*
+
+        /// All drives of this firmware.
+        pub static DRIVES: $crate::Drives = &[$($crate::Listed {
+            symbol: stringify!($symbol),
+            motor: $motor,
+            kind: stringify!($kind),
+            options: stringify!($($options)*),
+            size: size_of::<$name>(),
+            state_names: <$name as $crate::hexagen::Drive>::STATE_NAMES,
+            spec: <$name as $crate::hexagen::Drive>::SPEC,
+            replay: |link, task| $crate::session::replay($symbol, link, task),
+        },)*];
+    };
+}

@@ -1,0 +1,17 @@
+//! What the firmware of every target shares.
+//!
+//! A firmware crate lists its drives with [`drives!`]; the test bench (`cargo xtask pil`, `cargo xtask cost`)
+//! sends vectors to the core, and [`session`] replays them on the drive: answers as digests, in full, or as
+//! counts of instructions. [`wire`] is the format that both ends speak.
+#![no_std]
+
+#[cfg_attr(not(target_os = "none"), path = "uncounted.rs")]
+mod counter;
+mod drives;
+#[cfg(target_os = "none")]
+pub mod semihosted;
+pub mod session;
+pub mod wire;
+
+pub use drives::{Drives, Listed, StepFn};
+pub use hexagen;

@@ -1,0 +1,173 @@
+//! The core's end of the test bench: reads a task, replays its records, answers.
+
+use crate::counter::{count, sound};
+use crate::drives::{Drives, StepFn};
+use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
+use hexagen::fixed::types::I16F16;
+use hexagen::{Drive, Legs, Sample};
+
+/// Where a session reads its task and writes its answers.
+pub trait Link {
+    /// Fills the front of `bytes`; returns how many, fewer than asked for only at the end of the input.
+    ///
+    /// # Errors
+    /// When the input cannot be read.
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Broken>;
+
+    /// Writes all bytes.
+    ///
+    /// # Errors
+    /// When the output cannot be written.
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Broken>;
+}
+
+/// The exchange ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Broken {
+    /// Input or output failed.
+    Link,
+    /// What came in is no task or no record.
+    Format,
+    /// Nothing counts instructions here: the session is not on a core of its own.
+    Uncounted,
+}
+
+/// Serves one task on the drives of this firmware.
+///
+/// # Errors
+/// When the exchange ends early.
+pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
+    let mut header = [0; HEADER];
+    if link.read(&mut header)? < HEADER {
+        return Err(Broken::Format);
+    }
+    let task = Task::decode(header).ok_or(Broken::Format)?;
+    if task.mode == Mode::List {
+        return drives.iter().try_for_each(|drive| drive.list(link));
+    }
+    let drive = drives.get(usize::from(task.drive)).ok_or(Broken::Format)?;
+    (drive.replay)(link, &task)
+}
+
+/// Replays the records of a task on a drive.
+///
+/// # Errors
+/// When the exchange ends early.
+pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
+    let mut replayed = Replayed {
+        drive: D::new(),
+        step,
+        depth: 0,
+    };
+    let mut records = [0; BLOCK * RECORD];
+    let mut block = 0;
+    loop {
+        let length = link.read(&mut records)?;
+        let (records, _) = records[..length].as_chunks();
+        match task.mode {
+            Mode::Digest if length > 0 => link.write(&replayed.digest(records)?.encode())?,
+            Mode::Full if block == task.block => return replayed.full(records, link),
+            Mode::Full => {
+                replayed.digest(records)?;
+            }
+            Mode::Count => replayed.count(records, link)?,
+            Mode::Stack => replayed.sound(records)?,
+            Mode::Digest | Mode::List => {}
+        }
+        if length < BLOCK * RECORD {
+            break;
+        }
+        block += 1;
+    }
+    if task.mode == Mode::Stack {
+        link.write(&replayed.depth.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+struct Replayed<D> {
+    drive: D,
+    step: StepFn<D>,
+    depth: u32,
+}
+
+impl<D: Drive> Replayed<D> {
+    /// The sample of a step; any other call is carried out.
+    fn sample(&mut self, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
+        match Record::decode(record).ok_or(Broken::Format)? {
+            Record::Step(sample) => return Ok(Some(sample)),
+            Record::New => self.drive = D::new(),
+            Record::SetCurrent(bits) => self.drive.set_current(I16F16::from_bits(bits)),
+            Record::SetTorque(bits) => self.drive.set_torque(I16F16::from_bits(bits)),
+            Record::SetBus(counts) => self.drive.set_bus(counts),
+            Record::Reset => self.drive.reset(),
+            Record::Calibrate => self.drive.calibrate(),
+            Record::Precharge => self.drive.precharge(),
+            Record::SetStateWord { index, value } => {
+                self.drive.set_state_word(usize::from(index), value);
+            }
+        }
+        Ok(None)
+    }
+
+    fn step(&mut self, sample: Sample) -> Legs {
+        (self.step)(
+            &mut self.drive,
+            sample.adc_a,
+            sample.adc_b,
+            sample.hall,
+            sample.hall_ticks,
+        )
+    }
+
+    fn digest(&mut self, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {
+        let mut digest = Digest::default();
+        for &record in records {
+            let Some(sample) = self.sample(record)? else {
+                continue;
+            };
+            let legs = self.step(sample);
+            digest.answer(&legs, self.drive.fault());
+            for index in 0..D::STATE_NAMES.len() {
+                digest.word(self.drive.state_word(index) as u32);
+            }
+        }
+        Ok(digest)
+    }
+
+    fn full(&mut self, records: &[[u8; RECORD]], link: &mut dyn Link) -> Result<(), Broken> {
+        for &record in records {
+            let Some(sample) = self.sample(record)? else {
+                continue;
+            };
+            let legs = self.step(sample);
+            link.write(&encode_outputs(&legs, self.drive.fault()))?;
+            for index in 0..D::STATE_NAMES.len() {
+                link.write(&self.drive.state_word(index).to_le_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, records: &[[u8; RECORD]], link: &mut dyn Link) -> Result<(), Broken> {
+        for &record in records {
+            if let Some(sample) = self.sample(record)? {
+                let instructions =
+                    count(self.step, &mut self.drive, &sample).ok_or(Broken::Uncounted)?;
+                link.write(&(instructions as u16).to_le_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sounds the depth of the stack.
+    fn sound(&mut self, records: &[[u8; RECORD]]) -> Result<(), Broken> {
+        for &record in records {
+            if let Some(sample) = self.sample(record)? {
+                let depth = sound(self.step, &mut self.drive, &sample).ok_or(Broken::Uncounted)?;
+                self.depth = self.depth.max(depth);
+            }
+        }
+        Ok(())
+    }
+}

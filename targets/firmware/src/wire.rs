@@ -1,0 +1,210 @@
+//! The format between the test bench and the core: a task, records that are replayed, answers.
+//!
+//! All numbers are little-endian. A task is one header and records up to the end of the input; the core
+//! answers each block of records, and what is left at the end, as the task's mode says.
+
+use hexagen::{Fault, Legs, Sample};
+
+/// Bytes of a record.
+pub const RECORD: usize = 8;
+
+/// Records of a block.
+pub const BLOCK: usize = 512;
+
+/// Bytes of a task's header.
+pub const HEADER: usize = 12;
+
+/// Bytes of an answer in full, besides four per state word: compare values, leg states, fault.
+pub const ANSWER: usize = 10;
+
+/// Begin of every task.
+const MAGIC: [u8; 4] = *b"HXG1";
+
+/// What the core does with a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Lists its drives; reads no records.
+    List = 0,
+    /// Answers each block with its [`Digest`].
+    Digest = 1,
+    /// Answers every step of one block in full.
+    Full = 2,
+    /// Answers each step with its count of instructions, 16 bits.
+    Count = 3,
+    /// Answers once: the greatest depth of the stack in bytes, 32 bits.
+    Stack = 4,
+}
+
+/// Begin of the input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Task {
+    /// What to do.
+    pub mode: Mode,
+    /// Place in the list of drives.
+    pub drive: u16,
+    /// The block that is answered in full.
+    pub block: u32,
+}
+
+impl Task {
+    /// As bytes.
+    #[must_use]
+    pub fn encode(&self) -> [u8; HEADER] {
+        let [m0, m1, m2, m3] = MAGIC;
+        let [d0, d1] = self.drive.to_le_bytes();
+        let [b0, b1, b2, b3] = self.block.to_le_bytes();
+        [m0, m1, m2, m3, self.mode as u8, 0, d0, d1, b0, b1, b2, b3]
+    }
+
+    /// From bytes; none where they are no task.
+    #[must_use]
+    pub fn decode(bytes: [u8; HEADER]) -> Option<Self> {
+        let [m0, m1, m2, m3, mode, _, d0, d1, b0, b1, b2, b3] = bytes;
+        if [m0, m1, m2, m3] != MAGIC {
+            return None;
+        }
+        Some(Self {
+            mode: match mode {
+                0 => Mode::List,
+                1 => Mode::Digest,
+                2 => Mode::Full,
+                3 => Mode::Count,
+                4 => Mode::Stack,
+                _ => return None,
+            },
+            drive: u16::from_le_bytes([d0, d1]),
+            block: u32::from_le_bytes([b0, b1, b2, b3]),
+        })
+    }
+}
+
+/// A call of a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// Begin with a drive at rest.
+    New,
+    /// A control period.
+    Step(Sample),
+    /// Current set-point, bits of an `I16F16` in ampere.
+    SetCurrent(i32),
+    /// Torque set-point, bits of an `I16F16` in newton metres.
+    SetTorque(i32),
+    /// Bus voltage, ADC counts.
+    SetBus(u16),
+    /// Reset.
+    Reset,
+    /// Start of the offset calibration.
+    Calibrate,
+    /// Start of the bootstrap pre-charge.
+    Precharge,
+    /// Overwrites a state word.
+    SetStateWord {
+        /// Place among the state words.
+        index: u8,
+        /// Its new value.
+        value: i32,
+    },
+}
+
+impl Record {
+    /// As bytes.
+    #[must_use]
+    pub fn encode(&self) -> [u8; RECORD] {
+        let number = |operation: u8, value: i32, index: u8| {
+            let [v0, v1, v2, v3] = value.to_le_bytes();
+            [operation, index, 0, 0, v0, v1, v2, v3]
+        };
+        match *self {
+            Self::New => number(0, 0, 0),
+            Self::Step(sample) => {
+                let [t0, t1] = sample.hall_ticks.to_le_bytes();
+                let [a0, a1] = sample.adc_a.to_le_bytes();
+                let [b0, b1] = sample.adc_b.to_le_bytes();
+                [1, sample.hall, t0, t1, a0, a1, b0, b1]
+            }
+            Self::SetCurrent(bits) => number(2, bits, 0),
+            Self::SetTorque(bits) => number(3, bits, 0),
+            Self::SetBus(counts) => number(4, i32::from(counts), 0),
+            Self::Reset => number(5, 0, 0),
+            Self::Calibrate => number(6, 0, 0),
+            Self::Precharge => number(7, 0, 0),
+            Self::SetStateWord { index, value } => number(8, value, index),
+        }
+    }
+
+    /// From bytes; none where they are no record.
+    #[must_use]
+    pub fn decode(bytes: [u8; RECORD]) -> Option<Self> {
+        let [operation, index, t0, t1, v0, v1, v2, v3] = bytes;
+        let value = i32::from_le_bytes([v0, v1, v2, v3]);
+        Some(match operation {
+            0 => Self::New,
+            1 => Self::Step(Sample {
+                adc_a: u16::from_le_bytes([v0, v1]),
+                adc_b: u16::from_le_bytes([v2, v3]),
+                hall: index,
+                hall_ticks: u16::from_le_bytes([t0, t1]),
+            }),
+            2 => Self::SetCurrent(value),
+            3 => Self::SetTorque(value),
+            4 => Self::SetBus(value as u16),
+            5 => Self::Reset,
+            6 => Self::Calibrate,
+            7 => Self::Precharge,
+            8 => Self::SetStateWord { index, value },
+            _ => return None,
+        })
+    }
+}
+
+/// Digest of a block's answers: two lanes of 32 bits.
+///
+/// Each lane is a bijection of the lane for a given word, and of the word for a given lane: one word that
+/// differs, alone, always shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Digest([u32; 2]);
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self([0x811c_9dc5, 0x9e37_79b9])
+    }
+}
+
+impl Digest {
+    /// Takes in a word.
+    pub fn word(&mut self, word: u32) {
+        let [first, second] = self.0;
+        self.0 = [
+            (first ^ word).wrapping_mul(0x0100_0193).rotate_left(13),
+            second
+                .wrapping_add(word)
+                .rotate_left(7)
+                .wrapping_mul(0x9e37_79b1),
+        ];
+    }
+
+    /// Takes in what a step put out.
+    pub fn answer(&mut self, legs: &Legs, fault: Fault) {
+        for (compare, state) in legs.compare.iter().zip(legs.state) {
+            self.word(u32::from(*compare) | (state as u32) << 16);
+        }
+        self.word(fault as u32);
+    }
+
+    /// As bytes.
+    #[must_use]
+    pub fn encode(&self) -> [u8; 8] {
+        let [first, second] = self.0.map(u32::to_le_bytes);
+        let [f0, f1, f2, f3] = first;
+        let [s0, s1, s2, s3] = second;
+        [f0, f1, f2, f3, s0, s1, s2, s3]
+    }
+}
+
+/// A step's outputs as bytes; its state words follow.
+#[must_use]
+pub fn encode_outputs(legs: &Legs, fault: Fault) -> [u8; ANSWER] {
+    let [[a0, a1], [b0, b1], [c0, c1]] = legs.compare.map(u16::to_le_bytes);
+    let [a, b, c] = legs.state.map(|state| state as u8);
+    [a0, a1, b0, b1, c0, c1, a, b, c, fault as u8]
+}
