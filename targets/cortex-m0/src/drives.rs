@@ -1,0 +1,33 @@
+//! The drives of this firmware. Every step function stands in the ELF under its own name.
+
+hexagen_firmware::drives! {
+    TrivediPdcc, step_trivedi_keshri_660w_pdcc:
+        "../motors/trivedi-keshri-660w.toml", pdcc {};
+    TrivediFcsMpc, step_trivedi_keshri_660w_fcs_mpc:
+        "../motors/trivedi-keshri-660w.toml", fcs_mpc {};
+    TrivediPhcc, step_trivedi_keshri_660w_phcc:
+        "../motors/trivedi-keshri-660w.toml", phcc {};
+    TrivediPiPwm, step_trivedi_keshri_660w_pi_pwm:
+        "../motors/trivedi-keshri-660w.toml", pi_pwm {};
+
+    TeknicPdcc, step_teknic_m2310p_pdcc: "../motors/teknic-m2310p.toml", pdcc {};
+    TeknicFcsMpc, step_teknic_m2310p_fcs_mpc: "../motors/teknic-m2310p.toml", fcs_mpc {};
+    TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
+    TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
+
+    // The variants that the goals of the cost table are about.
+    TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
+        "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf_filter: 1 };
+    TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:
+        "../motors/trivedi-keshri-660w.toml",
+        fcs_mpc { candidates: three_phase, emf_filter: 1 };
+    TrivediFcsMpcTable2, step_trivedi_keshri_660w_fcs_mpc_table2:
+        "../motors/trivedi-keshri-660w.toml",
+        fcs_mpc { candidates: table2, off_leg: nominal, emf_filter: 1 };
+    TrivediFcsMpcPhysical, step_trivedi_keshri_660w_fcs_mpc_physical:
+        "../motors/trivedi-keshri-660w.toml", fcs_mpc { emf_filter: 1 };
+    TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:
+        "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf_filter: 1 };
+    TrivediPiPwmKeepAngle, step_trivedi_keshri_660w_pi_pwm_keep_angle:
+        "../motors/trivedi-keshri-660w.toml", pi_pwm { saturation: keep_angle, feed_forward: off };
+}

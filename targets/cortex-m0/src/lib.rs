@@ -1,0 +1,4 @@
+//! Firmware for a Cortex-M0: drives of two motors and the board.
+#![no_std]
+
+pub mod drives;

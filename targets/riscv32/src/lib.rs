@@ -1,0 +1,4 @@
+//! Firmware for RISC-V (RV32IMC): drives of two motors and the board.
+#![no_std]
+
+pub mod drives;
