@@ -1,13 +1,15 @@
-//! Puts the memory map where the linker finds it, and names the start-up's linker script.
+//! Puts memory map and vectors where the linker finds it, and names the start-up's linker script.
 
 use std::path::Path;
 use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
-    println!("cargo:rerun-if-changed=memory.x");
     let out = env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?;
     let out = Path::new(&out);
-    fs::copy("memory.x", out.join("memory.x"))?;
+    for script in ["memory.x", "device.x"] {
+        println!("cargo:rerun-if-changed={script}");
+        fs::copy(script, out.join(script))?;
+    }
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
     Ok(())

@@ -26,6 +26,9 @@ struct Arguments {
     /// Targets; all unless named
     #[arg(long, global = true, value_enum)]
     target: Vec<Target>,
+    /// Goes on without the targets whose tools are missing, and says so
+    #[arg(long, global = true)]
+    where_possible: bool,
 }
 
 #[derive(Subcommand)]
@@ -72,21 +75,14 @@ enum BenchError {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let targets = match arguments.target.as_slice() {
-        [] => &Target::ALL,
-        named => named,
+        [] => Target::ALL.to_vec(),
+        named => named.to_vec(),
     };
+    let targets = possible(targets, arguments.where_possible);
     let outcome = match arguments.command {
-        Command::Firmware => targets.iter().try_for_each(|&target| {
-            let built = firmware::Firmware::build(target)?;
-            println!(
-                "{}: built with {}",
-                target.name(),
-                built.toolchain.version()
-            );
-            Ok(())
-        }),
-        Command::Pil(options) => pil::run(targets, &options),
-        Command::Cost(options) => cost::run(targets, &options),
+        Command::Firmware => targets.iter().try_for_each(|&target| demonstrate(target)),
+        Command::Pil(options) => pil::run(&targets, &options),
+        Command::Cost(options) => cost::run(&targets, &options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -95,4 +91,34 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The targets, less those whose tools are missing, if that is allowed.
+fn possible(mut targets: Vec<Target>, where_possible: bool) -> Vec<Target> {
+    if where_possible {
+        targets.retain(|&target| match toolchain::find(target) {
+            Ok(_) => true,
+            Err(missing) => {
+                eprintln!(
+                    "WARNING: nothing is checked on {}: {missing}",
+                    target.name()
+                );
+                false
+            }
+        });
+    }
+    targets
+}
+
+/// Builds a target's firmware and lets its main program run on the emulated board.
+fn demonstrate(target: Target) -> Result<(), BenchError> {
+    let built = firmware::Firmware::build(target)?;
+    let folder = tempfile::tempdir()?;
+    let printed = built.emulate("firmware", targets::Purpose::Answers, folder.path())?;
+    print!(
+        "{}, {}: {printed}",
+        target.name(),
+        built.toolchain.version()
+    );
+    Ok(())
 }

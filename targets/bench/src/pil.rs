@@ -5,7 +5,8 @@ use crate::firmware::Firmware;
 use crate::listing::Listed;
 use crate::targets::Target;
 use crate::vectors::{Answer, Vectors, drive_of, record};
-use hexagen_firmware::wire::{ANSWER, Mode, Task};
+use hexagen_firmware::wire::{ANSWER, Mode, RECORD, STEP_RECORD, Task};
+use hexagen_host::engine::Prepared;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -29,6 +30,7 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     let mut differing = 0;
     for &target in targets {
         let firmware = Firmware::build(target)?;
+        prove_that_it_can_fail(&firmware)?;
         let begin = Instant::now();
         let mut drives = firmware.drives()?;
         if let Some(part) = &options.only {
@@ -68,35 +70,78 @@ struct Outcome {
     difference: Option<String>,
 }
 
-fn compare(firmware: &Firmware, listed: &Listed, steps: usize) -> Result<Outcome, BenchError> {
+fn compare(core: &impl Core, listed: &Listed, steps: usize) -> Result<Outcome, BenchError> {
     let drive = drive_of(listed)?;
     let vectors = record(&drive, steps, None)?;
+    let difference = difference(core, listed, &drive, &vectors)?;
+    Ok(Outcome {
+        steps: vectors.steps,
+        difference,
+    })
+}
+
+/// What runs the records of a task: an emulator, or a test.
+trait Core {
+    fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
+}
+
+impl Core for Firmware {
+    fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+        self.run(task, records)
+    }
+}
+
+/// The first step that differs, in full.
+fn difference(
+    core: &impl Core,
+    listed: &Listed,
+    drive: &Prepared,
+    vectors: &Vectors,
+) -> Result<Option<String>, BenchError> {
     let task = Task {
         mode: Mode::Digest,
         drive: listed.place,
         block: 0,
     };
-    let found = firmware.run(&task, &vectors.records)?;
-    let difference = match first_block(&vectors, &found) {
-        None => None,
-        Some(block) => {
-            let task = Task {
-                mode: Mode::Full,
-                block: block as u32,
-                ..task
-            };
-            let found = firmware.run(&task, &vectors.records)?;
-            let expected = record(&drive, steps, Some(block))?.full;
-            Some(
-                first_step(&expected, &found, &listed.words)
-                    .unwrap_or_else(|| format!("block {block} differs in its digest only")),
-            )
-        }
+    let found = core.run(&task, &vectors.records)?;
+    let Some(block) = first_block(vectors, &found) else {
+        return Ok(None);
     };
-    Ok(Outcome {
-        steps: vectors.steps,
-        difference,
-    })
+    let task = Task {
+        mode: Mode::Full,
+        block: block as u32,
+        ..task
+    };
+    let found = core.run(&task, &vectors.records)?;
+    let expected = record(drive, vectors.steps, Some(block))?.full;
+    let report = first_step(&expected, &found, &listed.words);
+    Ok(Some(report.unwrap_or_else(|| {
+        format!("block {block} differs in its digest only")
+    })))
+}
+
+/// Lets the core read one ADC count of one step wrong by one: the comparison must name that step.
+fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
+    const STEP: usize = 2500;
+    let drives = firmware.drives()?;
+    let listed = drives.first().ok_or(BenchError::Listing)?;
+    let drive = drive_of(listed)?;
+    let honest = record(&drive, 2 * STEP, None)?;
+    let mut planted = honest.clone();
+    let mut steps = planted
+        .records
+        .chunks_exact_mut(RECORD)
+        .filter(|record| record[0] == STEP_RECORD);
+    if let Some(record) = steps.nth(STEP) {
+        record[4] ^= 1;
+    }
+    match difference(firmware, listed, &drive, &planted)? {
+        Some(report) if report.contains(&format!("step {STEP},")) => Ok(()),
+        found => Err(BenchError::Failed(format!(
+            "a bit planted in step {STEP} of {} was not found there: {found:?}",
+            listed.symbol
+        ))),
+    }
 }
 
 /// The first block whose digest differs, or that was not answered.

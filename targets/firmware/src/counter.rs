@@ -71,6 +71,13 @@ pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> 
     Some(instructions(whole.wrapping_sub(around)) + 1)
 }
 
+/// Instructions of an interrupt's function, from its entry to its return, both included.
+pub fn count_interrupt(interrupt: extern "C" fn()) -> Option<u32> {
+    // SAFETY: a function without arguments takes no harm from some, and leaves `legs` as it is.
+    let step: StepFn<()> = unsafe { core::mem::transmute(interrupt) };
+    count(step, &mut (), &Sample::default())
+}
+
 /// Bytes of stack that one call uses.
 pub fn sound<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> {
     Some(call(hexagen_sounded_call, step, drive, sample))

@@ -7,11 +7,18 @@
 
 #[cfg_attr(not(target_os = "none"), path = "uncounted.rs")]
 mod counter;
+#[cfg(target_os = "none")]
+pub mod demonstration;
 mod drives;
+mod handed;
+pub mod interrupt;
+mod registers;
 #[cfg(target_os = "none")]
 pub mod semihosted;
 pub mod session;
 pub mod wire;
 
 pub use drives::{Drives, Listed, StepFn};
+pub use handed::Handed;
 pub use hexagen;
+pub use registers::Registers;

@@ -33,9 +33,14 @@ impl Link for Files {
 /// Serves the task in the file `task` of the emulator's folder, writes the file `answers`, and ends the
 /// emulator.
 pub fn run(drives: Drives) -> ! {
+    run_with(|link| serve(link, drives))
+}
+
+/// As [`run`], with another server.
+pub fn run_with(serve: impl FnOnce(&mut dyn Link) -> Result<(), Broken>) -> ! {
     let files = (File::open(c"task"), File::create(c"answers"));
     let outcome = match files {
-        (Ok(task), Ok(answers)) => serve(&mut Files { task, answers }, drives),
+        (Ok(task), Ok(answers)) => serve(&mut Files { task, answers }),
         _ => Err(Broken::Link),
     };
     match outcome {

@@ -17,6 +17,9 @@ pub const HEADER: usize = 12;
 /// Bytes of an answer in full, besides four per state word: compare values, leg states, fault.
 pub const ANSWER: usize = 10;
 
+/// First byte of a step's record.
+pub const STEP_RECORD: u8 = 1;
+
 /// Begin of every task.
 const MAGIC: [u8; 4] = *b"HXG1";
 
@@ -120,7 +123,7 @@ impl Record {
                 let [t0, t1] = sample.hall_ticks.to_le_bytes();
                 let [a0, a1] = sample.adc_a.to_le_bytes();
                 let [b0, b1] = sample.adc_b.to_le_bytes();
-                [1, sample.hall, t0, t1, a0, a1, b0, b1]
+                [STEP_RECORD, sample.hall, t0, t1, a0, a1, b0, b1]
             }
             Self::SetCurrent(bits) => number(2, bits, 0),
             Self::SetTorque(bits) => number(3, bits, 0),
@@ -139,7 +142,7 @@ impl Record {
         let value = i32::from_le_bytes([v0, v1, v2, v3]);
         Some(match operation {
             0 => Self::New,
-            1 => Self::Step(Sample {
+            STEP_RECORD => Self::Step(Sample {
                 adc_a: u16::from_le_bytes([v0, v1]),
                 adc_b: u16::from_le_bytes([v2, v3]),
                 hall: index,

@@ -29,8 +29,23 @@ enum Command {
         #[arg(long, default_value_t = 100_000_000)]
         steps: u64,
     },
+    /// Builds the firmware of every target and lets it run on the emulated board
+    Firmware(Forwarded),
+    /// Processor in the loop: closed-loop vectors on the emulated cores, every word compared (`--target`, `--steps`)
+    Pil(Forwarded),
+    /// What a step costs on every target: instructions, bytes, cycles (`--target`, `--only`, `--accept`)
+    Cost(Forwarded),
     /// Refreshes every recorded expectation (snapshots, compiler messages); read the diff afterwards
     Accept,
+}
+
+/// What goes on to the test bench, `targets/bench`.
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+struct Forwarded {
+    /// Options of the test bench; `--help` lists them
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    options: Vec<String>,
 }
 
 fn main() -> ExitCode {
@@ -39,6 +54,9 @@ fn main() -> ExitCode {
         Command::Nightly { steps } => {
             steps::run(&steps::checks()).and_then(|()| steps::run(&steps::long_checks(steps)))
         }
+        Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
+        Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
+        Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
         Command::Accept => steps::run(&steps::refresh()),
     };
     match outcome {

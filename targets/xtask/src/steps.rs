@@ -53,7 +53,37 @@ pub fn checks() -> Vec<Step> {
             ..step("documentation", &["doc", "--workspace", "--no-deps"])
         },
         step("tests", &["test", "--workspace", "--no-fail-fast"]),
+        on_target("firmware", &[]),
+        on_target("pil", &[]),
+        on_target("cost", &[]),
     ]
+}
+
+/// A command of the test bench.
+pub fn bench(command: &'static str, options: &[String]) -> Step {
+    let mut step = step(
+        command,
+        &[
+            "run",
+            "--quiet",
+            "--package",
+            "hexagen-bench",
+            "--",
+            command,
+        ],
+    );
+    step.arguments.extend_from_slice(options);
+    step
+}
+
+/// A command of the test bench among the checks. What it needs must be there in continuous integration;
+/// elsewhere it says what is missing, and goes on.
+fn on_target(command: &'static str, options: &[&str]) -> Step {
+    let mut options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
+    if env::var_os("CI").is_none() {
+        options.push("--where-possible".to_owned());
+    }
+    bench(command, &options)
 }
 
 /// What is too long for a push.
@@ -69,7 +99,10 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "--steps",
         &steps,
     ];
-    vec![step("verification", &verify)]
+    vec![
+        step("verification", &verify),
+        on_target("pil", &["--steps", "1000000"]),
+    ]
 }
 
 /// Rewrites recorded expectations.

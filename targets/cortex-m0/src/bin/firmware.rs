@@ -1,0 +1,14 @@
+//! The firmware: a control loop in the timer's interrupt; `main` sets its current.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+use hexagen_cortex_m0::board::{REGISTERS, start_timer, wait_for_interrupt};
+use hexagen_cortex_m0::control::hand_over;
+use hexagen_firmware::demonstration;
+
+#[entry]
+fn main() -> ! {
+    let set_point = hand_over(|control| control.calibrate());
+    demonstration::run(set_point, &REGISTERS, start_timer, wait_for_interrupt)
+}

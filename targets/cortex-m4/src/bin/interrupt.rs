@@ -1,0 +1,22 @@
+//! Counts the whole interrupt of the firmware, called as a function on recorded inputs; the timer does not run.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+use hexagen_cortex_m4::board::REGISTERS;
+use hexagen_cortex_m4::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc};
+use hexagen_firmware::interrupt::serve;
+use hexagen_firmware::semihosted::run_with;
+
+#[entry]
+fn main() -> ! {
+    let set_point = hand_over(|_| ());
+    run_with(|link| {
+        serve(
+            link,
+            set_point,
+            &REGISTERS,
+            interrupt_trivedi_keshri_660w_pdcc,
+        )
+    })
+}

@@ -1,0 +1,55 @@
+//! What a main program does while its interrupt controls the current: here, enough of it to see that it does.
+
+use crate::registers::Registers;
+use hexagen::fixed::types::I16F16;
+use hexagen::{DriveSetPoint, Mode, Sample};
+use semihosting::{eprintln, println, process};
+
+/// Hall codes of a rotor that turns forward, from sector 1 on.
+const CODES: [u8; 6] = [1, 5, 4, 6, 2, 3];
+
+/// Control periods that a sector lasts.
+const SECTOR: usize = 40;
+
+/// Control periods of the demonstration.
+const PERIODS: usize = 2400;
+
+/// Converters at their middle, and a rotor that turns.
+fn sample(period: usize) -> Sample {
+    Sample {
+        adc_a: 2048,
+        adc_b: 2048,
+        hall: CODES[period / SECTOR % CODES.len()],
+        hall_ticks: 0,
+    }
+}
+
+/// Waits until the drive controls, asks for a current, turns the rotor, and ends the emulator: well, if the drive
+/// controlled all the time and pulsed its legs.
+pub fn run(
+    set_point: &impl DriveSetPoint,
+    registers: &Registers,
+    start_timer: impl FnOnce(),
+    wait_for_interrupt: impl Fn(),
+) -> ! {
+    let mut started = None;
+    registers.feed(&sample(0));
+    start_timer();
+    for period in 0..PERIODS {
+        registers.feed(&sample(period));
+        wait_for_interrupt();
+        let status = set_point.status();
+        if status.mode == Mode::Run && started.is_none() {
+            started = Some(period);
+            set_point.set_current(I16F16::from_num(2));
+        }
+    }
+    let (status, legs) = (set_point.status(), registers.legs());
+    let from = started.unwrap_or(PERIODS);
+    println!("{PERIODS} times awoken, control from the {from}th on; {status:?}, {legs:?}");
+    if status.is_running() && started.is_some() && legs.compare != [0; 3] {
+        process::exit(0)
+    }
+    eprintln!("the drive does not control");
+    process::exit(1)
+}

@@ -1,0 +1,50 @@
+//! The body of a control interrupt, and what counts a whole one.
+
+use crate::counter::count_interrupt;
+use crate::registers::Registers;
+use crate::session::{Broken, Link};
+use crate::wire::{HEADER, Mode, RECORD, Record, Task};
+use hexagen::fixed::types::I16F16;
+use hexagen::{DriveLoop, DriveSetPoint};
+
+/// One control period: two ADC registers and the Hall port are read, three compare registers and the output
+/// enables are written.
+#[inline]
+pub fn control_period(control: &mut impl DriveLoop, registers: &Registers) {
+    let legs = control.step(&registers.sample());
+    registers.apply(&legs);
+}
+
+/// Serves a task of counting on an interrupt that is called as a function: the core's own entry and exit are not
+/// part of the count.
+///
+/// # Errors
+/// When the exchange ends early.
+pub fn serve(
+    link: &mut dyn Link,
+    set_point: &impl DriveSetPoint,
+    registers: &Registers,
+    interrupt: extern "C" fn(),
+) -> Result<(), Broken> {
+    let mut header = [0; HEADER];
+    link.read(&mut header)?;
+    match Task::decode(header) {
+        Some(task) if task.mode == Mode::Count => {}
+        _ => return Err(Broken::Format),
+    }
+    let mut record = [0; RECORD];
+    while link.read(&mut record)? == RECORD {
+        match Record::decode(record).ok_or(Broken::Format)? {
+            Record::Step(sample) => {
+                registers.feed(&sample);
+                let count = count_interrupt(interrupt).ok_or(Broken::Uncounted)?;
+                link.write(&(count as u16).to_le_bytes())?;
+            }
+            Record::SetCurrent(bits) => set_point.set_current(I16F16::from_bits(bits)),
+            // The drive is at rest when the task begins.
+            Record::New => {}
+            _ => return Err(Broken::Format),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! The control loop of this firmware, and its interrupt.
+#![expect(
+    unsafe_code,
+    reason = "the interrupt's function has a stable name, and a static of its own"
+)]
+
+use crate::board::REGISTERS;
+use crate::drives::TrivediPdcc as Drive;
+use hexagen_firmware::interrupt::control_period;
+use hexagen_firmware::{Handed, hexagen};
+
+type Loop = <Drive as hexagen::Drive>::LoopHalf<'static>;
+type SetPoint = <Drive as hexagen::Drive>::SetPointHalf;
+
+static DRIVE: Handed<Drive> = Handed::new();
+static CONTROL: Handed<Loop> = Handed::new();
+
+/// The drive's halves: the set-point for `main`, the control loop for the interrupt, after `prepare` had it. Once,
+/// before the timer starts.
+pub fn hand_over(prepare: impl FnOnce(&mut Loop)) -> &'static SetPoint {
+    // SAFETY: called once, from `main`; the interrupt does not run yet.
+    let (set_point, control) = unsafe { DRIVE.hand_over(Drive::new()) }.split();
+    // SAFETY: likewise.
+    prepare(unsafe { CONTROL.hand_over(control) });
+    set_point
+}
+
+/// What the timer's interrupt does.
+#[unsafe(no_mangle)]
+pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
+    // SAFETY: the only one that takes the control loop once it is handed over.
+    if let Some(control) = unsafe { CONTROL.take_turn() } {
+        control_period(control, &REGISTERS);
+    }
+}
