@@ -111,10 +111,24 @@ const OWN: &[Row] = &[
         ],
     ),
     (
-        "modulated",
+        // What is chosen, and by which cost.
+        "choice",
         &[
-            ("off", &[("controller", "modulated", "\"off\"")]),
-            ("on", &[("controller", "modulated", "\"on\"")]),
+            ("one", &[("controller", "modulated", "\"off\"")]),
+            ("two", &[("controller", "modulated", "\"on\"")]),
+            (
+                "fewer_changes",
+                &[("controller", "switching_weight", "\"0.1 A\"")],
+            ),
+            ("torque", &[("controller", "torque_weight", "1.7")]),
+            (
+                "weighted",
+                &[
+                    ("controller", "switching_weight", "\"0.06 A\""),
+                    ("controller", "torque_weight", "0.6"),
+                ],
+            ),
+            ("two_steps", &[("controller", "horizon", "2")]),
         ],
     ),
     (

@@ -26,7 +26,7 @@ const OWN_KIND: &str = "pdcc";
 const MOTORS_OF_KINDS: [&str; 2] = ["velineon-3500", "estun-emj-04apb22"];
 
 /// Variants of the paper's motor: the name in the snapshot's file, and the options.
-const VARIANTS: [(&str, &str); 9] = [
+const VARIANTS: [(&str, &str); 14] = [
     ("pair", "pdcc:modulation=pair"),
     (
         "model-advance",
@@ -47,6 +47,17 @@ const VARIANTS: [(&str, &str); 9] = [
     ),
     ("fcs-mpc.nominal", "fcs-mpc:off_leg=nominal,delay=0,word=16"),
     ("fcs-mpc.modulated", "fcs-mpc:modulated=on,emf=model"),
+    (
+        "fcs-mpc.fewer-changes",
+        "fcs-mpc:candidates=three_phase,switching_weight=0.5A",
+    ),
+    (
+        "fcs-mpc.weighted",
+        "fcs-mpc:emf=model,switching_weight=0.3A,torque_weight=2",
+    ),
+    ("fcs-mpc.two-steps", "fcs-mpc:horizon=2,emf=model"),
+    ("integral", "pdcc:emf=model,integral=on"),
+    ("pi-pwm.six-step", "pi-pwm:six_step=on"),
     ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),
 ];
 

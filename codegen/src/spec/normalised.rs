@@ -97,6 +97,15 @@ fn write_controller(text: &mut Text, controller: &ControllerSpec) {
             );
             text.word("off_leg", off_leg(options.off_leg));
             text.word("modulated", flag(options.modulated));
+            if options.horizon > 1 {
+                text.number("horizon", options.horizon);
+            }
+            if options.switching_weight > 0.0 {
+                text.number("switching_weight", options.switching_weight);
+            }
+            if options.torque_weight > 0.0 {
+                text.number("torque_weight", options.torque_weight);
+            }
         }
         ControllerSpec::Pdcc(options) => {
             text.word(

@@ -38,11 +38,26 @@ pub struct Situation {
     pub off_legs: Option<[OffLeg; 3]>,
     /// Shift of the products in scores.
     pub shift: u32,
+    /// What turning legs a, b, c high, low and off costs over the bus, where that weighs.
+    pub changes: Option<[[Linear; 3]; 3]>,
+}
+
+/// Phase voltages of a vector in sixths of the bus, an off leg midway.
+pub fn sixths(vector: usize) -> [i64; 3] {
+    let legs = LEGS[vector].map(|leg| i64::from(leg == b'+') - i64::from(leg == b'-'));
+    let is_pair = LEGS[vector].contains(&b'0');
+    let sum: i64 = legs.iter().sum();
+    legs.map(|leg| 3 * leg - if is_pair { 0 } else { sum })
 }
 
 impl Situation {
     /// The number of the vector that is applied.
     pub fn vector(&self, path: &mut Path) -> Result<usize, Contradiction> {
+        Ok(self.least(path)?.0)
+    }
+
+    /// That vector with its score.
+    pub fn least(&self, path: &mut Path) -> Result<(usize, Linear), Contradiction> {
         let list = self.list();
         let rounded = self.off_legs.is_some() && list.iter().any(|&vector| vector >= 7);
         let list = if rounded {
@@ -57,7 +72,7 @@ impl Situation {
                 least = (vector, score);
             }
         }
-        Ok(least.0)
+        Ok(least)
     }
 
     /// The vector that shares the period with `vector`, and the terminals of the legs: their share of the bus.
@@ -132,6 +147,20 @@ impl Situation {
     }
 
     fn list(&self) -> Vec<usize> {
+        let mut list = self.numbered();
+        if self.changes.is_some() {
+            // In the order of gate patterns.
+            let place = |vector: &usize| match vector {
+                1..7 => [4, 5, 1, 3, 2, 6][vector - 1],
+                13.. => 0,
+                _ => *vector,
+            };
+            list.sort_by_key(place);
+        }
+        list
+    }
+
+    fn numbered(&self) -> Vec<usize> {
         match (self.sector, self.candidates) {
             (0, _) => vec![0],
             (_, Candidates::ThreePhase) => (0..7).collect(),
@@ -150,6 +179,7 @@ impl Situation {
         path: &mut Path,
     ) -> Result<Vec<usize>, Contradiction> {
         let kind = |vector: usize| match vector {
+            0 if self.changes.is_some() => 0,
             1..7 => 0,
             7..13 => 1 + (vector - 7) % 3,
             _ => 4,
@@ -171,17 +201,26 @@ impl Situation {
     }
 
     /// 6 (|v|^2 - 2 u v), the off leg left out, over the bus.
-    fn by_bus(&self, vector: usize) -> Linear {
+    pub fn by_bus(&self, vector: usize) -> Linear {
         let find = |wanted: u8| LEGS[vector].iter().position(|&leg| leg == wanted);
         let is_high = |leg: &&u8| **leg == b'+';
         let high: Vec<&u8> = LEGS[vector].iter().filter(is_high).collect();
         let bus = &self.bus;
-        match (find(b'+'), find(b'-'), find(b'0')) {
+        let own = match (find(b'+'), find(b'-'), find(b'0')) {
             (Some(p), Some(q), Some(_)) => &bus.times(3) - &(&self.u[p] - &self.u[q]).times(6),
             (Some(x), _, None) if high.len() == 1 => &bus.times(4) - &self.u[x].times(12),
             (Some(_), Some(x), None) => &bus.times(4) + &self.u[x].times(12),
             _ => Linear::default(),
-        }
+        };
+        let Some(changes) = &self.changes else {
+            return own;
+        };
+        let legs = LEGS[vector].iter().zip(changes);
+        legs.fold(own, |sum, (leg, [high, low, off])| match leg {
+            b'+' => &sum + high,
+            b'-' => &sum + low,
+            _ => &sum + off,
+        })
     }
 
     fn score(
@@ -191,7 +230,7 @@ impl Situation {
         path: &mut Path,
     ) -> Result<Linear, Contradiction> {
         let by_bus = self.by_bus(vector);
-        if !rounded || vector == 0 {
+        if !rounded || vector == 0 && self.changes.is_none() {
             return Ok(by_bus);
         }
         let off = LEGS[vector].iter().position(|&leg| leg == b'0');
@@ -214,7 +253,11 @@ impl Situation {
         }
         let tau = off_leg.terminal(&self.bus, &Linear::default(), path)?;
         let aside = &tau.times(4) - &self.u[off].times(12);
-        Ok(path.product(&tau, &aside, self.shift))
+        let aside = path.product(&tau, &aside, self.shift);
+        Ok(match &self.changes {
+            None => aside,
+            Some(_) => &aside + &path.product(&self.bus, &by_bus, self.shift),
+        })
     }
 }
 

@@ -4,15 +4,16 @@
 //! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
 //! the sign of a line voltage, so three scores remain.
 
+use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
-use crate::ir::{Comparison, Value};
+use crate::ir::{Comparison, TableId, Value};
 use crate::lower::Lowering;
 use crate::spec::{Candidates, FcsMpcSpec};
 
 /// Pairs by the leg that is off, in the order of their vectors: V12 | V45 leave a off, V23 | V56 c, V34 | V61 b.
 /// Off phase, the phase that is high in the first vector, the phase that is low in it.
-const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
+pub(super) const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
 
 /// The chosen vector, and what else is known of the voltage asked for.
 pub(super) struct Choice {
@@ -31,20 +32,20 @@ pub(super) struct Choice {
 }
 
 /// Where each leg would sit if it were off.
-struct OffLegs {
+pub(super) struct OffLegs {
     /// Flags: the diode conducts inward, outward.
     conducting: [[Value; 2]; 3],
     /// Twice the terminal beside a driven pair, less the bus.
-    offsets: [Value; 3],
+    pub offsets: [Value; 3],
     /// What the EMF lifts it by above the driven legs' mean.
     lifts: [Value; 3],
 }
 
 /// A vector and its score, six times (|v|^2 - 2 u v).
 #[derive(Clone, Copy)]
-struct Candidate {
-    vector: Value,
-    score: Value,
+pub(super) struct Candidate {
+    pub vector: Value,
+    pub score: Value,
 }
 
 impl CurrentLoop<'_, '_> {
@@ -81,7 +82,7 @@ impl CurrentLoop<'_, '_> {
             (Candidates::ThreePhase, _) | (_, None) => three,
             (Candidates::Table2, Some([commutating, ..])) => {
                 let pair = match &off_legs {
-                    Some(off_legs) => self.nearest_physical(off_legs, front, phases, None),
+                    Some(off_legs) => self.nearest_physical(off_legs, front, phases, None, None),
                     None => nearest_nominal(&mut *self.lowering, front, phases),
                 };
                 let l = &mut *self.lowering;
@@ -89,7 +90,11 @@ impl CurrentLoop<'_, '_> {
             }
             (Candidates::All, Some(_)) => match &off_legs {
                 Some(off_legs) => {
-                    self.nearest_physical(off_legs, front, phases, Some((three, largest)))
+                    let rival = Candidate {
+                        vector: three,
+                        score: largest,
+                    };
+                    self.nearest_physical(off_legs, front, phases, None, Some(rival))
                 }
                 None => nearest_of_all(&mut *self.lowering, front, phases, three, largest),
             },
@@ -105,7 +110,12 @@ impl CurrentLoop<'_, '_> {
     }
 
     /// Where each leg would sit if it were off in the target period.
-    fn predict_off_legs(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 3]) -> OffLegs {
+    pub(super) fn predict_off_legs(
+        &mut self,
+        options: &FcsMpcSpec,
+        front: &Front,
+        u: [Value; 3],
+    ) -> OffLegs {
         let threshold_volts = if options.common.delay == 1 {
             self.design.k_hold / self.design.plant.pole
         } else {
@@ -168,13 +178,15 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`.
-    fn nearest_physical(
+    /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`, whose
+    /// score is the greatest phase voltage; with `changes` its score over the bus.
+    pub(super) fn nearest_physical(
         &mut self,
         off_legs: &OffLegs,
         front: &Front,
         u: [Value; 3],
-        three_phase: Option<(Value, Value)>,
+        changes: Option<&Changes>,
+        three_phase: Option<Candidate>,
     ) -> Value {
         let l = &mut *self.lowering;
         let (bus, offsets) = (front.bus.volts, off_legs.offsets);
@@ -192,33 +204,42 @@ impl CurrentLoop<'_, '_> {
         // Factors first: their intervals give the shift of all products.
         let mut factors = vec![];
         let mut vectors = vec![];
-        for (order, (off, plus, minus)) in PAIRS.into_iter().enumerate() {
-            let (vector, size) = better_of_two(l, order, u, plus, minus);
-            vectors.push(vector);
-            let gain = l.b.mul_by(3, bus);
-            let six = l.b.mul_by(6, size);
-            let along = l.b.sub(gain, six);
-            l.b.name(["along_a", "along_c", "along_b"][order], along);
+        for (order, (off, ..)) in PAIRS.into_iter().enumerate() {
+            let better = match changes {
+                Some(changes) => better_with_changes(l, order, bus, u, changes),
+                None => along_better(l, order, bus, u),
+            };
+            vectors.push(better.vector);
             let six = l.b.mul_by(6, u[off]);
             let aside = l.b.sub(offsets[off], six);
             l.b.name(["aside_a", "aside_c", "aside_b"][order], aside);
-            factors.push(((offsets[off], aside), (bus, along)));
+            factors.push(((offsets[off], aside), (bus, better.score)));
         }
+        let mut change = None;
         let rival = match three_phase {
-            Some((vector, largest)) => {
+            Some(three) if changes.is_some() => (three.vector, [bus, three.score]),
+            Some(Candidate {
+                vector,
+                score: largest,
+            }) => {
                 let four = l.b.shift_left(bus, 2);
                 let twelve = l.b.mul_by(12, largest);
                 let along = l.b.sub(four, twelve);
                 l.b.name("along_three", along);
                 (vector, [bus, along])
             }
-            None => self.pair_zero(front, off_legs.conducting, off_legs.lifts, u),
+            None => {
+                let (vector, is_off) = zero_of_pair(l, front.sector);
+                let factors = off_legs.zero(l, front, u, is_off);
+                change = changes.map(|changes| (bus, zero_with_changes(l, is_off, changes)));
+                (vector, factors)
+            }
         };
-        let l = &mut *self.lowering;
         let widths: Vec<u32> = factors
             .iter()
             .flat_map(|&(first, second)| [first, second])
             .chain([(rival.1[0], rival.1[1])])
+            .chain(change)
             .map(|(x, y)| l.b.interval(x).bits() + l.b.interval(y).bits())
             .collect();
         // A product of n + m bits fits n + m - 1; the sum of two and one bit to spare make 31 at most.
@@ -245,8 +266,12 @@ impl CurrentLoop<'_, '_> {
         let Some(best) = best else {
             return rival.0;
         };
-        let score = l.b.mul_floor(rival.1[0], rival.1[1], shift);
-        if three_phase.is_some() {
+        let mut score = l.b.mul_floor(rival.1[0], rival.1[1], shift);
+        if let Some((bus, change)) = change {
+            let change = l.b.mul_floor(bus, change, shift);
+            score = l.b.add(score, change);
+        }
+        if three_phase.is_some() && changes.is_none() {
             // V0 scores 0, the best three-phase vector less than that or V0 was taken.
             let zero = l.zero();
             let score = l.b.min(score, zero);
@@ -256,23 +281,18 @@ impl CurrentLoop<'_, '_> {
         let better = l.b.compare(Comparison::Less, best.score, score);
         l.b.select(better, best.vector, rival.0)
     }
+}
 
-    /// The zero vector of the sector's pair and the factors of its score.
-    fn pair_zero(
-        &mut self,
+impl OffLegs {
+    /// The factors of the score of a pair's zero vector, by flags of leg a and leg b being off in it.
+    pub(super) fn zero(
+        &self,
+        l: &mut Lowering<'_>,
         front: &Front,
-        flags: [[Value; 2]; 3],
-        lifts: [Value; 3],
         u: [Value; 3],
-    ) -> (Value, [Value; 2]) {
-        let l = &mut *self.lowering;
-        let vector = zero_vector(l, front.sector);
-        let [is_a, is_b] = [13, 14].map(|number| {
-            let number = l.b.literal(number);
-            l.b.compare(Comparison::Equal, vector, number)
-        });
-        l.b.name("a_is_off", is_a);
-        l.b.name("b_is_off", is_b);
+        [is_a, is_b]: [Value; 2],
+    ) -> [Value; 2] {
+        let (flags, lifts) = (self.conducting, self.lifts);
         let lift = l.pick(is_a, is_b, lifts);
         let u_off = l.pick(is_a, is_b, u);
         let inward = l.pick(is_a, is_b, flags.map(|pair| pair[0]));
@@ -287,11 +307,11 @@ impl CurrentLoop<'_, '_> {
         let twelve = l.b.mul_by(12, u_off);
         let aside = l.b.sub(four, twelve);
         l.b.name("aside_zero", aside);
-        (vector, [tau, aside])
+        [tau, aside]
     }
 }
 
-fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
+pub(super) fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
     let table = l.b.program.table(
         "zero_vector",
         zero_vectors(),
@@ -301,6 +321,29 @@ fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
     l.b.name("pair_zero_vector", vector)
 }
 
+/// The zero vector of the sector's pair; flags: leg a, leg b is off in it.
+pub(super) fn zero_of_pair(l: &mut Lowering<'_>, sector: Value) -> (Value, [Value; 2]) {
+    let vector = zero_vector(l, sector);
+    let is_off = [(13, "a_is_off"), (14, "b_is_off")].map(|(number, name)| {
+        let number = l.b.literal(number);
+        let is_off = l.b.compare(Comparison::Equal, vector, number);
+        l.b.name(name, is_off)
+    });
+    (vector, is_off)
+}
+
+/// Three-phase vectors by gate pattern.
+pub(super) fn vector_of_gates(l: &mut Lowering<'_>) -> TableId {
+    l.b.program.table(
+        "vector_of_gates",
+        vec![0, 3, 5, 4, 1, 2, 6, 0],
+        &[
+            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
+                .to_owned(),
+        ],
+    )
+}
+
 /// V0 to V6: the nearest to `u`, and the legs that are high in the nearest of V1 to V6.
 fn nearest_three_phase(
     l: &mut Lowering<'_>,
@@ -308,14 +351,7 @@ fn nearest_three_phase(
     largest: Value,
     bus: Value,
 ) -> (Value, [Value; 3]) {
-    let table = l.b.program.table(
-        "vector_of_gates",
-        vec![0, 3, 5, 4, 1, 2, 6, 0],
-        &[
-            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
-                .to_owned(),
-        ],
-    );
+    let table = vector_of_gates(l);
     let zero = l.zero();
     let b_high = l.b.compare(Comparison::Less, zero, u[1]);
     l.b.name("b_is_high", b_high);
@@ -368,8 +404,24 @@ fn better_of_two(
     (vector, size)
 }
 
+/// That vector with its score over the bus, the off leg left out.
+fn along_better(l: &mut Lowering<'_>, order: usize, bus: Value, u: [Value; 3]) -> Candidate {
+    let (_, plus, minus) = PAIRS[order];
+    let (vector, size) = better_of_two(l, order, u, plus, minus);
+    let gain = l.b.mul_by(3, bus);
+    let six = l.b.mul_by(6, size);
+    let score = l.b.sub(gain, six);
+    l.b.name(["along_a", "along_c", "along_b"][order], score);
+    Candidate { vector, score }
+}
+
 /// The candidate of the lesser score; on a tie that of the lesser number.
-fn first_least(l: &mut Lowering<'_>, order: usize, best: Candidate, next: Candidate) -> Candidate {
+pub(super) fn first_least(
+    l: &mut Lowering<'_>,
+    order: usize,
+    best: Candidate,
+    next: Candidate,
+) -> Candidate {
     let less = l.b.compare(Comparison::Less, next.score, best.score);
     let equal = l.b.compare(Comparison::Equal, next.score, best.score);
     let earlier = l.b.compare(Comparison::Less, next.vector, best.vector);

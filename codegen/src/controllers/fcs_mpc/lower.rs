@@ -1,6 +1,7 @@
 //! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
 
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
+use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
 use crate::spec::{FcsMpcSpec, Spec};
@@ -21,6 +22,21 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
         };
         let front = step.front(set_point);
         let u = step.deadbeat(&front, false).u;
+        if options.horizon == 2 {
+            let vector = step.choose_two_steps(options, &front, u);
+            step.apply_vector(&front, vector, vec![]);
+            return;
+        }
+        if options.weighted() && !options.modulated {
+            let memory = (options.switching_weight > 0.0).then(|| {
+                let doc = "Vector that the last step chose: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
+                step.lowering.state("vector_prev", 0, Interval::new(0, 15), doc)
+            });
+            let vector = step.choose_weighted(options, &front, u, memory);
+            let remembered = memory.map(|memory| (memory, "vector_prev_next", vector));
+            step.apply_vector(&front, vector, remembered.into_iter().collect());
+            return;
+        }
         let choice = step.choose(options, &front, u);
         if options.modulated {
             step.apply_two_vectors(&front, &choice);

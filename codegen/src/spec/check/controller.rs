@@ -10,7 +10,7 @@ use crate::spec::controller::{fcs_mpc, pdcc, phcc, pi_pwm};
 use crate::spec::{ControllerSpec, HallCapture, KINDS};
 
 /// Options that are known and that this version does not have.
-const PLANNED_OPTIONS: [&str; 2] = ["horizon", "zero"];
+const PLANNED_OPTIONS: [&str; 1] = ["zero"];
 
 /// The controller with its options, and how Hall edges reach it.
 pub(super) fn read(

@@ -18,7 +18,17 @@ pub use pi_pwm::PiPwmSpec;
 
 /// The kinds of controllers, with the options that not all of them take.
 pub const KINDS: [(&str, &[&str]); 4] = [
-    ("fcs-mpc", &["candidates", "modulated", "off_leg"]),
+    (
+        "fcs-mpc",
+        &[
+            "candidates",
+            "horizon",
+            "modulated",
+            "off_leg",
+            "switching_weight",
+            "torque_weight",
+        ],
+    ),
     (
         "pdcc",
         &[

@@ -374,6 +374,7 @@ impl BitTrue {
             set_point: self.j,
             direction: self.state.timing.direction,
             rises: self.state.rises,
+            vector_prev: self.state.vector_prev.0,
         });
         let command = match self.state.supervisor.mode {
             Mode::Run => decision.command,
@@ -406,6 +407,7 @@ impl BitTrue {
             self.state.e_prev = expected;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
+            self.state.vector_prev = state::Vector(decision.vector);
         } else {
             self.state.stop();
         }

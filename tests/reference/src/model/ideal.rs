@@ -323,6 +323,7 @@ impl Ideal {
             set_point: self.current,
             direction: self.state.timing.direction,
             rises: self.state.rises,
+            vector_prev: self.state.vector_prev,
         });
         let command = match self.state.supervisor.mode {
             Mode::Run => decision.command,
@@ -352,6 +353,7 @@ impl Ideal {
             self.state.e_prev = to_ab(&expected);
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
+            self.state.vector_prev = decision.vector;
         } else {
             self.state.v_prev = [0.0; 2];
             self.state.v_cmd = [0.0; 2];
@@ -361,6 +363,7 @@ impl Ideal {
             self.state.e_prev = [0.0; 2];
             self.state.integral = [0.0; 2];
             self.state.rises = [false; 2];
+            self.state.vector_prev = 0;
             self.state.commutating = false;
             self.state.commutation_age = 0.0;
         }

@@ -76,4 +76,6 @@ pub struct PhysicalState {
     pub integral: [f64; 2],
     /// Whether the components along a and across it are to rise (PHCC).
     pub rises: [bool; 2],
+    /// Number of the vector that the last step chose (FCS-MPC with a switching weight).
+    pub vector_prev: usize,
 }

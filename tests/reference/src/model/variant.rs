@@ -22,6 +22,8 @@ pub struct Variant {
     pub applied_now: bool,
     /// Section 10a: two vectors share the period.
     pub modulated: Switch,
+    /// Section 10w: changes of legs weigh.
+    pub counts_changes: Switch,
     /// Section 8: what the modelled EMF lacks is integrated.
     pub integral: Switch,
     /// Section 11: compare values are shifted against the dead time.
@@ -37,6 +39,7 @@ impl Variant {
         let options = spec.loop_options();
         let (mut emf, mut predicts) = (Some(options.emf), true);
         let mut modulated = Switch::Off;
+        let mut counts_changes = Switch::Off;
         let (mut integral, mut dead_time) = (Switch::Off, Switch::Off);
         let (commutates, floating, saturation) = match &spec.controller {
             Controller::Pdcc(pdcc) => {
@@ -48,6 +51,9 @@ impl Variant {
             Controller::FcsMpc(fcs_mpc) => {
                 let pairs = fcs_mpc.candidates != Candidates::ThreePhase;
                 modulated = fcs_mpc.modulated;
+                if modulated == Switch::Off && fcs_mpc.switching_weight > 0.0 {
+                    counts_changes = Switch::On;
+                }
                 (pairs, pairs && fcs_mpc.off_leg == OffLeg::Physical, None)
             }
             Controller::Phcc(phcc) => {
@@ -81,6 +87,7 @@ impl Variant {
             floating,
             applied_now: options.delay == 1 && (predicts || estimated),
             modulated,
+            counts_changes,
             integral,
             dead_time,
             six_step: match &spec.controller {

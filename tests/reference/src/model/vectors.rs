@@ -59,6 +59,26 @@ pub fn sixths(vector: usize) -> [f64; 3] {
     })
 }
 
+/// Three-phase vectors in the order of their gate patterns (section 10w).
+const BY_GATES: [usize; FIRST_PAIR] = [0, 3, 5, 4, 1, 2, 6];
+
+/// The vector at this place of a list where the cost has weights.
+pub fn weighted_order(place: usize) -> usize {
+    BY_GATES.get(place).copied().unwrap_or(place)
+}
+
+/// Number of legs whose state differs.
+pub fn changes(from: usize, to: usize) -> f64 {
+    let legs = LEGS[from].iter().zip(LEGS[to]);
+    legs.filter(|(from, to)| **from != *to).count() as f64
+}
+
+/// The two phases beside the sector's outgoing one, in cyclic order.
+pub fn pair_of(sector_eff: usize) -> (usize, usize) {
+    let out = OUT_PHASE[sector_eff];
+    ((out + 1) % 3, (out + 2) % 3)
+}
+
 /// The candidates in their order: a zero vector, then a run of others.
 pub fn candidates(
     set: Candidates,

@@ -104,6 +104,10 @@ options! {
     }
 }
 
+fn one() -> u32 {
+    1
+}
+
 options! {
     /// Options of finite-control-set model predictive control.
     FcsMpc {
@@ -113,6 +117,15 @@ options! {
         off_leg: OffLeg,
         /// Whether a second vector shares the period.
         modulated: Switch,
+        /// Periods that the cost looks ahead, 1 or 2.
+        #[serde(default = "one")]
+        horizon: u32,
+        /// Error of current that a leg's change of state weighs as much as, ampere.
+        #[serde(default)]
+        switching_weight: f64,
+        /// Weight of the square of the error's component along the sector's mean EMF.
+        #[serde(default)]
+        torque_weight: f64,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
         /// Periods after which a commutation is taken as ended.

@@ -40,6 +40,9 @@ fn voltage(vector: usize) -> [f64; 3] {
 fn the_nearest_of_the_list_is_chosen() {
     let mut seen = [0u32; 16];
     for (seed, (variant, options)) in (0..).zip(fcs_mpc()) {
+        if !variants::is_plain(&options) {
+            continue;
+        }
         if options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase {
             continue;
         }
@@ -161,6 +164,7 @@ fn equals_go_to_the_first() {
     for (variant, options) in fcs_mpc() {
         let (inverter, common) = (&variant.spec.inverter, variant.spec.loop_options());
         if options.candidates != Candidates::ThreePhase
+            || !variants::is_plain(&options)
             || options.modulated == Switch::On
             || common.reference != Reference::QuasiSquare
             || variants::has_rotor(&variant)

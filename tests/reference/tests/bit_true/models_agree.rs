@@ -129,7 +129,7 @@ fn compare(
         }
         assert!(
             matches!(&variant.spec.controller,
-                Controller::FcsMpc(options) if options.off_leg == OffLeg::Physical),
+                Controller::FcsMpc(options) if options.off_leg == OffLeg::Physical || !variants::is_plain(options)),
             "{} step {step}: {} and {}, costs {gap} apart",
             variant.name,
             b.vector,

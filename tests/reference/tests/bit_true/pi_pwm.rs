@@ -22,6 +22,7 @@ fn follows_a_textbook_controller() {
             continue;
         };
         if options.feed_forward == Switch::On
+            || options.six_step == Switch::On
             || options.saturation != Saturation::Nearest
             || common.reference != Reference::QuasiSquare
             || variants::has_rotor(&variant)

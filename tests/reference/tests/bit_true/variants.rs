@@ -2,8 +2,8 @@
 
 use hexagen::{Format, Rounding};
 use hexagen_reference::{
-    Candidates, Controller, DiscretePhase, EmfSource, FormatTable, Modulation, Reference, Spec,
-    Switch,
+    Candidates, Controller, DiscretePhase, EmfSource, FcsMpc, FormatTable, Modulation, Reference,
+    Spec, Switch,
 };
 use std::f64::consts::TAU;
 
@@ -167,10 +167,28 @@ pub fn others() -> Vec<Variant> {
                 let choosing = format!(
                     "off_leg = \"{second}\"\ncommutation_threshold = 0.1\ncommutation_timeout = 8"
                 );
+                // One regulator on the pair follows the corners, without the EMF.
+                let six_step = match (second, reference) {
+                    ("off", "quasi_square") => ["on", "off"][index % 17 % 2],
+                    _ => "off",
+                };
                 let own = match (kind, first) {
                     ("fcs-mpc", _) => {
                         let modulated = ["off", "on"][index % 17 % 2];
-                        format!("candidates = \"{first}\"\nmodulated = \"{modulated}\"\n{choosing}")
+                        let cost = match (modulated, index % 19 % 4) {
+                            ("off", 1) => "switching_weight = 0.05",
+                            ("off", 2) => "switching_weight = 0.03\ntorque_weight = 1.5",
+                            ("off", 3)
+                                if first == "three_phase"
+                                    || (first, second) == ("all", "nominal") =>
+                            {
+                                "horizon = 2"
+                            }
+                            _ => "",
+                        };
+                        format!(
+                            "candidates = \"{first}\"\nmodulated = \"{modulated}\"\n{cost}\n{choosing}"
+                        )
                     }
                     ("phcc", "three_phase") => format!(
                         "table = \"derived\"\ncandidates = \"three_phase\"\nband = 0.1\n{choosing}"
@@ -179,7 +197,7 @@ pub fn others() -> Vec<Variant> {
                         "table = \"{first}\"\ncandidates = \"table2\"\nband = 0.1\n{choosing}"
                     ),
                     _ => format!(
-                        "saturation = \"{first}\"\nfeed_forward = \"{second}\"\nsix_step = \"off\"\n\
+                        "saturation = \"{first}\"\nfeed_forward = \"{second}\"\nsix_step = \"{six_step}\"\n\
                          bandwidth = 1000.0\nintegral_time = 0.0016"
                     ),
                 };
@@ -286,6 +304,10 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_third", shift(1.0 / 3.0)),
         ("k_sixth", shift(1.0 / 6.0)),
         ("score", 2 * f_v - 30),
+        ("k_torque_weight", shift(4.5)),
+        ("k_pole", shift(a)),
+        ("k_first", shift(1.0 + a * a)),
+        ("k_pole_sixth", shift(a / 6.0)),
         ("k_p", shift(ohm * gain)),
         ("k_i", shift(integral_share)),
         ("k_set", shift(scale * gain / w / 65_536.0)),
@@ -352,4 +374,9 @@ pub fn has_rotor(variant: &Variant) -> bool {
     needs_emf && options.emf == EmfSource::Model
         || options.advance > 0.0
         || options.reference == Reference::Proportional
+}
+
+/// Whether the cost of FCS-MPC is the error of the current in one period, and nothing else.
+pub fn is_plain(options: &FcsMpc) -> bool {
+    options.horizon == 1 && options.switching_weight + options.torque_weight <= 0.0
 }

@@ -86,6 +86,8 @@ pub struct Scale<'a> {
     g: f64,
     /// Volt per timer count.
     pub w: f64,
+    /// Nominal bus, volt.
+    pub v_bus: f64,
     /// 2^f_i.
     two_i: f64,
     /// 2^f_v.
@@ -114,6 +116,7 @@ impl<'a> Scale<'a> {
             resistance: spec.motor.resistance,
             g,
             w,
+            v_bus: spec.inverter.v_bus,
             two_i: pow2(f_i as i32),
             two_v: pow2(f_v as i32),
             ohm: g / w * pow2(f_v as i32 - f_i as i32),
@@ -186,6 +189,7 @@ impl Constants {
             two_i,
             two_v,
             ohm,
+            ..
         } = *scale;
         let timer_period = f64::from(inverter.timer_period);
         let Variant {
@@ -270,6 +274,7 @@ impl Constants {
                     Part::Hysteresis,
                     matches!(spec.controller, Controller::Phcc(_)),
                 ),
+                (Part::VectorMemory, variant.counts_changes == Switch::On),
             ]),
             ampere: g / two_i,
             volt: w / two_v,

@@ -8,6 +8,8 @@ mod pdcc;
 mod phcc;
 mod pi_pwm;
 mod pulses;
+mod two_steps;
+mod weighted;
 mod whole;
 
 use super::constants::{Constants, Scale};
@@ -39,6 +41,8 @@ pub struct Inputs<'a> {
     pub direction: f64,
     /// `h_a`, `h_b` (PHCC).
     pub rises: [bool; 2],
+    /// `vector_prev` (FCS-MPC).
+    pub vector_prev: usize,
 }
 
 /// What a controller decides.

@@ -29,7 +29,12 @@ pub struct State {
     pub e_prev: [f64; 2],
     pub integral: [f64; 2],
     pub rises: [bool; 2],
+    pub vector_prev: Vector,
 }
+
+/// Number of a vector, 0 to 15.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Vector(pub usize);
 
 /// A group of state words that not every variant has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +51,7 @@ pub enum Part {
     Integral,
     PairIntegral,
     Hysteresis,
+    VectorMemory,
 }
 
 /// The groups that a variant has.
@@ -96,6 +102,17 @@ impl WordValue for usize {
 
     fn set_word(&mut self, word: i32) {
         *self = usize::try_from(word).unwrap_or(0).min(6);
+    }
+}
+
+impl WordValue for Vector {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        self.0 as i32
+    }
+
+    fn set_word(&mut self, word: i32) {
+        self.0 = usize::try_from(word).unwrap_or(0).min(15);
     }
 }
 
@@ -214,6 +231,9 @@ macro_rules! for_each_word {
             $show!("h_a", $state.rises[0]);
             $show!("h_b", $state.rises[1]);
         }
+        if $parts.has(Part::VectorMemory) {
+            $show!("vector_prev", $state.vector_prev);
+        }
     };
 }
 
@@ -256,6 +276,7 @@ impl State {
         self.e_prev = [0.0; 2];
         self.integral = [0.0; 2];
         self.rises = [false; 2];
+        self.vector_prev = Vector(0);
         self.commutating = false;
         self.commutation_age = 0.0;
     }
@@ -307,6 +328,7 @@ impl State {
             e_prev: volts(self.e_prev),
             integral: volts(self.integral),
             rises: self.rises,
+            vector_prev: self.vector_prev.0,
         }
     }
 }

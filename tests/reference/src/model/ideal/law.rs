@@ -37,6 +37,8 @@ pub struct Inputs {
     pub direction: f64,
     /// Whether the components are to rise (PHCC).
     pub rises: [bool; 2],
+    /// Number of the vector that the last step chose (FCS-MPC).
+    pub vector_prev: usize,
 }
 
 /// What a controller decides; voltages of the zero-sum phases.
@@ -79,7 +81,7 @@ impl Command {
 #[derive(Clone, Debug)]
 pub enum Law {
     Pdcc(pdcc::Pdcc),
-    FcsMpc(crate::FcsMpc),
+    FcsMpc(fcs_mpc::FcsMpc),
     Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
 }
@@ -88,7 +90,7 @@ impl Law {
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options)),
-            Controller::FcsMpc(options) => Self::FcsMpc(*options),
+            Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
         })
@@ -97,7 +99,7 @@ impl Law {
     pub fn decide(&self, now: &Inputs) -> Decision {
         match self {
             Self::Pdcc(law) => law.decide(now),
-            Self::FcsMpc(options) => fcs_mpc::decide(options, now),
+            Self::FcsMpc(law) => law.decide(now),
             Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),
         }

@@ -3,6 +3,8 @@
 
 use super::deadbeat::Deadbeat;
 use super::divided;
+use super::two_steps::TwoSteps;
+use super::weighted::Weights;
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
 use crate::exact::{Shift, floor, halve, round_half_up};
@@ -13,15 +15,17 @@ use crate::{Candidates, Error, Switch};
 
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
-    candidates: Candidates,
+    pub candidates: Candidates,
     /// Pairs are allowed and their off leg sits where current or EMF put it.
-    floating: bool,
+    pub floating: bool,
     /// A second vector shares the period.
     modulated: bool,
     deadbeat: Deadbeat,
     sixth: Sixth,
-    score: Shift,
+    pub score: Shift,
     i_comm_volts: f64,
+    weights: Option<Weights>,
+    two_steps: Option<TwoSteps>,
 }
 
 impl FcsMpc {
@@ -35,7 +39,9 @@ impl FcsMpc {
             modulated: options.modulated == Switch::On,
             deadbeat: Deadbeat::new(scale)?,
             sixth: Sixth::new(scale)?,
-            score: scale.product_if(floating, "score")?,
+            score: scale.product_if(floating || options.torque_weight > 0.0, "score")?,
+            weights: Weights::new(options, scale)?,
+            two_steps: TwoSteps::new(options, scale)?,
             i_comm_volts: round_half_up(threshold * scale.two_v),
         })
     }
@@ -48,6 +54,14 @@ impl FcsMpc {
         let (zero, others) = vectors::candidates(self.candidates, now.commutating, now.sector_eff);
         let exact = !self.floating || (zero == 0 && others.end <= vectors::FIRST_PAIR);
         let choice = Choice::new(self, now, u_unsat);
+        if let Some(two_steps) = &self.two_steps {
+            let vector = two_steps.choose(self.candidates, now, u_unsat);
+            return choice.apply(now, vector);
+        }
+        if let Some(weights) = &self.weights {
+            let vector = weights.choose(&choice, now, exact);
+            return choice.apply(now, vector);
+        }
         let (mut vector, mut least) = (zero, choice.score(zero, exact));
         for other in others {
             let score = choice.score(other, exact);
@@ -58,30 +72,15 @@ impl FcsMpc {
         if self.modulated {
             return choice.divide(now, vector);
         }
-        // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
-        let u = if self.floating {
-            choice.voltage(vector)
-        } else {
-            self.sixth.voltage(now, vector)
-        };
-        Decision {
-            u_unsat,
-            u,
-            reach: Reach::Inside,
-            vector,
-            // 11
-            command: whole::command(now, vector),
-            integral: now.integral,
-            rises: now.rises,
-        }
+        choice.apply(now, vector)
     }
 }
 
 /// What the scores are made of.
-struct Choice<'a> {
-    law: &'a FcsMpc,
-    v_bus: f64,
-    u: [f64; 3],
+pub struct Choice<'a> {
+    pub law: &'a FcsMpc,
+    pub v_bus: f64,
+    pub u: [f64; 3],
     e: [f64; 3],
     /// K a i(k+1).
     held: [f64; 3],
@@ -99,8 +98,28 @@ impl<'a> Choice<'a> {
         }
     }
 
+    /// The decision for a vector.
+    fn apply(&self, now: &Inputs, vector: usize) -> Decision {
+        // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
+        let u = if self.law.floating {
+            self.voltage(vector)
+        } else {
+            self.law.sixth.voltage(now, vector)
+        };
+        Decision {
+            u_unsat: [self.u[0], self.u[1]],
+            u,
+            reach: Reach::Inside,
+            vector,
+            // 11
+            command: whole::command(now, vector),
+            integral: now.integral,
+            rises: now.rises,
+        }
+    }
+
     /// Terminal voltage of the off leg, the two others' mean being `driven`.
-    fn off_terminal(&self, leg: usize, driven: f64) -> f64 {
+    pub fn off_terminal(&self, leg: usize, driven: f64) -> f64 {
         if self.held[leg] > self.law.i_comm_volts {
             0.0
         } else if self.held[leg] < -self.law.i_comm_volts {
@@ -112,31 +131,32 @@ impl<'a> Choice<'a> {
 
     /// The vector's score; `exact` without the product that all scores of an exact list share.
     fn score(&self, vector: usize, exact: bool) -> f64 {
-        let v = self.v_bus;
+        let along = self.by_bus(vector);
+        if exact {
+            along
+        } else {
+            self.aside(vector) + self.law.score.floor_product(self.v_bus, along)
+        }
+    }
+
+    /// The part of the score that is a multiple of the bus, over the bus.
+    pub fn by_bus(&self, vector: usize) -> f64 {
+        score_by_bus(self.v_bus, &self.u, vector)
+    }
+
+    /// What an off leg that does not lie midway adds.
+    pub fn aside(&self, vector: usize) -> f64 {
         let product = |x, y| self.law.score.floor_product(x, y);
-        let by_bus = |y| if exact { y } else { product(v, y) };
-        let legs = vectors::LEGS[vector];
-        let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
-        let high = legs.iter().filter(|leg| **leg > 0).count();
-        match (vectors::off_leg(vector), find(1), find(-1)) {
-            // One leg high.
-            (None, Some(x), Some(_)) if high == 1 => by_bus(4.0 * v - 12.0 * self.u[x]),
-            // One leg low.
-            (None, Some(_), Some(x)) => by_bus(4.0 * v + 12.0 * self.u[x]),
-            (Some(off), Some(p), Some(q)) => {
-                let pair = by_bus(3.0 * v - 6.0 * (self.u[p] - self.u[q]));
-                if self.law.floating {
-                    let d = 2.0 * self.off_terminal(off, halve(v)) - v;
-                    product(d, d - 6.0 * self.u[off]) + pair
-                } else {
-                    pair
-                }
+        match vectors::off_leg(vector).filter(|_| self.law.floating) {
+            None => 0.0,
+            Some(off) if vector < vectors::FIRST_PAIR_ZERO => {
+                let d = 2.0 * self.off_terminal(off, halve(self.v_bus)) - self.v_bus;
+                product(d, d - 6.0 * self.u[off])
             }
-            (Some(off), None, _) if self.law.floating => {
+            Some(off) => {
                 let tau = self.off_terminal(off, 0.0);
                 product(tau, 4.0 * tau - 12.0 * self.u[off])
             }
-            _ => 0.0,
         }
     }
 
@@ -221,5 +241,20 @@ impl<'a> Choice<'a> {
         }
         let mean = floor((terminal[0] + terminal[1] + terminal[2]) / 3.0);
         [terminal[0] - mean, terminal[1] - mean]
+    }
+}
+
+/// 6 (|v|^2 - 2 u v) over the bus, a leg that is off midway.
+pub fn score_by_bus(v_bus: f64, u: &[f64; 3], vector: usize) -> f64 {
+    let legs = vectors::LEGS[vector];
+    let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
+    let high = legs.iter().filter(|leg| **leg > 0).count();
+    match (vectors::off_leg(vector), find(1), find(-1)) {
+        // One leg high.
+        (None, Some(x), Some(_)) if high == 1 => 4.0 * v_bus - 12.0 * u[x],
+        // One leg low.
+        (None, Some(_), Some(x)) => 4.0 * v_bus + 12.0 * u[x],
+        (Some(_), Some(p), Some(q)) => 3.0 * v_bus - 6.0 * (u[p] - u[q]),
+        _ => 0.0,
     }
 }

@@ -4,42 +4,101 @@ use super::{Decision, Inputs, deadbeat, divided, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
-use crate::{Candidates, FcsMpc, OffLeg, Switch};
+use crate::{Candidates, OffLeg, Spec, Switch};
 use nalgebra::{Vector2, Vector3};
 
 /// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
 /// below that of any word. Corner references put the demand exactly between two vectors.
 pub const TIE: f64 = 1e-12;
 
-pub fn decide(options: &FcsMpc, now: &Inputs) -> Decision {
-    let u_unsat = deadbeat::voltage(now);
-    let tie = TIE * (u_unsat.norm() + now.v_bus).powi(2);
-    let cost = |vector: usize| (u_unsat - voltage(options, now, vector)).norm_squared();
-    let (zero, others) = vectors::candidates(options.candidates, now.commutating, now.sector_eff);
-    let (mut vector, mut least) = (zero, cost(zero));
-    for other in others {
-        let found = cost(other);
-        if found < least - tie {
-            (vector, least) = (other, found);
+/// The options, and what they need of the drive.
+#[derive(Clone, Debug)]
+pub struct FcsMpc {
+    options: crate::FcsMpc,
+    /// Nominal bus, volt.
+    v_bus: f64,
+}
+
+impl FcsMpc {
+    pub fn new(spec: &Spec, options: &crate::FcsMpc) -> Self {
+        Self {
+            options: *options,
+            v_bus: spec.inverter.v_bus,
         }
     }
-    let (u, command) = match options.modulated {
-        Switch::Off => (voltage(options, now, vector), whole::command(now, vector)),
-        Switch::On => divided::command(options, now, &u_unsat, vector),
-    };
-    Decision {
-        u_unsat,
-        u,
-        reach: Reach::Inside,
-        vector,
-        command,
-        integral: [0.0; 2],
-        rises: now.rises,
+
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        let options = &self.options;
+        let u_unsat = deadbeat::voltage(now);
+        let tie = TIE * (u_unsat.norm() + now.v_bus).powi(2);
+        let weighted = options.modulated == Switch::Off
+            && options.switching_weight + options.torque_weight > 0.0;
+        let cost = |vector: usize| {
+            let miss = u_unsat - voltage(options, now, vector);
+            if options.horizon == 2 {
+                miss.norm_squared() + second_miss(options, now, &miss)
+            } else if weighted {
+                miss.norm_squared() + self.weighed(now, vector, &miss)
+            } else {
+                miss.norm_squared()
+            }
+        };
+        let (zero, others) =
+            vectors::candidates(options.candidates, now.commutating, now.sector_eff);
+        let (mut vector, mut least) = (zero, cost(zero));
+        for place in others {
+            let other = if weighted {
+                vectors::weighted_order(place)
+            } else {
+                place
+            };
+            let found = cost(other);
+            if found < least - tie {
+                (vector, least) = (other, found);
+            }
+        }
+        let (u, command) = match options.modulated {
+            Switch::Off => (voltage(options, now, vector), whole::command(now, vector)),
+            Switch::On => divided::command(options, now, &u_unsat, vector),
+        };
+        Decision {
+            u_unsat,
+            u,
+            reach: Reach::Inside,
+            vector,
+            command,
+            integral: [0.0; 2],
+            rises: now.rises,
+        }
+    }
+
+    /// What the weights add to a vector that misses the wanted voltage so far (section 10w).
+    fn weighed(&self, now: &Inputs, vector: usize, miss: &Vector2<f64>) -> f64 {
+        let per_leg =
+            (self.options.switching_weight / now.phase.b).powi(2) * now.v_bus / self.v_bus;
+        let switching = per_leg * vectors::changes(now.vector_prev, vector);
+        // The component of a zero-sum vector along the difference of two phases is that difference over sqrt(3).
+        let (x, y) = vectors::pair_of(now.sector_eff);
+        let missed = phases(miss);
+        let line = missed[x] - missed[y];
+        switching + self.options.torque_weight * line * line / 3.0
     }
 }
 
+/// The least square of the second period's miss, behind a first vector that misses the wanted voltage so far (section 10h).
+fn second_miss(options: &crate::FcsMpc, now: &Inputs, miss: &Vector2<f64>) -> f64 {
+    let (a, b) = (now.phase.a, now.phase.b);
+    // The first period ends with i_ref - b miss.
+    let wanted = (now.i_ref - (now.i_ref - miss * b) * a) / b + now.e;
+    let (zero, others) = vectors::candidates(options.candidates, now.commutating, now.sector_eff);
+    std::iter::once(zero)
+        .chain(others)
+        .map(|vector| (wanted - whole::voltage(now, vector)).norm_squared())
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// The voltage that a vector is taken to apply.
-fn voltage(options: &FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
+fn voltage(options: &crate::FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
     let Some(off) = vectors::off_leg(vector).filter(|_| floats(options)) else {
         return whole::voltage(now, vector);
     };
@@ -49,12 +108,12 @@ fn voltage(options: &FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
 }
 
 /// Whether the voltage of a leg that is off is predicted.
-pub fn floats(options: &FcsMpc) -> bool {
+pub fn floats(options: &crate::FcsMpc) -> bool {
     options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase
 }
 
 /// The rail at which a diode is predicted to hold the leg, if it is off.
-pub fn rail(options: &FcsMpc, now: &Inputs, off: usize) -> Option<f64> {
+pub fn rail(options: &crate::FcsMpc, now: &Inputs, off: usize) -> Option<f64> {
     let current = phases(&deadbeat::current_then(now))[off];
     if current > options.commutation_threshold {
         Some(0.0)
@@ -67,7 +126,7 @@ pub fn rail(options: &FcsMpc, now: &Inputs, off: usize) -> Option<f64> {
 
 /// The voltage of driven terminals with the off leg where it is predicted.
 pub fn with_off_leg(
-    options: &FcsMpc,
+    options: &crate::FcsMpc,
     now: &Inputs,
     mut terminal: Vector3<f64>,
     off: usize,

@@ -1,0 +1,57 @@
+//! The choice of FCS-MPC over two periods: every sequence of two vectors (section 10h).
+
+use super::Inputs;
+use super::fcs_mpc::score_by_bus;
+use crate::exact::Coefficient;
+use crate::model::bit_true::constants::Scale;
+use crate::model::vectors;
+use crate::{Candidates, Error};
+
+#[derive(Clone, Debug)]
+pub struct TwoSteps {
+    pole: Coefficient,
+    first: Coefficient,
+    pole_sixth: Coefficient,
+}
+
+impl TwoSteps {
+    /// None where the cost looks one period ahead.
+    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
+        if options.horizon != 2 {
+            return Ok(None);
+        }
+        let a = scale.phase.a;
+        Ok(Some(Self {
+            pole: scale.coefficient("k_pole", a)?,
+            first: scale.coefficient("k_first", 1.0 + a * a)?,
+            pole_sixth: scale.coefficient("k_pole_sixth", a / 6.0)?,
+        }))
+    }
+
+    /// The first vector of the best sequence.
+    pub fn choose(&self, candidates: Candidates, now: &Inputs, u: [f64; 2]) -> usize {
+        let abc = |x: [f64; 2]| [x[0], x[1], -(x[0] + x[1])];
+        let y = [0, 1].map(|x| now.j[x] + now.e[x] + self.pole.mul(u[x] - now.j[x]));
+        let z = abc([0, 1].map(|x| u[x] + self.pole.mul(y[x])));
+        let y = abc(y);
+        let first = self.first.mul(now.v_bus);
+        let sixth = self.pole_sixth.mul(now.v_bus);
+        let list = || {
+            let (zero, others) = vectors::candidates(candidates, now.commutating, now.sector_eff);
+            std::iter::once(zero).chain(others)
+        };
+        let (mut chosen, mut least) = (0, f64::INFINITY);
+        for one in list() {
+            let moved = vectors::sixths(one);
+            let left = [0, 1, 2].map(|x| y[x] - moved[x] * sixth);
+            let own = score_by_bus(first, &z, one);
+            for two in list() {
+                let score = own + score_by_bus(now.v_bus, &left, two);
+                if score < least {
+                    (chosen, least) = (one, score);
+                }
+            }
+        }
+        chosen
+    }
+}

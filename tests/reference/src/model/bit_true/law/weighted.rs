@@ -1,0 +1,128 @@
+//! The choice of FCS-MPC where its cost has weights (section 10w).
+
+use super::Inputs;
+use super::fcs_mpc::Choice;
+use crate::exact::{Coefficient, halve, round_half_up};
+use crate::model::bit_true::constants::Scale;
+use crate::model::vectors;
+use crate::{Error, Switch};
+
+#[derive(Clone, Debug)]
+pub struct Weights {
+    /// S.
+    change: f64,
+    k_torque_weight: Option<Coefficient>,
+}
+
+impl Weights {
+    /// None where nothing weighs but the current's error.
+    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
+        let weighs = options.switching_weight + options.torque_weight > 0.0;
+        if !weighs || options.modulated == Switch::On {
+            return Ok(None);
+        }
+        let stiffness = options.switching_weight / scale.phase.b;
+        let volts = 9.0 * stiffness * stiffness / scale.v_bus;
+        let torque = options.torque_weight > 0.0;
+        let k_torque_weight =
+            torque.then(|| scale.coefficient("k_torque_weight", 3.0 * options.torque_weight));
+        Ok(Some(Self {
+            change: round_half_up(volts / scale.w * scale.two_v),
+            k_torque_weight: k_torque_weight.transpose()?,
+        }))
+    }
+
+    /// The vector of the least cost; `exact`: no score of the list is rounded for its off legs.
+    pub fn choose(&self, choice: &Choice, now: &Inputs, exact: bool) -> usize {
+        let (zero, others) =
+            vectors::candidates(choice.law.candidates, now.commutating, now.sector_eff);
+        if now.sector_eff == 0 {
+            return zero;
+        }
+        let list = std::iter::once(zero).chain(others.map(vectors::weighted_order));
+        if let Some(k_torque_weight) = &self.k_torque_weight {
+            return first_least(list, |vector| {
+                self.rounded(choice, now, vector) + torque(k_torque_weight, choice, now, vector)
+            });
+        }
+        if exact {
+            return first_least(list, |vector| self.by_bus(choice, now, vector));
+        }
+        // One of each kind, in the list's order.
+        let mut kept: Vec<usize> = vec![];
+        for vector in list {
+            match kept.iter().position(|known| kind(*known) == kind(vector)) {
+                None => kept.push(vector),
+                Some(place) => {
+                    let [known, new] =
+                        [kept[place], vector].map(|vector| self.by_bus(choice, now, vector));
+                    if new < known {
+                        kept[place] = vector;
+                    }
+                }
+            }
+        }
+        // Pairs by their numbers, behind what is no pair.
+        kept.sort_by_key(|vector| if kind(*vector) < 3 { *vector } else { 0 });
+        first_least(kept.into_iter(), |vector| self.rounded(choice, now, vector))
+    }
+
+    /// S n.
+    fn changed(&self, now: &Inputs, vector: usize) -> f64 {
+        self.change * vectors::changes(now.vector_prev, vector)
+    }
+
+    /// The score over the bus, without what an off leg adds.
+    fn by_bus(&self, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+        choice.by_bus(vector) + self.changed(now, vector)
+    }
+
+    /// The score with rounded products.
+    fn rounded(&self, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+        let along = self.by_bus(choice, now, vector);
+        choice.aside(vector) + choice.law.score.floor_product(choice.v_bus, along)
+    }
+}
+
+/// 0 to 2 pairs by their off leg, 3 vectors of three legs, 4 a pair's zero.
+fn kind(vector: usize) -> usize {
+    match (vectors::off_leg(vector), vector) {
+        (Some(off), ..vectors::FIRST_PAIR_ZERO) => off,
+        (None, _) => 3,
+        _ => 4,
+    }
+}
+
+/// The first of the least score.
+fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> f64) -> usize {
+    let mut least: Option<(usize, f64)> = None;
+    for vector in list {
+        let found = score(vector);
+        if least.is_none_or(|(_, known)| found < known) {
+            least = Some((vector, found));
+        }
+    }
+    least.map_or(0, |(vector, _)| vector)
+}
+
+/// What the torque's error weighs.
+fn torque(weight: &Coefficient, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+    let v = choice.v_bus;
+    let terminal = |x: usize| match vectors::LEGS[vector][x] {
+        1 => v,
+        -1 => 0.0,
+        _ if vector >= vectors::FIRST_PAIR_ZERO => {
+            if choice.law.floating {
+                choice.off_terminal(x, 0.0)
+            } else {
+                0.0
+            }
+        }
+        _ if choice.law.floating => choice.off_terminal(x, halve(v)),
+        _ => halve(v),
+    };
+    let (x, y) = vectors::pair_of(now.sector_eff);
+    let line = terminal(x) - terminal(y);
+    let beside = weight.mul(line - 2.0 * (choice.u[x] - choice.u[y]));
+    choice.law.score.floor_product(line, beside)
+}
