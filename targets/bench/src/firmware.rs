@@ -21,7 +21,7 @@ pub struct Firmware {
     pub target: Target,
     /// What compiled it.
     pub toolchain: Toolchain,
-    folder: PathBuf,
+    built: PathBuf,
 }
 
 impl Firmware {
@@ -32,59 +32,98 @@ impl Firmware {
     pub fn build(target: Target) -> Result<Self, BenchError> {
         let toolchain = find(target)?;
         let root = workspace();
-        let built = root_of_builds(&root).join("firmware");
-        let status = toolchain
-            .cargo_build(target)
-            .arg("--target-dir")
-            .arg(&built)
-            // The crate's own `.cargo/config.toml` counts in its folder only.
-            .current_dir(root.join("targets").join(target.name()))
-            .status()?;
-        if !status.success() {
-            return Err(BenchError::Build(target.name()));
-        }
-        Ok(Self {
+        let firmware = Self {
             target,
             toolchain,
-            folder: built.join(target.triple()).join("release"),
-        })
+            built: root_of_builds(&root).join("firmware"),
+        };
+        if firmware.cargo(&[]).status()?.success() {
+            Ok(firmware)
+        } else {
+            Err(BenchError::Build(target.name()))
+        }
+    }
+
+    /// `cargo build` of this firmware.
+    fn cargo(&self, arguments: &[&str]) -> Command {
+        let mut command = self.toolchain.cargo_build(self.target);
+        command
+            .args(arguments)
+            .arg("--target-dir")
+            .arg(&self.built)
+            // The crate's own `.cargo/config.toml` counts in its folder only.
+            .current_dir(workspace().join("targets").join(self.target.name()));
+        command
     }
 
     /// A program's ELF.
     pub fn elf(&self, program: &str) -> PathBuf {
-        self.folder.join(program)
+        self.built
+            .join(self.target.triple())
+            .join("release")
+            .join(program)
     }
 
-    /// The drives that the bench program knows.
+    /// Builds the peers once more where that gives them a floating-point unit: the drives are built without.
+    ///
+    /// # Errors
+    /// When the build fails.
+    pub fn build_peers(&self) -> Result<(), BenchError> {
+        if self.target != Target::CortexM4 {
+            return Ok(());
+        }
+        let status = self
+            .cargo(&["--bin", "peers"])
+            .env("RUSTFLAGS", "-C target-cpu=cortex-m4")
+            .status()?;
+        if status.success() {
+            Ok(())
+        } else {
+            Err(BenchError::Build(self.target.name()))
+        }
+    }
+
+    /// The drives that a program knows.
     ///
     /// # Errors
     /// When the emulator fails.
-    pub fn drives(&self) -> Result<Vec<Listed>, BenchError> {
+    pub fn drives(&self, program: &str) -> Result<Vec<Listed>, BenchError> {
         let task = Task {
             mode: Mode::List,
             drive: 0,
             block: 0,
         };
-        let text = self.run(&task, &[])?;
+        let text = self.run_program(program, &task, &[])?;
         parse(&String::from_utf8_lossy(&text)).ok_or(BenchError::Listing)
     }
 
-    /// Runs a task on the bench program; returns its answers.
+    /// Runs a task on a program; returns its answers.
     ///
     /// # Errors
     /// When the emulator fails or hangs.
-    pub fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+    pub fn run_program(
+        &self,
+        program: &str,
+        task: &Task,
+        records: &[u8],
+    ) -> Result<Vec<u8>, BenchError> {
         let purpose = match task.mode {
             Mode::Count => Purpose::Counts,
             _ => Purpose::Answers,
         };
-        let folder = tempfile::tempdir()?;
-        fs::write(
-            folder.path().join("task"),
-            [task.encode().as_slice(), records].concat(),
-        )?;
-        self.emulate("bench", purpose, folder.path())?;
+        let folder = folder_of(task, records)?;
+        self.emulate(program, purpose, folder.path())?;
         Ok(fs::read(folder.path().join("answers"))?)
+    }
+
+    /// Runs a task on a program; returns the log of all instructions.
+    ///
+    /// # Errors
+    /// When the emulator fails or hangs.
+    pub fn trace(&self, program: &str, task: &Task, records: &[u8]) -> Result<String, BenchError> {
+        let folder = folder_of(task, records)?;
+        self.emulate(program, Purpose::Trace, folder.path())?;
+        Ok(fs::read_to_string(folder.path().join("log"))?)
     }
 
     /// Runs a program on the emulated core, in a folder of the host; returns what it printed.
@@ -127,6 +166,14 @@ impl Firmware {
             ))
         }
     }
+}
+
+/// A folder with a task, for the emulator to run in.
+fn folder_of(task: &Task, records: &[u8]) -> Result<tempfile::TempDir, BenchError> {
+    let folder = tempfile::tempdir()?;
+    let bytes = [task.encode().as_slice(), records].concat();
+    fs::write(folder.path().join("task"), bytes)?;
+    Ok(folder)
 }
 
 /// The repository.

@@ -32,7 +32,7 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let firmware = Firmware::build(target)?;
         prove_that_it_can_fail(&firmware)?;
         let begin = Instant::now();
-        let mut drives = firmware.drives()?;
+        let mut drives = firmware.drives("bench")?;
         if let Some(part) = &options.only {
             drives.retain(|drive| drive.symbol.contains(part));
         }
@@ -87,7 +87,7 @@ trait Core {
 
 impl Core for Firmware {
     fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
-        self.run(task, records)
+        self.run_program("bench", task, records)
     }
 }
 
@@ -123,7 +123,7 @@ fn difference(
 /// Lets the core read one ADC count of one step wrong by one: the comparison must name that step.
 fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
     const STEP: usize = 2500;
-    let drives = firmware.drives()?;
+    let drives = firmware.drives("bench")?;
     let listed = drives.first().ok_or(BenchError::Listing)?;
     let drive = drive_of(listed)?;
     let honest = record(&drive, 2 * STEP, None)?;

@@ -1,6 +1,7 @@
 //! The targets: their compiler's name, their folder, the machine that runs them.
 
 use clap::ValueEnum;
+use std::process::Command;
 
 /// A core that firmware is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -20,6 +21,8 @@ pub enum Purpose {
     Answers,
     /// Counts of instructions: the emulator's clock follows them.
     Counts,
+    /// The log of all instructions, one by one, in the file `log`.
+    Trace,
 }
 
 impl Target {
@@ -52,6 +55,21 @@ impl Target {
         }
     }
 
+    /// What makes the emulator take instructions one by one: it was renamed in version 8.1, and the old name went later.
+    fn single_steps(self) -> Vec<&'static str> {
+        let version = Command::new(self.emulator()).arg("--version").output();
+        let major = version.ok().and_then(|output| {
+            let text = String::from_utf8(output.stdout).ok()?;
+            let (_, version) = text.split_once("version ")?;
+            version.split('.').next()?.parse::<u32>().ok()
+        });
+        if major.is_some_and(|major| major < 9) {
+            vec!["-singlestep"]
+        } else {
+            vec!["-accel", "tcg,one-insn-per-tb=on"]
+        }
+    }
+
     /// The emulator's machine and clock. SysTick of the MPS2 boards ticks every 40 ns, so that `shift=10`,
     /// 1024 ns per instruction, resolves each; the `microbit` has none that fits, and the Cortex-M3 of
     /// `mps2-an385` executes all instructions of a Cortex-M0, from the same addresses.
@@ -59,9 +77,13 @@ impl Target {
         let mut arguments = match (self, purpose) {
             (Self::CortexM4, _) => vec!["-machine", "mps2-an386"],
             (Self::CortexM0, Purpose::Answers) => vec!["-machine", "microbit"],
-            (Self::CortexM0, Purpose::Counts) => vec!["-machine", "mps2-an385"],
+            (Self::CortexM0, _) => vec!["-machine", "mps2-an385"],
             (Self::Riscv32, _) => vec!["-machine", "virt", "-bios", "none"],
         };
+        if purpose == Purpose::Trace {
+            arguments.extend(self.single_steps());
+            arguments.extend(["-d", "exec,nochain", "-D", "log"]);
+        }
         if purpose == Purpose::Counts {
             let shift = match self {
                 Self::CortexM4 | Self::CortexM0 => "shift=10",

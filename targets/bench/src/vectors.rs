@@ -101,6 +101,31 @@ pub struct Stretch {
     pub steps: usize,
 }
 
+impl Stretch {
+    /// The drive's plant at the stretch's speed.
+    fn plant(&self, drive: &Prepared) -> Result<Plant, BenchError> {
+        let omega = self.speed * drive.rated_rpm() * TAU / 60.0;
+        Ok(Plant::new(plant_of(&drive.spec), 0.1, omega)?)
+    }
+
+    /// Runs a controller that knows its set-point on the drive's plant.
+    ///
+    /// # Errors
+    /// When the plant cannot be made.
+    pub fn run(&self, drive: &Prepared, controller: impl CurrentLoop) -> Result<(), BenchError> {
+        ClosedLoop::new(self.plant(drive)?, controller, delay(drive)).run(self.steps, &mut ());
+        Ok(())
+    }
+}
+
+/// When a drive's commands reach the plant.
+fn delay(drive: &Prepared) -> Delay {
+    match drive.spec.controller.common().delay {
+        0 => Delay::None,
+        _ => Delay::OnePeriod,
+    }
+}
+
 /// A recorder in the place of the controller.
 struct InLoop<'r, 'g>(&'r mut Recorder<'g>);
 
@@ -223,13 +248,7 @@ impl<'g> Recorder<'g> {
             self.call(Record::SetBus(counts));
         }
         let inverter = &drive.spec.inverter;
-        let omega = stretch.speed * drive.rated_rpm() * TAU / 60.0;
-        let plant = Plant::new(plant_of(&drive.spec), 0.1, omega)?;
-        let delay = match drive.spec.controller.common().delay {
-            0 => Delay::None,
-            _ => Delay::OnePeriod,
-        };
-        let mut closed = ClosedLoop::new(plant, InLoop(self), delay);
+        let mut closed = ClosedLoop::new(stretch.plant(drive)?, InLoop(self), delay(drive));
         if stretch.starts_up {
             closed.controller().0.call(Record::Calibrate);
             closed.run(1 << inverter.calibration_log2, &mut ());

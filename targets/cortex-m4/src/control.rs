@@ -5,21 +5,28 @@
 )]
 
 use crate::board::REGISTERS;
-use crate::drives::TrivediPdcc as Drive;
 use hexagen_firmware::interrupt::control_period;
 use hexagen_firmware::{Handed, hexagen};
 
-type Loop = <Drive as hexagen::Drive>::LoopHalf<'static>;
-type SetPoint = <Drive as hexagen::Drive>::SetPointHalf;
+hexagen::controller! {
+    /// The drive of this firmware, a type of its own beside those of the test bench.
+    pub HubDrive {
+        motor: "../motors/trivedi-keshri-660w.toml",
+        controller: pdcc { saturation: keep_angle, emf_filter: 1 },
+    }
+}
 
-static DRIVE: Handed<Drive> = Handed::new();
+type Loop = <HubDrive as hexagen::Drive>::LoopHalf<'static>;
+type SetPoint = <HubDrive as hexagen::Drive>::SetPointHalf;
+
+static DRIVE: Handed<HubDrive> = Handed::new();
 static CONTROL: Handed<Loop> = Handed::new();
 
 /// The drive's halves: the set-point for `main`, the control loop for the interrupt, after `prepare` had it. Once,
 /// before the timer starts.
 pub fn hand_over(prepare: impl FnOnce(&mut Loop)) -> &'static SetPoint {
     // SAFETY: called once, from `main`; the interrupt does not run yet.
-    let (set_point, control) = unsafe { DRIVE.hand_over(Drive::new()) }.split();
+    let (set_point, control) = unsafe { DRIVE.hand_over(HubDrive::new()) }.split();
     // SAFETY: likewise.
     prepare(unsafe { CONTROL.hand_over(control) });
     set_point

@@ -12,6 +12,7 @@ pub mod demonstration;
 mod drives;
 mod handed;
 pub mod interrupt;
+pub mod peers;
 mod registers;
 #[cfg(target_os = "none")]
 pub mod semihosted;

@@ -2,6 +2,7 @@
 
 use crate::counter::{count, sound};
 use crate::drives::{Drives, StepFn};
+use crate::peers::Peer;
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
 use hexagen::fixed::types::I16F16;
 use hexagen::{Drive, Legs, Sample};
@@ -81,6 +82,40 @@ pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Re
     }
     if task.mode == Mode::Stack {
         link.write(&replayed.depth.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// Counts a peer, or sounds its stack, on the steps of a task; its other calls are the drives' own.
+///
+/// # Errors
+/// When the exchange ends early.
+pub fn replay_peer<P: Peer>(
+    step: StepFn<P>,
+    link: &mut dyn Link,
+    task: &Task,
+) -> Result<(), Broken> {
+    let mut peer = P::new();
+    let mut depth = 0;
+    let mut record = [0; RECORD];
+    while link.read(&mut record)? == RECORD {
+        let Record::Step(sample) = Record::decode(record).ok_or(Broken::Format)? else {
+            continue;
+        };
+        match task.mode {
+            Mode::Count => {
+                let count = count(step, &mut peer, &sample).ok_or(Broken::Uncounted)?;
+                link.write(&(count as u16).to_le_bytes())?;
+            }
+            Mode::Stack => {
+                let sounded = sound(step, &mut peer, &sample).ok_or(Broken::Uncounted)?;
+                depth = depth.max(sounded);
+            }
+            Mode::List | Mode::Digest | Mode::Full => return Err(Broken::Format),
+        }
+    }
+    if task.mode == Mode::Stack {
+        link.write(&depth.to_le_bytes())?;
     }
     Ok(())
 }

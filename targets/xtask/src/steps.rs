@@ -107,10 +107,13 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
 
 /// Rewrites recorded expectations.
 pub fn refresh() -> Vec<Step> {
-    vec![Step {
-        environment: vec![("INSTA_UPDATE", "always"), ("TRYBUILD", "overwrite")],
-        ..step("refresh", &["test", "--workspace", "--no-fail-fast"])
-    }]
+    vec![
+        Step {
+            environment: vec![("INSTA_UPDATE", "always"), ("TRYBUILD", "overwrite")],
+            ..step("refresh", &["test", "--workspace", "--no-fail-fast"])
+        },
+        on_target("cost", &["--accept"]),
+    ]
 }
 
 /// Runs the steps in order; stops at the first that fails.

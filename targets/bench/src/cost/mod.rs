@@ -1,19 +1,52 @@
-//! What a step costs: instructions, code, tables, state and stack.
+//! What a step costs: instructions, cycles, code, tables, state and stack, of every drive and of its peers.
+
+mod count;
+mod cycles;
+mod elf;
+mod expected;
+mod goals;
+mod peers;
 
 use crate::BenchError;
 use crate::firmware::Firmware;
 use crate::listing::Listed;
 use crate::targets::Target;
-use crate::vectors::{Recorder, Stretch, drive_of};
-use hexagen_firmware::wire::{Mode, Task};
+use crate::vectors::drive_of;
+use comfy_table::{CellAlignment, Table, presets};
+use count::{Counts, Inputs, count, count_interrupt};
+use elf::{Code, Image, Isa};
+use expected::{Expected, Figures};
+use goals::{SUPERVISION, goal};
+use hexagen_host::engine::{MotorSource, Prepared, prepare};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// The motor of the peers and of the firmware's interrupt.
+const PAPER_MOTOR: &str = "trivedi-keshri-660w";
+
+/// The whole interrupt of the firmware, and its drive.
+const INTERRUPT: &str = "interrupt_trivedi_keshri_660w_pdcc";
+const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf_filter=1";
 
 /// What to count.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Only drives whose symbol contains this
+    /// Only steps whose symbol contains this; nothing is compared with the expected figures then
     #[arg(long)]
     pub only: Option<String>,
+    /// Writes the figures down as expected
+    #[arg(long)]
+    pub accept: bool,
+}
+
+/// One line of the table.
+struct Row {
+    symbol: String,
+    counts: Counts,
+    code: Code,
+    /// Bytes of tables; none for peers, whose tables have no names.
+    tables: Option<usize>,
+    state: Option<usize>,
 }
 
 /// Counts every drive of every target.
@@ -21,82 +54,191 @@ pub struct Options {
 /// # Errors
 /// When a tool is missing, or a figure rose.
 pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
+    let mut rises = vec![];
     for &target in targets {
         let firmware = Firmware::build(target)?;
-        let mut drives = firmware.drives()?;
-        if let Some(part) = &options.only {
-            drives.retain(|drive| drive.symbol.contains(part));
-        }
-        let counted: Vec<_> = drives
-            .par_iter()
-            .map(|listed| count(&firmware, listed))
-            .collect::<Result<_, BenchError>>()?;
-        for (listed, counts) in drives.iter().zip(counted) {
-            println!(
-                "{:60} normal {} worst {} stack {}",
-                listed.symbol, counts.normal, counts.worst, counts.stack
+        let rows = rows(&firmware, options)?;
+        let compiler = firmware.toolchain.version();
+        println!("{}, {compiler}\n{}", target.name(), table(target, &rows));
+        let figures = figures(&rows);
+        if options.accept {
+            let compiler = compiler.to_owned();
+            Expected {
+                compiler,
+                steps: figures,
+            }
+            .write(target)?;
+        } else if options.only.is_none() {
+            let found = Expected::read(target)?.rises(compiler, &figures, |symbol, figures| {
+                goal(target, symbol).is_some_and(|goal| !goal.is_met(figures.normal, figures.worst))
+            });
+            rises.extend(
+                found
+                    .into_iter()
+                    .map(|rise| format!("{}: {rise}", target.name())),
             );
         }
     }
-    Ok(())
+    println!(
+        "normal, worst: instructions from the function's entry to its return, in closed loop at rated current (QEMU); normal is the \
+         median of settled steps at 0.2 and 0.7 of the rated speed, worst is any step, start and 1.25 of the rated speed included.\n\
+         goal: an expert's hand-written step, and {SUPERVISION} for the supervision that it lacks.\n\
+         code: bytes of the function, and of all that it calls. state: bytes of the drive's type.\n\
+         cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1."
+    );
+    if rises.is_empty() {
+        return Ok(());
+    }
+    Err(BenchError::Failed(format!(
+        "{}\naccept by `cargo xtask cost --accept` what is meant",
+        rises.join("\n")
+    )))
 }
 
-struct Counts {
-    normal: u16,
-    worst: u16,
-    stack: u32,
+fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> {
+    let isa = match firmware.target {
+        Target::CortexM4 | Target::CortexM0 => Isa::Thumb,
+        Target::Riscv32 => Isa::RiscV,
+    };
+    let is_wanted = |symbol: &str| {
+        options
+            .only
+            .as_ref()
+            .is_none_or(|part| symbol.contains(part.as_str()))
+    };
+    let mut rows = vec![];
+
+    let image = Image::read(&firmware.elf("bench"), isa)?;
+    let mut drives = firmware.drives("bench")?;
+    drives.retain(|drive| is_wanted(&drive.symbol));
+    let of_drives: Vec<Row> = drives
+        .par_iter()
+        .map(|listed| {
+            let drive = drive_of(listed)?;
+            let inputs = Inputs::record(&drive)?;
+            let tables = tables(&drive);
+            let counts = count(firmware, "bench", &image, listed, &inputs)?;
+            row(&image, listed, counts, Some(tables))
+        })
+        .collect::<Result<_, BenchError>>()?;
+    rows.extend(of_drives);
+
+    let paper = MotorSource::of_library(PAPER_MOTOR)
+        .ok_or_else(|| BenchError::Motor(PAPER_MOTOR.to_owned()))?;
+    let paper = prepare(&paper, Some(INTERRUPT_VARIANT))
+        .map_err(|errors| BenchError::Drive(INTERRUPT.to_owned(), errors.to_string()))?;
+    if is_wanted(INTERRUPT) {
+        let image = Image::read(&firmware.elf("interrupt"), isa)?;
+        let inputs = Inputs::record(&paper)?;
+        let counts = count_interrupt(firmware, &image, INTERRUPT, &inputs)?;
+        rows.push(Row {
+            symbol: INTERRUPT.to_owned(),
+            counts,
+            code: image.code(INTERRUPT)?,
+            tables: None,
+            state: None,
+        });
+    }
+
+    firmware.build_peers()?;
+    let image = Image::read(&firmware.elf("peers"), isa)?;
+    let mut peers = firmware.drives("peers")?;
+    peers.retain(|peer| is_wanted(&peer.symbol));
+    let of_peers: Vec<Row> = peers
+        .par_iter()
+        .map(|listed| {
+            let inputs = peers::inputs(&paper, &listed.symbol)?;
+            let counts = count(firmware, "peers", &image, listed, &inputs)?;
+            row(&image, listed, counts, None)
+        })
+        .collect::<Result<_, BenchError>>()?;
+    rows.extend(of_peers);
+    Ok(rows)
 }
 
-fn count(firmware: &Firmware, listed: &Listed) -> Result<Counts, BenchError> {
-    let drive = drive_of(listed)?;
-    let mut recorder = Recorder::new(&drive, None);
-    let share = drive.spec.motor.rated_current / drive.spec.inverter.max_current;
-    let normal = Stretch {
-        starts_up: false,
-        speed: 0.5,
-        currents: [share, share],
-        steps: 2000,
-    };
-    recorder.closed_loop(&drive, &normal)?;
-    let settled = 1000..2000;
-    recorder.closed_loop(
-        &drive,
-        &Stretch {
-            speed: 1.2,
-            ..normal
-        },
-    )?;
-    recorder.closed_loop(
-        &drive,
-        &Stretch {
-            speed: -0.5,
-            ..normal
-        },
-    )?;
-    let vectors = recorder.finish();
-    let task = Task {
-        mode: Mode::Count,
-        drive: listed.place,
-        block: 0,
-    };
-    let answers = firmware.run(&task, &vectors.records)?;
-    let counts: Vec<u16> = answers
-        .chunks_exact(2)
-        .map(|b| u16::from_le_bytes([b[0], b[1]]))
-        .collect();
-    let mut sorted = counts[settled].to_vec();
-    sorted.sort_unstable();
-    let stack = firmware.run(
-        &Task {
-            mode: Mode::Stack,
-            ..task
-        },
-        &vectors.records,
-    )?;
-    let stack = u32::from_le_bytes([stack[0], stack[1], stack[2], stack[3]]);
-    Ok(Counts {
-        normal: sorted[sorted.len() / 2],
-        worst: counts.iter().copied().max().unwrap_or(0),
-        stack,
+fn row(
+    image: &Image,
+    listed: &Listed,
+    counts: Counts,
+    tables: Option<usize>,
+) -> Result<Row, BenchError> {
+    Ok(Row {
+        symbol: listed.symbol.clone(),
+        counts,
+        code: image.code(&listed.symbol)?,
+        tables,
+        state: Some(listed.size),
     })
+}
+
+/// Bytes of a drive's tables in flash: entries as wide as their values need.
+fn tables(drive: &Prepared) -> usize {
+    let tables = &drive.generated.graph.program().tables;
+    let bytes = |values: &[i32]| {
+        let fits = |bits: u32| {
+            values
+                .iter()
+                .all(|value| *value >> (bits - 1) == *value >> 31)
+        };
+        let width = if fits(8) {
+            1
+        } else if fits(16) {
+            2
+        } else {
+            4
+        };
+        width * values.len()
+    };
+    tables.iter().map(|table| bytes(&table.values)).sum()
+}
+
+fn figures(rows: &[Row]) -> BTreeMap<String, Figures> {
+    let figures = |row: &Row| Figures {
+        normal: row.counts.normal,
+        worst: row.counts.worst,
+        code: row.code.own,
+        stack: row.counts.stack,
+    };
+    rows.iter()
+        .map(|row| (row.symbol.clone(), figures(row)))
+        .collect()
+}
+
+fn table(target: Target, rows: &[Row]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN).set_header([
+        "symbol", "normal", "worst", "goal", "", "cycles", "code", "called", "tables", "state",
+        "stack",
+    ]);
+    let or_dash = |number: Option<usize>| number.map_or("-".to_owned(), |n| n.to_string());
+    for row in rows {
+        let counts = row.counts;
+        let (goal, verdict) = goal(target, &row.symbol).map_or((String::new(), ""), |goal| {
+            let worst = goal
+                .worst
+                .map_or(String::new(), |worst| format!(" / {worst}"));
+            let is_met = goal.is_met(counts.normal, counts.worst);
+            let text = format!("{}{worst}", goal.normal);
+            (text, if is_met { "met" } else { "not met" })
+        });
+        table.add_row([
+            row.symbol.clone(),
+            counts.normal.to_string(),
+            counts.worst.to_string(),
+            goal,
+            verdict.to_owned(),
+            counts.cycles.to_string(),
+            row.code.own.to_string(),
+            row.code.called.to_string(),
+            or_dash(row.tables),
+            or_dash(row.state),
+            counts.stack.to_string(),
+        ]);
+    }
+    for column in [1, 2, 3, 5, 6, 7, 8, 9, 10] {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
 }

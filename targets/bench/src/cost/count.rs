@@ -1,0 +1,220 @@
+//! Counts a step function on recorded inputs of a closed loop.
+
+use super::cycles::{Executed, executed};
+use super::elf::Image;
+use crate::BenchError;
+use crate::firmware::Firmware;
+use crate::listing::Listed;
+use crate::vectors::{Recorder, Stretch};
+use hexagen::{Legs, Sample};
+use hexagen_firmware::wire::{Mode, Record, Task};
+use hexagen_host::engine::Prepared;
+use hexagen_host::plant::Truth;
+
+/// Steps of a stretch; its second half counts as settled.
+const STEPS: usize = 2000;
+
+/// Steps of the stretch that is traced instruction by instruction.
+const TRACED: usize = 240;
+
+/// Inputs of a closed loop, and which of their steps are the normal path.
+#[derive(Debug)]
+pub struct Inputs {
+    /// Start from rest, two speeds below the limit, one beyond it, one backward; rated current.
+    records: Vec<u8>,
+    /// A short stretch.
+    traced: Vec<u8>,
+}
+
+/// What a step costs in time and stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Instructions of a settled step below the speed limit: the median.
+    pub normal: u32,
+    /// Most instructions of any step.
+    pub worst: u32,
+    /// Bytes of stack.
+    pub stack: u32,
+    /// Estimated cycles of a settled step: the median.
+    pub cycles: u32,
+}
+
+impl Inputs {
+    /// Records the inputs of a drive in closed loop with itself.
+    ///
+    /// # Errors
+    /// When its plant cannot be made.
+    pub fn record(drive: &Prepared) -> Result<Self, BenchError> {
+        let mut all = Recorder::new(drive, None);
+        for stretch in stretches(drive) {
+            all.closed_loop(drive, &stretch)?;
+        }
+        let mut short = Recorder::new(drive, None);
+        short.closed_loop(drive, &traced(drive))?;
+        Ok(Self {
+            records: all.finish().records,
+            traced: short.finish().records,
+        })
+    }
+
+    /// Records the inputs of a peer in closed loop with itself, on the plant of a drive.
+    ///
+    /// # Errors
+    /// When the plant cannot be made.
+    pub fn record_peer(
+        drive: &Prepared,
+        mut step: impl FnMut(&Sample) -> Legs,
+    ) -> Result<Self, BenchError> {
+        let mut run = |stretch: &Stretch| -> Result<Vec<u8>, BenchError> {
+            let mut records = vec![];
+            let mut noted = |sample: &Sample, _: &Truth| {
+                records.extend(Record::Step(*sample).encode());
+                step(sample)
+            };
+            stretch.run(drive, &mut noted)?;
+            Ok(records)
+        };
+        let mut records = vec![];
+        for stretch in stretches(drive) {
+            records.extend(run(&stretch)?);
+        }
+        Ok(Self {
+            records,
+            traced: run(&traced(drive))?,
+        })
+    }
+}
+
+/// Below the speed limit twice, beyond it, and backward; rated current.
+fn stretches(drive: &Prepared) -> [Stretch; 4] {
+    let share = drive.spec.motor.rated_current / drive.spec.inverter.max_current;
+    [0.2, 0.7, 1.25, -0.7].map(|speed| Stretch {
+        starts_up: false,
+        speed,
+        currents: [share; 2],
+        steps: STEPS,
+    })
+}
+
+/// The short stretch.
+fn traced(drive: &Prepared) -> Stretch {
+    let [_, below, ..] = stretches(drive);
+    Stretch {
+        steps: TRACED,
+        ..below
+    }
+}
+
+/// Settled steps of the first two stretches.
+fn settled<T: Copy>(counts: &[T]) -> Vec<T> {
+    let second_half = |stretch: usize| stretch * STEPS + STEPS / 2..(stretch + 1) * STEPS;
+    [0, 1]
+        .into_iter()
+        .filter_map(|stretch| counts.get(second_half(stretch)))
+        .flatten()
+        .copied()
+        .collect()
+}
+
+fn median(mut numbers: Vec<u32>) -> u32 {
+    numbers.sort_unstable();
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0)
+}
+
+/// Counts a step function of a program.
+///
+/// # Errors
+/// When the emulator fails, or when its two ways of counting differ.
+pub fn count(
+    firmware: &Firmware,
+    program: &str,
+    image: &Image,
+    listed: &Listed,
+    inputs: &Inputs,
+) -> Result<Counts, BenchError> {
+    let task = Task {
+        mode: Mode::Count,
+        drive: listed.place,
+        block: 0,
+    };
+    let counts = numbers(&firmware.run_program(program, &task, &inputs.records)?);
+    let sounding = Task {
+        mode: Mode::Stack,
+        ..task
+    };
+    let depth = firmware.run_program(program, &sounding, &inputs.records)?;
+    let depth = depth.try_into().map_or(0, u32::from_le_bytes);
+    let traced = numbers(&firmware.run_program(program, &task, &inputs.traced)?);
+    let calls = trace(firmware, program, image, &listed.symbol, &task, inputs)?;
+    let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
+    if instructions != traced {
+        return Err(BenchError::Failed(format!(
+            "{}: the clock of the core and the log of its instructions count differently",
+            listed.symbol
+        )));
+    }
+    Ok(Counts {
+        normal: median(settled(&counts)),
+        worst: counts.iter().copied().max().unwrap_or(0),
+        stack: depth,
+        cycles: median(
+            calls[calls.len() / 2..]
+                .iter()
+                .map(|call| call.cycles)
+                .collect(),
+        ),
+    })
+}
+
+/// Instructions and cycles of an interrupt's function: median of settled steps.
+///
+/// # Errors
+/// As [`count`].
+pub fn count_interrupt(
+    firmware: &Firmware,
+    image: &Image,
+    symbol: &str,
+    inputs: &Inputs,
+) -> Result<Counts, BenchError> {
+    let task = Task {
+        mode: Mode::Count,
+        drive: 0,
+        block: 0,
+    };
+    let counts = numbers(&firmware.run_program("interrupt", &task, &inputs.traced)?);
+    let calls = trace(firmware, "interrupt", image, symbol, &task, inputs)?;
+    let settled = counts[counts.len() / 2..].to_vec();
+    Ok(Counts {
+        normal: median(settled),
+        worst: counts.iter().copied().max().unwrap_or(0),
+        stack: 0,
+        cycles: median(
+            calls[calls.len() / 2..]
+                .iter()
+                .map(|call| call.cycles)
+                .collect(),
+        ),
+    })
+}
+
+fn trace(
+    firmware: &Firmware,
+    program: &str,
+    image: &Image,
+    symbol: &str,
+    task: &Task,
+    inputs: &Inputs,
+) -> Result<Vec<Executed>, BenchError> {
+    let function = image.function(symbol)?;
+    let caller = image.function("hexagen_counted_call")?;
+    let log = firmware.trace(program, task, &inputs.traced)?;
+    Ok(executed(&log, image, firmware.target, &function, &caller))
+}
+
+/// The counts of all steps.
+fn numbers(answers: &[u8]) -> Vec<u32> {
+    answers
+        .chunks_exact(2)
+        .map(|bytes| u32::from(u16::from_le_bytes([bytes[0], bytes[1]])))
+        .collect()
+}

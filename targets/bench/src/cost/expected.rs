@@ -1,0 +1,144 @@
+//! Expected figures, versioned beside each target in `cost.toml`.
+
+use crate::BenchError;
+use crate::firmware::workspace;
+use crate::targets::Target;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+/// What is expected on a target.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Expected {
+    /// What compiled the figures.
+    pub compiler: String,
+    /// Figures by symbol.
+    pub steps: BTreeMap<String, Figures>,
+}
+
+/// Figures of a step that must not rise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Instructions on the normal path.
+    pub normal: u32,
+    /// Instructions of the worst step.
+    pub worst: u32,
+    /// Bytes of the function's own code.
+    pub code: u32,
+    /// Bytes of stack.
+    pub stack: u32,
+}
+
+impl Figures {
+    fn named(self) -> [(&'static str, u32); 4] {
+        [
+            ("normal path", self.normal),
+            ("worst path", self.worst),
+            ("code", self.code),
+            ("stack", self.stack),
+        ]
+    }
+}
+
+fn path(target: Target) -> PathBuf {
+    workspace()
+        .join("targets")
+        .join(target.name())
+        .join("cost.toml")
+}
+
+impl Expected {
+    /// Reads the expectations of a target.
+    ///
+    /// # Errors
+    /// When there are none.
+    pub fn read(target: Target) -> Result<Self, BenchError> {
+        let path = path(target);
+        let text = fs::read_to_string(&path)?;
+        toml::from_str(&text)
+            .map_err(|error| BenchError::Failed(format!("{}: {error}", path.display())))
+    }
+
+    /// Writes them.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write(&self, target: Target) -> Result<(), BenchError> {
+        let text = toml::to_string(self).map_err(|error| BenchError::Failed(error.to_string()))?;
+        let head = "# Written by `cargo xtask cost --accept`; a figure that rises fails `cargo xtask cost`.\n";
+        fs::write(path(target), format!("{head}{text}"))?;
+        Ok(())
+    }
+
+    /// What rose. Figures of another compiler are no rise; `is_above_goal` says what fails with it.
+    pub fn rises(
+        &self,
+        compiler: &str,
+        found: &BTreeMap<String, Figures>,
+        is_above_goal: impl Fn(&str, &Figures) -> bool,
+    ) -> Vec<String> {
+        let mut rises = vec![];
+        for (symbol, figures) in found {
+            match self.steps.get(symbol) {
+                None => rises.push(format!("{symbol} is not expected")),
+                Some(expected) if self.compiler == compiler => {
+                    for ((name, expected), (_, found)) in
+                        expected.named().into_iter().zip(figures.named())
+                    {
+                        if found > expected {
+                            rises.push(format!("{symbol}: {name} rose from {expected} to {found}"));
+                        }
+                    }
+                }
+                Some(expected) => {
+                    if is_above_goal(symbol, figures) && !is_above_goal(symbol, expected) {
+                        rises.push(format!("{symbol}: above its goal with {compiler}"));
+                    }
+                }
+            }
+        }
+        let gone = self
+            .steps
+            .keys()
+            .filter(|symbol| !found.contains_key(*symbol));
+        rises.extend(gone.map(|symbol| format!("{symbol} is expected, and not there")));
+        rises
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rise_fails_a_fall_passes_and_another_compiler_fails_above_its_goal_only() {
+        let figures = |normal: u32| Figures {
+            normal,
+            worst: 100,
+            code: 200,
+            stack: 8,
+        };
+        let of = |normal: u32| BTreeMap::from([("step_x".to_owned(), figures(normal))]);
+        let expected = Expected {
+            compiler: "rustc 1".to_owned(),
+            steps: of(50),
+        };
+        let above = |_: &str, figures: &Figures| figures.normal > 54;
+        assert_eq!(expected.rises("rustc 1", &of(50), above), [""; 0]);
+        assert_eq!(expected.rises("rustc 1", &of(49), above), [""; 0]);
+        assert_eq!(
+            expected.rises("rustc 1", &of(51), above),
+            ["step_x: normal path rose from 50 to 51"]
+        );
+        assert_eq!(expected.rises("rustc 2", &of(53), above), [""; 0]);
+        assert_eq!(
+            expected.rises("rustc 2", &of(55), above),
+            ["step_x: above its goal with rustc 2"]
+        );
+        assert_eq!(
+            expected.rises("rustc 1", &BTreeMap::new(), above),
+            ["step_x is expected, and not there"]
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! What others would run in the same interrupt, to compare costs with: the four controllers written straight from
+//! their equations, in `f32` and in `I16F16`, and the crates `foc` and `idsp`.
+//!
+//! All are of the paper's motor (48 V, 50 us, 12 bits over 40 A, a timer of 1800 counts) and read the inputs that are
+//! recorded for the drives. None has a supervision.
+
+mod crates;
+mod naive;
+mod real;
+
+pub use crates::{FocLoop, IdspLoop};
+pub use naive::{FcsMpc, Pdcc, Phcc, PiPwm};
+pub use real::Real;
+
+use hexagen::{Legs, Sample};
+
+/// A controller that is compared with.
+pub trait Peer {
+    /// At rest, 20 A demanded.
+    fn new() -> Self;
+    /// One control period.
+    fn step(&mut self, sample: &Sample) -> Legs;
+}
+
+/// The list of a firmware's peers: `symbol: Type;` makes a step function and a row.
+#[macro_export]
+macro_rules! peers {
+    ($($symbol:ident: $type:ty;)*) => {
+        $(
+            /// One control period of the peer.
+            #[unsafe(no_mangle)]
+            pub extern "C" fn $symbol(
+                peer: &mut $type,
+                adc_a: u16,
+                adc_b: u16,
+                hall: u8,
+                hall_ticks: u16,
+            ) -> $crate::hexagen::Legs {
+                let sample = $crate::hexagen::Sample { adc_a, adc_b, hall, hall_ticks };
+                $crate::peers::Peer::step(peer, &sample)
+            }
+        )*
+
+        /// All peers of this firmware.
+        pub static PEERS: $crate::Drives = &[$($crate::Listed {
+            symbol: stringify!($symbol),
+            motor: "trivedi-keshri-660w.toml",
+            kind: "pdcc",
+            options: "",
+            size: size_of::<$type>(),
+            state_names: &[],
+            spec: "",
+            replay: |link, task| $crate::session::replay_peer($symbol, link, task),
+        },)*];
+    };
+}

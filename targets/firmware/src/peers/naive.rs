@@ -1,0 +1,257 @@
+//! The four controllers as one would write them from the equations, over any number type.
+
+use super::Peer;
+use super::real::Real;
+use hexagen::{LegState, Legs, Sample};
+
+/// Pole of the discrete plant, its gain in A/V and the gain's inverse, exact discretisation.
+const A: f64 = 0.969_784_1;
+const B: f64 = 0.223_818_4;
+const K: f64 = 1.0 / B;
+
+/// Bus voltage, and counts of the timer.
+const BUS: f64 = 48.0;
+const TIMER: f64 = 1800.0;
+
+/// Ampere per ADC count.
+const GAIN: f64 = 80.0 / 4096.0;
+
+/// Demanded current, ampere.
+const DEMAND: f64 = 20.0;
+
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// Corner of the reference in ampere, by Hall code: Clarke of (+I, -I, 0) on the sector's pair.
+pub(super) const CORNERS: [[f64; 2]; 8] = [
+    [0.0, 0.0],
+    [0.0, -2.0 * SIDE],
+    [-DEMAND, SIDE],
+    [-DEMAND, -SIDE],
+    [DEMAND, SIDE],
+    [DEMAND, -SIDE],
+    [0.0, 2.0 * SIDE],
+    [0.0, 0.0],
+];
+const SIDE: f64 = DEMAND / SQRT_3;
+
+/// Vectors V0 to V6 in volt, and their legs.
+pub(super) const VECTORS: [[f64; 2]; 7] = [
+    [0.0, 0.0],
+    [-BUS / 3.0, -BUS / SQRT_3],
+    [BUS / 3.0, -BUS / SQRT_3],
+    [2.0 * BUS / 3.0, 0.0],
+    [BUS / 3.0, BUS / SQRT_3],
+    [-BUS / 3.0, BUS / SQRT_3],
+    [-2.0 * BUS / 3.0, 0.0],
+];
+const LEGS: [[u16; 3]; 7] = [
+    [0, 0, 0],
+    [0, 0, 1],
+    [1, 0, 1],
+    [1, 0, 0],
+    [1, 1, 0],
+    [0, 1, 0],
+    [0, 1, 1],
+];
+
+/// Currents alpha, beta in ampere.
+#[inline]
+fn currents<R: Real>(sample: &Sample) -> [R; 2] {
+    let gain = R::num(GAIN);
+    let i_a = (R::count(sample.adc_a) - R::num(2048.0)) * gain;
+    let i_b = (R::count(sample.adc_b) - R::num(2048.0)) * gain;
+    [i_a, (i_a + i_b + i_b) * R::num(1.0 / SQRT_3)]
+}
+
+/// Reference in ampere.
+#[inline]
+fn reference<R: Real>(sample: &Sample) -> [R; 2] {
+    R::CORNERS[usize::from(sample.hall & 7)]
+}
+
+/// Space-vector modulation by min/max injection; scales what the hexagon cannot hold.
+#[inline]
+fn modulate<R: Real>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Legs)
+where
+    R: core::ops::Div<Output = R>,
+{
+    let half = v_alpha * R::num(0.5);
+    let side = v_beta * R::num(SQRT_3 / 2.0);
+    let mut v = [v_alpha, side - half, -half - side];
+    let mut applied = [v_alpha, v_beta];
+    let mut highest = v[0].greatest(v[1]).greatest(v[2]);
+    let mut lowest = v[0].least(v[1]).least(v[2]);
+    let spread = highest - lowest;
+    if spread > R::num(BUS) {
+        let scale = R::num(BUS) / spread;
+        v = v.map(|x| x * scale);
+        applied = applied.map(|x| x * scale);
+        highest = highest * scale;
+        lowest = lowest * scale;
+    }
+    let middle = (highest + lowest) * R::num(0.5);
+    let compare = v.map(|x| {
+        let counts = (x - middle) * R::num(TIMER / BUS) + R::num(TIMER / 2.0);
+        counts.greatest(R::num(0.0)).least(R::num(TIMER)).compare()
+    });
+    let state = [LegState::Pulsed; 3];
+    (applied, Legs { compare, state })
+}
+
+/// The legs of a vector for the whole period.
+#[inline]
+fn whole(vector: usize) -> Legs {
+    Legs {
+        compare: LEGS[vector].map(|leg| leg * TIMER as u16),
+        state: [LegState::Pulsed; 3],
+    }
+}
+
+/// EMF of the last period and the current at the next sample, by the voltages applied.
+#[derive(Clone, Copy, Debug)]
+struct Prediction<R> {
+    i_last: [R; 2],
+    v_last: [R; 2],
+    v_now: [R; 2],
+}
+
+impl<R: Real> Prediction<R> {
+    fn new() -> Self {
+        let zero = [R::num(0.0); 2];
+        Self {
+            i_last: zero,
+            v_last: zero,
+            v_now: zero,
+        }
+    }
+
+    /// EMF and predicted current.
+    #[inline]
+    fn next(&mut self, i: [R; 2]) -> ([R; 2], [R; 2]) {
+        let mut e = [R::num(0.0); 2];
+        let mut i_next = e;
+        for x in 0..2 {
+            e[x] = self.v_last[x] - (i[x] - R::num(A) * self.i_last[x]) * R::num(K);
+            i_next[x] = R::num(A) * i[x] + R::num(B) * (self.v_now[x] - e[x]);
+        }
+        self.i_last = i;
+        self.v_last = self.v_now;
+        (e, i_next)
+    }
+}
+
+/// Deadbeat.
+#[derive(Clone, Copy, Debug)]
+pub struct Pdcc<R>(Prediction<R>);
+
+impl<R: Real + core::ops::Div<Output = R>> Peer for Pdcc<R> {
+    fn new() -> Self {
+        Self(Prediction::new())
+    }
+
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        let (e, i_next) = self.0.next(currents(sample));
+        let i_ref: [R; 2] = reference(sample);
+        let v = [0, 1].map(|x| (i_ref[x] - R::num(A) * i_next[x]) * R::num(K) + e[x]);
+        let (applied, legs) = modulate(v);
+        self.0.v_now = applied;
+        legs
+    }
+}
+
+/// Finite control set, three-phase vectors, enumerated.
+#[derive(Clone, Copy, Debug)]
+pub struct FcsMpc<R>(Prediction<R>);
+
+impl<R: Real> Peer for FcsMpc<R> {
+    fn new() -> Self {
+        Self(Prediction::new())
+    }
+
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        let (e, i_next) = self.0.next(currents(sample));
+        let i_ref: [R; 2] = reference(sample);
+        let mut best = (0, R::num(32_000.0));
+        for (place, vector) in R::VECTORS.iter().enumerate() {
+            // In tens of ampere, so that the square fits 16 bits.
+            let error = [0, 1].map(|x| {
+                (i_ref[x] - R::num(A) * i_next[x] - R::num(B) * (vector[x] - e[x])) * R::num(0.1)
+            });
+            let cost = error[0] * error[0] + error[1] * error[1];
+            if cost < best.1 {
+                best = (place, cost);
+            }
+        }
+        self.0.v_now = R::VECTORS[best.0];
+        whole(best.0)
+    }
+}
+
+/// Predictive hysteresis: two bands with memory and a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Phcc<R> {
+    prediction: Prediction<R>,
+    wish: [bool; 2],
+}
+
+impl<R: Real> Peer for Phcc<R> {
+    fn new() -> Self {
+        Self {
+            prediction: Prediction::new(),
+            wish: [false; 2],
+        }
+    }
+
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        /// The vector nearest to the wish, by the wishes of alpha and beta.
+        const NEAREST: [usize; 4] = [1, 5, 2, 4];
+        let (_, i_next) = self.prediction.next(currents(sample));
+        let i_ref: [R; 2] = reference(sample);
+        for x in 0..2 {
+            let error = i_ref[x] - i_next[x];
+            if error > R::num(0.5) {
+                self.wish[x] = true;
+            } else if error < R::num(-0.5) {
+                self.wish[x] = false;
+            }
+        }
+        let [alpha, beta] = self.wish.map(usize::from);
+        let vector = NEAREST[2 * alpha + beta];
+        self.prediction.v_now = R::VECTORS[vector];
+        whole(vector)
+    }
+}
+
+/// PI per axis with tracking anti-windup, 1 kHz, Ti = L/R.
+#[derive(Clone, Copy, Debug)]
+pub struct PiPwm<R> {
+    integral: [R; 2],
+}
+
+impl<R: Real + core::ops::Div<Output = R>> Peer for PiPwm<R> {
+    fn new() -> Self {
+        Self {
+            integral: [R::num(0.0); 2],
+        }
+    }
+
+    #[inline]
+    fn step(&mut self, sample: &Sample) -> Legs {
+        /// 2 pi 1 kHz L, in V/A, and Ts/Ti.
+        const GAIN: f64 = 1.382_3;
+        const SHARE: f64 = 0.030_68;
+        let i: [R; 2] = currents(sample);
+        let i_ref: [R; 2] = reference(sample);
+        let error = [0, 1].map(|x| i_ref[x] - i[x]);
+        let v = [0, 1].map(|x| R::num(GAIN) * error[x] + self.integral[x]);
+        let (applied, legs) = modulate(v);
+        for x in 0..2 {
+            let tracked = R::num(GAIN) * error[x] + (applied[x] - v[x]);
+            self.integral[x] = self.integral[x] + R::num(SHARE) * tracked;
+        }
+        legs
+    }
+}
