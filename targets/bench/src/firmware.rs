@@ -44,11 +44,36 @@ impl Firmware {
         }
     }
 
+    /// Lints the firmware, where the compiler on the path has the target: Debian's comes without lints.
+    ///
+    /// # Errors
+    /// When there are findings.
+    pub fn lint(&self) -> Result<(), BenchError> {
+        let Toolchain::Installed { .. } = self.toolchain else {
+            return Ok(());
+        };
+        let mut clippy = self.command("clippy");
+        if clippy.args(["--", "-D", "warnings"]).status()?.success() {
+            Ok(())
+        } else {
+            Err(BenchError::Failed(format!(
+                "the firmware of {} has findings",
+                self.target.name()
+            )))
+        }
+    }
+
     /// `cargo build` of this firmware.
     fn cargo(&self, arguments: &[&str]) -> Command {
-        let mut command = self.toolchain.cargo_build(self.target);
+        let mut command = self.command("build");
+        command.args(arguments);
         command
-            .args(arguments)
+    }
+
+    /// A cargo command on this firmware.
+    fn command(&self, name: &str) -> Command {
+        let mut command = self.toolchain.cargo(name, self.target);
+        command
             .arg("--target-dir")
             .arg(&self.built)
             // The crate's own `.cargo/config.toml` counts in its folder only.

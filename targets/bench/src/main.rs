@@ -33,7 +33,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Builds the firmware of every target
+    /// Builds and lints the firmware of every target, and lets it run on the emulated board
     Firmware,
     /// Processor in the loop: replays closed-loop vectors on the emulated cores and compares every word
     Pil(pil::Options),
@@ -113,6 +113,7 @@ fn possible(mut targets: Vec<Target>, where_possible: bool) -> Vec<Target> {
 /// Builds a target's firmware and lets its main program run on the emulated board.
 fn demonstrate(target: Target) -> Result<(), BenchError> {
     let built = firmware::Firmware::build(target)?;
+    built.lint()?;
     let folder = tempfile::tempdir()?;
     let printed = built.emulate("firmware", targets::Purpose::Answers, folder.path())?;
     print!(

@@ -202,3 +202,146 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<i32> {
     word[..N].copy_from_slice(bytes);
     Some(i32::from_le_bytes(word))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexagen::{Drive, Legs};
+    use hexagen_firmware::session::{Broken, Link, replay, serve};
+    use hexagen_firmware::{Drives, StepFn};
+    use std::cell::Cell;
+
+    hexagen_firmware::drives! {
+        Tested, step_of_the_test: "../motors/trivedi-keshri-660w.toml", pdcc { saturation: nearest };
+    }
+
+    /// A task and its answers in memory.
+    struct Memory<'t> {
+        input: &'t [u8],
+        answers: Vec<u8>,
+    }
+
+    impl Link for Memory<'_> {
+        fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Broken> {
+            let length = bytes.len().min(self.input.len());
+            let (taken, rest) = self.input.split_at(length);
+            bytes[..length].copy_from_slice(taken);
+            self.input = rest;
+            Ok(length)
+        }
+
+        fn write(&mut self, bytes: &[u8]) -> Result<(), Broken> {
+            self.answers.extend(bytes);
+            Ok(())
+        }
+    }
+
+    /// The core's end in this process, with a step function of the test's choice.
+    struct InProcess(StepFn<Tested>);
+
+    impl Core for InProcess {
+        fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+            let mut link = Memory {
+                input: records,
+                answers: vec![],
+            };
+            replay(self.0, &mut link, task).expect("a task in order");
+            Ok(link.answers)
+        }
+    }
+
+    fn listed() -> Listed {
+        let drives: Drives = DRIVES;
+        let task = Task {
+            mode: Mode::List,
+            drive: 0,
+            block: 0,
+        };
+        let mut link = Memory {
+            input: &task.encode(),
+            answers: vec![],
+        };
+        serve(&mut link, drives).expect("a task in order");
+        let text = String::from_utf8(link.answers).expect("text");
+        crate::listing::parse(&text).expect("a list").remove(0)
+    }
+
+    const STEPS: usize = 20_000;
+
+    #[test]
+    fn the_same_code_on_both_ends_does_not_differ() {
+        let outcome = compare(&InProcess(step_of_the_test), &listed(), STEPS).expect("runs");
+        assert!(outcome.steps >= STEPS);
+        assert_eq!(outcome.difference, None);
+    }
+
+    thread_local! {
+        static CALLS: Cell<usize> = const { Cell::new(0) };
+    }
+
+    /// Flips the lowest bit of `i_b_prev` once, after step 12345 of each replay.
+    extern "C" fn wrong_state(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
+        let legs = step_of_the_test(drive, a, b, hall, ticks);
+        let call = CALLS.get();
+        CALLS.set(call + 1);
+        if call == 12_345 {
+            let names = <Tested as Drive>::STATE_NAMES;
+            let index = names
+                .iter()
+                .position(|&name| name == "i_b_prev")
+                .expect("is there");
+            let word = drive.state_word(index);
+            drive.set_state_word(index, word ^ 1);
+        }
+        legs
+    }
+
+    /// One compare value one count too high, in step 777.
+    extern "C" fn wrong_output(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
+        let mut legs = step_of_the_test(drive, a, b, hall, ticks);
+        let call = CALLS.get();
+        CALLS.set(call + 1);
+        if call == 777 {
+            legs.compare[2] ^= 1;
+        }
+        legs
+    }
+
+    /// The report of a core whose calls are counted afresh in each of its replays.
+    fn report(step: StepFn<Tested>) -> String {
+        struct Afresh(InProcess);
+        impl Core for Afresh {
+            fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+                CALLS.set(0);
+                self.0.run(task, records)
+            }
+        }
+        let core = Afresh(InProcess(step));
+        let outcome = compare(&core, &listed(), STEPS).expect("runs");
+        outcome.difference.expect("a wrong bit is found")
+    }
+
+    #[test]
+    fn a_wrong_bit_of_the_state_is_found_in_its_step() {
+        let report = report(wrong_state);
+        assert!(report.contains("step 12345, Sample"), "{report}");
+        let marked: Vec<&str> = report
+            .lines()
+            .filter(|line| line.starts_with('*'))
+            .collect();
+        assert_eq!(marked.len(), 1, "{report}");
+        assert!(marked[0].starts_with("* i_b_prev"), "{report}");
+    }
+
+    #[test]
+    fn a_wrong_bit_of_an_output_is_found_in_its_step() {
+        let report = report(wrong_output);
+        assert!(report.contains("step 777, Sample"), "{report}");
+        let marked: Vec<&str> = report
+            .lines()
+            .filter(|line| line.starts_with('*'))
+            .collect();
+        assert_eq!(marked.len(), 1, "{report}");
+        assert!(marked[0].starts_with("* compare_c"), "{report}");
+    }
+}

@@ -168,8 +168,8 @@ impl Toolchain {
         }
     }
 
-    /// `cargo build` for a target.
-    pub fn cargo_build(&self, target: Target) -> Command {
+    /// A cargo command, `build` or `clippy`, for a target.
+    pub fn cargo(&self, name: &str, target: Target) -> Command {
         let mut command = match self {
             Self::Installed { .. } => plain("cargo"),
             Self::Debian { linker, .. } => {
@@ -182,7 +182,7 @@ impl Toolchain {
                 command
             }
         };
-        command.args(["build", "--release", "--target", target.triple()]);
+        command.args([name, "--release", "--target", target.triple()]);
         if matches!(self, Self::Debian { .. }) {
             command.arg("-Zbuild-std=core");
         }

@@ -40,3 +40,11 @@ pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
         control_period(control, &REGISTERS);
     }
 }
+
+/// Begins again from rest; from where the interrupt's function is called.
+pub fn reset() {
+    // SAFETY: as above.
+    if let Some(control) = unsafe { CONTROL.take_turn() } {
+        control.reset();
+    }
+}

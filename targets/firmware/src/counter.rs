@@ -88,17 +88,22 @@ pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> 
     Some(of(call(hexagen_counted_call, step, drive, sample)))
 }
 
+/// The call of [`count`] alone, for a log of its instructions. None on hosts.
+pub fn trace<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<()> {
+    call(hexagen_counted_call, step, drive, sample);
+    Some(())
+}
+
 /// A step that is written in assembly.
 fn assembly(function: unsafe extern "C" fn()) -> StepFn<()> {
     // SAFETY: both such steps take any arguments, and touch no memory.
     unsafe { core::mem::transmute(function) }
 }
 
-/// Instructions of an interrupt's function, from its entry to its return, both included.
-pub fn count_interrupt(interrupt: extern "C" fn()) -> Option<u32> {
+/// An interrupt's function in the place of a step.
+pub fn interrupt_step(interrupt: extern "C" fn()) -> StepFn<()> {
     // SAFETY: a function without arguments takes no harm from some, and leaves `legs` as it is.
-    let step: StepFn<()> = unsafe { core::mem::transmute(interrupt) };
-    count(step, &mut (), &Sample::default())
+    unsafe { core::mem::transmute(interrupt) }
 }
 
 /// Bytes of stack that one call uses.

@@ -1,8 +1,8 @@
 //! The body of a control interrupt, and what counts a whole one.
 
-use crate::counter::count_interrupt;
+use crate::counter::interrupt_step;
 use crate::registers::Registers;
-use crate::session::{Broken, Link};
+use crate::session::{Broken, Link, measure};
 use crate::wire::{HEADER, Mode, RECORD, Record, Task};
 use hexagen::fixed::types::I16F16;
 use hexagen::{DriveLoop, DriveSetPoint};
@@ -24,27 +24,28 @@ pub fn serve(
     link: &mut dyn Link,
     set_point: &impl DriveSetPoint,
     registers: &Registers,
+    reset: impl Fn(),
     interrupt: extern "C" fn(),
 ) -> Result<(), Broken> {
     let mut header = [0; HEADER];
     link.read(&mut header)?;
-    match Task::decode(header) {
-        Some(task) if task.mode == Mode::Count => {}
-        _ => return Err(Broken::Format),
-    }
+    let task = Task::decode(header).ok_or(Broken::Format)?;
+    let step = interrupt_step(interrupt);
+    let mut depth = 0;
     let mut record = [0; RECORD];
     while link.read(&mut record)? == RECORD {
         match Record::decode(record).ok_or(Broken::Format)? {
             Record::Step(sample) => {
                 registers.feed(&sample);
-                let count = count_interrupt(interrupt).ok_or(Broken::Uncounted)?;
-                link.write(&(count as u16).to_le_bytes())?;
+                measure(task.mode, step, &mut (), &sample, &mut depth, link)?;
             }
             Record::SetCurrent(bits) => set_point.set_current(I16F16::from_bits(bits)),
-            // The drive is at rest when the task begins.
-            Record::New => {}
+            Record::New => reset(),
             _ => return Err(Broken::Format),
         }
+    }
+    if task.mode == Mode::Stack {
+        link.write(&depth.to_le_bytes())?;
     }
     Ok(())
 }

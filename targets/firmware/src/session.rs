@@ -1,6 +1,6 @@
 //! The core's end of the test bench: reads a task, replays its records, answers.
 
-use crate::counter::{count, sound};
+use crate::counter::{count, sound, trace};
 use crate::drives::{Drives, StepFn};
 use crate::peers::Peer;
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
@@ -71,8 +71,9 @@ pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Re
             Mode::Full => {
                 replayed.digest(records)?;
             }
-            Mode::Count => replayed.count(records, link)?,
-            Mode::Stack => replayed.sound(records)?,
+            Mode::Count | Mode::Trace | Mode::Stack => {
+                replayed.measure(records, task.mode, link)?;
+            }
             Mode::Digest | Mode::List => {}
         }
         if length < BLOCK * RECORD {
@@ -102,22 +103,35 @@ pub fn replay_peer<P: Peer>(
         let Record::Step(sample) = Record::decode(record).ok_or(Broken::Format)? else {
             continue;
         };
-        match task.mode {
-            Mode::Count => {
-                let count = count(step, &mut peer, &sample).ok_or(Broken::Uncounted)?;
-                link.write(&(count as u16).to_le_bytes())?;
-            }
-            Mode::Stack => {
-                let sounded = sound(step, &mut peer, &sample).ok_or(Broken::Uncounted)?;
-                depth = depth.max(sounded);
-            }
-            Mode::List | Mode::Digest | Mode::Full => return Err(Broken::Format),
-        }
+        measure(task.mode, step, &mut peer, &sample, &mut depth, link)?;
     }
     if task.mode == Mode::Stack {
         link.write(&depth.to_le_bytes())?;
     }
     Ok(())
+}
+
+/// One call that is counted, traced or sounded.
+pub(crate) fn measure<D>(
+    mode: Mode,
+    step: StepFn<D>,
+    drive: &mut D,
+    sample: &Sample,
+    depth: &mut u32,
+    link: &mut dyn Link,
+) -> Result<(), Broken> {
+    match mode {
+        Mode::Count => {
+            let instructions = count(step, drive, sample).ok_or(Broken::Uncounted)?;
+            link.write(&(instructions as u16).to_le_bytes())
+        }
+        Mode::Trace => trace(step, drive, sample).ok_or(Broken::Uncounted),
+        Mode::Stack => {
+            *depth = (*depth).max(sound(step, drive, sample).ok_or(Broken::Uncounted)?);
+            Ok(())
+        }
+        Mode::List | Mode::Digest | Mode::Full => Err(Broken::Format),
+    }
 }
 
 struct Replayed<D> {
@@ -184,23 +198,17 @@ impl<D: Drive> Replayed<D> {
         Ok(())
     }
 
-    fn count(&mut self, records: &[[u8; RECORD]], link: &mut dyn Link) -> Result<(), Broken> {
+    /// Counts, traces or sounds the steps.
+    fn measure(
+        &mut self,
+        records: &[[u8; RECORD]],
+        mode: Mode,
+        link: &mut dyn Link,
+    ) -> Result<(), Broken> {
         for &record in records {
             if let Some(sample) = self.sample(record)? {
-                let instructions =
-                    count(self.step, &mut self.drive, &sample).ok_or(Broken::Uncounted)?;
-                link.write(&(instructions as u16).to_le_bytes())?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Sounds the depth of the stack.
-    fn sound(&mut self, records: &[[u8; RECORD]]) -> Result<(), Broken> {
-        for &record in records {
-            if let Some(sample) = self.sample(record)? {
-                let depth = sound(self.step, &mut self.drive, &sample).ok_or(Broken::Uncounted)?;
-                self.depth = self.depth.max(depth);
+                let (step, drive) = (self.step, &mut self.drive);
+                measure(mode, step, drive, &sample, &mut self.depth, link)?;
             }
         }
         Ok(())

@@ -1,16 +1,24 @@
 //! The counter of hosts, where sessions run in tests: there is none.
 
 use crate::drives::StepFn;
-use hexagen::Sample;
+use hexagen::{Legs, Sample};
 
 /// Instructions of one call: unknown.
 pub fn count<D>(_: StepFn<D>, _: &mut D, _: &Sample) -> Option<u32> {
     None
 }
 
-/// Instructions of an interrupt's function: unknown.
-pub fn count_interrupt(_: extern "C" fn()) -> Option<u32> {
+/// Calls for a log of instructions: there is none.
+pub fn trace<D>(_: StepFn<D>, _: &mut D, _: &Sample) -> Option<()> {
     None
+}
+
+/// An interrupt's function in the place of a step.
+pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
+    extern "C" fn nothing(_: &mut (), _: u16, _: u16, _: u8, _: u16) -> Legs {
+        Legs::OFF
+    }
+    nothing
 }
 
 /// Bytes of stack that one call uses: unknown.

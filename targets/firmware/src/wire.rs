@@ -36,6 +36,8 @@ pub enum Mode {
     Count = 3,
     /// Answers once: the greatest depth of the stack in bytes, 32 bits.
     Stack = 4,
+    /// Calls each step as for a count, and answers nothing: the emulator logs the instructions.
+    Trace = 5,
 }
 
 /// Begin of the input.
@@ -73,6 +75,7 @@ impl Task {
                 2 => Mode::Full,
                 3 => Mode::Count,
                 4 => Mode::Stack,
+                5 => Mode::Trace,
                 _ => return None,
             },
             drive: u16::from_le_bytes([d0, d1]),

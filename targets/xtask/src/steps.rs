@@ -34,6 +34,9 @@ pub fn checks() -> Vec<Step> {
             needs: Some(("fmt", "rustup component add rustfmt")),
             ..step("format", &["fmt", "--all", "--check"])
         },
+        firmware_format("targets/cortex-m4/Cargo.toml"),
+        firmware_format("targets/cortex-m0/Cargo.toml"),
+        firmware_format("targets/riscv32/Cargo.toml"),
         Step {
             needs: Some(("clippy", "rustup component add clippy")),
             ..step(
@@ -57,6 +60,14 @@ pub fn checks() -> Vec<Step> {
         on_target("pil", &[]),
         on_target("cost", &[]),
     ]
+}
+
+/// The format of a firmware crate, which is none of the workspace.
+fn firmware_format(manifest: &str) -> Step {
+    step(
+        "format",
+        &["fmt", "--manifest-path", manifest, "--", "--check"],
+    )
 }
 
 /// A command of the test bench.

@@ -4,7 +4,6 @@ use super::cycles::{Executed, executed};
 use super::elf::Image;
 use crate::BenchError;
 use crate::firmware::Firmware;
-use crate::listing::Listed;
 use crate::vectors::{Recorder, Stretch};
 use hexagen::{Legs, Sample};
 use hexagen_firmware::wire::{Mode, Record, Task};
@@ -121,7 +120,7 @@ fn median(mut numbers: Vec<u32>) -> u32 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(0)
 }
 
-/// Counts a step function of a program.
+/// Counts a step function of a program, by its place in the program's list and its symbol.
 ///
 /// # Errors
 /// When the emulator fails, or when its two ways of counting differ.
@@ -129,12 +128,12 @@ pub fn count(
     firmware: &Firmware,
     program: &str,
     image: &Image,
-    listed: &Listed,
+    (place, symbol): (u16, &str),
     inputs: &Inputs,
 ) -> Result<Counts, BenchError> {
     let task = Task {
         mode: Mode::Count,
-        drive: listed.place,
+        drive: place,
         block: 0,
     };
     let counts = numbers(&firmware.run_program(program, &task, &inputs.records)?);
@@ -145,49 +144,17 @@ pub fn count(
     let depth = firmware.run_program(program, &sounding, &inputs.records)?;
     let depth = depth.try_into().map_or(0, u32::from_le_bytes);
     let traced = numbers(&firmware.run_program(program, &task, &inputs.traced)?);
-    let calls = trace(firmware, program, image, &listed.symbol, &task, inputs)?;
+    let calls = trace(firmware, program, image, symbol, &task, inputs)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
     if instructions != traced {
         return Err(BenchError::Failed(format!(
-            "{}: the clock of the core and the log of its instructions count differently",
-            listed.symbol
+            "{symbol}: the clock of the core and the log of its instructions count differently"
         )));
     }
     Ok(Counts {
         normal: median(settled(&counts)),
         worst: counts.iter().copied().max().unwrap_or(0),
         stack: depth,
-        cycles: median(
-            calls[calls.len() / 2..]
-                .iter()
-                .map(|call| call.cycles)
-                .collect(),
-        ),
-    })
-}
-
-/// Instructions and cycles of an interrupt's function: median of settled steps.
-///
-/// # Errors
-/// As [`count`].
-pub fn count_interrupt(
-    firmware: &Firmware,
-    image: &Image,
-    symbol: &str,
-    inputs: &Inputs,
-) -> Result<Counts, BenchError> {
-    let task = Task {
-        mode: Mode::Count,
-        drive: 0,
-        block: 0,
-    };
-    let counts = numbers(&firmware.run_program("interrupt", &task, &inputs.traced)?);
-    let calls = trace(firmware, "interrupt", image, symbol, &task, inputs)?;
-    let settled = counts[counts.len() / 2..].to_vec();
-    Ok(Counts {
-        normal: median(settled),
-        worst: counts.iter().copied().max().unwrap_or(0),
-        stack: 0,
         cycles: median(
             calls[calls.len() / 2..]
                 .iter()
@@ -207,7 +174,11 @@ fn trace(
 ) -> Result<Vec<Executed>, BenchError> {
     let function = image.function(symbol)?;
     let caller = image.function("hexagen_counted_call")?;
-    let log = firmware.trace(program, task, &inputs.traced)?;
+    let task = Task {
+        mode: Mode::Trace,
+        ..*task
+    };
+    let log = firmware.trace(program, &task, &inputs.traced)?;
     Ok(executed(&log, image, firmware.target, &function, &caller))
 }
 

@@ -13,7 +13,7 @@ use crate::listing::Listed;
 use crate::targets::Target;
 use crate::vectors::drive_of;
 use comfy_table::{CellAlignment, Table, presets};
-use count::{Counts, Inputs, count, count_interrupt};
+use count::{Counts, Inputs, count};
 use elf::{Code, Image, Isa};
 use expected::{Expected, Figures};
 use goals::{SUPERVISION, goal};
@@ -117,7 +117,13 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
             let drive = drive_of(listed)?;
             let inputs = Inputs::record(&drive)?;
             let tables = tables(&drive);
-            let counts = count(firmware, "bench", &image, listed, &inputs)?;
+            let counts = count(
+                firmware,
+                "bench",
+                &image,
+                (listed.place, &listed.symbol),
+                &inputs,
+            )?;
             row(&image, listed, counts, Some(tables))
         })
         .collect::<Result<_, BenchError>>()?;
@@ -130,7 +136,7 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     if is_wanted(INTERRUPT) {
         let image = Image::read(&firmware.elf("interrupt"), isa)?;
         let inputs = Inputs::record(&paper)?;
-        let counts = count_interrupt(firmware, &image, INTERRUPT, &inputs)?;
+        let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs)?;
         rows.push(Row {
             symbol: INTERRUPT.to_owned(),
             counts,
@@ -148,7 +154,13 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
         .par_iter()
         .map(|listed| {
             let inputs = peers::inputs(&paper, &listed.symbol)?;
-            let counts = count(firmware, "peers", &image, listed, &inputs)?;
+            let counts = count(
+                firmware,
+                "peers",
+                &image,
+                (listed.place, &listed.symbol),
+                &inputs,
+            )?;
             row(&image, listed, counts, None)
         })
         .collect::<Result<_, BenchError>>()?;

@@ -6,9 +6,10 @@ use cortex_m_rt::entry;
 use hexagen_cortex_m0::board::{REGISTERS, start_timer, wait_for_interrupt};
 use hexagen_cortex_m0::control::hand_over;
 use hexagen_firmware::demonstration;
+use hexagen_firmware::hexagen::DriveLoop;
 
 #[entry]
 fn main() -> ! {
-    let set_point = hand_over(|control| control.calibrate());
+    let set_point = hand_over(DriveLoop::calibrate);
     demonstration::run(set_point, &REGISTERS, start_timer, wait_for_interrupt)
 }

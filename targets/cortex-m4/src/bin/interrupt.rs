@@ -4,7 +4,7 @@
 
 use cortex_m_rt::entry;
 use hexagen_cortex_m4::board::REGISTERS;
-use hexagen_cortex_m4::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc};
+use hexagen_cortex_m4::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc, reset};
 use hexagen_firmware::interrupt::serve;
 use hexagen_firmware::semihosted::run_with;
 
@@ -16,6 +16,7 @@ fn main() -> ! {
             link,
             set_point,
             &REGISTERS,
+            reset,
             interrupt_trivedi_keshri_660w_pdcc,
         )
     })

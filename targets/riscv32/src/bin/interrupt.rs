@@ -5,7 +5,7 @@
 use hexagen_firmware::interrupt::serve;
 use hexagen_firmware::semihosted::run_with;
 use hexagen_riscv32::board::REGISTERS;
-use hexagen_riscv32::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc};
+use hexagen_riscv32::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc, reset};
 use riscv_rt::entry;
 
 #[entry]
@@ -16,6 +16,7 @@ fn main() -> ! {
             link,
             set_point,
             &REGISTERS,
+            reset,
             interrupt_trivedi_keshri_660w_pdcc,
         )
     })
