@@ -48,7 +48,7 @@ fn call<D>(
     assembly: unsafe extern "C" fn(*mut core::ffi::c_void) -> u32,
     step: StepFn<D>,
     drive: &mut D,
-    sample: &Sample,
+    sample: Sample,
 ) -> u32 {
     let mut legs = Legs::OFF;
     let mut call = Call {
@@ -66,7 +66,7 @@ fn call<D>(
 
 /// Instructions of one call, from the function's entry to its return, both included. None where a loop that is
 /// counted by hand is not counted right: then the clock does not follow instructions.
-pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> {
+pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<u32> {
     start_clock();
     let around = call(
         hexagen_counted_call,
@@ -89,7 +89,7 @@ pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> 
 }
 
 /// The call of [`count`] alone, for a log of its instructions. None on hosts.
-pub fn trace<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<()> {
+pub fn trace<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<()> {
     call(hexagen_counted_call, step, drive, sample);
     Some(())
 }
@@ -107,7 +107,7 @@ pub fn interrupt_step(interrupt: extern "C" fn()) -> StepFn<()> {
 }
 
 /// Bytes of stack that one call uses.
-pub fn sound<D>(step: StepFn<D>, drive: &mut D, sample: &Sample) -> Option<u32> {
+pub fn sound<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<u32> {
     Some(call(hexagen_sounded_call, step, drive, sample))
 }
 

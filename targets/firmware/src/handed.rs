@@ -25,6 +25,10 @@ impl<T> Handed<T> {
     ///
     /// # Safety
     /// Once, and before anything that takes it can run.
+    #[expect(
+        clippy::mut_from_ref,
+        reason = "the callers promise that it is the only one"
+    )]
     pub unsafe fn hand_over(&'static self, value: T) -> &'static mut T {
         // SAFETY: nobody else is here yet.
         unsafe { (*self.0.get()).insert(value) }
@@ -36,6 +40,10 @@ impl<T> Handed<T> {
     /// From one context only, which does not interrupt itself, and never beside the reference that
     /// [`Handed::hand_over`] returned.
     #[inline]
+    #[expect(
+        clippy::mut_from_ref,
+        reason = "the callers promise that it is the only one"
+    )]
     pub unsafe fn take_turn(&'static self) -> Option<&'static mut T> {
         // SAFETY: the caller is the only one here.
         unsafe { (*self.0.get()).as_mut() }

@@ -37,7 +37,7 @@ pub fn serve(
         match Record::decode(record).ok_or(Broken::Format)? {
             Record::Step(sample) => {
                 registers.feed(&sample);
-                measure(task.mode, step, &mut (), &sample, &mut depth, link)?;
+                measure(task.mode, step, &mut (), sample, &mut depth, link)?;
             }
             Record::SetCurrent(bits) => set_point.set_current(I16F16::from_bits(bits)),
             Record::New => reset(),

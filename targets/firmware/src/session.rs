@@ -103,7 +103,7 @@ pub fn replay_peer<P: Peer>(
         let Record::Step(sample) = Record::decode(record).ok_or(Broken::Format)? else {
             continue;
         };
-        measure(task.mode, step, &mut peer, &sample, &mut depth, link)?;
+        measure(task.mode, step, &mut peer, sample, &mut depth, link)?;
     }
     if task.mode == Mode::Stack {
         link.write(&depth.to_le_bytes())?;
@@ -116,7 +116,7 @@ pub(crate) fn measure<D>(
     mode: Mode,
     step: StepFn<D>,
     drive: &mut D,
-    sample: &Sample,
+    sample: Sample,
     depth: &mut u32,
     link: &mut dyn Link,
 ) -> Result<(), Broken> {
@@ -208,7 +208,7 @@ impl<D: Drive> Replayed<D> {
         for &record in records {
             if let Some(sample) = self.sample(record)? {
                 let (step, drive) = (self.step, &mut self.drive);
-                measure(mode, step, drive, &sample, &mut self.depth, link)?;
+                measure(mode, step, drive, sample, &mut self.depth, link)?;
             }
         }
         Ok(())

@@ -4,12 +4,12 @@ use crate::drives::StepFn;
 use hexagen::{Legs, Sample};
 
 /// Instructions of one call: unknown.
-pub fn count<D>(_: StepFn<D>, _: &mut D, _: &Sample) -> Option<u32> {
+pub fn count<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<u32> {
     None
 }
 
 /// Calls for a log of instructions: there is none.
-pub fn trace<D>(_: StepFn<D>, _: &mut D, _: &Sample) -> Option<()> {
+pub fn trace<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<()> {
     None
 }
 
@@ -22,6 +22,6 @@ pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
 }
 
 /// Bytes of stack that one call uses: unknown.
-pub fn sound<D>(_: StepFn<D>, _: &mut D, _: &Sample) -> Option<u32> {
+pub fn sound<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<u32> {
     None
 }

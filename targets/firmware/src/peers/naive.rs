@@ -2,6 +2,7 @@
 
 use super::Peer;
 use super::real::Real;
+use core::ops::Div;
 use hexagen::{LegState, Legs, Sample};
 
 /// Pole of the discrete plant, its gain in A/V and the gain's inverse, exact discretisation.
@@ -56,7 +57,7 @@ const LEGS: [[u16; 3]; 7] = [
 
 /// Currents alpha, beta in ampere.
 #[inline]
-fn currents<R: Real>(sample: &Sample) -> [R; 2] {
+fn currents<R: Real>(sample: Sample) -> [R; 2] {
     let gain = R::num(GAIN);
     let i_a = (R::count(sample.adc_a) - R::num(2048.0)) * gain;
     let i_b = (R::count(sample.adc_b) - R::num(2048.0)) * gain;
@@ -65,16 +66,13 @@ fn currents<R: Real>(sample: &Sample) -> [R; 2] {
 
 /// Reference in ampere.
 #[inline]
-fn reference<R: Real>(sample: &Sample) -> [R; 2] {
+fn reference<R: Real>(sample: Sample) -> [R; 2] {
     R::CORNERS[usize::from(sample.hall & 7)]
 }
 
 /// Space-vector modulation by min/max injection; scales what the hexagon cannot hold.
 #[inline]
-fn modulate<R: Real>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Legs)
-where
-    R: core::ops::Div<Output = R>,
-{
+fn modulate<R: Real + Div<Output = R>>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Legs) {
     let half = v_alpha * R::num(0.5);
     let side = v_beta * R::num(SQRT_3 / 2.0);
     let mut v = [v_alpha, side - half, -half - side];
@@ -144,15 +142,15 @@ impl<R: Real> Prediction<R> {
 #[derive(Clone, Copy, Debug)]
 pub struct Pdcc<R>(Prediction<R>);
 
-impl<R: Real + core::ops::Div<Output = R>> Peer for Pdcc<R> {
+impl<R: Real + Div<Output = R>> Peer for Pdcc<R> {
     fn new() -> Self {
         Self(Prediction::new())
     }
 
     #[inline]
     fn step(&mut self, sample: &Sample) -> Legs {
-        let (e, i_next) = self.0.next(currents(sample));
-        let i_ref: [R; 2] = reference(sample);
+        let (e, i_next) = self.0.next(currents(*sample));
+        let i_ref: [R; 2] = reference(*sample);
         let v = [0, 1].map(|x| (i_ref[x] - R::num(A) * i_next[x]) * R::num(K) + e[x]);
         let (applied, legs) = modulate(v);
         self.0.v_now = applied;
@@ -171,8 +169,8 @@ impl<R: Real> Peer for FcsMpc<R> {
 
     #[inline]
     fn step(&mut self, sample: &Sample) -> Legs {
-        let (e, i_next) = self.0.next(currents(sample));
-        let i_ref: [R; 2] = reference(sample);
+        let (e, i_next) = self.0.next(currents(*sample));
+        let i_ref: [R; 2] = reference(*sample);
         let mut best = (0, R::num(32_000.0));
         for (place, vector) in R::VECTORS.iter().enumerate() {
             // In tens of ampere, so that the square fits 16 bits.
@@ -208,8 +206,8 @@ impl<R: Real> Peer for Phcc<R> {
     fn step(&mut self, sample: &Sample) -> Legs {
         /// The vector nearest to the wish, by the wishes of alpha and beta.
         const NEAREST: [usize; 4] = [1, 5, 2, 4];
-        let (_, i_next) = self.prediction.next(currents(sample));
-        let i_ref: [R; 2] = reference(sample);
+        let (_, i_next) = self.prediction.next(currents(*sample));
+        let i_ref: [R; 2] = reference(*sample);
         for x in 0..2 {
             let error = i_ref[x] - i_next[x];
             if error > R::num(0.5) {
@@ -231,7 +229,7 @@ pub struct PiPwm<R> {
     integral: [R; 2],
 }
 
-impl<R: Real + core::ops::Div<Output = R>> Peer for PiPwm<R> {
+impl<R: Real + Div<Output = R>> Peer for PiPwm<R> {
     fn new() -> Self {
         Self {
             integral: [R::num(0.0); 2],
@@ -243,8 +241,8 @@ impl<R: Real + core::ops::Div<Output = R>> Peer for PiPwm<R> {
         /// 2 pi 1 kHz L, in V/A, and Ts/Ti.
         const GAIN: f64 = 1.382_3;
         const SHARE: f64 = 0.030_68;
-        let i: [R; 2] = currents(sample);
-        let i_ref: [R; 2] = reference(sample);
+        let i: [R; 2] = currents(*sample);
+        let i_ref: [R; 2] = reference(*sample);
         let error = [0, 1].map(|x| i_ref[x] - i[x]);
         let v = [0, 1].map(|x| R::num(GAIN) * error[x] + self.integral[x]);
         let (applied, legs) = modulate(v);

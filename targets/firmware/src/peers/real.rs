@@ -25,11 +25,13 @@ pub trait Real:
     fn compare(self) -> u16;
 
     /// The lesser.
+    #[must_use]
     fn least(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
     /// The greater.
+    #[must_use]
     fn greatest(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
