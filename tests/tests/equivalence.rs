@@ -23,6 +23,7 @@ const STEPS: u64 = 10_000_000;
 /// Pairs of option values of which one has no effect beside the other: the generator says so.
 const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc candidates=three_phase off_leg=nominal",
+    "fcs-mpc candidates=table2 choice=two_steps",
     "phcc candidates=three_phase off_leg=nominal",
     "phcc candidates=three_phase table=printed",
     "phcc candidates=three_phase table=given",
