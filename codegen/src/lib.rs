@@ -11,7 +11,8 @@
 //!   lower  ─> Program: SSA over 32-bit words, in stages          (lower, controllers/*/lower, ir)
 //!   verify ─> VerifiedGraph                                      (ir::verify: intervals, stages, words)
 //!                             ║ barrier 2: every error of design and scaling at once
-//!   emit   ─> Rust │ data sheet │ IR text                        (emit: cannot fail)
+//!   bound  ─> distance of every value from the ideal one         (ir::bounds)
+//!   emit   ─> Rust │ data sheet │ IR text │ Gappa scripts        (emit: cannot fail)
 //! ```
 //!
 //! Each stage imports earlier stages and [`diagnostics`] only. Emitters see a

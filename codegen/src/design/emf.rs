@@ -115,6 +115,15 @@ impl Parabolas {
         }
     }
 
+    /// Steepest slope of any parabola, per segment.
+    pub fn steepest(&self) -> f64 {
+        let ends = self
+            .coefficients
+            .iter()
+            .flat_map(|[_, c1, c2]| [*c1, c1 + 2.0 * c2]);
+        ends.fold(0.0, |most: f64, slope| most.max(slope.abs()))
+    }
+
     /// Largest magnitude of any coefficient.
     pub fn magnitude(&self) -> f64 {
         self.coefficients

@@ -4,6 +4,7 @@
 //! emitter, and none can fail.
 
 pub mod datasheet;
+pub mod gappa;
 pub mod rust;
 mod set_point;
 

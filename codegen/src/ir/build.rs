@@ -4,9 +4,10 @@
 //! word), and [`super::verify()`] reports it. So a caller may try a scaling, look at the violations
 //! and try the next.
 
+use super::error::{Exact, Real};
 use super::graph::{
-    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId, Program,
-    Stage, StateId, Table, TableId, Value, Word,
+    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId,
+    Periodic, Program, Quantity, Stage, StateId, Table, TableId, Value, Word,
 };
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
@@ -27,8 +28,19 @@ impl Program {
         }
     }
 
-    /// Adds a named constant, or finds the one of the same name and value.
+    /// Adds a named constant that stands for itself, or finds the one of the same name and value.
     pub fn constant(&mut self, name: &str, raw: i32, doc: &[String]) -> ConstantId {
+        self.rounded_constant(name, raw, Exact::Itself, doc)
+    }
+
+    /// Adds a named constant that was rounded, or finds the one of the same name and value.
+    pub fn rounded_constant(
+        &mut self,
+        name: &str,
+        raw: i32,
+        exact: Exact,
+        doc: &[String],
+    ) -> ConstantId {
         if let Some(known) = self
             .constants
             .iter()
@@ -39,17 +51,31 @@ impl Program {
         self.constants.push(Constant {
             name: name.to_owned(),
             raw,
+            exact,
             doc: doc.to_vec(),
         });
         ConstantId(self.constants.len() as u32 - 1)
     }
 
-    /// Adds a table; entries are padded with zeros to a power of two.
-    pub fn table(&mut self, name: &str, mut values: Vec<i32>, doc: &[String]) -> TableId {
+    /// Adds a table whose entries stand for themselves, padded with zeros to a power of two.
+    pub fn table(&mut self, name: &str, values: Vec<i32>, doc: &[String]) -> TableId {
+        self.rounded_table(name, values, (Exact::Itself, None), doc)
+    }
+
+    /// Adds a table of rounded entries, which may belong to a function of the angle; padded as [`Self::table`].
+    pub fn rounded_table(
+        &mut self,
+        name: &str,
+        mut values: Vec<i32>,
+        (exact, periodic): (Exact, Option<Periodic>),
+        doc: &[String],
+    ) -> TableId {
         values.resize(values.len().next_power_of_two(), 0);
         self.tables.push(Table {
             name: name.to_owned(),
             values,
+            exact,
+            periodic,
             doc: doc.to_vec(),
         });
         TableId(self.tables.len() as u32 - 1)
@@ -94,6 +120,7 @@ impl Function {
             outputs: vec![],
             next_state: vec![],
             next_params: vec![],
+            quantities: vec![],
         }
     }
 }
@@ -194,6 +221,17 @@ impl<'p> FunctionBuilder<'p> {
     pub fn set_param(&mut self, param: ParamId, value: Value) {
         self.close();
         self.function.next_params.push((param, value));
+    }
+
+    /// States the error of a value: of what quantity, in which unit, and what a word is worth in it.
+    pub fn state_error(&mut self, name: &str, value: Value, [doc, unit]: [&str; 2], word: f64) {
+        self.function.quantities.push(Quantity {
+            name: name.to_owned(),
+            doc: doc.to_owned(),
+            unit: unit.to_owned(),
+            word: Real::of(word),
+            value,
+        });
     }
 
     /// The proven interval of a value.

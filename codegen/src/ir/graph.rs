@@ -7,6 +7,8 @@
 
 use std::fmt;
 
+use super::error::{ErrorInterval, Exact, Real};
+
 /// A value of a function: index of the node that defines it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Value(pub(crate) u32);
@@ -593,6 +595,8 @@ pub struct Constant {
     pub name: String,
     /// Value.
     pub raw: i32,
+    /// What it stands for.
+    pub exact: Exact,
     /// Meaning, physical value with unit and formula, format, quantisation error.
     pub doc: Vec<String>,
 }
@@ -604,8 +608,36 @@ pub struct Table {
     pub name: String,
     /// Entries.
     pub values: Vec<i32>,
+    /// What they stand for.
+    pub exact: Exact,
+    /// The function of the angle whose first coefficients these are.
+    pub periodic: Option<Periodic>,
     /// Meaning of the entries.
     pub doc: Vec<String>,
+}
+
+/// A periodic function that is approximated segment by segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Periodic {
+    /// Largest distance of the approximation, words.
+    pub misfit: Real,
+    /// Steepest slope, words per turn.
+    pub slope: Real,
+}
+
+impl Periodic {
+    /// How far the approximation at an inexact angle is from the function at the exact one.
+    pub fn error(self, angle: ErrorInterval) -> ErrorInterval {
+        let turn = f64::from(32).exp2();
+        let moved = if angle.is_zero() {
+            0.0
+        } else {
+            self.misfit.value()
+        };
+        ErrorInterval::symmetric(
+            self.misfit.value() + moved + self.slope.value() * angle.magnitude() / turn,
+        )
+    }
 }
 
 impl Table {
@@ -687,9 +719,31 @@ pub struct Function {
     pub next_state: Vec<(StateId, Value)>,
     /// New set-point words.
     pub next_params: Vec<(ParamId, Value)>,
+    /// Quantities whose error is stated.
+    pub quantities: Vec<Quantity>,
+}
+
+/// A value that stands for a physical quantity whose error is stated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// `snake_case` name; several values may have one, whose error is the largest.
+    pub name: String,
+    /// What it is.
+    pub doc: String,
+    /// Unit.
+    pub unit: String,
+    /// What one word of it is worth in that unit.
+    pub word: Real,
+    /// The value.
+    pub value: Value,
 }
 
 impl Function {
+    /// All values, in order.
+    pub fn values(&self) -> impl Iterator<Item = Value> + use<> {
+        (0..self.nodes.len() as u32).map(Value)
+    }
+
     /// The node that defines `value`.
     pub fn node(&self, value: Value) -> &Node {
         &self.nodes[value.index()]

@@ -2,11 +2,14 @@
 //!
 //! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
 //! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
+//! [`bounds`] says how far its values are from ideal ones,
 //! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
 //! physical meaning comes along as text for documentation only.
 
+pub mod bounds;
 pub mod build;
 pub mod cost;
+pub mod error;
 pub mod graph;
 pub mod interpret;
 mod prune;
@@ -15,11 +18,13 @@ pub mod verify;
 #[cfg(test)]
 mod verify_tests;
 
+pub use bounds::{Bounds, Case, StatedError, cases, stated_errors};
 pub use build::FunctionBuilder;
 pub use cost::{Cost, PathCost, live_words};
+pub use error::{ErrorInterval, Exact, Real};
 pub use graph::{
     Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId,
-    Program, Stage, StateId, Table, TableId, Value, Word,
+    Periodic, Program, Quantity, Stage, StateId, Table, TableId, Value, Word,
 };
 pub use interpret::{Escape, Machine};
 pub use verify::{VerifiedGraph, Violation, verify};

@@ -88,6 +88,11 @@ impl Function {
         self.next_params
             .iter_mut()
             .for_each(|(_, value)| *value = moved(*value));
+        self.quantities
+            .retain(|quantity| live[quantity.value.index()]);
+        self.quantities
+            .iter_mut()
+            .for_each(|quantity| quantity.value = moved(quantity.value));
     }
 
     /// Which nodes some result needs; a join needs its stage's guard.

@@ -7,7 +7,7 @@ use super::rotor::Rotor;
 use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
-use crate::ir::{Interval, TableId, Value};
+use crate::ir::{Exact, Interval, Periodic, Real, TableId, Value};
 
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;
@@ -54,7 +54,13 @@ impl Lowering<'_> {
                 String::new(),
                 format!("{frac_bits} fraction bits; the parabolas are at most {error} off."),
             ];
-            self.b.program.table(&format!("{name}_c{power}"), words, &lines)
+            // The first coefficients stand for the function, the others for its course within a segment.
+            let periodic = (power == 0).then(|| Periodic {
+                misfit: Real::of(fit.error * scale),
+                slope: Real::of(fit.steepest() * f64::from(segments) * scale),
+            });
+            let exact = (Exact::Within(1), periodic);
+            self.b.program.rounded_table(&format!("{name}_c{power}"), words, exact, &lines)
         });
         self.formats.push(FormatEntry {
             name: name.to_owned(),
@@ -86,9 +92,10 @@ impl Lowering<'_> {
     }
 
     fn lagging(&mut self, name: &str, theta: Value) -> Value {
-        let third = self.number(
+        let third = self.rounded_number(
             "third_turn",
             THIRD_TURN,
+            Exact::Number(Real::of(f64::from(32).exp2() / 3.0)),
             "A third of a turn: phase b lags phase a by it.",
         );
         let lagged = self.b.angle_sub(theta, third);

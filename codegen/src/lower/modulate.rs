@@ -132,6 +132,10 @@ impl Lowering<'_> {
     }
 
     fn counts(&mut self, name: &str, lifted: Value) -> Value {
+        let count = (-f64::from(self.scale.voltage_bits)).exp2();
+        let doc = "Duty before it is rounded to a compare value";
+        self.b
+            .state_error("duty", lifted, [doc, "timer counts"], count);
         let counts = self.b.shift_right(lifted, self.scale.voltage_bits);
         let zero = self.zero();
         let top = self.number(

@@ -7,7 +7,7 @@
 use super::Lowering;
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{ConstantId, Value};
+use crate::ir::{ConstantId, Exact, Real, Value};
 
 /// What is added before a real constant is rounded: far more than the error of its computation in f64, so
 /// that an exact tie (or whole number) comes out the same whatever the order of the operations.
@@ -125,7 +125,9 @@ impl Lowering<'_> {
         lines.push(format!(
             "{own}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."
         ));
-        let id = self.b.program.constant(name, raw, &lines);
+        // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
+        let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
+        let id = self.b.program.rounded_constant(name, raw, exact, &lines);
         self.format(
             name,
             word,
@@ -155,22 +157,33 @@ impl Lowering<'_> {
         }
     }
 
-    /// A named current, words of current; `doc` says what it is, its value in ampere follows.
+    /// A named current that was rounded to a whole word; `doc` says what it is, its value in ampere follows.
     pub fn current(&mut self, name: &str, raw: i64, doc: &str) -> Value {
         let ampere = engineering(raw as f64 / self.scale.current(), "A");
-        self.number(name, raw, &format!("{doc}: {ampere}, words of current."))
+        let doc = format!("{doc}: {ampere}, words of current.");
+        self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
-    /// A named voltage, words of voltage; `doc` says what it is, its value in volt follows.
+    /// A named voltage that was rounded to a whole word; `doc` says what it is, its value in volt follows.
     pub fn voltage(&mut self, name: &str, raw: i64, doc: &str) -> Value {
         let volt = engineering(raw as f64 / self.scale.voltage(), "V");
-        self.number(name, raw, &format!("{doc}: {volt}, words of voltage."))
+        let doc = format!("{doc}: {volt}, words of voltage.");
+        self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
     /// A named integer constant; `doc` says what it counts. Currents and voltages have functions of their
     /// own.
     pub fn number(&mut self, name: &str, raw: i64, doc: &str) -> Value {
-        let id = self.b.program.constant(name, raw as i32, &[doc.to_owned()]);
+        self.rounded_number(name, raw, Exact::Itself, doc)
+    }
+
+    /// A named integer constant that stands for the real number `exact`.
+    pub fn rounded_number(&mut self, name: &str, raw: i64, exact: Exact, doc: &str) -> Value {
+        let doc = [doc.to_owned()];
+        let id = self
+            .b
+            .program
+            .rounded_constant(name, raw as i32, exact, &doc);
         if i64::from(raw as i32) != raw && !self.misfits.iter().any(|known| known == name) {
             self.misfits.push(name.to_owned());
         }

@@ -4,7 +4,7 @@ use super::Lowering;
 use super::measure::Hall;
 use super::number::round_half_up;
 use crate::interface::Rounding;
-use crate::ir::{Comparison, Interval, StateId, Value};
+use crate::ir::{Comparison, Exact, Interval, Real, StateId, Value};
 use crate::spec::HallCapture;
 
 /// A sixth of a turn: floor(2^32 / 6).
@@ -12,6 +12,11 @@ const SIXTH: i64 = 715_827_882;
 /// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up, as are the
 /// sector starts, so that a sector's first and last angle fall into that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;
+
+/// So many sixths of a turn.
+fn sixth_turn(share: f64) -> Exact {
+    Exact::Number(Real::of(f64::from(32).exp2() / 6.0 * share))
+}
 
 /// State words of the rotor tracker.
 #[derive(Clone, Copy, Debug)]
@@ -323,13 +328,18 @@ impl Lowering<'_> {
         let zero = self.zero();
         let forward = self.b.compare(Comparison::Less, zero, direction);
         self.b.name("forward", forward);
-        let last = self.number("sector_last", SIXTH - 1, "Last angle of a sector, seen from its first: 60 degrees less one part in 2^32 of a turn.");
+        let last = self.rounded_number("sector_last", SIXTH - 1, sixth_turn(1.0), "Last angle of a sector, seen from its first: 60 degrees less one part in 2^32 of a turn.");
         let progress = self.b.mul_limited(omega, age, last);
         self.b.name("progress", progress);
-        let last = self.number("sector_last", SIXTH - 1, "Last angle of a sector, seen from its first: 60 degrees less one part in 2^32 of a turn.");
+        let last = self.rounded_number("sector_last", SIXTH - 1, sixth_turn(1.0), "Last angle of a sector, seen from its first: 60 degrees less one part in 2^32 of a turn.");
         let from_end = self.b.sub(last, progress);
         let inside = self.b.select(forward, progress, from_end);
-        let centre = self.number("sector_centre", SIXTH / 2, "Half a sector: 30 degrees.");
+        let centre = self.rounded_number(
+            "sector_centre",
+            SIXTH / 2,
+            sixth_turn(0.5),
+            "Half a sector: 30 degrees.",
+        );
         let inside = self.b.select(tracking, inside, centre);
         let starts: Vec<i32> = (0..7_i64)
             .map(|sector| {
@@ -343,18 +353,20 @@ impl Lowering<'_> {
                 angle as u32 as i32
             })
             .collect();
-        let table = self.b.program.table(
+        let table = self.b.program.rounded_table(
             "sector_start",
             starts,
+            (Exact::Within(1), None),
             &["Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned()],
         );
         let start = self.b.lookup(table, hall.sector);
         let theta = self.b.angle_add(start, inside);
         self.b.name("theta", theta);
         let period = self.number("ticks", ticks, "Ticks per control period.");
-        let limit = self.number(
+        let limit = self.rounded_number(
             "turn_max",
             SIXTH / 2,
+            sixth_turn(0.5),
             "Largest angle per period that is believed: 30 degrees.",
         );
         let turn = self.b.mul_limited(omega, period, limit);
@@ -378,7 +390,8 @@ impl Lowering<'_> {
         );
         let coefficient = {
             // The shift is fixed: 16 fraction bits hold any advance from 0 to 2.
-            let raw = round_half_up(advance * 65536.0) as i64;
+            let exact = advance * 65536.0;
+            let raw = round_half_up(exact) as i64;
             self.format(
                 "k_advance",
                 32,
@@ -386,17 +399,19 @@ impl Lowering<'_> {
                 Rounding::RoundHalfUp,
                 "periods of phase advance",
             );
-            self.number(
+            self.rounded_number(
                 "k_advance",
                 raw,
+                Exact::Number(Real::of(exact)),
                 &format!("Phase advance of {advance} periods, 16 fraction bits."),
             )
         };
         let ahead = self.b.mul(coefficient, rotor.step_angle, 16);
         let theta = self.b.angle_add(rotor.theta, ahead);
-        let origin = self.number(
+        let origin = self.rounded_number(
             "sector_origin",
             SECTOR_ORIGIN,
+            Exact::Within(1),
             "30 degrees: sector 1 begins at -30 degrees.",
         );
         let turned = self.b.angle_add(theta, origin);

@@ -1,6 +1,7 @@
 //! The host target: a simulated plant, closed loops of any model of a controller, and the
 //! `hexagen` program on top of them.
 
+pub mod checker;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;

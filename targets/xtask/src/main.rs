@@ -23,7 +23,8 @@ struct Arguments {
 enum Command {
     /// Format, lints, documentation and all tests
     Test,
-    /// `test`, then bit-for-bit verification of every library motor over many steps
+    /// `test`, then bit-for-bit verification of every library motor over many steps, and the proofs of all of
+    /// them and of a thousand random ones
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -50,14 +51,14 @@ struct Forwarded {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Test => steps::run(&steps::checks()),
-        Command::Nightly { steps } => {
-            steps::run(&steps::checks()).and_then(|()| steps::run(&steps::long_checks(steps)))
-        }
+        Command::Test => steps::checker().and_then(|()| steps::run(&steps::checks())),
+        Command::Nightly { steps } => steps::checker()
+            .and_then(|()| steps::run(&steps::checks()))
+            .and_then(|()| steps::run(&steps::long_checks(steps))),
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
-        Command::Accept => steps::run(&steps::refresh()),
+        Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -97,6 +97,30 @@ fn on_target(command: &'static str, options: &[&str]) -> Step {
     bench(command, &options)
 }
 
+/// Sees to it that proofs can be checked: installs Gappa where the system lets us.
+///
+/// # Errors
+/// What to install, where it is missing and cannot be installed from here.
+pub fn checker() -> Result<(), String> {
+    let runs = || {
+        let version = Command::new("gappa").arg("--version").output();
+        version.is_ok_and(|output| output.status.success())
+    };
+    if runs() {
+        return Ok(());
+    }
+    println!("== checker of proofs: apt-get install gappa");
+    let installed = Command::new("apt-get")
+        .args(["install", "--yes", "--no-install-recommends", "gappa"])
+        .env("DEBIAN_FRONTEND", "noninteractive")
+        .status();
+    if installed.is_ok_and(|status| status.success()) && runs() {
+        Ok(())
+    } else {
+        Err("`gappa` is missing, which checks the proofs; install it: `apt install gappa` as root on Debian and Ubuntu, or https://gappa.gitlabpages.inria.fr".to_owned())
+    }
+}
+
 /// What is too long for a push.
 pub fn long_checks(steps: u64) -> Vec<Step> {
     let steps = steps.to_string();
@@ -110,9 +134,23 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "--steps",
         &steps,
     ];
+    let prove = ["run", "--release", "--", "prove", "--controller", "all"];
+    let random = [
+        "test",
+        "--package",
+        "hexagen-host",
+        "--test",
+        "proofs",
+        "random",
+    ];
     vec![
         step("verification", &verify),
         on_target("pil", &["--steps", "1000000"]),
+        step("proofs", &prove),
+        Step {
+            environment: vec![("HEXAGEN_RANDOM_MOTORS", "1000")],
+            ..step("proofs of random motors", &random)
+        },
     ]
 }
 

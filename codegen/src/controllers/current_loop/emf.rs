@@ -174,6 +174,9 @@ impl CurrentLoop<'_, '_> {
             let part = l.times(k_integral, news);
             let sum = l.b.add(sum, part);
             let sum = l.b.clamp(sum, low, high);
+            let doc = "Integral of what the modelled EMF lacks, after one step";
+            let word = 1.0 / l.scale.voltage();
+            l.b.state_error("integral", sum, [doc, "V"], word);
             l.b.name(["integral_a_now", "integral_b_now"][x], sum)
         });
         let l = &mut *self.lowering;

@@ -278,6 +278,9 @@ impl CurrentLoop<'_, '_> {
                 (_, _, Some(e), _) => l.b.add(open, e[x]),
                 _ => open,
             };
+            let doc = "Voltage of a phase that the law asks for, before the limit";
+            let word = 1.0 / l.scale.voltage();
+            l.b.state_error("voltage", volts, [doc, "V"], word);
             [held, l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)]
         });
         let held = found.map(|[held, _]| held);

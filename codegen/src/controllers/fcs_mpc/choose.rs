@@ -253,6 +253,9 @@ impl CurrentLoop<'_, '_> {
             let aside = l.b.mul_floor(first.0, first.1, shift);
             let along = l.b.mul_floor(second.0, second.1, shift);
             let score = l.b.add(aside, along);
+            let doc = "Score 6 (|v|^2 - 2 u v) of a pair vector";
+            let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
+            l.b.state_error("score", score, [doc, "V^2"], word);
             l.b.name(["score_a", "score_c", "score_b"][order], score);
             let next = Candidate {
                 vector: vectors[order],

@@ -80,6 +80,9 @@ impl CurrentLoop<'_, '_> {
                 }
                 _ => open,
             };
+            let doc = "Predicted error of a phase current, as the voltage K (i_ref - i)";
+            let word = 1.0 / l.scale.voltage();
+            l.b.state_error("deviation", error, [doc, "V"], word);
             l.b.name(["q_a", "q_b"][x], error)
         })
     }

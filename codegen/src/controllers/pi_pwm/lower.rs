@@ -61,6 +61,9 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                 Some(e) => l.b.add(volts, e[x]),
                 None => volts,
             };
+            let doc = "Voltage of a phase that the law asks for, before the limit";
+            let word = 1.0 / l.scale.voltage();
+            l.b.state_error("voltage", volts, [doc, "V"], word);
             l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
         });
         let held = regulated.map(|[held, _]| held);
@@ -153,6 +156,9 @@ fn integrate(
         l.voltage("integral_max", bound, &doc),
     );
     let held = l.b.clamp(sum, low, high);
+    let doc = "Integral part after one step";
+    let word = 1.0 / l.scale.voltage();
+    l.b.state_error("integral", held, [doc, "V"], word);
     l.b.name(names[1], held)
 }
 
@@ -182,6 +188,9 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     });
     let sum = l.b.state(integral);
     let u = l.b.add(part, sum);
+    let doc = "Voltage of a winding that the law asks for, before the limit";
+    let word = 1.0 / l.scale.voltage();
+    l.b.state_error("voltage", u, [doc, "V"], word);
     l.b.name("u", u);
     let line = l.b.shift_left(u, 1);
     let line = l.limit_line(line, front.bus);

@@ -2,7 +2,9 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::closed_loop::RunOptions;
-use crate::commands::{compare, generate, limit, motors, report, reproduce, simulate, verify};
+use crate::commands::{
+    compare, generate, limit, motors, prove, report, reproduce, simulate, verify,
+};
 use crate::engine::{
     Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
 };
@@ -41,6 +43,8 @@ pub enum Command {
     Limit(limit::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
+    /// Proves by Gappa that nothing overflows and how far values are from the ideal ones
+    Prove(prove::Options),
     /// Compares fixed-point with floating-point accuracy, per controller and word length
     Compare(compare::Options),
     /// Runs the paper's experiment, judges its claims and writes a page with its figures
@@ -58,6 +62,8 @@ pub enum Emit {
     Ir,
     /// The data sheet, in Markdown
     Datasheet,
+    /// Gappa scripts of one implication each, into a folder
+    Gappa,
 }
 
 impl Emit {
@@ -67,6 +73,7 @@ impl Emit {
             Self::Rust => "rs",
             Self::Ir => "ir",
             Self::Datasheet => "md",
+            Self::Gappa => "g",
         }
     }
 }

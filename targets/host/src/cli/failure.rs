@@ -1,5 +1,6 @@
 //! Why a command did not succeed.
 
+use crate::checker::Missing;
 use crate::closed_loop::Trip;
 use crate::engine::SourceError;
 use crate::plant::PlantError;
@@ -34,6 +35,9 @@ pub enum Failure {
         /// What the system said.
         reason: String,
     },
+    /// There is no checker of proofs.
+    #[error("error: {0}")]
+    Checker(#[from] Missing),
     /// The report's page cannot be made.
     #[error("error: {0}")]
     Report(#[from] ReportError),

@@ -46,6 +46,7 @@ pub fn run() -> ExitCode {
         Command::Simulate(options) => commands::simulate::run(&options),
         Command::Limit(options) => commands::limit::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
+        Command::Prove(options) => commands::prove::run(&options),
         Command::Compare(options) => commands::compare::run(&options),
         Command::Reproduce(options) => commands::reproduce::run(&options),
         Command::Motors(options) => commands::motors::run(&options),

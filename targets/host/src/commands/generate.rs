@@ -5,8 +5,9 @@ use crate::cli::{
 };
 use crate::engine::Prepared;
 use clap::Args;
+use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `generate`.
 #[derive(Args, Clone, Debug)]
@@ -20,7 +21,7 @@ pub struct Options {
     /// What to print
     #[arg(long, value_enum, default_value = "rust")]
     pub emit: Emit,
-    /// Write MOTOR.rs, .ir or .md into this folder in place of stdout
+    /// Write MOTOR.rs, .ir or .md, or all MOTOR.*.g, into this folder in place of stdout
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -35,6 +36,11 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
         }
         Emit::Ir => generated.graph.program().to_string(),
         Emit::Datasheet => super::results::data_sheet(drive),
+        Emit::Gappa => emit_gappa(&generated.graph)
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join("\n"),
     }
 }
 
@@ -46,6 +52,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let motor = SelectedMotor::find(&options.motor, &PlantArguments::default())?;
     let drive = motor.prepare(options.controller.as_deref())?;
     tell_warnings(&drive);
+    if options.emit == Emit::Gappa {
+        return write_scripts(&drive, options.out.as_deref());
+    }
     let text = text_of(&drive, options.emit);
     let Some(folder) = &options.out else {
         return print_text(&text);
@@ -53,5 +62,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let path = folder.join(format!("{}.{}", drive.motor, options.emit.ending()));
     write_file(&path, text.as_bytes())?;
     note(&path.display().to_string());
+    Ok(())
+}
+
+/// Writes each script to a file of its own: a checker takes one at a time.
+fn write_scripts(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
+    let folder = folder.ok_or_else(|| {
+        Failure::Argument("`--emit gappa` writes many files: say where, `--out DIR`".to_owned())
+    })?;
+    for script in emit_gappa(&drive.generated.graph) {
+        let path = folder.join(format!("{}.{}.g", drive.motor, script.name));
+        write_file(&path, script.to_string().as_bytes())?;
+    }
+    note(&folder.display().to_string());
     Ok(())
 }

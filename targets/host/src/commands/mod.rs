@@ -8,6 +8,7 @@ pub mod compare;
 pub mod generate;
 pub mod limit;
 pub mod motors;
+pub mod prove;
 pub mod report;
 pub mod reproduce;
 pub mod results;

@@ -1,0 +1,179 @@
+//! One run of Gappa, and what it says.
+
+use hexagen_codegen::emit::gappa::Script;
+use hexagen_codegen::ir::Real;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io::{Read, Seek, Write};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Least and greatest value.
+pub(super) type Bounds = [f64; 2];
+
+/// How long to wait before a look at whether the checker is done: a hundredth of what it takes.
+const LOOK: Duration = Duration::from_micros(500);
+
+/// Gappa could not be started.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "cannot run `gappa` ({0}): install it, `apt install gappa` on Debian and Ubuntu, or https://gappa.gitlabpages.inria.fr"
+)]
+pub struct Missing(String);
+
+/// Version of the checker.
+///
+/// # Errors
+/// When there is none.
+pub fn gappa_version() -> Result<String, Missing> {
+    let output = Command::new("gappa").arg("--version").output();
+    let output = output.map_err(|error| Missing(error.to_string()))?;
+    let text = [output.stdout, output.stderr].concat();
+    Ok(String::from_utf8_lossy(&text).trim().to_owned())
+}
+
+/// What the checker makes of goals.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Finding {
+    /// All hold.
+    Proved,
+    /// Some could not be proved.
+    Refused(String),
+    /// It did not end.
+    TooLong(Duration),
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Proved => write!(f, "proved"),
+            Self::Refused(text) => write!(f, "{text}"),
+            Self::TooLong(limit) => write!(f, "not proved in {} s", limit.as_secs()),
+        }
+    }
+}
+
+/// A run that has ended.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) finding: Finding,
+    pub(super) took: Duration,
+    said: String,
+}
+
+impl Run {
+    /// Has a script checked within a time.
+    pub(super) fn new(script: &str, limit: Duration) -> Result<Self, Missing> {
+        let failed = |error: std::io::Error| Missing(error.to_string());
+        let mut file = tempfile::tempfile().map_err(failed)?;
+        file.write_all(script.as_bytes()).map_err(failed)?;
+        file.rewind().map_err(failed)?;
+        let mut said = tempfile::tempfile().map_err(failed)?;
+        let begin = Instant::now();
+        let mut child = Command::new("gappa")
+            .stdin(Stdio::from(file))
+            .stdout(Stdio::null())
+            .stderr(Stdio::from(said.try_clone().map_err(failed)?))
+            .spawn()
+            .map_err(failed)?;
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(failed)? {
+                break Some(status);
+            }
+            if begin.elapsed() > limit {
+                child.kill().map_err(failed)?;
+                child.wait().map_err(failed)?;
+                break None;
+            }
+            sleep(LOOK);
+        };
+        let took = begin.elapsed();
+        let mut text = String::new();
+        said.rewind().map_err(failed)?;
+        said.read_to_string(&mut text).map_err(failed)?;
+        let finding = match status {
+            None => Finding::TooLong(limit),
+            Some(status) if status.success() => Finding::Proved,
+            Some(_) => {
+                let lines = text.lines().filter(|line| !line.starts_with("Warning"));
+                let lines: Vec<&str> = lines.take(4).map(str::trim).collect();
+                Finding::Refused(lines.join(" "))
+            }
+        };
+        Ok(Self {
+            finding,
+            took,
+            said: text,
+        })
+    }
+
+    /// The bounds of all goals of the script that was run, in their order.
+    pub(super) fn bounds(&self, script: &Script) -> Result<Vec<[Real; 2]>, String> {
+        if self.finding != Finding::Proved {
+            return Err(format!("no bounds found: {}", self.finding));
+        }
+        let mut found = BTreeMap::new();
+        for line in self.said.lines() {
+            if let Some((expression, range)) = line.trim().split_once(" in [")
+                && let Some(bounds) = ends(range)
+            {
+                found.insert(expression.to_owned(), bounds);
+            }
+        }
+        // Two definitions of the same expression get one name.
+        let renamed: BTreeMap<&str, &str> = self.said.lines().filter_map(renaming).collect();
+        let asked = script.goals.iter().map(|goal| {
+            let words = goal.expression.split(' ');
+            let words = words.map(|word| *renamed.get(word).unwrap_or(&word));
+            words.collect::<Vec<_>>().join(" ")
+        });
+        let asked: Vec<String> = asked.collect();
+        let read: Vec<[Real; 2]> = asked
+            .iter()
+            .filter_map(|goal| found.get(goal).copied())
+            .collect();
+        if read.len() == asked.len() {
+            Ok(read)
+        } else {
+            Err(format!(
+                "{} bounds read of {} asked",
+                read.len(),
+                asked.len()
+            ))
+        }
+    }
+}
+
+/// Old and new name of `Warning: renaming identifier 'a' as 'b' at …`.
+fn renaming(line: &str) -> Option<(&str, &str)> {
+    let rest = line.strip_prefix("Warning: renaming identifier '")?;
+    let (old, rest) = rest.split_once("' as '")?;
+    Some((old, rest.split_once('\'')?.0))
+}
+
+/// Both ends of `-3b-1 {-1.5, -2^(0.58)}, 4 {4, 2^(2)}]`; what stands in braces says the number again.
+fn ends(range: &str) -> Option<[Real; 2]> {
+    let mut text = String::new();
+    let mut inside = false;
+    for letter in range.trim_end_matches(']').chars() {
+        match letter {
+            '{' => inside = true,
+            '}' => inside = false,
+            _ if !inside => text.push(letter),
+            _ => {}
+        }
+    }
+    let (low, high) = text.split_once(',')?;
+    Some([number(low.trim())?, number(high.trim())?])
+}
+
+/// `-123b-4` or `567`, with its value in braces behind it.
+fn number(text: &str) -> Option<Real> {
+    let text = text.split(' ').next()?;
+    let (mantissa, exponent) = text.split_once('b').unwrap_or((text, "0"));
+    Some(Real {
+        mantissa: mantissa.parse().ok()?,
+        exponent: exponent.parse().ok()?,
+    })
+}

@@ -1,0 +1,264 @@
+//! `hexagen prove`: that nothing overflows and how far values are from the ideal ones, checked by Gappa.
+
+use crate::checker::{Proof, gappa_version, prove};
+use crate::cli::{
+    Failure, PlantArguments, SelectedMotor, Selection, TextTable, bar, print_json, print_text,
+    significant, tell_warnings, warn,
+};
+use crate::engine::Prepared;
+use clap::Args;
+use hexagen_codegen::emit::gappa::{Script, emit_gappa};
+use hexagen_codegen::ir::stated_errors;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Options of `prove`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor files or names of library motors [default: the whole library]
+    #[arg(value_name = "MOTOR")]
+    pub motors: Vec<String>,
+    /// Controller variant, or `all`, with 32-bit and with 16-bit words [default: the motor file's]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub controller: Option<Selection>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The proofs of one drive.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proved {
+    /// Motor.
+    pub motor: String,
+    /// Controller variant.
+    pub controller: String,
+    /// Scripts of one implication each.
+    pub scripts: usize,
+    /// Bounds that they state.
+    pub goals: usize,
+    /// Of these, those that are proved.
+    pub proved: usize,
+    /// Largest ratio of the generator's own bound on an error to the one that Gappa finds.
+    pub widest: f64,
+    /// Time of the longest script, seconds.
+    pub longest_s: f64,
+    /// Bounds on the distance from the ideal computation.
+    pub errors: Vec<Stated>,
+    /// Whether everything is proved.
+    pub passed: bool,
+    /// What is not.
+    pub failures: Vec<String>,
+}
+
+/// A stated bound.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stated {
+    /// Quantity.
+    pub quantity: String,
+    /// Unit.
+    pub unit: String,
+    /// Largest error on the normal path.
+    pub bound: f64,
+    /// The same in units of the last place.
+    pub bound_ulp: f64,
+    /// Largest error where the voltage is limited, in the quantity's unit.
+    pub limited: Option<f64>,
+}
+
+/// A controller that cannot be made for a motor.
+#[derive(Clone, Debug, Serialize)]
+struct Refused {
+    motor: String,
+    controller: String,
+    reason: String,
+}
+
+/// Proves all drives; the scripts of all of them share the cores.
+///
+/// # Errors
+/// When there is no Gappa.
+pub fn collect(drives: &[Prepared]) -> Result<Vec<Proved>, Failure> {
+    gappa_version()?;
+    let scripts: Vec<(usize, Script)> = drives
+        .iter()
+        .enumerate()
+        .flat_map(|(drive, prepared)| {
+            let scripts = emit_gappa(&prepared.generated.graph);
+            scripts.into_iter().map(move |script| (drive, script))
+        })
+        .collect();
+    let progress = bar(scripts.len() as u64, "proving");
+    let proofs: Result<Vec<(usize, Proof)>, _> = scripts
+        .par_iter()
+        .map(|(drive, script)| {
+            let proof = prove(script)?;
+            progress.inc(1);
+            Ok::<_, Failure>((*drive, proof))
+        })
+        .collect();
+    progress.finish_and_clear();
+    let proofs = proofs?;
+    let of_drive = |(number, drive): (usize, &Prepared)| {
+        let own = || {
+            let own = proofs.iter().filter(|(of, _)| *of == number);
+            own.map(|(_, proof)| proof)
+        };
+        let failures: Vec<String> = own().filter_map(|proof| proof.failure.clone()).collect();
+        Proved {
+            motor: drive.motor.clone(),
+            controller: drive.variant.clone(),
+            scripts: own().count(),
+            goals: own().map(|proof| proof.goals).sum(),
+            proved: own().map(|proof| proof.proved).sum(),
+            widest: own().map(|proof| proof.widest).fold(1.0, f64::max),
+            longest_s: own()
+                .map(|proof| proof.took.as_secs_f64())
+                .fold(0.0, f64::max),
+            errors: stated(drive),
+            passed: failures.is_empty(),
+            failures,
+        }
+    };
+    Ok(drives.iter().enumerate().map(of_drive).collect())
+}
+
+/// The bounds that a drive states.
+fn stated(drive: &Prepared) -> Vec<Stated> {
+    let errors = stated_errors(drive.generated.graph.program());
+    let stated = errors.into_iter().map(|error| Stated {
+        bound: error.normal_bound(),
+        bound_ulp: error.normal.magnitude(),
+        limited: error.rare_bound(),
+        quantity: error.name,
+        unit: error.unit,
+    });
+    stated.collect()
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Diagnostics, a missing checker, or what is not proved.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    #[derive(Serialize)]
+    struct Proofs {
+        passed: bool,
+        checker: String,
+        goals: usize,
+        results: Vec<Proved>,
+        refused: Vec<Refused>,
+    }
+    let none = PlantArguments::default();
+    let motors = if options.motors.is_empty() {
+        SelectedMotor::library()?
+    } else {
+        let given = options.motors.iter();
+        given
+            .map(|motor| SelectedMotor::find(motor, &none))
+            .collect::<Result<_, _>>()?
+    };
+    let takes_all = options.controller == Some(Selection::All);
+    let variants: Vec<Option<String>> = match &options.controller {
+        None => vec![None],
+        Some(Selection::One(variant)) => vec![Some(variant.clone())],
+        Some(all) => {
+            let words = |kind: &String| [format!("{kind}:word=32"), format!("{kind}:word=16")];
+            all.variants().iter().flat_map(words).map(Some).collect()
+        }
+    };
+    let checker = gappa_version()?;
+    let (mut drives, mut refused) = (vec![], vec![]);
+    for motor in &motors {
+        for variant in &variants {
+            match (motor.prepare(variant.as_deref()), variant) {
+                (Ok(drive), _) => {
+                    tell_warnings(&drive);
+                    drives.push(drive);
+                }
+                // Of all controllers some cannot work with some motors; one that was named must.
+                (Err(reason), Some(controller)) if takes_all => {
+                    warn(&format!("{controller} is left out: {reason}"));
+                    refused.push(Refused {
+                        motor: motor.source.name.clone(),
+                        controller: controller.clone(),
+                        reason: reason.to_string(),
+                    });
+                }
+                (Err(failure), _) => return Err(failure),
+            }
+        }
+    }
+    let results = collect(&drives)?;
+    let failures: Vec<String> = results
+        .iter()
+        .flat_map(|proved| {
+            let place = format!("{}, {}", proved.motor, proved.controller);
+            let failures = proved.failures.iter();
+            failures.map(move |failure| format!("{place}: {failure}"))
+        })
+        .collect();
+    let passed = failures.is_empty();
+    if options.json {
+        print_json(&Proofs {
+            passed,
+            checker,
+            goals: results.iter().map(|proved| proved.goals).sum(),
+            results,
+            refused,
+        })?;
+    } else {
+        print_text(&table(&results))?;
+    }
+    if passed {
+        Ok(())
+    } else {
+        Err(Failure::Check(failures.join("\n")))
+    }
+}
+
+fn table(results: &[Proved]) -> String {
+    let mut table = TextTable::new(
+        3,
+        [
+            "motor",
+            "controller",
+            "result",
+            "scripts",
+            "goals",
+            "proved",
+            "own/found",
+            "longest s",
+            "error of v, uV",
+            "ulp",
+            "error of duty, counts",
+            "limited",
+        ],
+    );
+    for proved in results {
+        let of = |quantity: &str| {
+            proved
+                .errors
+                .iter()
+                .find(|error| error.quantity == quantity)
+        };
+        let shown = |value: Option<f64>| {
+            value.map_or_else(|| "-".to_owned(), |value| significant(value, 3))
+        };
+        table.row([
+            proved.motor.clone(),
+            proved.controller.clone(),
+            if proved.passed { "proved" } else { "UNPROVED" }.to_owned(),
+            proved.scripts.to_string(),
+            proved.goals.to_string(),
+            proved.proved.to_string(),
+            significant(proved.widest, 3),
+            significant(proved.longest_s, 2),
+            shown(of("voltage").map(|error| error.bound * 1e6)),
+            shown(of("voltage").map(|error| error.bound_ulp)),
+            shown(of("duty").map(|error| error.bound)),
+            shown(of("duty").and_then(|error| error.limited)),
+        ]);
+    }
+    table.render()
+}

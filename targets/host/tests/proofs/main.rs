@@ -1,0 +1,128 @@
+//! What Gappa makes of the generator's bounds: true ones are proved, for motors of the library and for random
+//! ones, and false ones are refused.
+
+mod faults;
+mod random_motor;
+
+use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::emit::gappa::emit_gappa;
+use hexagen_codegen::ir::stated_errors;
+use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_host::checker::{Proof, WIDEST, prove};
+use hexagen_host::engine::library;
+use random_motor::RandomMotor;
+use rayon::prelude::*;
+use std::env;
+
+/// Variants that together have every block of a step.
+const VARIANTS: [&str; 14] = [
+    "pdcc",
+    "pdcc:emf=model,saturation=nearest",
+    "pdcc:emf=model,modulation=pair,saturation=keep_angle,advance=1.5",
+    "pdcc:modulation=pair,word=16",
+    "pdcc:reference=proportional,emf=model,integral=on",
+    "pdcc:delay=0,emf_filter=1,saturation=nearest,discretisation=euler",
+    "pi-pwm",
+    "pi-pwm:feed_forward=off,saturation=keep_angle,word=16",
+    "pi-pwm:six_step=on",
+    "fcs-mpc",
+    "fcs-mpc:candidates=all,off_leg=nominal,word=16",
+    "fcs-mpc:candidates=all,modulated=on",
+    "phcc",
+    "phcc:word=16",
+];
+
+fn generated(toml: &str, variant: &str) -> Result<Generated, Diagnostics> {
+    let mut ast = parse_toml(toml, "motor.toml")?;
+    apply_variant(&mut ast, variant)?;
+    let (spec, origins) = check(&ast)?;
+    generate(&spec, &origins)
+}
+
+/// Goals that were proved, or what was not.
+fn prove_all(drive: &str, generated: &Generated) -> Result<usize, String> {
+    let scripts = emit_gappa(&generated.graph);
+    let proofs: Vec<Proof> = scripts
+        .par_iter()
+        .map(|script| prove(script).map_err(|missing| missing.to_string()))
+        .collect::<Result<_, _>>()?;
+    let failures = proofs.iter().filter_map(|proof| proof.failure.as_deref());
+    let failures: Vec<&str> = failures.collect();
+    if failures.is_empty() {
+        assert!(proofs.iter().all(|proof| proof.widest <= WIDEST));
+        Ok(proofs.iter().map(|proof| proof.proved).sum())
+    } else {
+        Err(format!("{drive}: {}", failures.join("\n")))
+    }
+}
+
+#[test]
+fn every_variant_of_the_paper_motor_is_proved() {
+    let library = library();
+    let motor = library
+        .iter()
+        .find(|motor| motor.name == "trivedi-keshri-660w");
+    let motor = motor.expect("the paper's motor");
+    for variant in VARIANTS {
+        let generated =
+            generated(motor.text, variant).unwrap_or_else(|errors| panic!("{variant}: {errors}"));
+        let goals = prove_all(variant, &generated).unwrap_or_else(|failures| panic!("{failures}"));
+        println!("{variant}: {goals} goals");
+        assert!(goals > 20, "{variant}: {goals} goals");
+    }
+}
+
+/// 50 in a push; `HEXAGEN_RANDOM_MOTORS` says how many else.
+#[test]
+fn random_motors_are_proved_or_refused() {
+    let wanted = env::var("HEXAGEN_RANDOM_MOTORS").ok();
+    let wanted = wanted.map_or(50, |number| number.parse().expect("a number of motors"));
+    let (mut proved, mut refused, mut failures) = (0, 0, vec![]);
+    for seed in 0..wanted {
+        let motor = RandomMotor::new(seed).toml();
+        let variant = VARIANTS[seed as usize % VARIANTS.len()];
+        match generated(&motor, variant) {
+            // A refusal says the number that does not fit.
+            Err(errors) => {
+                assert!(
+                    errors
+                        .to_string()
+                        .contains(|letter: char| letter.is_ascii_digit())
+                );
+                refused += 1;
+            }
+            Ok(generated) => match prove_all(variant, &generated) {
+                Ok(_) => proved += 1,
+                Err(failure) => failures.push(format!("motor {seed}: {failure}\n{motor}")),
+            },
+        }
+    }
+    println!("{proved} motors proved, {refused} refused");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(
+        proved * 3 >= wanted * 2,
+        "{proved} of {wanted} motors proved"
+    );
+}
+
+#[test]
+fn the_stated_voltage_error_of_the_paper_motor_is_small() {
+    let library = library();
+    let motor = library
+        .iter()
+        .find(|motor| motor.name == "trivedi-keshri-660w");
+    let motor = motor.expect("the paper's motor").text;
+    let bound = |variant: &str, quantity: &str| {
+        let generated =
+            generated(motor, variant).unwrap_or_else(|errors| panic!("{variant}: {errors}"));
+        let stated = stated_errors(generated.graph.program());
+        let found = stated.iter().find(|stated| stated.name == quantity);
+        found
+            .expect("a quantity of every modulating drive")
+            .normal_bound()
+    };
+    assert!(bound("pdcc:emf=model", "duty") < 0.02);
+    assert!(bound("pdcc:emf=model", "voltage") < 1e-4);
+    assert!(bound("pdcc", "duty") < 0.1);
+}
