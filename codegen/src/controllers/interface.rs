@@ -1,5 +1,6 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
+use super::accuracy::{accuracy_constants, accuracy_notes};
 use super::current_loop::{LoopDesign, StableRange};
 use super::start::start_speed;
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
@@ -35,7 +36,7 @@ pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -
         header: header(spec, design, scaled),
         spec_toml: spec.to_toml(),
         formats: scaled.formats.clone(),
-        constants: constants(spec, design, law),
+        constants: constants(spec, design, scaled, law),
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
@@ -108,6 +109,7 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
             "searched from 10 % to 1000 %).".to_owned(),
         ]);
     }
+    doc.extend(accuracy_notes());
     doc.extend([
         String::new(),
         "# Safe states".to_owned(),
@@ -231,7 +233,7 @@ fn header(spec: &Spec, design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
 }
 
 /// Fraction bits at which `largest` fits a 32-bit word.
-fn fraction_bits(largest: f64) -> u32 {
+pub(super) fn fraction_bits(largest: f64) -> u32 {
     (30.0 - largest.abs().max(1e-9).log2())
         .floor()
         .clamp(0.0, 31.0) as u32
@@ -279,7 +281,7 @@ fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> Public
     }
 }
 
-fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant> {
+fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let v_bus = inverter.v_bus;
     let three: Vec<Vector2<f64>> = THREE_PHASE
@@ -341,6 +343,13 @@ fn constants(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<PublicConstant>
         ),
     ];
     list.extend(law.constants.iter().cloned());
+    // Beyond these a bound says nothing.
+    let widest = |unit: &str| match unit {
+        "V" => inverter.greatest_bus(),
+        "V^2" => inverter.greatest_bus().powi(2),
+        _ => period,
+    };
+    list.extend(accuracy_constants(scaled.graph.program(), widest));
     if let Some(stable) = law.stable {
         list.extend([
             PublicConstant {

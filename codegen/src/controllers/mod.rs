@@ -2,6 +2,7 @@
 //!
 //! Adding a controller adds a folder here, and its options to `spec::controller`.
 
+mod accuracy;
 pub mod current_loop;
 pub mod fcs_mpc;
 mod interface;

@@ -4,10 +4,11 @@
 //! Everything comes from the interface and the verified graph, so it cannot differ from the code.
 
 use super::set_point::shared;
-use crate::diagnostics::list;
+use crate::diagnostics::{list, significant};
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
-    Cost, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, Word, live_words,
+    Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, Word,
+    cases, live_words,
 };
 
 /// The data sheet as Markdown text.
@@ -24,6 +25,7 @@ pub fn emit_datasheet(graph: &VerifiedGraph, interface: &Interface) -> String {
     memory(&mut sheet, program);
     operations(&mut sheet, program);
     ranges(&mut sheet, program);
+    decisions(&mut sheet, program);
     sheet.heading(2, "Specification");
     sheet.line("```toml");
     sheet.line(interface.spec_toml.trim_end());
@@ -83,6 +85,35 @@ fn constants_of_the_type(sheet: &mut Sheet, interface: &Interface) {
             value,
             paragraph(&constant.doc),
         ]);
+    }
+}
+
+/// The decisions on inexact values, with their tie bands in all cases together.
+fn decisions(sheet: &mut Sheet, program: &Program) {
+    let step = &program.step;
+    let cases = cases(program, step);
+    let bands: Vec<(&str, ErrorInterval)> = step
+        .values()
+        .filter(|value| !step.node(*value).name.is_empty())
+        .filter_map(|value| {
+            let bands = cases.iter().filter_map(|case| case.bounds.band(value));
+            let band = bands.reduce(ErrorInterval::union)?;
+            Some((step.node(value).name.as_str(), band))
+        })
+        .collect();
+    if bands.is_empty() {
+        return;
+    }
+    sheet.heading(2, "Decisions on rounded values");
+    sheet.line("Each is that of the ideal step unless what it compares is closer together than its tie band.\n");
+    sheet.table(["decision", "tie band, words"]);
+    for (name, band) in bands {
+        let text = if band.is_unbounded() {
+            "not bounded".to_owned()
+        } else {
+            significant(band.magnitude())
+        };
+        sheet.row([format!("`{name}`"), text]);
     }
 }
 

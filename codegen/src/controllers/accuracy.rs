@@ -1,0 +1,73 @@
+//! What the type and the data sheet say of its accuracy: the bounds on the distance from the ideal controller.
+
+use super::interface::fraction_bits;
+use crate::diagnostics::significant;
+use crate::interface::{PublicConstant, PublicValue};
+use crate::ir::{Program, StatedError, stated_errors};
+
+/// A bound as a constant, rounded up.
+fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> PublicConstant {
+    let frac_bits = fraction_bits(value);
+    let bits = (value * f64::from(frac_bits).exp2()).ceil() as i32;
+    PublicConstant {
+        name: name.to_owned(),
+        value: PublicValue::Fixed { bits, frac_bits },
+        doc: vec![format!(
+            "{meaning}: at most {} {unit} from the ideal controller, {} units of the last place.",
+            significant(value),
+            significant(words)
+        )],
+    }
+}
+
+/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`. What is not bounded more closely than
+/// `widest`, in its unit, has no constant.
+pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Vec<PublicConstant> {
+    let mut constants = vec![];
+    for stated in stated_errors(program) {
+        let StatedError {
+            name,
+            doc,
+            unit,
+            normal,
+            rare,
+            ..
+        } = &stated;
+        let name = format!("{}_ERROR", name.to_uppercase());
+        let limited = stated.rare_bound().filter(|_| *rare != Some(*normal));
+        if stated.normal_bound() < widest(unit) {
+            let (value, words) = (stated.normal_bound(), normal.magnitude());
+            let meaning = match limited {
+                None => doc.clone(),
+                Some(limited) if limited < widest(unit) => format!("{doc}, while no limit acts"),
+                Some(_) => format!(
+                    "{doc}, while no limit acts (where one does, no closer bound is known than the whole range)"
+                ),
+            };
+            constants.push(bound(&name, value, words, unit, &meaning));
+        }
+        if let (Some(value), Some(rare)) = (limited, rare)
+            && value < widest(unit)
+        {
+            let name = format!("{name}_LIMITED");
+            let meaning = format!("{doc}, where a limit acts");
+            constants.push(bound(&name, value, rare.magnitude(), unit, &meaning));
+        }
+    }
+    constants
+}
+
+/// What the bounds mean, for the type's documentation.
+pub fn accuracy_notes() -> Vec<String> {
+    [
+        "",
+        "# Accuracy",
+        "",
+        "The constants that end in `_ERROR` bound the distance of one step from the ideal one: from the same inputs, state and",
+        "set-point words, with the coefficients that the specification makes in double precision, nothing rounded, and the same decisions.",
+        "A decision is that of the ideal step wherever what it compares differs by more than its tie band (data sheet). `hexagen prove`",
+        "has every bound, and that no value leaves its word, proved by a checker.",
+    ]
+    .map(str::to_owned)
+    .to_vec()
+}
