@@ -20,12 +20,14 @@ impl CurrentLoop<'_, '_> {
     ) -> Value {
         let pole = self.design.plant.pole;
         let word = self.options.word;
+        // What it is multiplied with has up to three bits more than a deadbeat voltage.
+        let narrow = if word == 16 { 12 } else { word };
         let with_pairs = options.candidates == Candidates::All;
         let l = &mut *self.lowering;
         let k_pole = l.coefficient(
             "k_pole",
             pole,
-            word,
+            narrow,
             "Share of the current that is left after one period.",
             &format!("a = {pole:.6}"),
         );
