@@ -12,7 +12,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Longest run of the emulator.
-const PATIENCE: Duration = Duration::from_mins(15);
+const PATIENCE: Duration = Duration::from_secs(15 * 60);
 
 /// Built firmware.
 #[derive(Debug)]
@@ -118,7 +118,7 @@ impl Firmware {
             drive: 0,
             block: 0,
         };
-        let text = self.run_program(program, &task, &[])?;
+        let text = self.run_program(program, task, &[])?;
         parse(&String::from_utf8_lossy(&text)).ok_or(BenchError::Listing)
     }
 
@@ -129,7 +129,7 @@ impl Firmware {
     pub fn run_program(
         &self,
         program: &str,
-        task: &Task,
+        task: Task,
         records: &[u8],
     ) -> Result<Vec<u8>, BenchError> {
         let purpose = match task.mode {
@@ -145,7 +145,7 @@ impl Firmware {
     ///
     /// # Errors
     /// When the emulator fails or hangs.
-    pub fn trace(&self, program: &str, task: &Task, records: &[u8]) -> Result<String, BenchError> {
+    pub fn trace(&self, program: &str, task: Task, records: &[u8]) -> Result<String, BenchError> {
         let folder = folder_of(task, records)?;
         self.emulate(program, Purpose::Trace, folder.path())?;
         Ok(fs::read_to_string(folder.path().join("log"))?)
@@ -194,7 +194,7 @@ impl Firmware {
 }
 
 /// A folder with a task, for the emulator to run in.
-fn folder_of(task: &Task, records: &[u8]) -> Result<tempfile::TempDir, BenchError> {
+fn folder_of(task: Task, records: &[u8]) -> Result<tempfile::TempDir, BenchError> {
     let folder = tempfile::tempdir()?;
     let bytes = [task.encode().as_slice(), records].concat();
     fs::write(folder.path().join("task"), bytes)?;

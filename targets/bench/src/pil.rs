@@ -82,11 +82,11 @@ fn compare(core: &impl Core, listed: &Listed, steps: usize) -> Result<Outcome, B
 
 /// What runs the records of a task: an emulator, or a test.
 trait Core {
-    fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
+    fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
 }
 
 impl Core for Firmware {
-    fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+    fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
         self.run_program("bench", task, records)
     }
 }
@@ -103,7 +103,7 @@ fn difference(
         drive: listed.place,
         block: 0,
     };
-    let found = core.run(&task, &vectors.records)?;
+    let found = core.run(task, &vectors.records)?;
     let Some(block) = first_block(vectors, &found) else {
         return Ok(None);
     };
@@ -112,7 +112,7 @@ fn difference(
         block: block as u32,
         ..task
     };
-    let found = core.run(&task, &vectors.records)?;
+    let found = core.run(task, &vectors.records)?;
     let expected = record(drive, vectors.steps, Some(block))?.full;
     let report = first_step(&expected, &found, &listed.words);
     Ok(Some(report.unwrap_or_else(|| {
@@ -240,12 +240,12 @@ mod tests {
     struct InProcess(StepFn<Tested>);
 
     impl Core for InProcess {
-        fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+        fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
             let mut link = Memory {
                 input: records,
                 answers: vec![],
             };
-            replay(self.0, &mut link, task).expect("a task in order");
+            replay(self.0, &mut link, &task).expect("a task in order");
             Ok(link.answers)
         }
     }
@@ -311,7 +311,7 @@ mod tests {
     fn report(step: StepFn<Tested>) -> String {
         struct Afresh(InProcess);
         impl Core for Afresh {
-            fn run(&self, task: &Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
+            fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
                 CALLS.set(0);
                 self.0.run(task, records)
             }

@@ -131,7 +131,7 @@ struct InLoop<'r, 'g>(&'r mut Recorder<'g>);
 
 impl CurrentLoop for InLoop<'_, '_> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
-        self.0.step(sample)
+        self.0.step(*sample)
     }
 }
 
@@ -209,9 +209,9 @@ impl<'g> Recorder<'g> {
     }
 
     /// A control period.
-    pub fn step(&mut self, sample: &Sample) -> Legs {
-        self.note(Record::Step(*sample));
-        let legs = self.subject.step(sample);
+    pub fn step(&mut self, sample: Sample) -> Legs {
+        self.note(Record::Step(sample));
+        let legs = self.subject.step(&sample);
         let fault = self.subject.fault();
         self.subject.state_words(&mut self.words);
         self.digest.answer(&legs, fault);
@@ -221,7 +221,7 @@ impl<'g> Recorder<'g> {
         if self.full == Some(self.vectors.digests.len()) {
             let words = self.words.iter().flat_map(|word| word.to_le_bytes());
             self.vectors.full.push(Answer {
-                sample: *sample,
+                sample,
                 step: self.vectors.steps,
                 bytes: encode_outputs(&legs, fault)
                     .into_iter()
@@ -291,7 +291,7 @@ impl<'g> Recorder<'g> {
                 }
                 None => {}
             }
-            let legs = self.step(&sample);
+            let legs = self.step(sample);
             stimulus.respond(&legs);
         }
         Ok(())

@@ -136,15 +136,15 @@ pub fn count(
         drive: place,
         block: 0,
     };
-    let counts = numbers(&firmware.run_program(program, &task, &inputs.records)?);
+    let counts = numbers(&firmware.run_program(program, task, &inputs.records)?);
     let sounding = Task {
         mode: Mode::Stack,
         ..task
     };
-    let depth = firmware.run_program(program, &sounding, &inputs.records)?;
+    let depth = firmware.run_program(program, sounding, &inputs.records)?;
     let depth = depth.try_into().map_or(0, u32::from_le_bytes);
-    let traced = numbers(&firmware.run_program(program, &task, &inputs.traced)?);
-    let calls = trace(firmware, program, image, symbol, &task, inputs)?;
+    let traced = numbers(&firmware.run_program(program, task, &inputs.traced)?);
+    let calls = trace(firmware, program, image, symbol, task, inputs)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
     if instructions != traced {
         return Err(BenchError::Failed(format!(
@@ -169,16 +169,16 @@ fn trace(
     program: &str,
     image: &Image,
     symbol: &str,
-    task: &Task,
+    task: Task,
     inputs: &Inputs,
 ) -> Result<Vec<Executed>, BenchError> {
     let function = image.function(symbol)?;
     let caller = image.function("hexagen_counted_call")?;
     let task = Task {
         mode: Mode::Trace,
-        ..*task
+        ..task
     };
-    let log = firmware.trace(program, &task, &inputs.traced)?;
+    let log = firmware.trace(program, task, &inputs.traced)?;
     Ok(executed(&log, image, firmware.target, &function, &caller))
 }
 

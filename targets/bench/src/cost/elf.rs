@@ -253,9 +253,11 @@ impl Instruction {
         let first = self.first;
         match first >> 11 {
             // LDR literal; loads and stores with register, immediate and stack offsets.
-            0b01001 | 0b01010..=0b10011 => Class::Memory(1),
-            0b10110 if first & 0x0600 == 0x0400 => Class::Memory((first & 0x1ff).count_ones()),
-            0b10111 if first & 0x0600 == 0x0400 => Class::Memory((first & 0x1ff).count_ones()),
+            0b01001..=0b10011 => Class::Memory(1),
+            // PUSH and POP.
+            0b10110 | 0b10111 if first & 0x0600 == 0x0400 => {
+                Class::Memory((first & 0x1ff).count_ones())
+            }
             0b11000 | 0b11001 => Class::Memory((first & 0xff).count_ones()),
             _ => Class::Plain,
         }

@@ -15,13 +15,12 @@ pub fn inputs(drive: &Prepared, symbol: &str) -> Result<Inputs, BenchError> {
         "step_f32_pdcc" => of::<Pdcc<f32>>(drive),
         "step_f32_fcs_mpc" => of::<FcsMpc<f32>>(drive),
         "step_f32_phcc" => of::<Phcc<f32>>(drive),
-        "step_f32_pi_pwm" => of::<PiPwm<f32>>(drive),
         "step_i16f16_pdcc" => of::<Pdcc<I16F16>>(drive),
         "step_i16f16_fcs_mpc" => of::<FcsMpc<I16F16>>(drive),
         "step_i16f16_phcc" => of::<Phcc<I16F16>>(drive),
         "step_i16f16_pi_pwm" => of::<PiPwm<I16F16>>(drive),
-        // Rotor-oriented, without an angle between the edges: they read what another PI controller meets.
-        "step_foc" | "step_idsp" => of::<PiPwm<f32>>(drive),
+        // `foc` and `idsp` are rotor-oriented, without an angle between the edges: they read what another PI meets.
+        "step_f32_pi_pwm" | "step_foc" | "step_idsp" => of::<PiPwm<f32>>(drive),
         _ => Err(BenchError::Failed(format!(
             "`{symbol}` is no peer of the host"
         ))),

@@ -13,9 +13,9 @@ pub trait Real:
     + Mul<Output = Self>
     + Neg<Output = Self>
 {
-    /// Reference corners by Hall code, and vectors V0 to V6 in volt.
+    /// Reference corners in ampere, by Hall code.
     const CORNERS: [[Self; 2]; 8];
-    /// See [`VECTORS`].
+    /// Vectors V0 to V6 in volt.
     const VECTORS: [[Self; 2]; 7];
     /// A constant; folded by the compiler.
     fn num(value: f64) -> Self;
