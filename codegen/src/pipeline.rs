@@ -172,6 +172,7 @@ fn check_stability(
         (_, EmfSource::Estimated) if options.emf_filter >= 1.0 => {
             "choose `emf: model`, an `emf_filter` below 1,"
         }
+        (_, EmfSource::Held) => "choose `emf: estimated` or `emf: model`",
         (_, EmfSource::Estimated) => "choose `emf: model`",
         (_, EmfSource::Model) => "shorten the control period",
     };

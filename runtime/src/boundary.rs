@@ -57,15 +57,19 @@ pub struct Legs {
 
 impl Legs {
     /// All legs off: the safe command of a tripped drive.
-    pub const OFF: Self = Self {
-        compare: [0; 3],
-        state: [LegState::Off; 3],
-    };
+    pub const OFF: Self = Self::at_rest(LegState::Off);
     /// All lower switches on: charges the bootstrap capacitors.
-    pub const LOW: Self = Self {
-        compare: [0; 3],
-        state: [LegState::Low; 3],
-    };
+    pub const LOW: Self = Self::at_rest(LegState::Low);
+
+    /// All legs alike, without pulses.
+    #[inline]
+    #[must_use]
+    pub const fn at_rest(state: LegState) -> Self {
+        Self {
+            compare: [0; 3],
+            state: [state; 3],
+        }
+    }
 }
 
 /// Why a drive tripped. Latched until `reset()`.

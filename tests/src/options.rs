@@ -53,6 +53,8 @@ const UNAVAILABLE: &[(&str, &str, &str)] = &[
     ("fcs-mpc", "emf", "integral"),
     ("phcc", "emf", "integral"),
     ("pi-pwm", "emf", "integral"),
+    ("phcc", "emf", "held"),
+    ("pi-pwm", "emf", "held"),
 ];
 
 /// Defaults that are left unstated, because another option rules their statement out: kind, option, value.
@@ -164,6 +166,7 @@ const SHARED: &[Row] = &[
             ("estimated", &[]),
             ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
+            ("held", &[("controller", "emf", "\"held\"")]),
             (
                 "integral",
                 &[

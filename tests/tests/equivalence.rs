@@ -24,6 +24,10 @@ const STEPS: u64 = 10_000_000;
 const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc candidates=three_phase off_leg=nominal",
     "fcs-mpc candidates=table2 choice=two_steps",
+    "fcs-mpc choice=torque emf=held",
+    "fcs-mpc choice=weighted emf=held",
+    "fcs-mpc choice=two_steps emf=held",
+    "pdcc modulation=pair emf=held",
     "phcc candidates=three_phase off_leg=nominal",
     "phcc candidates=three_phase table=printed",
     "phcc candidates=three_phase table=given",

@@ -42,6 +42,31 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
         "table entry one more: SHAPE_C2[116]",
         "the table has 96 entries, padded to a power of two",
     ),
+    (
+        3,
+        "<= for <: `let pair_c = if line_c < 0 { Word(11) } else { Word(8) };`",
+        "a line voltage next to zero is not the longest, or V0 is nearest",
+    ),
+    (
+        3,
+        "|| for &&: `let edge = sector != sector_prev && sector_prev != 0;`",
+        "steps from or to sector 0, and of none, tell no direction",
+    ),
+    (
+        4,
+        "constant one more: `const K_THIRD: Word = Word(1_431_655_765);`",
+        "a third is a sixth away from its ties",
+    ),
+    (
+        4,
+        "constant one less: `const K_THIRD: Word = Word(1_431_655_765);`",
+        "a third is a sixth away from its ties",
+    ),
+    (
+        4,
+        "|| for &&: `let edge = sector != sector_prev && sector_prev != 0;`",
+        "steps from or to sector 0, and of none, tell no direction",
+    ),
 ];
 
 fn is_noticed<D: Drive>(record: &Record) -> bool {

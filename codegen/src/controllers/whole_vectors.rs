@@ -53,7 +53,7 @@ impl CurrentLoop<'_, '_> {
             "drive_legs",
             &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
         );
-        let command = command(l, vector);
+        let command = command(l, vector, self.needs.commutation);
         let v_cmd = (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, vector));
         let applied = self.needs.off_leg.then(|| terminals(l, front, vector));
         self.remember(front, &command, v_cmd, applied, remembered);
@@ -71,7 +71,8 @@ fn over_vectors(
     l.b.program.table(name, values, &[doc.to_owned()])
 }
 
-fn command(l: &mut Lowering<'_>, vector: Value) -> Command {
+/// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
+fn command(l: &mut Lowering<'_>, vector: Value, turns_off: bool) -> Command {
     let top = l.spec.inverter.timer_period as i32;
     let compares = [0, 1, 2].map(|x| {
         let name = ["vector_compare_a", "vector_compare_b", "vector_compare_c"][x];
@@ -80,6 +81,9 @@ fn command(l: &mut Lowering<'_>, vector: Value) -> Command {
         l.b.lookup(table, vector)
     });
     let legs = [0, 1, 2].map(|x| {
+        if !turns_off {
+            return l.b.literal(0);
+        }
         let name = ["vector_leg_a", "vector_leg_b", "vector_leg_c"][x];
         let doc = "State of the leg by vector: 0 pulsed, 1 low, 2 off.";
         let table = over_vectors(l, name, doc, |legs| match legs[x] {
@@ -94,7 +98,9 @@ fn command(l: &mut Lowering<'_>, vector: Value) -> Command {
             ["compare_a_chosen", "compare_b_chosen", "compare_c_chosen"][x],
             compares[x],
         );
-        l.b.name(["leg_a_chosen", "leg_b_chosen", "leg_c_chosen"][x], legs[x]);
+        if turns_off {
+            l.b.name(["leg_a_chosen", "leg_b_chosen", "leg_c_chosen"][x], legs[x]);
+        }
     }
     Command { compares, legs }
 }

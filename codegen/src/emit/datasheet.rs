@@ -295,10 +295,10 @@ fn runs(function: &Function, stage: &Stage) -> String {
     match &stage.guard {
         None => "always".to_owned(),
         Some(guard) => {
-            let path = if guard.rare {
-                "off the normal path, "
-            } else {
-                ""
+            let path = match (guard.exit, guard.rare) {
+                (true, _) => "ends the step ",
+                (false, true) => "off the normal path, ",
+                (false, false) => "",
             };
             format!("{path}if `{}`", function.node(guard.condition).name)
         }

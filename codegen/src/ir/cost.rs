@@ -95,8 +95,9 @@ impl AddAssign for Cost {
 }
 
 impl PathCost {
-    /// The operations of a function.
+    /// The operations of a function; where it has an exit, of the path on which that is not taken.
     pub fn of_function(function: &Function) -> Self {
+        let function = &function.paths().normal;
         let mut cost = Self::default();
         for stage in &function.stages {
             let of_stage = Cost::of_stage(function, stage);

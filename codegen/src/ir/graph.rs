@@ -683,6 +683,8 @@ pub struct Guard {
     pub joins: Vec<Value>,
     /// Whether the stage is off the normal path, for the emitters (code placement) and op counts.
     pub rare: bool,
+    /// Whether the function ends where the guard holds: the joins are results, and no node reads them.
+    pub exit: bool,
 }
 
 /// A named group of consecutive nodes: one function of the emitted code.
@@ -721,6 +723,8 @@ pub struct Function {
     pub next_params: Vec<(ParamId, Value)>,
     /// Quantities whose error is stated.
     pub quantities: Vec<Quantity>,
+    /// Of the normal path of a function with an exit ([`Function::paths`]): the flags of which none holds on it.
+    pub leave: Vec<Value>,
 }
 
 /// A value that stands for a physical quantity whose error is stated.
@@ -753,18 +757,25 @@ impl Function {
     ///
     /// One relation is known besides the value's own interval, the spread rule: for three numbers that sum
     /// to zero, `c = -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of
-    /// them by 2/3 limit (it and its counterweight lie at most `limit` apart, and two of three share a sign)
-    /// and max + min, which is minus the middle one, by 1/3 limit.
+    /// them by 2/3 limit (it and its counterweight lie at most `limit` apart, and two of three share a sign),
+    /// max + min, which is minus the middle one, by 1/3 limit, and each less floor((max + min)/2) by 1/2 limit:
+    /// the largest is ceil(spread/2) above it and the smallest floor(spread/2) below.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {
             return own;
         };
         let limit = self.node(limit).interval.high.max(0);
+        let is_centred = match self.node(value).op {
+            Op::Sub(leg, middle) => legs.contains(&leg) && self.is_half_sum(middle, high, low),
+            _ => false,
+        };
         let bound = if legs.contains(&value) {
             limit * 2 / 3
         } else if self.is_half_sum(value, high, low) {
             limit / 6 + 1
+        } else if is_centred {
+            (limit + 1) / 2
         } else {
             return own;
         };

@@ -1,6 +1,7 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
 //! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
+//! `paths` takes a step apart at its exit,
 //! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`bounds`] says how far its values are from ideal ones,
 //! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
@@ -12,6 +13,7 @@ pub mod cost;
 pub mod error;
 pub mod graph;
 pub mod interpret;
+mod paths;
 mod prune;
 pub mod text;
 pub mod verify;
@@ -27,4 +29,5 @@ pub use graph::{
     Periodic, Program, Quantity, Stage, StateId, Table, TableId, Value, Word,
 };
 pub use interpret::{Escape, Machine};
+pub use paths::Paths;
 pub use verify::{VerifiedGraph, Violation, verify};

@@ -52,7 +52,7 @@ fn renumbered(kept: &[bool]) -> Vec<u32> {
 }
 
 impl Function {
-    fn prune(&mut self) {
+    pub(super) fn prune(&mut self) {
         let live = self.live();
         let position = renumbered(&live);
         let moved = |value: Value| Value(position[value.index()]);
@@ -93,6 +93,7 @@ impl Function {
         self.quantities
             .iter_mut()
             .for_each(|quantity| quantity.value = moved(quantity.value));
+        self.leave.iter_mut().for_each(|flag| *flag = moved(*flag));
     }
 
     /// Which nodes some result needs; a join needs its stage's guard.
@@ -104,7 +105,8 @@ impl Function {
             .iter()
             .map(|&(_, value)| value)
             .chain(self.next_params.iter().map(|&(_, value)| value));
-        let mut wanted: Vec<Value> = results.chain(words).collect();
+        let leave = self.leave.iter().copied();
+        let mut wanted: Vec<Value> = results.chain(words).chain(leave).collect();
         while let Some(value) = wanted.pop() {
             if std::mem::replace(&mut live[value.index()], true) {
                 continue;

@@ -53,7 +53,11 @@ impl Program {
             match &stage.guard {
                 None => writeln!(f, "  {}:", stage.name)?,
                 Some(guard) => {
-                    let rare = if guard.rare { "rarely " } else { "" };
+                    let rare = match (guard.exit, guard.rare) {
+                        (true, _) => "exit ",
+                        (false, true) => "rarely ",
+                        (false, false) => "",
+                    };
                     writeln!(
                         f,
                         "  {} ({rare}if {}):",

@@ -17,11 +17,13 @@
 //!    word at most once. What is set lies in the word's interval, which holds its initial value and fits its
 //!    storage of 16 or 32 bits.
 //! 10. No dead nodes.
+//! 11. A function has at most one exit, its last stage: the exit's joins are results, its guard is made of flags outside
+//!     of guarded stages. Only paths taken from a verified function hold flags to leave by.
 
 use std::collections::HashSet;
 use std::fmt;
 
-use super::graph::{Function, Interval, Kind, Op, Program, Value, Word};
+use super::graph::{Function, Guard, Interval, Kind, Op, Program, Value, Word};
 
 /// A broken invariant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -171,6 +173,7 @@ impl FunctionCheck<'_> {
         // Everything below follows operands, so it needs them in place.
         if self.violations.0.is_empty() {
             self.check_stages();
+            self.check_exit();
             self.check_nodes();
             self.check_names();
             self.check_results();
@@ -322,6 +325,21 @@ impl FunctionCheck<'_> {
                     "leaves its guarded stage other than by a join",
                 );
             }
+        }
+    }
+
+    fn check_exit(&mut self) {
+        let function = self.function;
+        let is_exit = |guard: &Guard| guard.exit;
+        for (number, stage) in function.stages.iter().enumerate() {
+            if stage.guard.as_ref().is_some_and(is_exit) && number + 1 < function.stages.len() {
+                self.violations
+                    .add(&stage.name, "an exit is followed by a stage");
+            }
+        }
+        if !function.leave.is_empty() {
+            self.violations
+                .add(&function.name, "only a path holds flags to leave by");
         }
     }
 

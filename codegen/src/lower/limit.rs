@@ -13,10 +13,17 @@ use crate::spec::LimitRule;
 pub struct Limited {
     /// Phase voltages a, b.
     pub u: [Value; 2],
-    /// Phase voltage c.
-    pub u_c: Value,
-    /// (max + min) / 2 of the three, rounded down: the offset that centres the pulses.
-    pub middle: Value,
+    /// Phase voltages less (max + min) / 2 of the three, rounded down: what centred pulses stand for.
+    pub centred: [Value; 3],
+}
+
+/// A voltage that may lie outside.
+#[derive(Clone, Copy, Debug)]
+struct Free {
+    /// Phase voltages.
+    u: [Value; 3],
+    /// (max + min) / 2 of the three, rounded down.
+    middle: Value,
 }
 
 /// Fraction bits of the ratio in keep_angle.
@@ -25,12 +32,13 @@ const SCALE_BITS: u32 = 30;
 const BLEND_BITS: u32 = 15;
 
 impl Lowering<'_> {
-    /// Limits the voltage `u` (phases a, b) to the hexagon; `e` is the EMF (phases a, b).
+    /// Limits the voltage `u` (phases a, b) to the hexagon; `e` says the EMF (phases a, b), off the normal path and
+    /// where the rule asks for it.
     pub fn limit_voltage(
         &mut self,
         rule: LimitRule,
         u: [Value; 2],
-        e: [Value; 2],
+        e: impl FnOnce(&mut Self) -> [Value; 2],
         bus: Bus,
         third: Coefficient,
     ) -> Limited {
@@ -45,9 +53,17 @@ impl Lowering<'_> {
         let sum = self.b.add(high, low);
         let middle = self.b.shift_right(sum, 1);
         self.b.name("middle_unsat", middle);
+        let free = Free {
+            u: [u[0], u[1], u_c],
+            middle,
+        };
+        let names = ["centred_a_unsat", "centred_b_unsat", "centred_c_unsat"];
+        let centred = [0, 1, 2].map(|x| {
+            let centred = self.b.sub(free.u[x], middle);
+            self.b.name(names[x], centred)
+        });
         let saturated = self.b.compare(Comparison::Less, bus.volts, spread);
         self.b.name("saturated", saturated);
-        let free = Limited { u, u_c, middle };
         let limited = match rule {
             LimitRule::KeepAngle => {
                 self.b.guarded_stage(
@@ -94,6 +110,7 @@ impl Lowering<'_> {
                         "Past the reachable component the result goes over to the nearest point without a jump.",
                     ],
                 );
+                let e = e(self);
                 self.torque_priority(free, e, bus, third)
             }
         };
@@ -105,18 +122,35 @@ impl Lowering<'_> {
             [inside[0], inside[1], inside_c],
         );
         let sum = self.b.add(high, low);
-        let inside_middle = self.b.shift_right(sum, 1);
-        self.b.name("limited_middle", inside_middle);
-        let [u_a, u_b, u_c, middle] = self.b.join([
+        let middle = self.b.shift_right(sum, 1);
+        self.b.name("limited_middle", middle);
+        let up = self.b.literal(1);
+        let up = self.b.add(bus.volts, up);
+        let top = self.b.shift_right(up, 1);
+        self.b.name("centred_max", top);
+        let bottom = self.b.neg(top);
+        self.b.name("centred_min", bottom);
+        let names = [
+            "centred_a_limited",
+            "centred_b_limited",
+            "centred_c_limited",
+        ];
+        let inside_centred = [0, 1, 2].map(|x| {
+            let centred = self.b.sub([inside[0], inside[1], inside_c][x], middle);
+            let centred = self.b.max(centred, bottom);
+            let centred = self.b.min(centred, top);
+            self.b.name(names[x], centred)
+        });
+        let [u_a, u_b, centred_a, centred_b, centred_c] = self.b.join([
             ("u_a", inside[0], u[0]),
             ("u_b", inside[1], u[1]),
-            ("u_c", inside_c, u_c),
-            ("middle", inside_middle, middle),
+            ("centred_a", inside_centred[0], centred[0]),
+            ("centred_b", inside_centred[1], centred[1]),
+            ("centred_c", inside_centred[2], centred[2]),
         ]);
         Limited {
             u: [u_a, u_b],
-            u_c,
-            middle,
+            centred: [centred_a, centred_b, centred_c],
         }
     }
 
@@ -126,13 +160,13 @@ impl Lowering<'_> {
     }
 
     /// The nearest point's phase voltages a and b, added to the open stage.
-    fn nearest(&mut self, free: Limited, bus: Bus, third: Coefficient) -> [Value; 2] {
+    fn nearest(&mut self, free: Free, bus: Bus, third: Coefficient) -> [Value; 2] {
         let half = self.b.shift_right(bus.volts, 1);
         let lift = self.b.sub(half, free.middle);
         self.b.name("lift", lift);
         let names = ["terminal_a", "terminal_b", "terminal_c"];
         let terminals = [0, 1, 2].map(|x| {
-            let phase = [free.u[0], free.u[1], free.u_c][x];
+            let phase = free.u[x];
             let lifted = self.b.add(phase, lift);
             let zero = self.zero();
             let terminal = self.b.clamp(lifted, zero, bus.volts);
@@ -154,7 +188,7 @@ impl Lowering<'_> {
 
     fn torque_priority(
         &mut self,
-        free: Limited,
+        free: Free,
         e: [Value; 2],
         bus: Bus,
         third: Coefficient,
@@ -183,7 +217,7 @@ impl Lowering<'_> {
         for (name, value) in [("f_d", f_d), ("f_x", f_x), ("f_y", f_y)] {
             self.b.name(name, value);
         }
-        let [u_d, u_x, u_y] = rotate(self, [free.u[0], free.u[1], free.u_c]);
+        let [u_d, u_x, u_y] = rotate(self, free.u);
         self.b.name("u_d", u_d);
         let [n_d, n_x, n_y] = rotate(self, [near[0], near[1], near_c]);
         self.b.name("near_d", n_d);

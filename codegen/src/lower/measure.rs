@@ -3,13 +3,24 @@
 use super::Lowering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 
+/// What was sampled, and whether it says anything.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// ADC counts of phases a and b as they came.
+    adc: [Value; 2],
+    /// Sector that the Hall code names, 0 for an invalid code.
+    code: Value,
+    /// Flag: a converter is at an end of its range.
+    pub out_of_range: Value,
+    /// Flag: the Hall code is invalid.
+    pub no_hall: Value,
+}
+
 /// Phase currents of this sample, in words of current.
 #[derive(Clone, Copy, Debug)]
 pub struct Currents {
     /// ADC counts of phases a and b, limited to the converter's range.
     pub counts: [Value; 2],
-    /// Flag: a converter is at an end of its range.
-    pub out_of_range: Value,
     /// Currents of phases a, b, c.
     pub phases: [Value; 3],
 }
@@ -17,8 +28,6 @@ pub struct Currents {
 /// Sector and edge of this sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Hall {
-    /// Sector that the code names, 0 for an invalid code.
-    pub code: Value,
     /// Sector in force: the last valid one where the code is invalid; 0 before the first.
     pub sector: Value,
     /// Sector of the last sample.
@@ -27,43 +36,78 @@ pub struct Hall {
     pub edge: Value,
 }
 
+const ADC_MAX: &str = "Largest count of the phase-current converters.";
+
 impl Lowering<'_> {
-    /// Currents from ADC counts and the offset words.
-    pub fn measure(&mut self, offsets: [StateId; 2]) -> Currents {
-        let inverter = &self.spec.inverter;
-        let (bits, inverted) = (inverter.adc_bits, inverter.adc_gain < 0.0);
-        let shift = self.scale.current_bits;
+    /// The sample, and whether it is one to control by.
+    pub fn read_sample(&mut self) -> Sample {
         self.b.stage(
-            "measure_currents",
+            "read_sample",
             &[
-                "Phase currents from ADC counts less offset; the third from Kirchhoff's law.",
-                "",
-                "A converter at an end of its range (count 0, the largest, or more) says nothing of the current: it trips the drive.",
+                "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more)",
+                "and an invalid Hall code (000, 111) trip the drive.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));
-        let raw = [
+        let adc = [
             self.b.input("adc_a", word, "Phase-a current, ADC count."),
             self.b.input("adc_b", word, "Phase-b current, ADC count."),
         ];
-        let top = (1 << bits) - 1;
-        let doc = "Largest count of the phase-current converters.";
-        let ends = raw.map(|count| {
+        let ends = adc.map(|count| {
             let zero = self.zero();
             let bottom = self.b.compare(Comparison::Equal, count, zero);
-            let limit = self.number("adc_max", top, doc);
+            let limit = self.adc_max();
             let ceiling = self.b.compare(Comparison::LessEqual, limit, count);
             self.b.or(bottom, ceiling)
         });
         let out_of_range = self.b.or(ends[0], ends[1]);
         self.b.name("out_of_range", out_of_range);
+        let hall = self
+            .b
+            .input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
+        let mut sectors = vec![0; 8];
+        for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
+            sectors[usize::from(code & 7)] = sector;
+        }
+        let decode = self.b.program.table(
+            "hall_sector",
+            sectors,
+            &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],
+        );
+        let code = self.b.lookup(decode, hall);
+        self.b.name("sector_seen", code);
+        let zero = self.zero();
+        let no_hall = self.b.compare(Comparison::Equal, code, zero);
+        self.b.name("no_hall", no_hall);
+        Sample {
+            adc,
+            code,
+            out_of_range,
+            no_hall,
+        }
+    }
+
+    fn adc_max(&mut self) -> Value {
+        let top = (1 << self.spec.inverter.adc_bits) - 1;
+        self.number("adc_max", top, ADC_MAX)
+    }
+
+    /// Currents from ADC counts and the offset words.
+    pub fn measure(&mut self, sample: &Sample, offsets: [StateId; 2]) -> Currents {
+        let inverter = &self.spec.inverter;
+        let (bits, inverted) = (inverter.adc_bits, inverter.adc_gain < 0.0);
+        let shift = self.scale.current_bits;
+        self.b.stage(
+            "measure_currents",
+            &["Phase currents from ADC counts less offset; the third from Kirchhoff's law."],
+        );
         let counts = if bits == 16 {
-            raw
+            sample.adc
         } else {
             let names = ["count_a", "count_b"];
             [0, 1].map(|x| {
-                let limit = self.number("adc_max", top, doc);
-                let count = self.b.min(raw[x], limit);
+                let limit = self.adc_max();
+                let count = self.b.min(sample.adc[x], limit);
                 self.b.name(names[x], count)
             })
         };
@@ -81,35 +125,18 @@ impl Lowering<'_> {
         let c = self.third_phase("i_c", a, b);
         Currents {
             counts,
-            out_of_range,
             phases: [a, b, c],
         }
     }
 
     /// Sector and edge.
-    pub fn read_hall(&mut self, sector_prev: StateId) -> Hall {
+    pub fn find_sector(&mut self, sample: &Sample, sector_prev: StateId) -> Hall {
         self.b.stage(
-            "read_hall",
-            &["Sector from the Hall code; an invalid code (000, 111) keeps the last sector and trips the drive."],
+            "find_sector",
+            &["Sector from the Hall code; an invalid code keeps the last sector."],
         );
-        let hall = self
-            .b
-            .input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
-        let mut sectors = vec![0; 8];
-        for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
-            sectors[usize::from(code & 7)] = sector;
-        }
-        let decode = self.b.program.table(
-            "hall_sector",
-            sectors,
-            &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],
-        );
-        let code = self.b.lookup(decode, hall);
-        self.b.name("hall_code_sector", code);
         let sector_prev = self.b.state(sector_prev);
-        let zero = self.zero();
-        let valid = self.b.compare(Comparison::NotEqual, code, zero);
-        let sector = self.b.select(valid, code, sector_prev);
+        let sector = self.b.select(sample.no_hall, sector_prev, sample.code);
         self.b.name("sector", sector);
         let changed = self.b.compare(Comparison::NotEqual, sector, sector_prev);
         let zero = self.zero();
@@ -117,7 +144,6 @@ impl Lowering<'_> {
         let edge = self.b.and(changed, known);
         self.b.name("edge", edge);
         Hall {
-            code,
             sector,
             sector_prev,
             edge,

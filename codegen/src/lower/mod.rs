@@ -15,12 +15,12 @@ mod supervise;
 
 pub use emf::{FluxModel, ModelledEmf};
 pub use limit::Limited;
-pub use measure::{Currents, Hall};
+pub use measure::{Currents, Hall, Sample};
 pub use modulate::{Applied, Command, OffLeg, PairModulation, PairPulses};
 use number::round_half_up;
 pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};
-pub use supervise::{Mode, SupervisorWords};
+pub use supervise::{Mode, Rest, SupervisorWords};
 
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};

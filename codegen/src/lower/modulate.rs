@@ -63,12 +63,10 @@ impl Lowering<'_> {
             "modulate",
             &["Compare values of a centre-aligned timer; (max + min)/2 as offset centres the pulses as space-vector modulation does."],
         );
-        let voltage = [limited.u[0], limited.u[1], limited.u_c];
         let compares = [0, 1, 2].map(|x| {
-            let centred = self.b.sub(voltage[x], limited.middle);
             self.compare_centred(
                 ["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x],
-                centred,
+                limited.centred[x],
                 bus,
                 shifts.map(|shifts| shifts[x]),
             )
@@ -137,12 +135,12 @@ impl Lowering<'_> {
         self.b
             .state_error("duty", lifted, [doc, "timer counts"], count);
         let counts = self.b.shift_right(lifted, self.scale.voltage_bits);
+        let period = i64::from(self.spec.inverter.timer_period);
+        if Interval::new(0, period).contains(self.b.interval(counts)) {
+            return self.b.name(name, counts);
+        }
         let zero = self.zero();
-        let top = self.number(
-            "timer_period",
-            i64::from(self.spec.inverter.timer_period),
-            "Compare value of 100 % duty.",
-        );
+        let top = self.number("timer_period", period, "Compare value of 100 % duty.");
         let compare = self.b.clamp(counts, zero, top);
         self.b.name(name, compare)
     }
@@ -352,20 +350,18 @@ impl Lowering<'_> {
             "modulate_three",
             &["Three centred pulses, for commutation."],
         );
-        let voltage = [limited.u[0], limited.u[1], limited.u_c];
         let half_bus = self.b.shift_right(bus.volts, 1);
-        let lift = self.b.sub(half_bus, limited.middle);
-        self.b.name("lift_three", lift);
+        self.b.name("half_bus", half_bus);
         let mut three = vec![];
         for x in 0..3 {
-            let centred = self.b.sub(voltage[x], limited.middle);
+            let centred = limited.centred[x];
             let compare = self.compare_centred(
                 ["compare_a_three", "compare_b_three", "compare_c_three"][x],
                 centred,
                 bus,
                 shifts.map(|shifts| shifts[x]),
             );
-            let lifted = self.b.add(voltage[x], lift);
+            let lifted = self.b.add(centred, half_bus);
             let zero = self.zero();
             let terminal = self.b.clamp(lifted, zero, bus.volts);
             three.push((

@@ -1,7 +1,7 @@
 //! Faults, start-up sequence and the safe command (semantics, steps 3 and 12).
 
 use super::Lowering;
-use super::measure::{Currents, Hall};
+use super::measure::{Currents, Hall, Sample};
 use super::modulate::Command;
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
@@ -34,6 +34,17 @@ pub struct SupervisorWords {
     stall_count: Option<StateId>,
 }
 
+/// Whether the drive rests in this period, and what decides its command then.
+#[derive(Clone, Copy, Debug)]
+pub struct Rest {
+    /// Flag: no current is controlled.
+    pub flag: Value,
+    /// Mode at the start of the period.
+    mode: Value,
+    /// Flag: something forbids to drive the motor.
+    faulty: Value,
+}
+
 impl Lowering<'_> {
     /// Declares the supervisor's state words.
     pub fn supervisor_words(&mut self) -> SupervisorWords {
@@ -55,52 +66,63 @@ impl Lowering<'_> {
         }
     }
 
-    /// Detects faults and advances the start-up sequence; returns the mode of this period's command.
+    /// Detects faults and advances the start-up sequence; says whether the drive rests in this period.
     pub fn supervise(
         &mut self,
         words: SupervisorWords,
+        sample: &Sample,
         currents: &Currents,
         hall: &Hall,
         set_point: Value,
-    ) -> Value {
+    ) -> Rest {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
         let mode = self.b.state(words.mode);
         let trip = self.ampere_word(self.spec.inverter.trip_current);
-        let [a, b, c] = currents.phases.map(|current| self.b.abs(current));
-        let pair = self.b.max(a, b);
-        let peak = self.b.max(pair, c);
-        let limit = self.number(
-            "i_trip",
-            trip,
-            &format!(
+        let level = self.spec.inverter.trip_current;
+        let doc = |level: f64| {
+            format!(
                 "Trip level of the phase currents: {}, words of current.",
-                engineering(self.spec.inverter.trip_current, "A")
-            ),
-        );
-        let over_current = self.b.compare(Comparison::Less, limit, peak);
+                engineering(level, "A")
+            )
+        };
+        // Two comparisons, which compilers fold into one of the distance from the lower level.
+        let [a, b, c] = currents.phases.map(|current| {
+            let high = self.number("i_trip", trip, &doc(level));
+            let above = self.b.compare(Comparison::Less, high, current);
+            let low = self.number("i_trip_negative", -trip, &doc(-level));
+            let below = self.b.compare(Comparison::Less, current, low);
+            self.b.or(above, below)
+        });
+        let pair = self.b.or(a, b);
+        let over_current = self.b.or(pair, c);
         self.b.name("over_current", over_current);
-        let zero = self.zero();
-        let no_hall = self.b.compare(Comparison::Equal, hall.code, zero);
-        self.b.name("no_hall", no_hall);
-        let mut any = self.b.or(over_current, no_hall);
-        any = self.b.or(currents.out_of_range, any);
-        if let Some(stall_count) = words.stall_count {
-            let stalled = self.stalled(stall_count, hall, [mode, set_point]);
-            any = self.b.or(stalled, any);
-        }
-        self.b.name("faulty", any);
-        let fault = self.b.state(words.fault);
         let zero = self.zero();
         let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
         self.b.name("sequencing", sequencing);
+        let mut motor_fault = over_current;
+        if let Some(count) = words.stall_count {
+            let stalled = self.stalled(count, hall, [mode, set_point]);
+            motor_fault = self.b.or(over_current, stalled);
+            self.b.name("motor_fault", motor_fault);
+        }
+        // A stage of its own: behind the ones that find the flags, a period that is not left for rest needs none of it.
+        self.b.stage(
+            "find_rest",
+            &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
+        );
+        let unknown = self.b.or(sample.out_of_range, sample.no_hall);
+        let any = self.b.or(unknown, motor_fault);
+        self.b.name("faulty", any);
+        let rests = self.b.or(any, sequencing);
+        self.b.name("resting", rests);
+        let fault = self.b.state(words.fault);
         let sequenced = self.sequence(words, currents, [mode, fault], sequencing);
-        self.latch(
-            words,
-            currents.out_of_range,
-            [over_current, no_hall],
-            any,
-            sequenced,
-        )
+        self.latch(words, sample, over_current, any, sequenced);
+        Rest {
+            flag: rests,
+            mode,
+            faulty: any,
+        }
     }
 
     fn stalled(
@@ -127,7 +149,8 @@ impl Lowering<'_> {
         self.b.name("stall_count_now", count);
         self.b.set_state(stall_count, count);
         let limit = self.number("stall_periods", periods, doc);
-        self.b.compare(Comparison::Equal, count, limit)
+        let stalled = self.b.compare(Comparison::Equal, count, limit);
+        self.b.name("stalled", stalled)
     }
 
     /// Calibration and pre-charge; returns mode and fault behind them.
@@ -271,11 +294,11 @@ impl Lowering<'_> {
     fn latch(
         &mut self,
         words: SupervisorWords,
-        out_of_range: Value,
-        [over_current, no_hall]: [Value; 2],
+        sample: &Sample,
+        over_current: Value,
         faulty: Value,
         [mode, fault]: [Value; 2],
-    ) -> Value {
+    ) {
         self.b.guarded_stage(
             "latch_fault",
             faulty,
@@ -283,11 +306,11 @@ impl Lowering<'_> {
             &["Trips the drive and keeps the first cause until reset."],
         );
         let (hall, stall) = (self.b.literal(3), self.b.literal(4));
-        let mut cause = self.b.select(no_hall, hall, stall);
+        let mut cause = self.b.select(sample.no_hall, hall, stall);
         let code = self.b.literal(2);
         cause = self.b.select(over_current, code, cause);
         let code = self.b.literal(1);
-        cause = self.b.select(out_of_range, code, cause);
+        cause = self.b.select(sample.out_of_range, code, cause);
         let tripped = self.b.literal(Mode::Tripped as i32);
         let already = self.b.compare(Comparison::Equal, mode, tripped);
         let latched = self.b.select(already, fault, cause);
@@ -298,31 +321,24 @@ impl Lowering<'_> {
             .join([("mode_next", tripped, mode), ("fault_next", latched, fault)]);
         self.b.set_state(words.mode, mode);
         self.b.set_state(words.fault, fault);
-        mode
     }
 
-    /// The command and the words that are remembered, replaced by the safe ones where the mode is not run.
-    pub fn hold_unless_running(
+    /// The command and the words that are remembered, replaced by the safe ones where the drive rests.
+    pub fn hold_at_rest(
         &mut self,
-        mode: Value,
+        rest: Rest,
         command: &Command,
         remembered: &[(StateId, &str, Value)],
     ) {
-        self.b.stage(
-            "find_rest",
-            &["Whether the drive rests: it calibrates, pre-charges or is tripped, and controls no current."],
-        );
-        let zero = self.zero();
-        let resting = self.b.compare(Comparison::NotEqual, mode, zero);
-        self.b.name("resting", resting);
-        self.b.guarded_stage(
-            "rest",
-            resting,
-            true,
-            &["Safe command: all legs low in pre-charge, off in calibration and after a trip; the memory of voltages is cleared."],
+        self.b.exit_stage(
+            "command_rest",
+            rest.flag,
+            &["Safe command: all legs low in pre-charge, off in calibration and with a fault; the memory of voltages is cleared."],
         );
         let precharge = self.b.literal(Mode::Precharge as i32);
-        let precharging = self.b.compare(Comparison::Equal, mode, precharge);
+        let precharging = self.b.compare(Comparison::Equal, rest.mode, precharge);
+        let healthy = self.b.not(rest.faulty);
+        let precharging = self.b.and(precharging, healthy);
         let (low, off) = (self.b.literal(1), self.b.literal(2));
         let leg = self.b.select(precharging, low, off);
         self.b.name("leg_resting", leg);

@@ -179,6 +179,7 @@ fn write_common(text: &mut Text, controller: &ControllerSpec) {
         match common.emf {
             EmfSource::Estimated => "estimated",
             EmfSource::Model => "model",
+            EmfSource::Held => "held",
         },
     );
     text.number("emf_filter", common.emf_filter);

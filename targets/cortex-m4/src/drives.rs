@@ -17,13 +17,13 @@ hexagen_firmware::drives! {
 
     // The variants that the goals of the cost table are about.
     TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
-        "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf_filter: 1 };
+        "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held };
     TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:
         "../motors/trivedi-keshri-660w.toml",
-        fcs_mpc { candidates: three_phase, emf_filter: 1 };
+        fcs_mpc { candidates: three_phase, emf: held };
     TrivediFcsMpcTable2, step_trivedi_keshri_660w_fcs_mpc_table2:
         "../motors/trivedi-keshri-660w.toml",
-        fcs_mpc { candidates: table2, off_leg: nominal, emf_filter: 1 };
+        fcs_mpc { candidates: table2, off_leg: nominal, emf: held };
     TrivediFcsMpcPhysical, step_trivedi_keshri_660w_fcs_mpc_physical:
         "../motors/trivedi-keshri-660w.toml", fcs_mpc { emf_filter: 1 };
     TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:

@@ -35,11 +35,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
-        because: "a drive in control takes the sequence's branch without effect",
-        drives: ALL,
-        faults: &[(&["detect_faults: in sequencing"], &["-1 for 0"])],
-    },
-    Unnoticed {
         because: "without stall time-out there is no fourth fault to tell",
         drives: &[
             PAPER,
@@ -69,7 +64,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     Unnoticed {
         because: "every leg word but 0 and 1 is off",
         drives: ALL,
-        faults: &[(&["rest: in leg_resting"], &["3 for 2 (2)"])],
+        faults: &[(&["command_rest: in leg_resting"], &["3 for 2 (2)"])],
     },
     Unnoticed {
         because: "every leg word but 0 and 1 is off",
@@ -300,8 +295,8 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER, PHCC_ESTUN,
         ],
         faults: &[
-            (&["read_hall: in edge"], &["-1 for 0"]),
-            (&["read_hall: edge"], &["or for and", "second left out"]),
+            (&["find_sector: in edge"], &["-1 for 0"]),
+            (&["find_sector: edge"], &["or for and", "second left out"]),
         ],
     },
     Unnoticed {
@@ -599,12 +594,12 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
-        drives: &[PAPER, HOVERBOARD, ESTUN, TEKNIC, PI_TEKNIC, PI_ANAHEIM],
+        drives: &[HOVERBOARD, PI_ANAHEIM],
         faults: &[(&["timer_period"], &["one more", "bit 7"])],
     },
     Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
-        drives: &[PAPER, ESTUN, PI_TEKNIC, PI_ANAHEIM],
+        drives: &[PI_ANAHEIM],
         faults: &[
             (
                 &[
@@ -626,7 +621,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "limited voltages lie within the bus up to less than half a timer tick",
-        drives: &[HOVERBOARD, TEKNIC],
+        drives: &[HOVERBOARD],
         faults: &[
             (
                 &[
@@ -647,6 +642,87 @@ pub const EQUIVALENT: &[Unnoticed] = &[
                 &["lower limit left out", "upper limit left out"],
             ),
         ],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[PAPER],
+        faults: &[
+            (
+                &["limit_torque_priority: in centred_max"],
+                &["2 for 1", "0 for 1", "second term left out"],
+            ),
+            (&["limit_torque_priority: centred_max"], &["shift one less"]),
+            (
+                &[
+                    "limit_torque_priority: in centred_a_limited",
+                    "limit_torque_priority: centred_a_limited",
+                    "limit_torque_priority: in centred_b_limited",
+                    "limit_torque_priority: centred_b_limited",
+                    "limit_torque_priority: in centred_c_limited",
+                    "limit_torque_priority: centred_c_limited",
+                ],
+                &["limit left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[PAPER],
+        faults: &[(&["limit_torque_priority: in centred_max"], &["- for +"])],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[HOVERBOARD, PI_TEKNIC],
+        faults: &[
+            (
+                &["limit_nearest: in centred_max"],
+                &["2 for 1", "0 for 1", "second term left out"],
+            ),
+            (&["limit_nearest: centred_max"], &["shift one less"]),
+            (
+                &[
+                    "limit_nearest: in centred_a_limited",
+                    "limit_nearest: centred_a_limited",
+                    "limit_nearest: in centred_b_limited",
+                    "limit_nearest: centred_b_limited",
+                    "limit_nearest: in centred_c_limited",
+                    "limit_nearest: centred_c_limited",
+                ],
+                &["limit left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[PI_TEKNIC],
+        faults: &[(&["limit_nearest: in centred_max"], &["- for +"])],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[ESTUN, TEKNIC, PI_ANAHEIM],
+        faults: &[
+            (
+                &["limit_keep_angle: in centred_max"],
+                &["2 for 1", "0 for 1", "second term left out"],
+            ),
+            (&["limit_keep_angle: centred_max"], &["shift one less"]),
+            (
+                &[
+                    "limit_keep_angle: in centred_a_limited",
+                    "limit_keep_angle: centred_a_limited",
+                    "limit_keep_angle: in centred_b_limited",
+                    "limit_keep_angle: centred_b_limited",
+                    "limit_keep_angle: in centred_c_limited",
+                    "limit_keep_angle: centred_c_limited",
+                ],
+                &["limit left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[ESTUN, PI_ANAHEIM],
+        faults: &[(&["limit_keep_angle: in centred_max"], &["- for +"])],
     },
     Unnoticed {
         because: "the middle of limited voltages is rounded down: no terminal is below zero",
@@ -671,12 +747,13 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
-        because: "the bus is a multiple of six units: only the third terminal rounds beyond it",
-        drives: &[HOVERBOARD],
+        because: "a centred voltage is at most half the bus above the middle",
+        drives: &[HOVERBOARD, TEKNIC],
         faults: &[(
             &[
                 "modulate_three: terminal_a_three",
                 "modulate_three: terminal_b_three",
+                "modulate_three: terminal_c_three",
             ],
             &["upper limit left out"],
         )],

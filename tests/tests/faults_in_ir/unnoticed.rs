@@ -111,12 +111,26 @@ pub const RARE: &[Unnoticed] = &[
         faults: &[(&["nearest_pair: in tau_zero"], &["upper limit left out"])],
     },
     Unnoticed {
+        because: "moves the voltage by its last bit, which changes the choice next to a tie only",
+        drives: &[FCS_PAPER, FCS_TEKNIC],
+        faults: &[(&["k_decay"], &["one more", "one less"])],
+    },
+    Unnoticed {
+        because: "moves the error by its last bit, which shows at the end of its band only",
+        drives: &[PHCC_ESTUN],
+        faults: &[(
+            &["predict_error: in q_a", "predict_error: in q_b"],
+            &["rounded down"],
+        )],
+    },
+    Unnoticed {
         because: "differs only where the error is at the end of its band to the last bit",
         drives: &[PHCC_ESTUN],
         faults: &[
-            (&["band_alpha"], &["one more", "one less"]),
+            (&["band_alpha", "band_beta"], &["one more", "one less"]),
             (
                 &[
+                    "compare_with_bands: above_beta",
                     "compare_with_bands: above_alpha",
                     "compare_with_bands: in h_a",
                     "compare_with_bands: in h_b",

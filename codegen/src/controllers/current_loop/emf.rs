@@ -43,7 +43,7 @@ impl CurrentLoop<'_, '_> {
         third: Coefficient,
         outgoing: Option<Value>,
     ) -> Option<Emf> {
-        if self.needs.emf == EmfUse::None {
+        if self.needs.emf == EmfUse::None || self.options.emf == EmfSource::Held {
             return None;
         }
         if let (Some(rotor), EmfSource::Model) = (rotor, self.options.emf) {

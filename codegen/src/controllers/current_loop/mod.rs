@@ -4,19 +4,21 @@
 mod dead_time;
 mod design;
 mod emf;
+mod held;
 mod observer;
 mod stability;
 mod words;
 
 pub use design::LoopDesign;
+pub use held::Held;
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
 use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
-use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Scale};
+use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Rest, Scale};
 use crate::scaling::Lowered;
-use crate::spec::{LoopOptions, Reference, Spec};
+use crate::spec::{EmfSource, LoopOptions, Reference, Spec};
 
 /// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
 pub fn lower_with(
@@ -77,8 +79,8 @@ pub struct Front {
     pub words: Words,
     /// Phase currents.
     pub currents: Currents,
-    /// Mode after supervision.
-    pub mode: Value,
+    /// Whether the drive rests.
+    pub rest: Rest,
     /// Sector in force, with its advance.
     pub sector: Value,
     /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
@@ -103,6 +105,8 @@ pub struct Front {
     pub e_expected: Option<[Value; 2]>,
     /// What the modelled EMF lacks; where the law integrates that.
     pub integral: Option<[Value; 2]>,
+    /// The folded words; where the EMF is held.
+    pub held: Option<Held>,
 }
 
 /// State words and their new values while the drive runs; zero otherwise.
@@ -114,15 +118,16 @@ impl CurrentLoop<'_, '_> {
         let words = self.declare();
         let options = *self.options;
         let l = &mut *self.lowering;
-        let currents = l.measure(words.supervisor.offsets);
-        let hall = l.read_hall(words.supervisor.sector_prev);
+        let sample = l.read_sample();
+        let currents = l.measure(&sample, words.supervisor.offsets);
+        let hall = l.find_sector(&sample, words.supervisor.sector_prev);
         l.b.set_state(words.supervisor.sector_prev, hall.sector);
         if let Some(direction) = words.direction {
             // Read here, in an open stage: the stage that senses the direction is a guarded one.
             l.b.state(direction);
         }
         let j = l.b.param(set_point.j);
-        let mode = l.supervise(words.supervisor, &currents, &hall, j);
+        let rest = l.supervise(words.supervisor, &sample, &currents, &hall, j);
         let rotor = words.rotor.map(|rotor| l.track_rotor(rotor, &hall));
         let direction = match (&rotor, words.direction) {
             (Some(rotor), _) => Some(rotor.direction),
@@ -169,11 +174,12 @@ impl CurrentLoop<'_, '_> {
         let emf = self.emf(&words, &currents, &hall, rotor.as_ref(), third, outgoing);
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
         let off_leg = self.off_leg_of(bus, third);
+        let held = self.holds_emf().then(|| self.held(currents.phases));
         let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
             words,
             currents,
-            mode,
+            rest,
             sector,
             direction,
             set_point: j,
@@ -186,7 +192,13 @@ impl CurrentLoop<'_, '_> {
             e_now,
             e_expected: emf.map(|emf| emf.expected),
             integral: emf.and_then(|emf| emf.integral),
+            held,
         }
+    }
+
+    /// Whether the law predicts with the EMF of the last period.
+    fn holds_emf(&self) -> bool {
+        self.needs.emf == EmfUse::Prediction && self.options.emf == EmfSource::Held
     }
 
     /// Where an off leg's terminal sits.
@@ -228,19 +240,44 @@ impl CurrentLoop<'_, '_> {
         )
     }
 
+    /// Shifts against the dead time where no deadbeat term holds the present current by itself.
+    fn shifts_of_held(&mut self, reference: [Value; 2], currents: &Currents) -> [Value; 3] {
+        let k_hold = self.hold();
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "hold_current",
+            &["What the present current still contributes when the voltage takes effect."],
+        );
+        let held = [0, 1].map(|x| {
+            let held = l.times(k_hold, currents.phases[x]);
+            l.b.name(["held_a", "held_b"][x], held)
+        });
+        self.dead_time_shifts(reference, held, self.design.k_di)
+    }
+
+    /// The weight of the present current when the voltage takes effect.
+    fn hold(&mut self) -> Coefficient {
+        let delayed = self.options.delay == 1;
+        self.lowering.impedance(
+            "k_hold",
+            self.design.k_hold,
+            self.options.word,
+            "What the present current still contributes when the voltage takes effect.",
+            [if delayed { "K a^2" } else { "K a" }, "V/A"],
+        )
+    }
+
     /// Step 9: the deadbeat voltage of phases a, b, with shifts against the dead time where it is compensated.
     pub fn deadbeat(&mut self, front: &Front, compensates: bool) -> Deadbeat {
         let (reference, currents, now) = (front.reference, &front.currents, front.now);
         let (options, design) = (*self.options, self.design);
+        if let Some(held) = &front.held {
+            let u = self.held_voltage(held, reference);
+            let shifts = compensates.then(|| self.shifts_of_held(reference, currents));
+            return Deadbeat { u, shifts };
+        }
+        let k_hold = self.hold();
         let l = &mut *self.lowering;
-        let power = if options.delay == 1 { "K a^2" } else { "K a" };
-        let k_hold = l.impedance(
-            "k_hold",
-            design.k_hold,
-            options.word,
-            "What the present current still contributes when the voltage takes effect.",
-            [power, "V/A"],
-        );
         let k_decay = (options.delay == 1).then(|| {
             l.coefficient(
                 "k_decay",
@@ -300,6 +337,9 @@ impl CurrentLoop<'_, '_> {
         mut remembered: Remembered,
     ) {
         let words = &front.words;
+        if let (Some(held), Some(u)) = (&front.held, v_cmd) {
+            remembered.extend(self.fold(held, u));
+        }
         if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
             self.lowering.b.set_state(pair.sector_prev, front.sector);
             remembered.push((pair.commutating, "commutating_next", word));
@@ -358,6 +398,6 @@ impl CurrentLoop<'_, '_> {
             l.b.set_state(i_prev[0], front.currents.phases[0]);
             l.b.set_state(i_prev[1], front.currents.phases[1]);
         }
-        l.hold_unless_running(front.mode, command, &remembered);
+        l.hold_at_rest(front.rest, command, &remembered);
     }
 }

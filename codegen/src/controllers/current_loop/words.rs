@@ -62,6 +62,7 @@ impl CurrentLoop<'_, '_> {
             || options.advance > 0.0
             || options.reference == Reference::Proportional;
         let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
+        let holds = self.holds_emf();
         // What a period shows of its EMF takes part.
         let sees = estimated || needs.integral;
         let e_expected = self.e_bound() + if estimated { self.motion_bound() } else { 0 };
@@ -85,18 +86,20 @@ impl CurrentLoop<'_, '_> {
                 )
             })
         });
-        let v_cmd =
-            (options.delay == 1 && !needs.off_leg && (needs.emf == EmfUse::Prediction || sees))
-                .then(|| {
-                    ["v_a_cmd", "v_b_cmd"].map(|name| {
-                        l.state(
-                            name,
-                            0,
-                            volts,
-                            "Limited voltage of the last step, applied during this period.",
-                        )
-                    })
-                });
+        let v_cmd = (options.delay == 1
+            && !needs.off_leg
+            && !holds
+            && (needs.emf == EmfUse::Prediction || sees))
+            .then(|| {
+                ["v_a_cmd", "v_b_cmd"].map(|name| {
+                    l.state(
+                        name,
+                        0,
+                        volts,
+                        "Limited voltage of the last step, applied during this period.",
+                    )
+                })
+            });
         let t_cmd = (options.delay == 1 && needs.off_leg).then(|| {
             let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"].map(|name| {
                 l.state(

@@ -3,7 +3,7 @@
 use crate::controllers::current_loop::{
     CurrentLoop, Deadbeat, EmfUse, LoopDesign, Needs, lower_with,
 };
-use crate::lower::Scale;
+use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
 use crate::spec::{Modulation, PdccSpec, Spec};
 
@@ -24,7 +24,10 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
         };
         let front = step.front(set_point);
         let Deadbeat { u, shifts } = step.deadbeat(&front, options.dead_time_compensation);
-        let e = front.e.unwrap_or(u);
+        let e = |l: &mut Lowering<'_>| match &front.held {
+            Some(held) => held.seen_emf(l, design, options.common.word),
+            None => front.e.unwrap_or(u),
+        };
         let limited = step
             .lowering
             .limit_voltage(options.saturation, u, e, front.bus, front.third);

@@ -72,7 +72,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             .then(|| step.dead_time_shifts(front.reference, held, gain));
         let l = &mut *step.lowering;
         let e = front.e.unwrap_or(u);
-        let limited = l.limit_voltage(options.saturation, u, e, front.bus, front.third);
+        let limited = l.limit_voltage(options.saturation, u, |_| e, front.bus, front.third);
         l.b.stage("integrate", INTEGRATION);
         let mut remembered = vec![];
         for x in 0..2 {

@@ -6,8 +6,8 @@ use super::groups::Shape;
 use super::names::{docs, loaded, number, snake};
 use super::plan::Context;
 use super::stage::{StageFunction, output};
-use crate::ir::{Function, Node, Op, Program, Value, Word};
-use proc_macro2::{Literal, TokenStream};
+use crate::ir::{Function, Node, Op, Paths, Program, Value, Word};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 /// A function and the functions of its stages.
@@ -28,59 +28,164 @@ pub(super) struct Setter {
     pub stages: TokenStream,
 }
 
-/// The control step: `fn step(state, set-point words, inputs) -> Legs`.
+/// The control step, `fn step(state, set-point words, inputs) -> Legs`, and what takes over where it rests.
 pub(super) fn emit_step(program: &Program) -> Emitted {
-    let function = &program.step;
-    let context = Context::new(program, function);
-    let stages: Vec<StageFunction<'_>> = context
-        .plan()
-        .into_iter()
-        .map(|plan| {
-            let name = plan.stage.name.clone();
-            StageFunction::new(&context, plan, &name)
-        })
-        .collect();
-    let calls = stages.iter().map(StageFunction::call);
-    // Old state words that go out of the step are read under their names before any is written.
-    let scope = Scope {
-        context: &context,
-        reads_state: false,
-    };
-    let keep = keep_state(&context, &stages);
-    let words = param_pattern(program, function, &[]);
+    let Paths { normal, exit } = program.step.paths();
+    let context = Context::new(program, &normal);
+    let path = PathFunctions::new(&context, &[]);
+    let exit = exit.as_ref().map(|exit| Context::new(program, exit));
+    let exit = exit
+        .as_ref()
+        .map(|exit| PathFunctions::new(exit, &path.stages));
+    let read: Vec<usize> = exit.iter().flat_map(PathFunctions::params).collect();
+    let words = param_pattern(program, &normal, &read);
     let count = Literal::usize_unsuffixed(program.params.len());
-    let inputs = function.inputs.iter().map(|input| {
+    let inputs = normal.inputs.iter().map(|input| {
         let name = snake(&input.name);
         quote!(#name: Word)
     });
-    let compare =
-        ["compare_a", "compare_b", "compare_c"].map(|name| match output(function, name) {
-            None => quote!(0),
-            Some(value) => scope.literal(value).map_or_else(
-                || {
-                    let value = scope.receiver(value);
-                    quote!(#value.to_u16())
-                },
-                |literal| number(i64::from(literal)),
-            ),
-        });
-    let state = ["leg_a", "leg_b", "leg_c"].map(|name| match output(function, name) {
-        None => quote!(LegState::Off),
-        Some(value) => scope.shaped(value, Shape::Leg),
-    });
-    let doc = docs(&function.doc);
+    let doc = docs(&normal.doc);
+    let leave = exit.as_ref().map(PathFunctions::call_rest);
+    let (body, legs) = (path.body(leave.as_ref()), path.legs());
     let main = quote! {
         #doc
         #[inline]
-        fn step(state: &mut State, #words: [Word; #count], #(#inputs),*) -> Legs {
-            #(#calls)*
-            #keep
-            Legs { compare: [#(#compare),*], state: [#(#state),*] }
-        }
+        fn step(state: &mut State, #words: [Word; #count], #(#inputs),*) -> Legs { #body #legs }
     };
+    let stages = path.definitions();
+    let at_rest = exit.as_ref().map(PathFunctions::rest);
     Emitted {
         main,
-        stages: stages.iter().map(StageFunction::definition).collect(),
+        stages: quote!(#stages #at_rest),
+    }
+}
+
+/// One path of the step.
+struct PathFunctions<'a> {
+    context: &'a Context<'a>,
+    stages: Vec<StageFunction<'a>>,
+    /// Which stages are functions of the other path.
+    shared: Vec<bool>,
+}
+
+impl<'a> PathFunctions<'a> {
+    /// The functions of a path beside those of another: a stage that is the same there is that function, and one
+    /// that is not has a name of its own.
+    fn new(context: &'a Context<'a>, others: &[StageFunction<'_>]) -> Self {
+        let (mut stages, mut shared) = (vec![], vec![]);
+        for plan in context.plan() {
+            let name = plan.stage.name.clone();
+            let stage = StageFunction::new(context, plan.clone(), &name);
+            let other = others.iter().find(|other| other.is_named(&name));
+            let same = other.is_some_and(|other| other.is_same(&stage));
+            shared.push(same);
+            stages.push(if same || other.is_none() {
+                stage
+            } else {
+                StageFunction::new(context, plan, &format!("{name}_at_rest"))
+            });
+        }
+        Self {
+            context,
+            stages,
+            shared,
+        }
+    }
+
+    /// Positions of the set-point words that it reads.
+    fn params(&self) -> Vec<usize> {
+        let nodes = self.context.function.nodes.iter();
+        let read = nodes.filter_map(|node| match node.op {
+            Op::Param(id) => Some(id.index()),
+            _ => None,
+        });
+        read.collect()
+    }
+
+    /// Names of the set-point words and inputs that it reads.
+    fn arguments(&self) -> Vec<Ident> {
+        let (program, function) = (self.context.program, self.context.function);
+        let words = self.params().into_iter();
+        let words = words.map(|index| snake(&program.params[index].name));
+        let inputs = function.nodes.iter().filter_map(|node| match node.op {
+            Op::Input(n) => Some(snake(&function.inputs[n as usize].name)),
+            _ => None,
+        });
+        words.chain(inputs).collect()
+    }
+
+    /// The statement that leaves the step for this path.
+    fn call_rest(&self) -> TokenStream {
+        let arguments = self.arguments();
+        quote!(return Legs::at_rest(rest(state, #(#arguments),*));)
+    }
+
+    /// This path as a function of its own. No leg pulses at rest, and all are alike.
+    fn rest(&self) -> TokenStream {
+        let arguments = self.arguments();
+        let (body, stages) = (self.body(None), self.definitions());
+        let leg = self.leg("leg_a");
+        quote! {
+            /// One control period without current control, in start-up or with a fault: what all legs do.
+            #[cold]
+            #[inline(never)]
+            fn rest(state: &mut State, #(#arguments: Word),*) -> LegState { #body #leg }
+            #stages
+        }
+    }
+
+    /// What is seen behind the stages: old state words that go out of the step are read under their names before
+    /// any is written.
+    fn scope(&self) -> Scope<'a> {
+        Scope {
+            context: self.context,
+            reads_state: false,
+        }
+    }
+
+    fn leg(&self, name: &str) -> TokenStream {
+        match output(self.context.function, name) {
+            None => quote!(LegState::Off),
+            Some(value) => self.scope().shaped(value, Shape::Leg),
+        }
+    }
+
+    fn legs(&self) -> TokenStream {
+        let scope = self.scope();
+        let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
+            match output(self.context.function, name) {
+                None => quote!(0),
+                Some(value) => scope.literal(value).map_or_else(
+                    || {
+                        let value = scope.receiver(value);
+                        quote!(#value.to_u16())
+                    },
+                    |literal| number(i64::from(literal)),
+                ),
+            }
+        });
+        let state = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
+        quote!(Legs { compare: [#(#compare),*], state: [#(#state),*] })
+    }
+
+    /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.
+    fn body(&self, leave: Option<&TokenStream>) -> TokenStream {
+        let (function, scope) = (self.context.function, self.scope());
+        let calls = self.stages.iter().map(|stage| {
+            let call = stage.call();
+            let flags = function.leave.iter().filter(|flag| stage.computes(**flag));
+            let flags: Vec<TokenStream> = flags.map(|&flag| scope.whole(flag)).collect();
+            let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
+            quote!(#call #leaves)
+        });
+        let keep = keep_state(self.context, &self.stages);
+        quote! { #(#calls)* #keep }
+    }
+
+    fn definitions(&self) -> TokenStream {
+        let own = self.stages.iter().zip(&self.shared);
+        let own = own.filter(|&(_, &shared)| !shared);
+        own.map(|(stage, _)| stage.definition()).collect()
     }
 }
 

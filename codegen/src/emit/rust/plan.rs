@@ -215,7 +215,10 @@ fn users(function: &Function) -> Vec<Vec<User>> {
         users[value.index()].push(if leg { User::Leg } else { User::Other });
     }
     let params = function.next_params.iter().map(|&(_, value)| value);
-    for value in conditions.chain(params) {
+    for value in conditions
+        .chain(params)
+        .chain(function.leave.iter().copied())
+    {
         users[value.index()].push(User::Other);
     }
     users

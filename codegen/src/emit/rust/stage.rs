@@ -146,6 +146,21 @@ impl<'a> StageFunction<'a> {
         &self.context.program.states[state.index()]
     }
 
+    /// Whether it is called `name`.
+    pub(super) fn is_named(&self, name: &str) -> bool {
+        self.name == snake(name)
+    }
+
+    /// Whether the other stage is the same function.
+    pub(super) fn is_same(&self, other: &StageFunction<'_>) -> bool {
+        self.definition().to_string() == other.definition().to_string()
+    }
+
+    /// Whether `value` is computed here.
+    pub(super) fn computes(&self, value: Value) -> bool {
+        (self.plan.stage.first..self.plan.stage.end).contains(&value.index())
+    }
+
     /// Whether the stage itself stores the state word.
     pub(super) fn stores(&self, state: StateId) -> bool {
         self.plan.stores.iter().any(|&(stored, _)| stored == state)

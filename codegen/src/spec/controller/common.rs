@@ -13,6 +13,8 @@ pub enum EmfSource {
     Estimated,
     /// From the motor's EMF shape at the Hall angle and speed.
     Model,
+    /// That of the last period, taken as that of the target: no more than the past samples and commands folded.
+    Held,
 }
 
 /// What the currents shall follow.
@@ -131,6 +133,20 @@ const EMF_FILTER: f64 = 0.25;
 /// The default threshold where the motor is not too small for it, ampere.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
 
+/// Refuses `emf: held` where a law uses more of the EMF than its sum over the delay.
+pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Collector) {
+    if common.emf == EmfSource::Held
+        && let Some(field) = reader.field("emf")
+    {
+        errors.push(catalogue::option_unavailable(
+            &field.location,
+            "emf",
+            "held",
+            &["estimated", "model"],
+        ));
+    }
+}
+
 /// Reads and checks the shared options; `advance_idle` says that an advance has no effect under
 /// `reference: proportional`. None only together with an error.
 pub(crate) fn read_common(
@@ -145,6 +161,7 @@ pub(crate) fn read_common(
         &[
             ("estimated", EmfSource::Estimated),
             ("model", EmfSource::Model),
+            ("held", EmfSource::Held),
         ],
     );
     let emf_filter = reader.plain(errors, "emf_filter");
@@ -170,9 +187,18 @@ pub(crate) fn read_common(
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
 
-    if let Some(filter) = &emf_filter
-        && emf == Some(EmfSource::Model)
-    {
+    let unfiltered = match emf {
+        Some(EmfSource::Model) => Some((
+            "emf: model",
+            "it smooths the estimate, and the model needs none",
+        )),
+        Some(EmfSource::Held) => Some((
+            "emf: held",
+            "it smooths the estimate, and what the last period showed is held as it is",
+        )),
+        _ => None,
+    };
+    if let (Some(filter), Some((other, reason))) = (&emf_filter, unfiltered) {
         errors.push(catalogue::option_without_effect(
             &filter.part.location,
             "emf_filter",
@@ -180,8 +206,8 @@ pub(crate) fn read_common(
             reader
                 .field("emf")
                 .map_or(reader.location(), |field| &field.location),
-            "emf: model",
-            "it smooths the estimate, and the model needs none",
+            other,
+            reason,
         ));
     }
     if let Some(advance) = &advance
@@ -202,7 +228,7 @@ pub(crate) fn read_common(
         emf: emf.unwrap_or(EmfSource::Estimated),
         emf_filter: match (emf_filter, emf) {
             (Some(given), _) => given.si,
-            (None, Some(EmfSource::Model)) => 1.0,
+            (None, Some(EmfSource::Model | EmfSource::Held)) => 1.0,
             (None, _) => EMF_FILTER,
         },
         reference: reference.unwrap_or(Reference::QuasiSquare),

@@ -1,6 +1,6 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
-use super::common::{LoopOptions, Surroundings, read_common};
+use super::common::{EmfSource, LoopOptions, Surroundings, read_common};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::check::reader::Reader;
@@ -88,7 +88,7 @@ pub(crate) fn check_options(
     if horizon == 2 {
         check_two_steps(reader, candidates, off_leg, errors);
     }
-    Some(FcsMpcSpec {
+    let options = FcsMpcSpec {
         candidates,
         off_leg,
         modulated,
@@ -96,7 +96,26 @@ pub(crate) fn check_options(
         switching_weight,
         torque_weight: torque_weight.map_or(0.0, |given| given.si),
         common: read_common(reader, surroundings, without_sectors, errors)?,
-    })
+    };
+    if options.common.emf == EmfSource::Held {
+        check_held(reader, &options, errors);
+    }
+    Some(options)
+}
+
+/// A held EMF is known as part of a sum only.
+fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
+    if options.floating() {
+        let why = "where a floating leg sits follows from its EMF; choose `off_leg: nominal` or `candidates: three_phase`";
+        refuse(reader, "emf", ["off_leg", "physical"], why, errors);
+    }
+    let why = "the cost needs the EMF by itself; choose `emf: estimated` or `emf: model`";
+    if options.torque_weight > 0.0 {
+        refuse(reader, "torque_weight", ["emf", "held"], why, errors);
+    }
+    if options.horizon == 2 {
+        refuse(reader, "horizon", ["emf", "held"], why, errors);
+    }
 }
 
 /// Refuses the option `name`, if it is stated, beside another setting.

@@ -43,6 +43,21 @@ pub(crate) fn check_options(
     let without_sectors = modulation == Modulation::ThreePhase;
     let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
     let common = read_common(reader, surroundings, without_sectors, errors)?;
+    if common.emf == EmfSource::Held
+        && modulation == Modulation::Pair
+        && let Some(field) = reader.field("emf")
+    {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            "emf",
+            "held",
+            reader
+                .field("modulation")
+                .map_or(reader.location(), |field| &field.location),
+            "modulation: pair",
+            "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`",
+        ));
+    }
     Some(PdccSpec {
         modulation,
         saturation,
@@ -55,10 +70,12 @@ pub(crate) fn check_options(
 /// An integral needs the modelled EMF: an estimate finds by itself what it would.
 fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> bool {
     let is_on = reader.switch(errors, "integral") == Some(true);
-    if is_on
-        && emf == EmfSource::Estimated
-        && let Some(field) = reader.field("integral")
-    {
+    let other = match emf {
+        EmfSource::Estimated => "emf: estimated",
+        EmfSource::Held => "emf: held",
+        EmfSource::Model => return is_on,
+    };
+    if is_on && let Some(field) = reader.field("integral") {
         errors.push(catalogue::option_without_effect(
             &field.location,
             "integral",
@@ -66,7 +83,7 @@ fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> boo
             reader
                 .field("emf")
                 .map_or(reader.location(), |field| &field.location),
-            "emf: estimated",
+            other,
             "the estimate finds by itself what the integral adds to `emf: model`",
         ));
     }

@@ -1,6 +1,6 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use super::common::{LoopOptions, Surroundings, read_common};
+use super::common::{LoopOptions, Surroundings, read_common, refuse_held};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -91,6 +91,7 @@ pub(crate) fn check_options(
     let off_leg = read_off_leg(reader, three_phase, errors);
     let given = reader.plain_quantity(errors, "band");
     let common = read_common(reader, surroundings, false, errors)?;
+    refuse_held(reader, &common, errors);
     if common.delay == 0 {
         for name in ["emf", "emf_filter", "off_leg"] {
             let Some(field) = reader.field(name) else {

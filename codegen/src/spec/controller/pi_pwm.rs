@@ -1,7 +1,8 @@
 //! Options of PI control, and how they are read.
 
 use super::common::{
-    LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation, read_saturation,
+    LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
+    read_saturation, refuse_held,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -106,6 +107,7 @@ pub(crate) fn check_options(
         }
     }
     let common = read_common(reader, surroundings, true, errors)?;
+    refuse_held(reader, &common, errors);
     let time_constant = surroundings.inductance? / surroundings.resistance?;
     Some(PiPwmSpec {
         bandwidth: bandwidth.map_or(BANDWIDTH, |given| given.si),

@@ -17,10 +17,10 @@ mod tables;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{Limits, Mode, Observation};
+use super::supervision::{Limits, Mode, Observation, Period};
 use super::trace::{PhysicalState, Reach, Trace};
 use super::variant::Variant;
-use crate::exact::{Coefficient, div_floor, floor, floor_weighted, pow2};
+use crate::exact::{Coefficient, both, div_floor, floor, floor_weighted, pow2};
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
@@ -256,14 +256,15 @@ impl BitTrue {
             edge: event.edge,
             demand: self.j != 0.0,
         };
-        if self.state.supervisor.step(&self.limits, &seen) {
+        let verdict = self.state.supervisor.step(&self.limits, &seen);
+        if verdict.calibrated {
             self.state.offset = self
                 .state
                 .supervisor
                 .sum
                 .map(|sum| floor(sum * k.calibration));
         }
-        let run = self.state.supervisor.mode == Mode::Run;
+        let run = verdict.period == Period::Control;
 
         // 4 rotor
         let sector = event.sector;
@@ -310,7 +311,7 @@ impl BitTrue {
 
         // 8 EMF
         let (mut e, mut e_now) = match self.variant.emf {
-            None => ([0.0; 2], [0.0; 2]),
+            None | Some(EmfSource::Held) => ([0.0; 2], [0.0; 2]),
             Some(EmfSource::Estimated) => {
                 let seen = emf::estimate(k, &self.state, i);
                 let e = if self.variant.unseen() {
@@ -330,7 +331,7 @@ impl BitTrue {
                 let ahead = if delayed { 2.0 } else { 1.0 };
                 let end = k.flux.both(angle.theta + ahead * angle.step);
                 let mean = |from: [f64; 2], to: [f64; 2]| {
-                    [0, 1].map(|x| {
+                    both(|x| {
                         floor_weighted(to[x] - from[x], k.flux_to_voltage).clamp(-k.e_max, k.e_max)
                     })
                 };
@@ -375,11 +376,12 @@ impl BitTrue {
             direction: self.state.timing.direction,
             rises: self.state.rises,
             vector_prev: self.state.vector_prev.0,
+            past: self.state.past,
         });
-        let command = match self.state.supervisor.mode {
-            Mode::Run => decision.command,
-            Mode::Precharge => Command::idle(Legs::LOW),
-            Mode::Calibrate | Mode::Tripped => Command::idle(Legs::OFF),
+        let command = match verdict.period {
+            Period::Control => decision.command,
+            Period::Precharge => Command::idle(Legs::LOW),
+            Period::Off => Command::idle(Legs::OFF),
         };
 
         // 12 remember
@@ -408,6 +410,7 @@ impl BitTrue {
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
             self.state.vector_prev = state::Vector(decision.vector);
+            self.state.past = decision.past;
         } else {
             self.state.stop();
         }

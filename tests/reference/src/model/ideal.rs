@@ -10,8 +10,8 @@ mod vector;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{Limits, Mode, Observation};
-use super::trace::{PhysicalState, Trace};
+use super::supervision::{Limits, Observation, Period};
+use super::trace::{Past, PhysicalState, Trace};
 use super::variant::Variant;
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
@@ -213,14 +213,15 @@ impl Ideal {
             edge: event.edge,
             demand: self.current != 0.0,
         };
-        if self.state.supervisor.step(&self.limits, &seen) {
+        let verdict = self.state.supervisor.step(&self.limits, &seen);
+        if verdict.calibrated {
             self.state.offset = self
                 .state
                 .supervisor
                 .sum
                 .map(|sum| sum / self.limits.calibration_samples);
         }
-        let run = self.state.supervisor.mode == Mode::Run;
+        let run = verdict.period == Period::Control;
 
         // 4 rotor
         let sector = event.sector;
@@ -256,7 +257,7 @@ impl Ideal {
         // 8 EMF
         let delayed = self.variant.delayed();
         let (mut e, mut e_now) = match self.variant.emf {
-            None => (Vector2::zeros(), Vector2::zeros()),
+            None | Some(EmfSource::Held) => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
                 let raw = self.emf_seen([i_a, i_b]);
                 let [e_a, e_b] = self.state.e_prev;
@@ -324,11 +325,12 @@ impl Ideal {
             direction: self.state.timing.direction,
             rises: self.state.rises,
             vector_prev: self.state.vector_prev,
+            past: self.state.past,
         });
-        let command = match self.state.supervisor.mode {
-            Mode::Run => decision.command,
-            Mode::Precharge => Command::idle(Duties::LOW),
-            Mode::Calibrate | Mode::Tripped => Command::idle(Duties::OFF),
+        let command = match verdict.period {
+            Period::Control => decision.command,
+            Period::Precharge => Command::idle(Duties::LOW),
+            Period::Off => Command::idle(Duties::OFF),
         };
 
         // 12 remember
@@ -354,6 +356,7 @@ impl Ideal {
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
             self.state.vector_prev = decision.vector;
+            self.state.past = decision.past;
         } else {
             self.state.v_prev = [0.0; 2];
             self.state.v_cmd = [0.0; 2];
@@ -364,6 +367,7 @@ impl Ideal {
             self.state.integral = [0.0; 2];
             self.state.rises = [false; 2];
             self.state.vector_prev = 0;
+            self.state.past = Past::default();
             self.state.commutating = false;
             self.state.commutation_age = 0.0;
         }

@@ -92,6 +92,25 @@ pub struct Observation {
     pub demand: bool,
 }
 
+/// What a period is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Period {
+    /// The currents are controlled.
+    Control,
+    /// All legs low.
+    Precharge,
+    /// All legs off.
+    Off,
+}
+
+/// What the supervision says of a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Verdict {
+    pub period: Period,
+    /// The calibration is complete: the offsets are the sums' means from the next period on.
+    pub calibrated: bool,
+}
+
 /// State of the supervision.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Supervisor {
@@ -126,10 +145,9 @@ impl Supervisor {
         }
     }
 
-    /// One period. Returns true when the calibration is complete: the offsets are the sums'
-    /// means from the next period on.
+    /// One period.
     #[inline]
-    pub fn step(&mut self, limits: &Limits, seen: &Observation) -> bool {
+    pub fn step(&mut self, limits: &Limits, seen: &Observation) -> Verdict {
         if limits.stall_periods > 0.0 {
             self.stall_count = if seen.edge || !seen.demand || self.mode != Mode::Run {
                 0.0
@@ -154,8 +172,16 @@ impl Supervisor {
             Fault::None
         };
         if self.mode == Mode::Run && fault_now == Fault::None {
-            return false;
+            return Verdict {
+                period: Period::Control,
+                calibrated: false,
+            };
         }
+        let period = if self.mode == Mode::Precharge && fault_now == Fault::None {
+            Period::Precharge
+        } else {
+            Period::Off
+        };
         let mut calibrated = false;
         match self.mode {
             Mode::Run | Mode::Tripped => {}
@@ -192,6 +218,6 @@ impl Supervisor {
             self.mode = Mode::Tripped;
             self.fault = fault_now;
         }
-        calibrated
+        Verdict { period, calibrated }
     }
 }

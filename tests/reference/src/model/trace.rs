@@ -45,6 +45,15 @@ pub enum Reach {
     PastReach,
 }
 
+/// What past samples and commands add to the voltages of the next two steps, phases a, b (deadbeat with a held EMF).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Past {
+    /// To this step's.
+    pub due: [f64; 2],
+    /// To the next one's.
+    pub later: [f64; 2],
+}
+
 /// A controller's whole state in physical units.
 ///
 /// Fields that the variant at hand does not use are at their initial values.
@@ -78,4 +87,6 @@ pub struct PhysicalState {
     pub rises: [bool; 2],
     /// Number of the vector that the last step chose (FCS-MPC with a switching weight).
     pub vector_prev: usize,
+    /// What the past adds to the voltage, volt.
+    pub past: Past,
 }

@@ -16,6 +16,8 @@ pub struct Variant {
     pub commutation: Option<CommutationEnd>,
     /// Section 8: where the EMF comes from, if the variant uses it.
     pub emf: Option<EmfSource>,
+    /// Section 9: what the past adds to the voltage is folded, the EMF held.
+    pub held: Switch,
     /// Section 7: a leg may be off, so commands are kept as terminal voltages.
     pub floating: bool,
     /// Section 7: the voltage of the period that starts now is known.
@@ -76,6 +78,10 @@ impl Variant {
                 (false, false, hexagon.then_some(pi_pwm.saturation))
             }
         };
+        let held = emf == Some(EmfSource::Held);
+        if held {
+            (emf, predicts) = (None, false);
+        }
         let estimated = emf == Some(EmfSource::Estimated);
         Self {
             options,
@@ -84,6 +90,7 @@ impl Variant {
                 || options.reference == Reference::Proportional,
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
+            held: if held { Switch::On } else { Switch::Off },
             floating,
             applied_now: options.delay == 1 && (predicts || estimated),
             modulated,
@@ -125,6 +132,11 @@ impl Variant {
         self.estimated() || self.integrates()
     }
 
+    /// Section 9: what the past adds to the voltage is folded, the EMF held.
+    pub fn holds(&self) -> bool {
+        self.held == Switch::On
+    }
+
     /// Section 8: what the modelled EMF lacks is integrated.
     pub fn integrates(&self) -> bool {
         self.integral == Switch::On
@@ -142,7 +154,7 @@ impl Variant {
 
     /// Some step needs the voltage that a command really applies (section 7).
     pub fn applied(&self) -> bool {
-        self.applied_now || self.sees()
+        self.applied_now || self.sees() || self.holds()
     }
 }
 

@@ -278,6 +278,8 @@ pub enum EmfSource {
     Estimated,
     /// From the motor's EMF shape at the interpolated Hall angle.
     Model,
+    /// That of the last period, taken as that of the target.
+    Held,
 }
 
 /// What the currents follow.

@@ -275,6 +275,8 @@ impl Constants {
                     matches!(spec.controller, Controller::Phcc(_)),
                 ),
                 (Part::VectorMemory, variant.counts_changes == Switch::On),
+                (Part::Due, variant.holds()),
+                (Part::Later, variant.holds() && variant.delayed()),
             ]),
             ampere: g / two_i,
             volt: w / two_v,

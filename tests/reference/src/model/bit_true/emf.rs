@@ -2,14 +2,14 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::halve;
+use crate::exact::{both, halve};
 use crate::model::sector::OUT_PHASE;
 
 /// What the period that ends with the currents `i` shows of the EMF of phases a, b.
 #[inline]
 fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let State { i_prev, v_prev, .. } = state;
-    [0, 1].map(|x| {
+    both(|x| {
         let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
         v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
     })
@@ -19,7 +19,7 @@ fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 #[inline]
 pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let (seen, e_prev) = (seen(k, state, i), &state.e_prev);
-    [0, 1].map(|x| {
+    both(|x| {
         let e = if k.filtered {
             e_prev[x] + k.k_filter.mul(seen[x] - e_prev[x])
         } else {
@@ -34,7 +34,7 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let seen = seen(k, state, i);
     let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
-    [0, 1].map(|x| {
+    both(|x| {
         let lack = believed(seen[x] - state.e_prev[x]);
         let sum = state.integral[x];
         believed(sum + k.k_integral.mul(lack - sum))
@@ -60,7 +60,7 @@ pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64;
     } else {
         k.k_third.mul(e[outgoing] - e[off])
     };
-    [0, 1].map(|x| {
+    both(|x| {
         if x == off {
             e[x] + 2.0 * half
         } else {

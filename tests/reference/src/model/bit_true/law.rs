@@ -4,6 +4,7 @@ mod dead_time;
 mod deadbeat;
 mod divided;
 mod fcs_mpc;
+mod held;
 mod pdcc;
 mod phcc;
 mod pi_pwm;
@@ -15,6 +16,7 @@ mod whole;
 use super::constants::{Constants, Scale};
 use crate::exact::Coefficient;
 use crate::model::Reach;
+use crate::model::trace::Past;
 use crate::{Controller, Error, Spec};
 use hexagen::Legs;
 
@@ -43,6 +45,8 @@ pub struct Inputs<'a> {
     pub rises: [bool; 2],
     /// `vector_prev` (FCS-MPC).
     pub vector_prev: usize,
+    /// What the past adds to the voltage (deadbeat with a held EMF).
+    pub past: Past,
 }
 
 /// What a controller decides.
@@ -59,6 +63,8 @@ pub struct Decision {
     pub integral: [f64; 2],
     /// `h_a`, `h_b` (PHCC).
     pub rises: [bool; 2],
+    /// What the past adds to the voltage (deadbeat with a held EMF).
+    pub past: Past,
 }
 
 /// A command to the inverter and the terminal voltages that it stands for.

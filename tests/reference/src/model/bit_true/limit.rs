@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use crate::Saturation;
-use crate::exact::{Coefficient, Shift, div_floor, floor, floor_shift, halve};
+use crate::exact::{Coefficient, Shift, all_three, both, div_floor, floor, floor_shift, halve};
 use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
@@ -32,7 +32,7 @@ pub fn limit(
     match rule {
         Saturation::KeepAngle => {
             let scale = Coefficient::new(div_floor(v_bus, k.scale_bits, spread), k.scale_bits);
-            (u.map(|u_x| scale.mul(u_x)), Reach::Outside)
+            (both(|x| scale.mul(u[x])), Reach::Outside)
         }
         Saturation::Nearest => (
             nearest(k, v_bus, [u[0], u[1], u_c], max, min),
@@ -56,7 +56,7 @@ pub fn limit(
 fn nearest(k: &Constants, v_bus: f64, u: [f64; 3], max: f64, min: f64) -> [f64; 2] {
     let middle = halve(max + min);
     let half_bus = halve(v_bus);
-    let t = u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, v_bus));
+    let t = all_three(|x| (u[x] - middle + half_bus).clamp(0.0, v_bus));
     let mean = k.k_third.mul(t[0] + t[1] + t[2]);
     [t[0] - mean, t[1] - mean]
 }

@@ -5,7 +5,7 @@ use crate::exact::to_i32;
 use crate::model::hall::HallTiming;
 use crate::model::sector;
 use crate::model::supervision::{Mode, Supervisor, fault_from_word};
-use crate::model::trace::PhysicalState;
+use crate::model::trace::{Past, PhysicalState};
 use hexagen::Fault;
 
 /// State words in f64; small enums as such. Words that the variant does not have are kept as well
@@ -30,6 +30,7 @@ pub struct State {
     pub integral: [f64; 2],
     pub rises: [bool; 2],
     pub vector_prev: Vector,
+    pub past: Past,
 }
 
 /// Number of a vector, 0 to 15.
@@ -52,6 +53,8 @@ pub enum Part {
     PairIntegral,
     Hysteresis,
     VectorMemory,
+    Due,
+    Later,
 }
 
 /// The groups that a variant has.
@@ -227,6 +230,14 @@ macro_rules! for_each_word {
         if $parts.has(Part::PairIntegral) {
             $show!("integral", $state.integral[0]);
         }
+        if $parts.has(Part::Due) {
+            $show!("due_a", $state.past.due[0]);
+            $show!("due_b", $state.past.due[1]);
+        }
+        if $parts.has(Part::Later) {
+            $show!("later_a", $state.past.later[0]);
+            $show!("later_b", $state.past.later[1]);
+        }
         if $parts.has(Part::Hysteresis) {
             $show!("h_a", $state.rises[0]);
             $show!("h_b", $state.rises[1]);
@@ -277,6 +288,7 @@ impl State {
         self.integral = [0.0; 2];
         self.rises = [false; 2];
         self.vector_prev = Vector(0);
+        self.past = Past::default();
         self.commutating = false;
         self.commutation_age = 0.0;
     }
@@ -329,6 +341,10 @@ impl State {
             integral: volts(self.integral),
             rises: self.rises,
             vector_prev: self.vector_prev.0,
+            past: Past {
+                due: volts(self.past.due),
+                later: volts(self.past.later),
+            },
         }
     }
 }

@@ -4,6 +4,7 @@ mod dead_time;
 mod deadbeat;
 mod divided;
 mod fcs_mpc;
+mod held;
 mod pdcc;
 mod phcc;
 mod pi_pwm;
@@ -12,6 +13,7 @@ mod whole;
 
 use super::Duties;
 use crate::model::Reach;
+use crate::model::trace::Past;
 use crate::{Controller, DiscretePhase, Error, Spec};
 use nalgebra::{Vector2, Vector3};
 
@@ -39,6 +41,8 @@ pub struct Inputs {
     pub rises: [bool; 2],
     /// Number of the vector that the last step chose (FCS-MPC).
     pub vector_prev: usize,
+    /// What the past adds to the voltage (deadbeat with a held EMF).
+    pub past: Past,
 }
 
 /// What a controller decides; voltages of the zero-sum phases.
@@ -55,6 +59,8 @@ pub struct Decision {
     pub integral: [f64; 2],
     /// Whether the components are to rise (PHCC).
     pub rises: [bool; 2],
+    /// What the past adds to the voltage (deadbeat with a held EMF).
+    pub past: Past,
 }
 
 /// What the inverter does in one period.
@@ -89,7 +95,7 @@ pub enum Law {
 impl Law {
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         Ok(match &spec.controller {
-            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options)),
+            Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options)?),
             Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),

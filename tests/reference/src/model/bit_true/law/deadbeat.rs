@@ -1,9 +1,67 @@
 //! The deadbeat voltage (section 9).
 
 use super::Inputs;
+use super::held::Held;
 use crate::Error;
-use crate::exact::Coefficient;
+use crate::exact::{Coefficient, both};
 use crate::model::bit_true::constants::Scale;
+use crate::model::trace::Past;
+
+/// How the voltage is put together.
+#[derive(Clone, Debug)]
+pub enum Form {
+    /// From prediction and EMF.
+    TwoStep(Deadbeat),
+    /// From what the past left.
+    Held(Held),
+}
+
+impl Form {
+    /// `asked`: the law asks for the EMF besides.
+    pub fn new(asked: bool, scale: &Scale) -> Result<Self, Error> {
+        Ok(if scale.variant.holds() {
+            Self::Held(Held::new(asked, scale)?)
+        } else {
+            Self::TwoStep(Deadbeat::new(scale)?)
+        })
+    }
+
+    /// Phases a, b, not limited.
+    #[inline]
+    pub fn voltage(&self, now: &Inputs) -> [f64; 2] {
+        match self {
+            Self::TwoStep(form) => form.voltage(now),
+            Self::Held(form) => form.voltage(now),
+        }
+    }
+
+    /// EMF of phases a, b.
+    #[inline]
+    pub fn emf(&self, now: &Inputs) -> [f64; 2] {
+        match self {
+            Self::TwoStep(_) => now.e,
+            Self::Held(form) => form.emf(now),
+        }
+    }
+
+    /// What is left of the measured current when the voltage takes effect, as a voltage.
+    #[inline]
+    pub fn kept(&self, now: &Inputs) -> [f64; 2] {
+        match self {
+            Self::TwoStep(form) => form.held(now),
+            Self::Held(form) => form.kept(now),
+        }
+    }
+
+    /// What the currents and the voltage `u` leave to later steps.
+    #[inline]
+    pub fn past(&self, now: &Inputs, u: [f64; 2]) -> Past {
+        match self {
+            Self::TwoStep(_) => now.past,
+            Self::Held(form) => form.past(now, u),
+        }
+    }
+}
 
 /// Coefficients of the deadbeat voltage.
 #[derive(Clone, Debug)]
@@ -14,7 +72,7 @@ pub struct Deadbeat {
 }
 
 impl Deadbeat {
-    pub fn new(scale: &Scale) -> Result<Self, Error> {
+    fn new(scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
         let delayed = scale.variant.delayed();
         let held = if delayed { a * a } else { a };
@@ -27,15 +85,15 @@ impl Deadbeat {
 
     /// The measured current as a voltage, phases a, b.
     #[inline]
-    pub fn held(&self, now: &Inputs) -> [f64; 2] {
-        now.i.map(|i| self.k_hold.mul(i))
+    fn held(&self, now: &Inputs) -> [f64; 2] {
+        both(|x| self.k_hold.mul(now.i[x]))
     }
 
     /// Phases a, b, not limited.
     #[inline]
-    pub fn voltage(&self, now: &Inputs) -> [f64; 2] {
+    fn voltage(&self, now: &Inputs) -> [f64; 2] {
         let held = self.held(now);
-        [0, 1].map(|x| {
+        both(|x| {
             let held = now.j[x] - held[x];
             if self.delayed {
                 held + self.k_decay.mul(now.v_now[x] - now.e_now[x]) + now.e[x] + now.e_now[x]

@@ -1,7 +1,7 @@
 //! Two vectors in one period: the shares of the period for which legs are high (sections 10a to 12 of FCS-MPC).
 
 use super::{Command, Inputs, pulses};
-use crate::exact::{floor_shift, halve};
+use crate::exact::{all_three, both, floor_shift, halve};
 use crate::model::vectors;
 use hexagen::{LegState, Legs};
 
@@ -9,7 +9,7 @@ use hexagen::{LegState, Legs};
 pub fn with_off_leg(off: usize) -> [usize; 2] {
     let mut found = (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO)
         .filter(|vector| vectors::off_leg(*vector) == Some(off));
-    [0, 1].map(|_| found.next().unwrap_or(vectors::FIRST_PAIR))
+    both(|_| found.next().unwrap_or(vectors::FIRST_PAIR))
 }
 
 /// The legs that a pair vector drives high and low.
@@ -26,7 +26,7 @@ pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
     let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
     let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
     let t = floor_shift(4.0 * v_bus + scores[lower] - scores[upper], 3).clamp(0.0, v_bus);
-    [0, 1, 2].map(|x| {
+    all_three(|x| {
         let [in_lower, in_upper] = [lower, upper].map(|place| vectors::LEGS[pair[place]][x] > 0);
         if in_lower {
             v_bus
@@ -43,7 +43,7 @@ pub fn command(now: &Inputs, terminal: [f64; 3], off: Option<usize>) -> Command 
     Command {
         legs: Legs {
             compare: terminal.map(|t| pulses::compare_of(now, t, 0.0)),
-            state: [0, 1, 2].map(|x| {
+            state: all_three(|x| {
                 if off == Some(x) {
                     LegState::Off
                 } else if terminal[x] > 0.0 {

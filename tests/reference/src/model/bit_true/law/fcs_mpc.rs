@@ -1,13 +1,13 @@
 //! FCS-MPC: the candidate nearest to the deadbeat voltage, by scores 6 (|v|^2 - 2 u v) tried one
 //! after the other.
 
-use super::deadbeat::Deadbeat;
+use super::deadbeat::Form;
 use super::divided;
 use super::two_steps::TwoSteps;
 use super::weighted::Weights;
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Shift, floor, halve, round_half_up};
+use crate::exact::{Shift, both, floor, halve, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -20,7 +20,7 @@ pub struct FcsMpc {
     pub floating: bool,
     /// A second vector shares the period.
     modulated: bool,
-    deadbeat: Deadbeat,
+    form: Form,
     sixth: Sixth,
     pub score: Shift,
     i_comm_volts: f64,
@@ -37,7 +37,7 @@ impl FcsMpc {
             candidates: options.candidates,
             floating,
             modulated: options.modulated == Switch::On,
-            deadbeat: Deadbeat::new(scale)?,
+            form: Form::new(false, scale)?,
             sixth: Sixth::new(scale)?,
             score: scale.product_if(floating || options.torque_weight > 0.0, "score")?,
             weights: Weights::new(options, scale)?,
@@ -49,7 +49,7 @@ impl FcsMpc {
     #[inline]
     pub fn decide(&self, now: &Inputs) -> Decision {
         // 9
-        let u_unsat = self.deadbeat.voltage(now);
+        let u_unsat = self.form.voltage(now);
         // 10
         let (zero, others) = vectors::candidates(self.candidates, now.commutating, now.sector_eff);
         let exact = !self.floating || (zero == 0 && others.end <= vectors::FIRST_PAIR);
@@ -94,7 +94,7 @@ impl<'a> Choice<'a> {
             v_bus: now.v_bus,
             u: abc(u),
             e: abc(now.e),
-            held: abc([0, 1].map(|x| now.j[x] + now.e[x] - u[x])),
+            held: abc(both(|x| now.j[x] + now.e[x] - u[x])),
         }
     }
 
@@ -112,9 +112,10 @@ impl<'a> Choice<'a> {
             reach: Reach::Inside,
             vector,
             // 11
-            command: whole::command(now, vector),
+            command: whole::command(now, vector, self.law.candidates != Candidates::ThreePhase),
             integral: now.integral,
             rises: now.rises,
+            past: self.law.form.past(now, u),
         }
     }
 
@@ -217,6 +218,7 @@ impl<'a> Choice<'a> {
             command,
             integral: now.integral,
             rises: now.rises,
+            past: self.law.form.past(now, u),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
 use super::dead_time::DeadTime;
-use super::deadbeat::Deadbeat;
+use super::deadbeat::Form;
 use super::{Decision, Inputs, pulses};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit;
@@ -11,7 +11,7 @@ use crate::{Error, Modulation, Saturation, Spec};
 pub struct Pdcc {
     pair: bool,
     saturation: Saturation,
-    deadbeat: Deadbeat,
+    form: Form,
     dead_time: DeadTime,
 }
 
@@ -20,16 +20,17 @@ impl Pdcc {
         Ok(Self {
             pair: options.modulation == Modulation::Pair,
             saturation: options.saturation,
-            deadbeat: Deadbeat::new(scale)?,
+            form: Form::new(options.saturation == Saturation::TorquePriority, scale)?,
             dead_time: DeadTime::new(spec, scale)?,
         })
     }
 
     #[inline]
     pub fn decide(&self, now: &Inputs) -> Decision {
-        let u_unsat = self.deadbeat.voltage(now);
-        let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
-        let shifts = self.dead_time.shifts(now, self.deadbeat.held(now));
+        let u_unsat = self.form.voltage(now);
+        let e = self.form.emf(now);
+        let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, e);
+        let shifts = self.dead_time.shifts(now, self.form.kept(now));
         let command = if self.pair && !now.commutating {
             pulses::pair(now, u_unsat, shifts)
         } else {
@@ -43,6 +44,7 @@ impl Pdcc {
             command,
             integral: now.integral,
             rises: now.rises,
+            past: self.form.past(now, u),
         }
     }
 }

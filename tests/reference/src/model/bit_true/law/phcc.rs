@@ -2,7 +2,7 @@
 
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Coefficient, round_half_up};
+use crate::exact::{Coefficient, both, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::switching::{self, Switching};
@@ -36,7 +36,7 @@ impl Phcc {
     #[inline]
     pub fn decide(&self, now: &Inputs) -> Decision {
         // 9
-        let q = [0, 1].map(|x| {
+        let q = both(|x| {
             let held = now.j[x] - self.k_hold.mul(now.i[x]);
             if self.delayed {
                 held - (now.v_now[x] - now.e_now[x])
@@ -60,9 +60,10 @@ impl Phcc {
             u: self.sixth.voltage(now, vector),
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector),
+            command: whole::command(now, vector, true),
             integral: now.integral,
             rises,
+            past: now.past,
         }
     }
 }

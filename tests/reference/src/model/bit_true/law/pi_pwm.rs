@@ -2,7 +2,7 @@
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
-use crate::exact::{Coefficient, halve, round_half_up};
+use crate::exact::{Coefficient, both, halve, round_half_up};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit;
 use crate::model::variant::reference_gain;
@@ -38,13 +38,13 @@ impl PiPwm {
             return self.decide_pair(now);
         }
         // 9; without feed-forward the EMF is 0.
-        let held = now.i.map(|i| self.k_p.mul(i));
-        let p = [0, 1].map(|x| now.j[x] - held[x]);
-        let u_unsat = [0, 1].map(|x| p[x] + now.integral[x] + now.e[x]);
+        let held = both(|x| self.k_p.mul(now.i[x]));
+        let p = both(|x| now.j[x] - held[x]);
+        let u_unsat = both(|x| p[x] + now.integral[x] + now.e[x]);
         // 10, 11
         let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
         // 12
-        let integral = [0, 1].map(|x| {
+        let integral = both(|x| {
             (now.integral[x] + self.k_i.mul(p[x] + u[x] - u_unsat[x]))
                 .clamp(-self.integral_max, self.integral_max)
         });
@@ -56,6 +56,7 @@ impl PiPwm {
             command: pulses::three(now, u, self.dead_time.shifts(now, held), false),
             integral,
             rises: now.rises,
+            past: now.past,
         }
     }
     /// One regulator on the current of the conducting pair.
@@ -65,7 +66,7 @@ impl PiPwm {
         let ends = (now.sector_eff != 0)
             .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
         let pair_current = ends.map_or(0.0, |(plus, minus)| halve(i[plus]) - halve(i[minus]));
-        let flow = now.i.map(|i| self.k_p.mul(i));
+        let flow = both(|x| self.k_p.mul(now.i[x]));
         let part = now.set_point - self.k_p.mul(pair_current);
         let u = part + now.integral[0];
         // 10
@@ -93,6 +94,7 @@ impl PiPwm {
             command: pulses::line(now, line, self.dead_time.shifts(now, flow)),
             integral: [integral, 0.0],
             rises: now.rises,
+            past: now.past,
         }
     }
 }

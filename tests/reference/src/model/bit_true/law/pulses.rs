@@ -1,7 +1,7 @@
 //! From phase voltages to pulses (section 11).
 
 use super::{Command, Inputs};
-use crate::exact::{floor, halve, to_u16};
+use crate::exact::{all_three, floor, halve, to_u16};
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
@@ -35,16 +35,17 @@ pub fn compare_of(now: &Inputs, t: f64, shift: f64) -> u16 {
 pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Command {
     let u = [u[0], u[1], -(u[0] + u[1])];
     let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
+    let half = halve(now.v_bus + 1.0);
+    let centred = all_three(|x| (u[x] - middle).clamp(-half, half));
     let terminal = if terminals {
         let half_bus = halve(now.v_bus);
-        u.map(|u_x| (u_x - middle + half_bus).clamp(0.0, now.v_bus))
+        all_three(|x| (centred[x] + half_bus).clamp(0.0, now.v_bus))
     } else {
         [0.0; 3]
     };
     Command {
         legs: Legs {
-            compare: [0, 1, 2]
-                .map(|x| compare(now, nominal(now, u[x] - middle) + shifts[x] + now.k.half)),
+            compare: all_three(|x| compare(now, nominal(now, centred[x]) + shifts[x] + now.k.half)),
             state: [LegState::Pulsed; 3],
         },
         terminal,

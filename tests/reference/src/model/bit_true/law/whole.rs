@@ -5,17 +5,21 @@ use crate::Error;
 use crate::exact::{Coefficient, floor};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use hexagen::Legs;
+use hexagen::{LegState, Legs};
 
-/// The command of a vector.
+/// The command of a vector; where none turns a leg off, low legs are pulsed with 0.
 #[inline]
-pub fn command(now: &Inputs, vector: usize) -> Command {
+pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
     let legs = vectors::LEGS[vector];
     let on = now.k.timer_period as u16;
     Command {
         legs: Legs {
             compare: legs.map(|leg| if leg > 0 { on } else { 0 }),
-            state: vectors::states(vector),
+            state: if turns_off {
+                vectors::states(vector)
+            } else {
+                [LegState::Pulsed; 3]
+            },
         },
         terminal: legs.map(|leg| if leg > 0 { now.v_bus } else { 0.0 }),
         off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),

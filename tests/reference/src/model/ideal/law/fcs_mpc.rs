@@ -1,10 +1,10 @@
 //! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by trying.
 
-use super::{Decision, Inputs, deadbeat, divided, whole};
+use super::{Decision, Inputs, deadbeat, divided, held, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
-use crate::{Candidates, OffLeg, Spec, Switch};
+use crate::{Candidates, EmfSource, OffLeg, Spec, Switch};
 use nalgebra::{Vector2, Vector3};
 
 /// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
@@ -29,7 +29,12 @@ impl FcsMpc {
 
     pub fn decide(&self, now: &Inputs) -> Decision {
         let options = &self.options;
-        let u_unsat = deadbeat::voltage(now);
+        let is_held = options.emf == EmfSource::Held;
+        let u_unsat = if is_held {
+            held::voltage(now)
+        } else {
+            deadbeat::voltage(now)
+        };
         let tie = TIE * (u_unsat.norm() + now.v_bus).powi(2);
         let weighted = options.modulated == Switch::Off
             && options.switching_weight + options.torque_weight > 0.0;
@@ -58,7 +63,13 @@ impl FcsMpc {
             }
         }
         let (u, command) = match options.modulated {
-            Switch::Off => (voltage(options, now, vector), whole::command(now, vector)),
+            Switch::Off => {
+                let turns_off = options.candidates != Candidates::ThreePhase;
+                (
+                    voltage(options, now, vector),
+                    whole::command(now, vector, turns_off),
+                )
+            }
             Switch::On => divided::command(options, now, &u_unsat, vector),
         };
         Decision {
@@ -69,6 +80,11 @@ impl FcsMpc {
             command,
             integral: [0.0; 2],
             rises: now.rises,
+            past: if is_held {
+                held::past(now, &u)
+            } else {
+                now.past
+            },
         }
     }
 

@@ -1,33 +1,41 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
 use super::dead_time::{DeadTime, kept_by_deadbeat};
-use super::{Decision, Inputs, deadbeat, pulses};
+use super::{Decision, Inputs, deadbeat, held, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
-use crate::{Modulation, Spec};
+use crate::{EmfSource, Error, Modulation, Spec};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Pdcc {
     options: crate::Pdcc,
     dead_time: DeadTime,
+    /// Largest EMF that is believed, volt.
+    v_largest: f64,
 }
 
 impl Pdcc {
-    pub fn new(spec: &Spec, options: &crate::Pdcc) -> Self {
-        Self {
+    pub fn new(spec: &Spec, options: &crate::Pdcc) -> Result<Self, Error> {
+        Ok(Self {
             options: *options,
             dead_time: DeadTime::new(spec),
-        }
+            v_largest: spec.inverter.v_bus_max()?,
+        })
     }
 
     pub fn decide(&self, now: &Inputs) -> Decision {
         let options = &self.options;
         let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
-        let u_unsat = deadbeat::voltage(now);
+        let is_held = options.emf == EmfSource::Held;
+        let (u_unsat, e) = if is_held {
+            (held::voltage(now), held::emf(now, self.v_largest))
+        } else {
+            (deadbeat::voltage(now), now.e)
+        };
         let limited = limit::limit(
             options.saturation,
             &phases(&u_unsat),
-            &phases(&now.e),
+            &phases(&e),
             now.v_bus,
         );
         let command = if options.modulation == Modulation::Pair && !now.commutating {
@@ -35,14 +43,20 @@ impl Pdcc {
         } else {
             pulses::three(now, &limited.u, &shifts)
         };
+        let u = clarke(&limited.u);
         Decision {
             u_unsat,
-            u: clarke(&limited.u),
+            u,
             reach: limited.reach,
             vector: 0,
             command,
             integral: to_ab(&now.integral),
             rises: now.rises,
+            past: if is_held {
+                held::past(now, &u)
+            } else {
+                now.past
+            },
         }
     }
 }

@@ -33,9 +33,10 @@ impl Phcc {
             u: whole::voltage(now, vector),
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector),
+            command: whole::command(now, vector, true),
             integral: to_ab(&now.integral),
             rises,
+            past: now.past,
         }
     }
 }

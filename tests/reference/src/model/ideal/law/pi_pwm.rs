@@ -57,6 +57,7 @@ impl PiPwm {
             command: pulses::three(now, &limited.u, &self.dead_time.shifts(now, 1.0)),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
             rises: now.rises,
+            past: now.past,
         }
     }
     /// One regulator on the current of the conducting pair.
@@ -90,6 +91,7 @@ impl PiPwm {
             command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0)),
             integral: [integral, 0.0],
             rises: now.rises,
+            past: now.past,
         }
     }
 }

@@ -4,13 +4,18 @@ use super::{Command, Inputs};
 use crate::model::ideal::Duties;
 use crate::model::ideal::vector::clarke;
 use crate::model::vectors;
+use hexagen::LegState;
 use nalgebra::{Vector2, Vector3};
 
-/// The command of a vector.
-pub fn command(now: &Inputs, vector: usize) -> Command {
+/// The command of a vector; where none turns a leg off, low legs are pulsed with 0.
+pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
     let duties = Duties {
         duty: vectors::LEGS[vector].map(|leg| if leg > 0 { 1.0 } else { 0.0 }),
-        state: vectors::states(vector),
+        state: if turns_off {
+            vectors::states(vector)
+        } else {
+            [LegState::Pulsed; 3]
+        },
     };
     Command {
         duties,

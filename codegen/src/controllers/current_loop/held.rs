@@ -1,0 +1,211 @@
+//! Deadbeat control with the EMF held over the delay, folded: no estimate, no prediction, but what past samples and
+//! commands add to this step's voltage and to the next one's (semantics, `emf: held`).
+
+use super::{CurrentLoop, LoopDesign, Remembered};
+use crate::ir::{Interval, StateId, Value};
+use crate::lower::{Coefficient, Lowering};
+use crate::spec::LoopOptions;
+
+/// The coefficients.
+#[derive(Clone, Copy)]
+struct Folded {
+    /// What one unit of the present current takes from the voltage, negative.
+    now: Coefficient,
+    /// What it adds to the next one's.
+    past: Coefficient,
+    /// 1 - a, with delay 1.
+    decay: Option<Coefficient>,
+}
+
+impl Folded {
+    fn new(l: &mut Lowering<'_>, options: &LoopOptions, design: &LoopDesign) -> Self {
+        let (a, word) = (design.plant.pole, options.word);
+        let delayed = options.delay == 1;
+        let (now, past, symbols) = if delayed {
+            (
+                1.0 + a + a * a,
+                a * (1.0 + a),
+                ["-K (1 + a + a^2)", "K a (1 + a)"],
+            )
+        } else {
+            (1.0 + a, a, ["-K (1 + a)", "K a"])
+        };
+        let now = l.impedance(
+            "k_now",
+            -design.k_di * now,
+            word,
+            "Weight of the present current.",
+            [symbols[0], "V/A"],
+        );
+        let past = l.impedance(
+            "k_past",
+            design.k_di * past,
+            word,
+            "Weight of the present current in the next step's voltage.",
+            [symbols[1], "V/A"],
+        );
+        let decay = delayed.then(|| {
+            l.coefficient(
+                "k_decay",
+                design.k_decay,
+                word,
+                "Share of current lost in one period.",
+                &format!("1 - a = {:.6}", design.k_decay),
+            )
+        });
+        Self { now, past, decay }
+    }
+
+    /// Greatest magnitudes of the words `due` and `later`.
+    fn bounds(&self, l: &Lowering<'_>) -> [i64; 2] {
+        let volts = l.bus_interval().high;
+        let past = l.rounded_product(self.past, l.current_span()).abs() + 1;
+        match self.decay {
+            None => [past + volts, 0],
+            Some(decay) => {
+                let lost = l.rounded_product(decay, volts).abs() + 1;
+                let later = 2 * volts + lost;
+                [past + later + volts + lost, later]
+            }
+        }
+    }
+}
+
+/// The folded words of a step.
+pub struct Held {
+    folded: Folded,
+    due: [StateId; 2],
+    later: Option<[StateId; 2]>,
+    due_words: [Value; 2],
+    later_words: Option<[Value; 2]>,
+    currents: [Value; 3],
+}
+
+impl CurrentLoop<'_, '_> {
+    /// Declares the folded words and reads them.
+    pub(super) fn held(&mut self, currents: [Value; 3]) -> Held {
+        let l = &mut *self.lowering;
+        let folded = Folded::new(l, self.options, self.design);
+        let [due_bound, later_bound] = folded.bounds(l);
+        let due = ["due_a", "due_b"].map(|name| {
+            let doc = "What past samples and commands add to this step's voltage.";
+            l.state(name, 0, Interval::symmetric(due_bound), doc)
+        });
+        let later = folded.decay.map(|_| {
+            ["later_a", "later_b"].map(|name| {
+                let doc = "What past commands add to the next step's voltage.";
+                l.state(name, 0, Interval::symmetric(later_bound), doc)
+            })
+        });
+        l.b.stage(
+            "read_past",
+            &["What past samples and commands add to the voltages of this step and the next."],
+        );
+        Held {
+            folded,
+            due,
+            later,
+            due_words: due.map(|word| l.b.state(word)),
+            later_words: later.map(|words| words.map(|word| l.b.state(word))),
+            currents,
+        }
+    }
+
+    /// Step 9 with a held EMF: the voltage of phases a, b.
+    pub(super) fn held_voltage(&mut self, held: &Held, reference: [Value; 2]) -> [Value; 2] {
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "deadbeat_voltage",
+            &[
+                "Deadbeat voltage, the paper's (11) corrected, with its estimate (9) and prediction (7) put in and the terms",
+                "collected by their age: v = K i_ref + k_now i + due; the rest was summed up when it was sampled or commanded.",
+            ],
+        );
+        [0, 1].map(|x| {
+            let open = l.b.add(held.due_words[x], reference[x]);
+            let taken = l.times(held.folded.now, held.currents[x]);
+            let volts = l.b.add(open, taken);
+            l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+        })
+    }
+
+    /// Step 12 with a held EMF: what this step's currents and the voltage `u` that it commands leave to the next two.
+    pub(super) fn fold(&mut self, held: &Held, u: [Value; 2]) -> Remembered {
+        let l = &mut *self.lowering;
+        l.b.stage(
+            "fold",
+            &["What this step's current and voltage add to the voltages of the next two steps."],
+        );
+        let mut remembered = vec![];
+        for x in 0..2 {
+            let sampled = l.times(held.folded.past, held.currents[x]);
+            let (due_next, later_next) = match (held.folded.decay, held.later_words) {
+                (Some(decay), Some(later)) => {
+                    let lost = l.times(decay, u[x]);
+                    let left = l.b.sub(u[x], lost);
+                    l.b.name(["left_a", "left_b"][x], left);
+                    let rest = l.b.sub(later[x], left);
+                    (l.b.add(rest, sampled), Some(l.b.add(u[x], left)))
+                }
+                _ => (l.b.add(u[x], sampled), None),
+            };
+            l.b.name(["due_a_now", "due_b_now"][x], due_next);
+            remembered.push((held.due[x], ["due_a_next", "due_b_next"][x], due_next));
+            if let (Some(words), Some(value)) = (held.later, later_next) {
+                l.b.name(["later_a_now", "later_b_now"][x], value);
+                remembered.push((words[x], ["later_a_next", "later_b_next"][x], value));
+            }
+        }
+        remembered
+    }
+}
+
+impl Held {
+    /// The EMF of the last period out of the folded words, added to the open stage.
+    pub fn seen_emf(&self, l: &mut Lowering<'_>, design: &LoopDesign, word: u32) -> [Value; 2] {
+        let a = design.plant.pole;
+        let k_di = l.impedance(
+            "k_di",
+            design.k_di,
+            word,
+            "K = 1/b: voltage over one period per change of current.",
+            ["K", "V/A"],
+        );
+        let unfolded = self.later_words.map(|later| {
+            let k_due = l.coefficient(
+                "k_due",
+                1.0 / (1.0 + a),
+                word,
+                "Share of the EMF in what is due.",
+                &format!("1/(1 + a) = {:.6}", 1.0 / (1.0 + a)),
+            );
+            let weight = a / (1.0 + a).powi(2);
+            let k_later = l.coefficient(
+                "k_later",
+                weight,
+                word,
+                "Weight of the last command in what is due.",
+                &format!("a/(1 + a)^2 = {weight:.6}"),
+            );
+            (k_due, k_later, later)
+        });
+        let limit = l.bus_interval().high;
+        [0, 1].map(|x| {
+            let known = match unfolded {
+                Some((k_due, k_later, later)) => {
+                    let due = l.times(k_due, self.due_words[x]);
+                    let last = l.times(k_later, later[x]);
+                    l.b.add(due, last)
+                }
+                None => self.due_words[x],
+            };
+            let drop = l.times(k_di, self.currents[x]);
+            let seen = l.b.sub(known, drop);
+            let doc = "Largest EMF that is believed, the largest bus voltage";
+            let low = l.voltage("e_min", -limit, doc);
+            let high = l.voltage("e_max", limit, doc);
+            let seen = l.b.clamp(seen, low, high);
+            l.b.name(["e_a", "e_b"][x], seen)
+        })
+    }
+}
