@@ -17,8 +17,8 @@
 //!    word at most once. What is set lies in the word's interval, which holds its initial value and fits its
 //!    storage of 16 or 32 bits.
 //! 10. No dead nodes.
-//! 11. A function has at most one exit, its last stage: the exit's joins are results, its guard is made of flags outside
-//!     of guarded stages. Only paths taken from a verified function hold flags to leave by.
+//! 11. An exit is the last stage of its function, so there is at most one, and its joins are results. Only paths taken
+//!     from a verified function hold flags to leave by.
 
 use std::collections::HashSet;
 use std::fmt;

@@ -226,3 +226,15 @@ fn words_are_set_once_to_what_they_hold() {
 fn there_are_no_dead_nodes() {
     refused("is never used", |program| program.step.outputs.clear());
 }
+
+#[test]
+fn an_exit_comes_last_and_paths_alone_hold_its_flags() {
+    refused("an exit is followed by a stage", |program| {
+        let guard = program.step.stages[1].guard.as_mut().expect("a guard");
+        guard.exit = true;
+    });
+    refused("only a path holds flags to leave by", |program| {
+        let large = value(&program.step, "large");
+        program.step.leave.push(large);
+    });
+}

@@ -2,7 +2,8 @@
 //!
 //! A firmware crate lists its drives with [`drives!`]; the test bench (`cargo xtask pil`, `cargo xtask cost`)
 //! sends vectors to the core, and [`session`] replays them on the drive: answers as digests, in full, or as
-//! counts of instructions. [`wire`] is the format that both ends speak.
+//! counts of instructions. [`wire`] is the format that both ends speak. The modules in `on_target` are part of each
+//! firmware crate: they emit step functions, or use its board.
 #![no_std]
 
 #[cfg_attr(not(target_os = "none"), path = "uncounted.rs")]

@@ -7,7 +7,9 @@
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EMF_INTEGRAL_SHARE};
 use crate::ir::{Comparison, Value};
-use crate::lower::{Coefficient, Currents, Hall, ModelledEmf, Rotor, product_bound, round_down};
+use crate::lower::{
+    Coefficient, Currents, Hall, Lowering, ModelledEmf, Rotor, product_bound, round_down,
+};
 use crate::spec::EmfSource;
 
 /// EMF of phases a and b over the target period and over the present one.
@@ -30,6 +32,16 @@ struct Sight {
 
 /// What the limit of an estimate is.
 const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
+
+/// An estimate of a phase's EMF, limited to what is believed; added to the open stage.
+pub(super) fn believed(l: &mut Lowering<'_>, e: Value) -> Value {
+    let bus = l.bus_interval().high;
+    let (low, high) = (
+        l.voltage("e_min", -bus, BELIEVED),
+        l.voltage("e_max", bus, BELIEVED),
+    );
+    l.b.clamp(e, low, high)
+}
 
 impl CurrentLoop<'_, '_> {
     /// EMF over the target period and over the present one; none where the law needs none. `outgoing` is
@@ -88,13 +100,7 @@ impl CurrentLoop<'_, '_> {
     fn sight(&mut self) -> Sight {
         let (options, design) = (*self.options, self.design);
         let l = &mut *self.lowering;
-        let k_di = l.impedance(
-            "k_di",
-            design.k_di,
-            options.word,
-            "K = 1/b: voltage over one period per change of current.",
-            ["K", "V/A"],
-        );
+        let k_di = design.stiffness(l, options.word);
         let k_r = l.impedance(
             "k_r",
             design.k_r,
@@ -205,7 +211,6 @@ impl CurrentLoop<'_, '_> {
         let floats = words.off_prev.is_some();
         let sight = self.sight();
         let l = &mut *self.lowering;
-        let bus = l.bus_interval().high;
         let filter = (options.emf_filter < 1.0).then(|| {
             l.coefficient(
                 "k_filter",
@@ -236,11 +241,7 @@ impl CurrentLoop<'_, '_> {
                 }
                 _ => seen,
             };
-            let (low, high) = (
-                l.voltage("e_min", -bus, BELIEVED),
-                l.voltage("e_max", bus, BELIEVED),
-            );
-            let held = l.b.clamp(news, low, high);
+            let held = believed(l, news);
             let names = if floats {
                 ["e_a_believed", "e_b_believed"]
             } else {
@@ -289,14 +290,9 @@ impl CurrentLoop<'_, '_> {
         let two = l.b.literal(2);
         let off_b = l.b.compare(Comparison::Equal, off, two);
         l.b.name("floated_b", off_b);
-        let bus = l.bus_interval().high;
         let sum = l.b.add(e[0], e[1]);
         let e_c = l.b.neg(sum);
-        let (low, high) = (
-            l.voltage("e_min", -bus, BELIEVED),
-            l.voltage("e_max", bus, BELIEVED),
-        );
-        let e_c = l.b.clamp(e_c, low, high);
+        let e_c = believed(l, e_c);
         l.b.name("e_c_believed", e_c);
         let phases = [e[0], e[1], e_c];
         let own = l.pick(off_a, off_b, phases);

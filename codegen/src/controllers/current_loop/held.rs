@@ -1,7 +1,8 @@
 //! Deadbeat control with the EMF held over the delay, folded: no estimate, no prediction, but what past samples and
 //! commands add to this step's voltage and to the next one's (semantics, `emf: held`).
 
-use super::{CurrentLoop, LoopDesign, Remembered};
+use super::emf::believed;
+use super::{CurrentLoop, LoopDesign, Remembered, asked_for};
 use crate::ir::{Interval, StateId, Value};
 use crate::lower::{Coefficient, Lowering};
 use crate::spec::LoopOptions;
@@ -44,15 +45,7 @@ impl Folded {
             "Weight of the present current in the next step's voltage.",
             [symbols[1], "V/A"],
         );
-        let decay = delayed.then(|| {
-            l.coefficient(
-                "k_decay",
-                design.k_decay,
-                word,
-                "Share of current lost in one period.",
-                &format!("1 - a = {:.6}", design.k_decay),
-            )
-        });
+        let decay = delayed.then(|| design.decay(l, word));
         Self { now, past, decay }
     }
 
@@ -125,7 +118,7 @@ impl CurrentLoop<'_, '_> {
             let open = l.b.add(held.due_words[x], reference[x]);
             let taken = l.times(held.folded.now, held.currents[x]);
             let volts = l.b.add(open, taken);
-            l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+            asked_for(l, x, volts)
         })
     }
 
@@ -164,13 +157,7 @@ impl Held {
     /// The EMF of the last period out of the folded words, added to the open stage.
     pub fn seen_emf(&self, l: &mut Lowering<'_>, design: &LoopDesign, word: u32) -> [Value; 2] {
         let a = design.plant.pole;
-        let k_di = l.impedance(
-            "k_di",
-            design.k_di,
-            word,
-            "K = 1/b: voltage over one period per change of current.",
-            ["K", "V/A"],
-        );
+        let k_di = design.stiffness(l, word);
         let unfolded = self.later_words.map(|later| {
             let k_due = l.coefficient(
                 "k_due",
@@ -189,7 +176,6 @@ impl Held {
             );
             (k_due, k_later, later)
         });
-        let limit = l.bus_interval().high;
         [0, 1].map(|x| {
             let known = match unfolded {
                 Some((k_due, k_later, later)) => {
@@ -201,10 +187,7 @@ impl Held {
             };
             let drop = l.times(k_di, self.currents[x]);
             let seen = l.b.sub(known, drop);
-            let doc = "Largest EMF that is believed, the largest bus voltage";
-            let low = l.voltage("e_min", -limit, doc);
-            let high = l.voltage("e_max", limit, doc);
-            let seen = l.b.clamp(seen, low, high);
+            let seen = believed(l, seen);
             l.b.name(["e_a", "e_b"][x], seen)
         })
     }

@@ -109,6 +109,14 @@ pub struct Front {
     pub held: Option<Held>,
 }
 
+/// Names the voltage of phase `x`, 0 or 1, that the law asks for, and states its error.
+fn asked_for(l: &mut Lowering<'_>, x: usize, volts: Value) -> Value {
+    let doc = "Voltage of a phase that the law asks for, before the limit";
+    let word = 1.0 / l.scale.voltage();
+    l.b.state_error("voltage", volts, [doc, "V"], word);
+    l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+}
+
 /// State words and their new values while the drive runs; zero otherwise.
 pub type Remembered = Vec<(StateId, &'static str, Value)>;
 
@@ -278,15 +286,7 @@ impl CurrentLoop<'_, '_> {
         }
         let k_hold = self.hold();
         let l = &mut *self.lowering;
-        let k_decay = (options.delay == 1).then(|| {
-            l.coefficient(
-                "k_decay",
-                design.k_decay,
-                options.word,
-                "Share of current lost in one period.",
-                &format!("1 - a = {:.6}", design.k_decay),
-            )
-        });
+        let k_decay = (options.delay == 1).then(|| design.decay(l, options.word));
         let doc: &[&str] = if options.delay == 1 {
             &[
                 "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
@@ -315,10 +315,7 @@ impl CurrentLoop<'_, '_> {
                 (_, _, Some(e), _) => l.b.add(open, e[x]),
                 _ => open,
             };
-            let doc = "Voltage of a phase that the law asks for, before the limit";
-            let word = 1.0 / l.scale.voltage();
-            l.b.state_error("voltage", volts, [doc, "V"], word);
-            [held, l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)]
+            [held, asked_for(l, x, volts)]
         });
         let held = found.map(|[held, _]| held);
         let shifts = compensates.then(|| self.dead_time_shifts(reference, held, design.k_di));

@@ -5,22 +5,11 @@
 use cortex_m_rt::entry;
 // The vector table.
 use hexagen_cortex_m0 as _;
-use hexagen_firmware::hexagen::fixed::types::I16F16;
-use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Phcc, PiPwm};
 use hexagen_firmware::semihosted::run;
+use peers::PEERS;
 
-hexagen_firmware::peers! {
-    step_f32_pdcc: Pdcc<f32>;
-    step_f32_fcs_mpc: FcsMpc<f32>;
-    step_f32_phcc: Phcc<f32>;
-    step_f32_pi_pwm: PiPwm<f32>;
-    step_i16f16_pdcc: Pdcc<I16F16>;
-    step_i16f16_fcs_mpc: FcsMpc<I16F16>;
-    step_i16f16_phcc: Phcc<I16F16>;
-    step_i16f16_pi_pwm: PiPwm<I16F16>;
-    step_foc: FocLoop;
-    step_idsp: IdspLoop;
-}
+#[path = "../../../firmware/on_target/peers.rs"]
+mod peers;
 
 #[entry]
 fn main() -> ! {

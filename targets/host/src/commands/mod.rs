@@ -13,5 +13,6 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 pub mod robustness;
+pub mod selected;
 pub mod simulate;
 pub mod verify;

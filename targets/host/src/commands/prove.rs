@@ -1,10 +1,8 @@
 //! `hexagen prove`: that nothing overflows and how far values are from the ideal ones, checked by Gappa.
 
 use crate::checker::{Proof, gappa_version, prove};
-use crate::cli::{
-    Failure, PlantArguments, SelectedMotor, Selection, TextTable, bar, print_json, print_text,
-    significant, tell_warnings, warn,
-};
+use crate::cli::{Failure, Selection, TextTable, bar, print_json, print_text, significant};
+use crate::commands::selected::{Refused, select};
 use crate::engine::Prepared;
 use clap::Args;
 use hexagen_codegen::emit::gappa::{Script, emit_gappa};
@@ -64,14 +62,6 @@ pub struct Stated {
     pub bound_ulp: f64,
     /// Largest error where the voltage is limited, in the quantity's unit.
     pub limited: Option<f64>,
-}
-
-/// A controller that cannot be made for a motor.
-#[derive(Clone, Debug, Serialize)]
-struct Refused {
-    motor: String,
-    controller: String,
-    reason: String,
 }
 
 /// Proves all drives; the scripts of all of them share the cores.
@@ -149,15 +139,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         results: Vec<Proved>,
         refused: Vec<Refused>,
     }
-    let none = PlantArguments::default();
-    let motors = if options.motors.is_empty() {
-        SelectedMotor::library()?
-    } else {
-        let given = options.motors.iter();
-        given
-            .map(|motor| SelectedMotor::find(motor, &none))
-            .collect::<Result<_, _>>()?
-    };
     let takes_all = options.controller == Some(Selection::All);
     let variants: Vec<Option<String>> = match &options.controller {
         None => vec![None],
@@ -168,27 +149,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let checker = gappa_version()?;
-    let (mut drives, mut refused) = (vec![], vec![]);
-    for motor in &motors {
-        for variant in &variants {
-            match (motor.prepare(variant.as_deref()), variant) {
-                (Ok(drive), _) => {
-                    tell_warnings(&drive);
-                    drives.push(drive);
-                }
-                // Of all controllers some cannot work with some motors; one that was named must.
-                (Err(reason), Some(controller)) if takes_all => {
-                    warn(&format!("{controller} is left out: {reason}"));
-                    refused.push(Refused {
-                        motor: motor.source.name.clone(),
-                        controller: controller.clone(),
-                        reason: reason.to_string(),
-                    });
-                }
-                (Err(failure), _) => return Err(failure),
-            }
-        }
-    }
+    let (drives, refused) = select(&options.motors, &variants, takes_all)?;
     let results = collect(&drives)?;
     let failures: Vec<String> = results
         .iter()

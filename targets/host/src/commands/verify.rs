@@ -1,9 +1,9 @@
 //! `hexagen verify`: generated code against the bit-true reference, on every output and state bit.
 
 use crate::cli::{
-    Failure, PlantArguments, SelectedMotor, Selection, TextTable, bar, print_json, print_text,
-    significant, tell_warnings, warn,
+    Failure, Selection, TextTable, bar, print_json, print_text, significant, warn,
 };
+use crate::commands::selected::{Refused, select};
 use crate::engine::{EngineKind, Prepared, Verifier};
 use clap::Args;
 use hexagen_reference::verify::Report;
@@ -54,14 +54,6 @@ pub struct Checked {
     pub coverage: Coverage,
     /// What differs.
     pub mismatch: Option<String>,
-}
-
-/// A controller that cannot be made for a motor.
-#[derive(Clone, Debug, Serialize)]
-struct Refused {
-    motor: String,
-    controller: String,
-    reason: String,
 }
 
 /// How many steps went which way.
@@ -178,41 +170,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         results: Vec<Checked>,
         refused: Vec<Refused>,
     }
-    let none = PlantArguments::default();
-    let motors = if options.motors.is_empty() {
-        SelectedMotor::library()?
-    } else {
-        let given = options.motors.iter();
-        given
-            .map(|motor| SelectedMotor::find(motor, &none))
-            .collect::<Result<_, _>>()?
-    };
     let variants: Vec<Option<String>> = match &options.controller {
         None => vec![None],
         Some(selection) => selection.variants().into_iter().map(Some).collect(),
     };
     let takes_all = options.controller == Some(Selection::All);
-    let (mut drives, mut refused) = (Vec::new(), Vec::new());
-    for motor in &motors {
-        for variant in &variants {
-            match (motor.prepare(variant.as_deref()), variant) {
-                (Ok(drive), _) => {
-                    tell_warnings(&drive);
-                    drives.push(drive);
-                }
-                // Of all controllers some cannot work with some motors; one that was named must.
-                (Err(reason), Some(controller)) if takes_all => {
-                    warn(&format!("{controller} is left out: {reason}"));
-                    refused.push(Refused {
-                        motor: motor.source.name.clone(),
-                        controller: controller.clone(),
-                        reason: reason.to_string(),
-                    });
-                }
-                (Err(failure), _) => return Err(failure),
-            }
-        }
-    }
+    let (drives, refused) = select(&options.motors, &variants, takes_all)?;
     let progress = bar(options.steps * drives.len() as u64, "comparing");
     let results = collect(&drives, options.steps, options.seed, &progress);
     progress.finish_and_clear();

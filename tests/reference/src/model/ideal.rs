@@ -15,7 +15,9 @@ use super::trace::{Past, PhysicalState, Trace};
 use super::variant::Variant;
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
-use crate::{BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec};
+use crate::{
+    BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec, Switch,
+};
 use hexagen::{Fault, LegState, Legs, Sample};
 use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
@@ -325,6 +327,7 @@ impl Ideal {
             direction: self.state.timing.direction,
             rises: self.state.rises,
             vector_prev: self.state.vector_prev,
+            emf_is_held: self.variant.held == Switch::On,
             past: self.state.past,
         });
         let command = match verdict.period {

@@ -41,6 +41,8 @@ pub struct Inputs {
     pub rises: [bool; 2],
     /// Number of the vector that the last step chose (FCS-MPC).
     pub vector_prev: usize,
+    /// Whether deadbeat control holds the EMF of the last period.
+    pub emf_is_held: bool,
     /// What the past adds to the voltage (deadbeat with a held EMF).
     pub past: Past,
 }

@@ -1,10 +1,10 @@
 //! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by trying.
 
-use super::{Decision, Inputs, deadbeat, divided, held, whole};
+use super::{Decision, Inputs, deadbeat, divided, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::vectors;
-use crate::{Candidates, EmfSource, OffLeg, Spec, Switch};
+use crate::{Candidates, OffLeg, Spec, Switch};
 use nalgebra::{Vector2, Vector3};
 
 /// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
@@ -29,12 +29,7 @@ impl FcsMpc {
 
     pub fn decide(&self, now: &Inputs) -> Decision {
         let options = &self.options;
-        let is_held = options.emf == EmfSource::Held;
-        let u_unsat = if is_held {
-            held::voltage(now)
-        } else {
-            deadbeat::voltage(now)
-        };
+        let u_unsat = deadbeat::voltage(now);
         let tie = TIE * (u_unsat.norm() + now.v_bus).powi(2);
         let weighted = options.modulated == Switch::Off
             && options.switching_weight + options.torque_weight > 0.0;
@@ -80,11 +75,7 @@ impl FcsMpc {
             command,
             integral: [0.0; 2],
             rises: now.rises,
-            past: if is_held {
-                held::past(now, &u)
-            } else {
-                now.past
-            },
+            past: deadbeat::past(now, &u),
         }
     }
 

@@ -1,10 +1,10 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
 use super::dead_time::{DeadTime, kept_by_deadbeat};
-use super::{Decision, Inputs, deadbeat, held, pulses};
+use super::{Decision, Inputs, deadbeat, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
-use crate::{EmfSource, Error, Modulation, Spec};
+use crate::{Error, Modulation, Spec};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Pdcc {
@@ -26,12 +26,8 @@ impl Pdcc {
     pub fn decide(&self, now: &Inputs) -> Decision {
         let options = &self.options;
         let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
-        let is_held = options.emf == EmfSource::Held;
-        let (u_unsat, e) = if is_held {
-            (held::voltage(now), held::emf(now, self.v_largest))
-        } else {
-            (deadbeat::voltage(now), now.e)
-        };
+        let u_unsat = deadbeat::voltage(now);
+        let e = deadbeat::emf(now, self.v_largest);
         let limited = limit::limit(
             options.saturation,
             &phases(&u_unsat),
@@ -52,11 +48,7 @@ impl Pdcc {
             command,
             integral: to_ab(&now.integral),
             rises: now.rises,
-            past: if is_held {
-                held::past(now, &u)
-            } else {
-                now.past
-            },
+            past: deadbeat::past(now, &u),
         }
     }
 }

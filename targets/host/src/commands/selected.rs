@@ -1,0 +1,58 @@
+//! The drives that a command line asks for.
+
+use crate::cli::{Failure, PlantArguments, SelectedMotor, tell_warnings, warn};
+use crate::engine::Prepared;
+use serde::Serialize;
+
+/// A controller that cannot be made for a motor.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    /// Name of the motor.
+    pub motor: String,
+    /// The variant.
+    pub controller: String,
+    /// All diagnostics.
+    pub reason: String,
+}
+
+/// The motors (none: the library) under each of the variants (none: that of the motor's file), and what is refused of
+/// `all` controllers: of those some cannot work with some motors. One that was named must.
+///
+/// # Errors
+/// Motors that there are not, and all diagnostics.
+pub fn select(
+    motors: &[String],
+    variants: &[Option<String>],
+    takes_all: bool,
+) -> Result<(Vec<Prepared>, Vec<Refused>), Failure> {
+    let none = PlantArguments::default();
+    let motors = if motors.is_empty() {
+        SelectedMotor::library()?
+    } else {
+        motors
+            .iter()
+            .map(|motor| SelectedMotor::find(motor, &none))
+            .collect::<Result<_, _>>()?
+    };
+    let (mut drives, mut refused) = (vec![], vec![]);
+    for motor in &motors {
+        for variant in variants {
+            match (motor.prepare(variant.as_deref()), variant) {
+                (Ok(drive), _) => {
+                    tell_warnings(&drive);
+                    drives.push(drive);
+                }
+                (Err(reason), Some(controller)) if takes_all => {
+                    warn(&format!("{controller} is left out: {reason}"));
+                    refused.push(Refused {
+                        motor: motor.source.name.clone(),
+                        controller: controller.clone(),
+                        reason: reason.to_string(),
+                    });
+                }
+                (Err(failure), _) => return Err(failure),
+            }
+        }
+    }
+    Ok((drives, refused))
+}
