@@ -1,8 +1,6 @@
 //! `hexagen verify`: generated code against the bit-true reference, on every output and state bit.
 
-use crate::cli::{
-    Failure, Selection, TextTable, bar, print_json, print_text, significant, warn,
-};
+use crate::cli::{Failure, Selection, TextTable, bar, print_json, print_text, significant, warn};
 use crate::commands::selected::{Refused, select};
 use crate::engine::{EngineKind, Prepared, Verifier};
 use clap::Args;
