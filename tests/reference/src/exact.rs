@@ -152,6 +152,25 @@ pub fn div_floor(n: f64, s: u32, den: f64) -> f64 {
     quotient
 }
 
+/// min(floor(n 2^s/den), limit) for words n >= 0, den > 0 and limit >= 0 with limit den <= 2^52: there the floor of
+/// the rounded quotient is exact, as in [`div_floor`], and beyond the limit it need not be.
+#[inline]
+pub fn div_limited(n: f64, s: u32, den: f64, limit: f64) -> f64 {
+    debug_whole(n);
+    debug_assert!(
+        (0.0..TWO_32).contains(&n) && den >= 1.0 && limit * den <= 4_503_599_627_370_496.0,
+        "{n}/{den}, at most {limit}"
+    );
+    floor((n * pow2(s as i32) / den).min(limit))
+}
+
+/// `then` where the condition holds, else `otherwise`: a mask, because a branch would be mispredicted every other time.
+#[inline]
+pub fn either(condition: bool, then: f64, otherwise: f64) -> f64 {
+    let mask = u64::from(condition).wrapping_neg();
+    f64::from_bits(then.to_bits() & mask | otherwise.to_bits() & !mask)
+}
+
 /// A coefficient word with its shift, split for [`Coefficient::mul`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficient {
@@ -207,21 +226,36 @@ impl Coefficient {
     }
 }
 
+/// Products below 2^51 can be taken whole: with half of their last bit added they still fit 53 bits.
+const WHOLE: f64 = 2_251_799_813_685_248.0;
+/// Most fraction bits that leave room for a half below the last one.
+const FRACTION: u32 = 51;
+
 /// A shift for products of two run-time words.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shift {
     bits: u32,
-    /// 2^-s, or 2^(16-s) where the product is split.
+    /// Products below this are taken whole.
+    whole: f64,
+    /// 2^-s.
     weight: f64,
+    /// 2^(16-s), the weight of products of which 16 bits are cut off.
+    cut_weight: f64,
 }
 
 impl Shift {
     /// A shift by `bits` <= 62.
     pub fn new(bits: u32) -> Self {
-        let kept = if bits > 16 { bits - 16 } else { bits };
         Self {
             bits,
-            weight: pow2(-(kept as i32)),
+            whole: match bits {
+                // As short as their shifted result plus 16 bits.
+                0..=16 => f64::INFINITY,
+                17..=FRACTION => WHOLE,
+                _ => 0.0,
+            },
+            weight: pow2(-(bits as i32)),
+            cut_weight: pow2(16 - bits as i32),
         }
     }
 
@@ -231,41 +265,42 @@ impl Shift {
         self.bits
     }
 
-    /// x y/2^s with the bits below the weight cut off.
+    /// x y/2^s and the weight of its last bit. A product too long for f64 loses 16 bits, which the shift cuts off
+    /// in any case: its upper and lower half are multiplied apart.
     #[inline]
-    fn product(&self, x: f64, y: f64) -> f64 {
+    fn product(&self, x: f64, y: f64) -> (f64, f64) {
         debug_whole(x);
         debug_whole(y);
         debug_assert!(
             x.abs() <= TWO_32 && y.abs() <= 2.0 * TWO_32,
             "{x} times {y}"
         );
-        if self.bits > 16 {
+        let whole = x * y;
+        if whole.abs() < self.whole {
+            debug_whole(whole);
+            (whole * self.weight, self.weight)
+        } else {
             let high = floor_weighted(x, 1.0 / TWO_16);
             let low = x - high * TWO_16;
-            (high * y + floor_weighted(low * y, 1.0 / TWO_16)) * self.weight
-        } else {
-            debug_whole(x * y);
-            x * y * self.weight
+            let cut = high * y + floor_weighted(low * y, 1.0 / TWO_16);
+            (cut * self.cut_weight, self.cut_weight)
         }
     }
 
     /// floor(x y/2^s) for words x, y.
     #[inline]
     pub fn floor_product(&self, x: f64, y: f64) -> f64 {
-        nearest(self.product(x, y) + (0.5 * self.weight - 0.5))
+        let (product, weight) = self.product(x, y);
+        nearest(product + (0.5 * weight - 0.5))
     }
 
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
     #[inline]
     pub fn round_product(&self, x: f64, y: f64) -> f64 {
+        let (product, weight) = self.product(x, y);
         // Half an ulp breaks ties upwards; without fraction bits there are none.
-        let nudge = if self.bits == 0 {
-            0.0
-        } else {
-            0.5 * self.weight
-        };
-        nearest(self.product(x, y) + nudge)
+        let nudge = if self.bits == 0 { 0.0 } else { 0.5 * weight };
+        nearest(product + nudge)
     }
 }
 
@@ -416,6 +451,12 @@ mod tests {
             } else {
                 assert!(found >= 9_007_199_254_740_992.0);
             }
+            let limit = (4_503_599_627_370_496.0 / den as f64).floor().min(TWO_32);
+            assert_eq!(
+                div_limited(n as f64, s, den as f64, limit) as i128,
+                exact.min(limit as i128),
+                "({n} << {s}) / {den}, at most {limit}"
+            );
         }
     }
 }

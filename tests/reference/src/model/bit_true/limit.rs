@@ -2,7 +2,9 @@
 
 use super::constants::Constants;
 use crate::Saturation;
-use crate::exact::{Coefficient, Shift, all_three, both, div_floor, floor, floor_shift, halve};
+use crate::exact::{
+    Coefficient, Shift, all_three, both, div_floor, div_limited, either, floor, floor_shift, halve,
+};
 use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
@@ -12,6 +14,8 @@ const BLEND_SHARE: u32 = 1;
 /// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
 const LIGHT_SHARE: u32 = 2;
 const BLEND_ONE: f64 = 32_768.0;
+/// The phase behind each.
+const NEXT: [usize; 3] = [1, 2, 0];
 
 /// Limits phase voltages a, b; `e` is the EMF of phases a, b.
 #[inline]
@@ -71,54 +75,42 @@ fn torque_priority(
     near: [f64; 2],
 ) -> ([f64; 2], Reach) {
     let product = |x, y| k.emf_product.floor_product(x, y);
-    let mut d = 0;
-    for phase in 1..3 {
-        if f[phase].abs() > f[d].abs() {
-            d = phase;
-        }
+    let strong = [f[0].abs(), f[1].abs(), f[2].abs()];
+    let mut d = usize::from(strong[1] > strong[0]);
+    if strong[2] > strong[d] {
+        d = 2;
     }
-    let (x, y) = ((d + 1) % 3, (d + 2) % 3);
-    if f[d].abs() < floor_shift(v_bus, 8) {
+    let (x, y) = (NEXT[d], NEXT[NEXT[d]]);
+    let f_max = strong[d];
+    if f_max < floor_shift(v_bus, 8) {
         return (near, Reach::Outside);
     }
-    let s1 = if f[d] >= 0.0 { 1.0 } else { -1.0 };
+    let s1 = 1f64.copysign(f[d]);
     let (f_x, f_y) = ((-s1 * f[x]).max(0.0), (-s1 * f[y]).max(0.0));
-    let (mut along_x, mut along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
-    let mut p = product(f_x, along_x) + product(f_y, along_y);
-    let mut sign = s1;
-    if p < 0.0 {
-        (along_x, along_y, p, sign) = (-along_x, -along_y, -p, -s1);
-    }
+    let (along_x, along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
+    let along = product(f_x, along_x) + product(f_y, along_y);
+    let flip = 1f64.copysign(along);
+    let (along_x, along_y, p, sign) = (flip * along_x, flip * along_y, along.abs(), flip * s1);
     let (q_x, q_y) = (product(f_x, v_bus), product(f_y, v_bus));
     let p_max = q_x + q_y;
     let p_in = p.min(p_max);
     let x_is_heavy = along_x >= along_y;
     let near = [near[0], near[1], -(near[0] + near[1])];
-    let (q_heavy, f_light, light_near) = if x_is_heavy {
-        (q_x, f_y, sign * (near[d] - near[y]))
-    } else {
-        (q_y, f_x, sign * (near[d] - near[x]))
-    };
+    let (near_x, near_y) = (sign * (near[d] - near[x]), sign * (near[d] - near[y]));
+    let q_heavy = either(x_is_heavy, q_x, q_y);
+    let f_light = either(x_is_heavy, f_y, f_x);
+    let light_near = either(x_is_heavy, near_y, near_x);
     let n = p_in - q_heavy;
-    let f_max = f[d].abs();
-    let den = if n >= 0.0 {
-        f_light.max(floor_shift(f_max, LIGHT_SHARE))
-    } else {
-        f_max
-    }
-    .max(1.0);
-    let quotient = div_floor(n.abs(), k.emf_product.bits(), den).min(v_bus);
-    let light = if n >= 0.0 {
-        quotient.max(light_near)
-    } else {
-        -quotient
-    };
+    let is_more = n >= 0.0;
+    let least = floor_shift(f_max, LIGHT_SHARE);
+    let den = either(is_more, f_light.max(least), f_max).max(1.0);
+    let quotient = div_limited(n.abs(), k.emf_product.bits(), den, v_bus);
+    let light = either(is_more, quotient.max(light_near), -quotient);
     let heavy = (light + v_bus).min(v_bus);
-    let (mut to_x, mut to_y) = if x_is_heavy {
-        (heavy, light)
-    } else {
-        (light, heavy)
-    };
+    let (mut to_x, mut to_y) = (
+        either(x_is_heavy, heavy, light),
+        either(x_is_heavy, light, heavy),
+    );
 
     let mut reach = Reach::Outside;
     if p > p_max {
@@ -126,8 +118,8 @@ fn torque_priority(
         let share = floor_shift(p_max, BLEND_SHARE).max(1.0);
         let blend = floor((p - p_max) * BLEND_ONE / share).min(BLEND_ONE);
         let mul15 = Shift::new(BLEND_BITS);
-        to_x += mul15.round_product(blend, sign * (near[d] - near[x]) - to_x);
-        to_y += mul15.round_product(blend, sign * (near[d] - near[y]) - to_y);
+        to_x += mul15.round_product(blend, near_x - to_x);
+        to_y += mul15.round_product(blend, near_y - to_y);
     }
     let mut limited = [0.0; 3];
     limited[d] = k.k_third.mul(sign * (to_x + to_y));
