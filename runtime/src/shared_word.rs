@@ -1,7 +1,7 @@
 //! A word that one part of the firmware writes and another reads.
 
 use crate::arith::Word;
-use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
+use core::sync::atomic::{AtomicI32, Ordering};
 
 /// A word that may be stored and loaded from the main program and from interrupts alike, in one
 /// instruction each: a load sees one store whole, and the last store stays.
@@ -26,15 +26,5 @@ impl SharedWord {
     #[inline]
     pub fn store(&self, word: Word) {
         self.0.store(word.0, Ordering::Relaxed);
-    }
-
-    /// Replaces the word by what `word` finds in memory, after all that was written before.
-    ///
-    /// The compiler looks it up here, and does not keep it in registers through what comes before:
-    /// on a Cortex-M4 a load and a store more, besides the word's address.
-    #[inline]
-    pub fn publish(&self, word: impl FnOnce() -> Word) {
-        compiler_fence(Ordering::SeqCst);
-        self.store(word());
     }
 }

@@ -28,6 +28,15 @@ pub struct FluxModel {
     frac_bits: u32,
 }
 
+/// What says where the quasi-square reference stands.
+#[derive(Clone, Copy, Debug)]
+pub enum Corner {
+    /// A sector, 0 to 6.
+    Sector(Value),
+    /// A Hall code.
+    HallCode(Value),
+}
+
 /// Mean EMF of phases a and b over two periods.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelledEmf {
@@ -256,25 +265,33 @@ impl Lowering<'_> {
     }
 
     /// Reference at the sector's corner, as voltage words of phases a and b.
-    pub fn quasi_square_reference(&mut self, sector: Value, set_point: Value) -> [Value; 2] {
-        let corner = |phase: usize| {
-            let signs = crate::design::vectors::SECTOR_CURRENT;
-            std::iter::once(0)
-                .chain(signs.iter().map(|legs| legs[phase]))
-                .collect::<Vec<i32>>()
+    pub fn quasi_square_reference(&mut self, at: Corner, set_point: Value) -> [Value; 2] {
+        let (index, places, by) = match at {
+            Corner::Sector(sector) => (sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
+            Corner::HallCode(code) => (
+                code,
+                self.spec.motor.hall_codes.map(|code| usize::from(code & 7)),
+                "by Hall code",
+            ),
         };
-        let doc = |phase: &str| {
-            [format!(
-                "Sign of the phase-{phase} reference in sectors 1 to 6: the conducting pair carries (+I, -I)."
-            )]
-        };
-        let tables = [
-            self.b.program.table("corner_a", corner(0), &doc("a")),
-            self.b.program.table("corner_b", corner(1), &doc("b")),
-        ];
+        let tables = [("corner_a", "a"), ("corner_b", "b")];
+        let tables = [0, 1].map(|phase| {
+            let (name, letter) = tables[phase];
+            let mut signs = vec![0; 8];
+            for (place, legs) in places
+                .into_iter()
+                .zip(crate::design::vectors::SECTOR_CURRENT)
+            {
+                signs[place] = legs[phase];
+            }
+            let doc = format!(
+                "Sign of the phase-{letter} reference {by}: the conducting pair carries (+I, -I)."
+            );
+            self.b.program.table(name, signs, &[doc])
+        });
         self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there."]);
         [0, 1].map(|x| {
-            let sign = self.b.lookup(tables[x], sector);
+            let sign = self.b.lookup(tables[x], index);
             let volts = self.b.mul(sign, set_point, 0);
             self.b.name(["j_a", "j_b"][x], volts)
         })

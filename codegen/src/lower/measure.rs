@@ -8,8 +8,10 @@ use crate::ir::{Comparison, Interval, StateId, Value};
 pub struct Sample {
     /// ADC counts of phases a and b as they came.
     adc: [Value; 2],
-    /// Sector that the Hall code names, 0 for an invalid code.
-    code: Value,
+    /// The Hall code as it came.
+    pub hall: Value,
+    /// Sector that it names, 0 for an invalid code.
+    pub sector: Value,
     /// Flag: a converter is at an end of its range.
     pub out_of_range: Value,
     /// Flag: the Hall code is invalid.
@@ -74,14 +76,15 @@ impl Lowering<'_> {
             sectors,
             &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],
         );
-        let code = self.b.lookup(decode, hall);
-        self.b.name("sector_seen", code);
+        let sector = self.b.lookup(decode, hall);
+        self.b.name("sector_seen", sector);
         let zero = self.zero();
-        let no_hall = self.b.compare(Comparison::Equal, code, zero);
+        let no_hall = self.b.compare(Comparison::Equal, sector, zero);
         self.b.name("no_hall", no_hall);
         Sample {
             adc,
-            code,
+            hall,
+            sector,
             out_of_range,
             no_hall,
         }
@@ -129,15 +132,16 @@ impl Lowering<'_> {
         }
     }
 
-    /// Sector and edge.
-    pub fn find_sector(&mut self, sample: &Sample, sector_prev: StateId) -> Hall {
+    /// Sector and edge, and `sector_prev` for the next step.
+    pub fn find_sector(&mut self, sample: &Sample, word: StateId) -> Hall {
         self.b.stage(
             "find_sector",
             &["Sector from the Hall code; an invalid code keeps the last sector."],
         );
-        let sector_prev = self.b.state(sector_prev);
-        let sector = self.b.select(sample.no_hall, sector_prev, sample.code);
+        let sector_prev = self.b.state(word);
+        let sector = self.b.select(sample.no_hall, sector_prev, sample.sector);
         self.b.name("sector", sector);
+        self.b.set_state(word, sector);
         let changed = self.b.compare(Comparison::NotEqual, sector, sector_prev);
         let zero = self.zero();
         let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);

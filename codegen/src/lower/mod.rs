@@ -13,7 +13,7 @@ mod rotor;
 pub mod set_point;
 mod supervise;
 
-pub use emf::{FluxModel, ModelledEmf};
+pub use emf::{Corner, FluxModel, ModelledEmf};
 pub use limit::Limited;
 pub use measure::{Currents, Hall, Sample};
 pub use modulate::{Applied, Command, OffLeg, PairModulation, PairPulses};

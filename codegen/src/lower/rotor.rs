@@ -383,7 +383,7 @@ impl Lowering<'_> {
     }
 
     /// The sector in force `advance` periods ahead (semantics, end of step 4).
-    pub fn advanced_sector(&mut self, advance: f64, hall: &Hall, rotor: &Rotor) -> Value {
+    pub fn advanced_sector(&mut self, advance: f64, seen: Value, rotor: &Rotor) -> Value {
         self.b.stage(
             "advance_sector",
             &["The sector that the rotor will be in when the command takes effect."],
@@ -418,7 +418,7 @@ impl Lowering<'_> {
         let index = self.b.angle_index(turned, 6);
         let one = self.b.literal(1);
         let sector = self.b.add(index, one);
-        let sector = self.b.select(rotor.tracking, sector, hall.sector);
+        let sector = self.b.select(rotor.tracking, sector, seen);
         self.b.name("sector_eff", sector)
     }
 }

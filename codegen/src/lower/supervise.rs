@@ -29,8 +29,8 @@ pub struct SupervisorWords {
     sums: [StateId; 2],
     /// Offsets of the current converters.
     pub offsets: [StateId; 2],
-    /// Sector of the last sample.
-    pub sector_prev: StateId,
+    /// Sector of the last sample, where anything follows the edges.
+    pub sector_prev: Option<StateId>,
     stall_count: Option<StateId>,
 }
 
@@ -46,21 +46,24 @@ pub struct Rest {
 }
 
 impl Lowering<'_> {
-    /// Declares the supervisor's state words.
-    pub fn supervisor_words(&mut self) -> SupervisorWords {
+    /// Declares the supervisor's state words; `follows_edges` is whether the rest of the step does.
+    pub fn supervisor_words(&mut self, follows_edges: bool) -> SupervisorWords {
         let inverter = self.spec.inverter.clone();
         let top = i64::from((1_u32 << inverter.adc_bits) - 1);
         let offset = (i64::from(inverter.adc_offset) << self.scale.current_bits) as i32;
         let offset_range = Interval::new(0, self.current_span());
         let sum_range = Interval::new(0, top << inverter.calibration_log2);
+        let watches_stall = inverter.stall_periods > 0;
         SupervisorWords {
             mode: self.state("mode", 0, Interval::new(0, 3), "0 run, 1 calibrate, 2 pre-charge, 3 tripped."),
             fault: self.state("fault", 0, Interval::new(0, 5), "What tripped the drive: 0 nothing, 1 ADC range, 2 over-current, 3 Hall code, 4 stall, 5 current offset."),
             countdown: self.state("countdown", 0, Interval::new(0, i64::from(u16::MAX)), "Periods left in calibration or pre-charge."),
             sums: ["sum_a", "sum_b"].map(|name| self.state(name, 0, sum_range, "Sum of calibration samples, ADC counts.")),
             offsets: ["offset_a", "offset_b"].map(|name| self.state(name, offset, offset_range, "Offset at zero current, words of current.")),
-            sector_prev: self.state("sector_prev", 0, Interval::new(0, 6), "Sector of the last sample; 0 before the first."),
-            stall_count: (inverter.stall_periods > 0).then(|| {
+            sector_prev: (follows_edges || watches_stall).then(|| {
+                self.state("sector_prev", 0, Interval::new(0, 6), "Sector of the last sample; 0 before the first.")
+            }),
+            stall_count: watches_stall.then(|| {
                 self.state("stall_count", 0, Interval::new(0, i64::from(inverter.stall_periods)), "Periods without a Hall edge under current demand.")
             }),
         }
@@ -72,7 +75,7 @@ impl Lowering<'_> {
         words: SupervisorWords,
         sample: &Sample,
         currents: &Currents,
-        hall: &Hall,
+        hall: Option<&Hall>,
         set_point: Value,
     ) -> Rest {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
@@ -100,7 +103,7 @@ impl Lowering<'_> {
         let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
         self.b.name("sequencing", sequencing);
         let mut motor_fault = over_current;
-        if let Some(count) = words.stall_count {
+        if let Some((count, hall)) = words.stall_count.zip(hall) {
             let stalled = self.stalled(count, hall, [mode, set_point]);
             motor_fault = self.b.or(over_current, stalled);
             self.b.name("motor_fault", motor_fault);

@@ -8,7 +8,7 @@ use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EMF_INTEGRAL_SHARE};
 use crate::ir::{Comparison, Value};
 use crate::lower::{
-    Coefficient, Currents, Hall, Lowering, ModelledEmf, Rotor, product_bound, round_down,
+    Coefficient, Currents, Lowering, ModelledEmf, Rotor, product_bound, round_down,
 };
 use crate::spec::EmfSource;
 
@@ -50,7 +50,7 @@ impl CurrentLoop<'_, '_> {
         &mut self,
         words: &Words,
         currents: &Currents,
-        hall: &Hall,
+        sector: Value,
         rotor: Option<&Rotor>,
         third: Coefficient,
         outgoing: Option<Value>,
@@ -68,7 +68,7 @@ impl CurrentLoop<'_, '_> {
         } else {
             let e = self.estimate_emf(words, currents);
             let e = self.meet_emf(words, third, outgoing, e);
-            let (target, present) = self.move_emf(hall.sector, e);
+            let (target, present) = self.move_emf(sector, e);
             Some(Emf {
                 target,
                 present,

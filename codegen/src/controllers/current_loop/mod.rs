@@ -16,7 +16,9 @@ pub use words::{EmfUse, Needs, Words};
 
 use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
-use crate::lower::{Applied, Bus, Coefficient, Command, Currents, Lowering, OffLeg, Rest, Scale};
+use crate::lower::{
+    Applied, Bus, Coefficient, Command, Corner, Currents, Lowering, OffLeg, Rest, Scale,
+};
 use crate::scaling::Lowered;
 use crate::spec::{EmfSource, LoopOptions, Reference, Spec};
 
@@ -128,25 +130,27 @@ impl CurrentLoop<'_, '_> {
         let l = &mut *self.lowering;
         let sample = l.read_sample();
         let currents = l.measure(&sample, words.supervisor.offsets);
-        let hall = l.find_sector(&sample, words.supervisor.sector_prev);
-        l.b.set_state(words.supervisor.sector_prev, hall.sector);
+        let word = words.supervisor.sector_prev;
+        let hall = word.map(|word| l.find_sector(&sample, word));
         if let Some(direction) = words.direction {
             // Read here, in an open stage: the stage that senses the direction is a guarded one.
             l.b.state(direction);
         }
         let j = l.b.param(set_point.j);
-        let rest = l.supervise(words.supervisor, &sample, &currents, &hall, j);
-        let rotor = words.rotor.map(|rotor| l.track_rotor(rotor, &hall));
-        let direction = match (&rotor, words.direction) {
+        let rest = l.supervise(words.supervisor, &sample, &currents, hall.as_ref(), j);
+        let rotor = words.rotor.zip(hall.as_ref());
+        let rotor = rotor.map(|(words, hall)| l.track_rotor(words, hall));
+        let direction = match (&rotor, words.direction.zip(hall.as_ref())) {
             (Some(rotor), _) => Some(rotor.direction),
-            (None, Some(word)) => Some(l.sense_direction(word, &hall)),
+            (None, Some((word, hall))) => Some(l.sense_direction(word, hall)),
             (None, None) => None,
         };
+        let sector_seen = hall.map_or(sample.sector, |hall| hall.sector);
         let sector = match &rotor {
             Some(rotor) if options.advance > 0.0 => {
-                l.advanced_sector(options.advance, &hall, rotor)
+                l.advanced_sector(options.advance, sector_seen, rotor)
             }
-            _ => hall.sector,
+            _ => sector_seen,
         };
         let (commutation, outgoing) = match (words.pair, direction) {
             (Some(pair), Some(direction)) => {
@@ -162,11 +166,18 @@ impl CurrentLoop<'_, '_> {
             }
             _ => (None, None),
         };
+        // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
+        // legs off.
+        let corner = if options.advance > 0.0 {
+            Corner::Sector(sector)
+        } else {
+            Corner::HallCode(sample.hall)
+        };
         let reference = match (&rotor, options.reference) {
             (Some(rotor), Reference::Proportional) => {
                 l.proportional_reference(rotor, j, options.delay)
             }
-            _ => l.quasi_square_reference(sector, j),
+            _ => l.quasi_square_reference(corner, j),
         };
         let third = l.coefficient(
             "k_third",
@@ -179,7 +190,14 @@ impl CurrentLoop<'_, '_> {
         // Read here, in an open stage: the last one of the EMF may be a guarded one.
         let commanded = words.v_cmd.map(|word| word.map(|word| l.b.state(word)));
         let terminals = self.commanded_terminals(&words);
-        let emf = self.emf(&words, &currents, &hall, rotor.as_ref(), third, outgoing);
+        let emf = self.emf(
+            &words,
+            &currents,
+            sector_seen,
+            rotor.as_ref(),
+            third,
+            outgoing,
+        );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
         let off_leg = self.off_leg_of(bus, third);
         let held = self.holds_emf().then(|| self.held(currents.phases));

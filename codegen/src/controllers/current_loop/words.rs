@@ -70,7 +70,7 @@ impl CurrentLoop<'_, '_> {
         let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;
         let volts = Interval::symmetric(bus);
-        let supervisor = l.supervisor_words();
+        let supervisor = l.supervisor_words(needs_rotor || needs.commutation);
         let rotor = needs_rotor.then(|| l.rotor_words());
         let direction = (needs.commutation && !needs_rotor).then(|| l.direction_word());
         let pair_words = needs

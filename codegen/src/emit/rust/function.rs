@@ -7,7 +7,7 @@ use super::names::{docs, loaded, number, snake};
 use super::plan::Context;
 use super::stage::{StageFunction, output};
 use crate::ir::{Function, Node, Op, Paths, Program, Value, Word};
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 /// A function and the functions of its stages.
@@ -28,7 +28,8 @@ pub(super) struct Setter {
     pub stages: TokenStream,
 }
 
-/// The control step, `fn step(state, set-point words, inputs) -> Legs`, and what takes over where it rests.
+/// The control step, `fn step(state, set-point, inputs) -> Legs`, and what takes over where it rests: there alone mode and
+/// fault change, so there they are published.
 pub(super) fn emit_step(program: &Program) -> Emitted {
     let Paths { normal, exit } = program.step.paths();
     let context = Context::new(program, &normal);
@@ -39,7 +40,6 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
         .map(|exit| PathFunctions::new(exit, &path.stages));
     let read: Vec<usize> = exit.iter().flat_map(PathFunctions::params).collect();
     let words = param_pattern(program, &normal, &read);
-    let count = Literal::usize_unsuffixed(program.params.len());
     let inputs = normal.inputs.iter().map(|input| {
         let name = snake(&input.name);
         quote!(#name: Word)
@@ -50,7 +50,11 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     let main = quote! {
         #doc
         #[inline]
-        fn step(state: &mut State, #words: [Word; #count], #(#inputs),*) -> Legs { #body #legs }
+        fn step(state: &mut State, set_point: &SetPoint, #(#inputs),*) -> Legs {
+            let #words = set_point.words();
+            #body
+            #legs
+        }
     };
     let stages = path.definitions();
     let at_rest = exit.as_ref().map(PathFunctions::rest);
@@ -117,7 +121,7 @@ impl<'a> PathFunctions<'a> {
     /// The statement that leaves the step for this path.
     fn call_rest(&self) -> TokenStream {
         let arguments = self.arguments();
-        quote!(return Legs::at_rest(rest(state, #(#arguments),*));)
+        quote!(return Legs::at_rest(rest(state, &set_point.status, #(#arguments),*));)
     }
 
     /// This path as a function of its own. No leg pulses at rest, and all are alike.
@@ -126,10 +130,15 @@ impl<'a> PathFunctions<'a> {
         let (body, stages) = (self.body(None), self.definitions());
         let leg = self.leg("leg_a");
         quote! {
-            /// One control period without current control, in start-up or with a fault: what all legs do.
+            /// One control period without current control, in start-up or with a fault: what all legs do. Tells `status`
+            /// what the drive is doing from here on.
             #[cold]
             #[inline(never)]
-            fn rest(state: &mut State, #(#arguments: Word),*) -> LegState { #body #leg }
+            fn rest(state: &mut State, status: &SharedWord, #(#arguments: Word),*) -> LegState {
+                #body
+                status.store(state.status());
+                #leg
+            }
             #stages
         }
     }

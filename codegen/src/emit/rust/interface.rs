@@ -123,17 +123,14 @@ impl Types<'_> {
                 #step_docs
                 #[inline]
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
-                    let legs = step(self.state, self.set_point.words(), #(#words),*);
-                    self.publish();
-                    legs
+                    step(self.state, self.set_point, #(#words),*)
                 }
 
                 #commands
 
                 /// Says what the drive is doing to those who hold the set-point.
-                #[inline]
                 fn publish(&self) {
-                    self.set_point.status.publish(|| self.state.status());
+                    self.set_point.status.store(self.state.status());
                 }
             }
         }

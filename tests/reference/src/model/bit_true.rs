@@ -25,7 +25,7 @@ use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
-use state::State;
+use state::{Part, State};
 use std::f64::consts::TAU;
 
 /// The bit-true controller of one drive.
@@ -415,7 +415,9 @@ impl BitTrue {
             self.state.stop();
         }
         self.state.i_prev = i;
-        self.state.sector_prev = sector;
+        if k.parts.has(Part::Edges) {
+            self.state.sector_prev = sector;
+        }
         self.state.sector_eff_prev = sector_eff;
         self.last = Signals {
             i,

@@ -256,6 +256,10 @@ impl Constants {
         let slope = motion.per_product * w / two_v * pow2(2 * line_shift + 15);
         Ok(Self {
             parts: Parts::new(&[
+                (
+                    Part::Edges,
+                    inverter.stall_periods > 0 || rotor || commutation.is_some(),
+                ),
                 (Part::Stall, inverter.stall_periods > 0),
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),

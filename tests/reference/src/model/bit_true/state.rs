@@ -40,6 +40,7 @@ pub struct Vector(pub usize);
 /// A group of state words that not every variant has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
+    Edges,
     Stall,
     Direction,
     Rotor,
@@ -174,7 +175,9 @@ macro_rules! for_each_word {
         $show!("sum_b", $state.supervisor.sum[1]);
         $show!("offset_a", $state.offset[0]);
         $show!("offset_b", $state.offset[1]);
-        $show!("sector_prev", $state.sector_prev);
+        if $parts.has(Part::Edges) {
+            $show!("sector_prev", $state.sector_prev);
+        }
         if $parts.has(Part::Stall) {
             $show!("stall_count", $state.supervisor.stall_count);
         }
