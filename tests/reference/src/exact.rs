@@ -13,8 +13,6 @@
 const MAGIC: f64 = 6_755_399_441_055_744.0;
 const TWO_16: f64 = 65_536.0;
 const TWO_32: f64 = 4_294_967_296.0;
-/// Most bits that a remainder below 2^32 can be shifted by in one digit.
-const DIGIT: u32 = 21;
 
 #[inline]
 fn debug_whole(x: f64) {
@@ -127,41 +125,24 @@ pub fn to_u16(x: f64) -> u16 {
     (x + MAGIC).to_bits() as u16
 }
 
-/// floor(n 2^s/den) for words n >= 0 and den > 0, digit by digit. Quotients of 2^53 and more come
-/// out as some value of at least 2^53.
+/// min(floor(n 2^s/den), limit) for words n >= 0, den > 0 and limit >= 0, by one division: the rounded quotient is at
+/// most one off, which the remainder tells.
 #[inline]
-pub fn div_floor(n: f64, s: u32, den: f64) -> f64 {
+pub fn divide(n: f64, s: u32, den: f64, limit: f64) -> f64 {
     debug_whole(n);
     debug_assert!(
-        (0.0..TWO_32).contains(&n) && (1.0..TWO_32).contains(&den),
-        "{n}/{den}"
-    );
-    // Floor of the rounded quotient is exact: two whole numbers below 2^53 are never so near to
-    // the next whole quotient that rounding reaches it.
-    let mut quotient = floor(n / den);
-    let mut remainder = n - quotient * den;
-    let mut left = s;
-    while left > 0 {
-        let bits = left.min(DIGIT);
-        left -= bits;
-        remainder *= pow2(bits as i32);
-        let digit = floor(remainder / den);
-        remainder -= digit * den;
-        quotient = quotient * pow2(bits as i32) + digit;
-    }
-    quotient
-}
-
-/// min(floor(n 2^s/den), limit) for words n >= 0, den > 0 and limit >= 0 with limit den <= 2^52: there the floor of
-/// the rounded quotient is exact, as in [`div_floor`], and beyond the limit it need not be.
-#[inline]
-pub fn div_limited(n: f64, s: u32, den: f64, limit: f64) -> f64 {
-    debug_whole(n);
-    debug_assert!(
-        (0.0..TWO_32).contains(&n) && den >= 1.0 && limit * den <= 4_503_599_627_370_496.0,
+        (0.0..TWO_32).contains(&n)
+            && (1.0..TWO_32).contains(&den)
+            && (0.0..TWO_32).contains(&limit),
         "{n}/{den}, at most {limit}"
     );
-    floor((n * pow2(s as i32) / den).min(limit))
+    let numerator = n * pow2(s as i32);
+    let quotient = floor((numerator / den).min(limit));
+    // Each difference is exact: the upper half of the quotient leaves less than 2^49.
+    let high = floor_weighted(quotient, 1.0 / TWO_16) * TWO_16;
+    let remainder = (numerator - high * den) - (quotient - high) * den;
+    let one = |off: bool| either(off, 1.0, 0.0);
+    (quotient + one(remainder >= den) - one(remainder < 0.0)).min(limit)
 }
 
 /// `then` where the condition holds, else `otherwise`: a mask, because a branch would be mispredicted every other time.
@@ -445,16 +426,10 @@ mod tests {
                 random.u32(..62),
             );
             let exact = (i128::from(n) << s) / i128::from(den);
-            let found = div_floor(n as f64, s, den as f64);
-            if exact < 1 << 53 {
-                assert_eq!(found as i128, exact, "({n} << {s}) / {den}");
-            } else {
-                assert!(found >= 9_007_199_254_740_992.0);
-            }
-            let limit = (4_503_599_627_370_496.0 / den as f64).floor().min(TWO_32);
+            let limit = word(&mut random).abs();
             assert_eq!(
-                div_limited(n as f64, s, den as f64, limit) as i128,
-                exact.min(limit as i128),
+                divide(n as f64, s, den as f64, limit as f64) as i128,
+                exact.min(i128::from(limit)),
                 "({n} << {s}) / {den}, at most {limit}"
             );
         }

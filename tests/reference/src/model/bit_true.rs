@@ -20,7 +20,7 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation, Period};
 use super::trace::{PhysicalState, Reach, Trace};
 use super::variant::Variant;
-use crate::exact::{Coefficient, both, div_floor, floor, floor_weighted, pow2};
+use crate::exact::{Coefficient, both, divide, floor, floor_weighted, pow2};
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
@@ -123,7 +123,12 @@ impl BitTrue {
         if let Some(bus) = &self.k.bus {
             let measured = bus.k_bus.mul(f64::from(counts).min(bus.count_max));
             self.v_bus = measured.clamp(bus.v_min, bus.v_max);
-            self.ratio = div_floor(self.k.v_bus_nominal, self.k.ratio_bits, self.v_bus);
+            self.ratio = divide(
+                self.k.v_bus_nominal,
+                self.k.ratio_bits,
+                self.v_bus,
+                f64::from(i32::MAX),
+            );
             self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
         }
     }

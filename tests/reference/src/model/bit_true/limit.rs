@@ -3,7 +3,7 @@
 use super::constants::Constants;
 use crate::Saturation;
 use crate::exact::{
-    Coefficient, Shift, all_three, both, div_floor, div_limited, either, floor, floor_shift, halve,
+    Coefficient, Shift, all_three, both, divide, either, floor, floor_shift, halve, pow2,
 };
 use crate::model::Reach;
 
@@ -35,7 +35,10 @@ pub fn limit(
     }
     match rule {
         Saturation::KeepAngle => {
-            let scale = Coefficient::new(div_floor(v_bus, k.scale_bits, spread), k.scale_bits);
+            let scale = Coefficient::new(
+                divide(v_bus, k.scale_bits, spread, pow2(k.scale_bits as i32)),
+                k.scale_bits,
+            );
             (both(|x| scale.mul(u[x])), Reach::Outside)
         }
         Saturation::Nearest => (
@@ -104,7 +107,7 @@ fn torque_priority(
     let is_more = n >= 0.0;
     let least = floor_shift(f_max, LIGHT_SHARE);
     let den = either(is_more, f_light.max(least), f_max).max(1.0);
-    let quotient = div_limited(n.abs(), k.emf_product.bits(), den, v_bus);
+    let quotient = divide(n.abs(), k.emf_product.bits(), den, v_bus);
     let light = either(is_more, quotient.max(light_near), -quotient);
     let heavy = (light + v_bus).min(v_bus);
     let (mut to_x, mut to_y) = (
