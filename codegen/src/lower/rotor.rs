@@ -152,7 +152,7 @@ impl Lowering<'_> {
     pub fn track_rotor(&mut self, words: RotorWords, hall: &Hall) -> Rotor {
         let spec = self.spec;
         let age_max = i64::from(spec.age_max());
-        let ticks = i64::from(spec.inverter.hall_capture.ticks_per_period());
+        let ticks_per_period = i64::from(spec.inverter.hall_capture.ticks_per_period());
         let age_doc = "Ticks of 60 electrical degrees at the least speed that counts as turning.";
         self.format(
             "omega",
@@ -162,9 +162,15 @@ impl Lowering<'_> {
             "electrical angle, base one turn; speed per tick",
         );
 
-        self.b.stage("age_edge", &["Time since the last Hall edge, in ticks of the edge timer (half periods where edges are sampled)."]);
+        let doc = match spec.inverter.hall_capture {
+            HallCapture::Sampled => "Time since the last Hall edge, in half periods.",
+            HallCapture::Timer { .. } => {
+                "Time since the last Hall edge, in ticks of the edge timer. One that was read before an edge or behind it, other than the code, is not believed."
+            }
+        };
+        self.b.stage("age_edge", &[doc]);
         let age_prev = self.b.state(words.age_prev);
-        let period = self.number("ticks", ticks, "Ticks per control period.");
+        let period = self.number("ticks", ticks_per_period, "Ticks per control period.");
         let age_before = self.b.add(age_prev, period);
         self.b.name("age_before", age_before);
         let old = self.b.state(words.direction);
@@ -185,8 +191,19 @@ impl Lowering<'_> {
                     Interval::new(0, i64::from(u16::MAX)),
                     "Ticks since the last Hall edge.",
                 );
+                // Code and ticks that are read on either side of an edge contradict each other.
+                let recent = self.number(
+                    "ticks_recent",
+                    2 * ticks_per_period,
+                    "Ticks since an edge that the last two samples can have seen.",
+                );
+                let stale = self.b.compare(Comparison::Less, recent, ticks);
+                let zero = self.zero();
+                let since_edge = self.b.select(stale, zero, ticks);
+                let older = self.b.max(ticks, age_before);
+                let since = self.b.select(hall.edge, since_edge, older);
                 let limit = self.number("age_limit", age_max + 1, "Ages are counted no further.");
-                self.b.min(ticks, limit)
+                self.b.min(since, limit)
             }
         };
         self.b.name("age", age);

@@ -82,13 +82,14 @@ impl HallTiming {
         hall_ticks: f64,
     ) {
         let age_before = self.age_prev + clock.ticks;
-        let age = if clock.timer {
-            hall_ticks.min(clock.age_max + 1.0)
-        } else if event.edge {
-            1.0
-        } else {
-            age_before.min(clock.age_max + 1.0)
+        let since = match (clock.timer, event.edge) {
+            (true, true) if hall_ticks > 2.0 * clock.ticks => 0.0,
+            (true, true) => hall_ticks,
+            (true, false) => hall_ticks.max(age_before),
+            (false, true) => 1.0,
+            (false, false) => age_before,
         };
+        let age = since.min(clock.age_max + 1.0);
         if event.edge {
             let interval = (age_before - age).clamp(1.0, clock.age_max);
             let step_ok = event.forward || event.backward;

@@ -4,5 +4,6 @@ mod fcs_mpc;
 mod models_agree;
 mod phcc;
 mod pi_pwm;
+mod torn_reads;
 mod variants;
 mod verification;
