@@ -1,6 +1,7 @@
 //! The controllers: one folder each with semantics and lowering, around the step that all share.
 //!
-//! Adding a controller adds a folder here, and its options to `spec::controller`.
+//! Adding a controller adds a folder here, and its options to `spec::controller`; the compiler names the other
+//! places that must know it.
 
 mod accuracy;
 pub mod current_loop;
