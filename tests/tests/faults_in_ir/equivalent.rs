@@ -127,9 +127,13 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[HOVERBOARD],
+        faults: &[(&["corner_a[0]", "corner_b[0]"], &["one more"])],
+    },
+    Unnoticed {
+        because: "Hall codes 0 and 7 trip",
         drives: &[
             PAPER,
-            HOVERBOARD,
             TEKNIC,
             FCS_PAPER,
             FCS_HOVERBOARD,
@@ -140,7 +144,25 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             PI_TEKNIC,
             PI_ANAHEIM,
         ],
-        faults: &[(&["corner_a[0]", "corner_b[0]"], &["one more"])],
+        faults: &[(
+            &["corner_a[0]", "corner_b[0]", "corner_a[7]", "corner_b[7]"],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
+        because: "which sector it is goes nowhere: the corner follows from the code",
+        drives: &[PI_ANAHEIM],
+        faults: &[(
+            &[
+                "hall_sector[1]",
+                "hall_sector[2]",
+                "hall_sector[3]",
+                "hall_sector[4]",
+                "hall_sector[5]",
+                "hall_sector[6]",
+            ],
+            &["one more"],
+        )],
     },
     Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",

@@ -98,6 +98,14 @@ pub const RARE: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
+        because: "differs only where the voltage of a phase is zero to the last bit",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[(
+            &["nearest_vector: in gates"],
+            &["-1 for 0 (2)", "-1 for 0 (5)"],
+        )],
+    },
+    Unnoticed {
         because: "moves the score of the pair's zero vector by no more than its last digits",
         drives: &[FCS_PAPER],
         faults: &[(
