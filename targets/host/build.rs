@@ -18,7 +18,7 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The variants of the result table, each with both ways of reading Hall edges. The program looks
 /// drives up by their normalised specification, so a variant that is missing here is interpreted.
-const VARIANTS: [&str; 11] = [
+const VARIANTS: [&str; 12] = [
     "pdcc:modulation=three_phase,saturation=nearest,emf=model",
     "pdcc:modulation=pair,saturation=keep_angle,emf=model",
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
@@ -30,6 +30,7 @@ const VARIANTS: [&str; 11] = [
     "phcc:table=derived,off_leg=physical,emf=model",
     "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest",
     "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest",
+    "pi-pwm:six_step=on,bandwidth=600Hz",
 ];
 
 /// Every motor gets each of these with all options at their defaults, where it can have it.

@@ -4,7 +4,9 @@ mod page_support;
 mod report_support;
 
 use hexagen_host::closed_loop::{LimitOutcome, SpeedLimit};
-use hexagen_host::report::{Expected, ExpectedPoint, ReportData, Variant, render, write};
+use hexagen_host::report::{
+    Expectation, Expected, ExpectedPoint, ReportData, Variant, render, write,
+};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -72,7 +74,7 @@ fn difference_from_the_expected_is_marked() {
             ripple_pp_pct: Some((2.0, 3.0).into()),
             ripple_rms_pct: None,
         }],
-        limit_pct: Some(120.0.into()),
+        limit: Some(Expectation::In(120.0.into())),
     });
     run.limit = Some(SpeedLimit {
         limit_rpm: None,

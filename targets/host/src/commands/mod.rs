@@ -15,4 +15,5 @@ pub mod results;
 pub mod robustness;
 pub mod selected;
 pub mod simulate;
+pub mod stability;
 pub mod verify;

@@ -177,19 +177,20 @@ fn paper_marks() -> Vec<SpeedMark> {
 }
 
 /// What is known about differences from the design document's table.
-const PAPER_NOTES: [&str; 4] = [
-    "Pair, torque_priority: the expected ripple (9.3 and 4.9 % peak to peak) is that of the nominal \
-     reckoning, which takes a pair's vector for Table 2's whatever the third leg does. The ideal \
-     model reckoned so gives 9.4 and 4.9 %, and 10.3 and 27.7 % for pair, keep_angle. What runs here \
-     reckons with the leg as it is, clamped by its diode or floating, and has a quarter to a half \
-     of that ripple.",
-    "Proportional: at 400 rpm the ripple that 12-bit converters leave (0.3 %) is more than the 0.13 % \
-     of exact currents.",
-    "FCS-MPC, nominal: the expected figures lie between two readings. With the delay predicted, as here, \
-     the torque is not held either, at less ripple; with the delay left out of the prediction the ripple \
-     is larger than expected (`hexagen reproduce` shows that reading).",
-    "PI-PWM: the expected figures are those of the paper's modulation over neighbouring pair vectors, \
-     which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
+const PAPER_NOTES: [&str; 5] = [
+    "Pair, torque_priority: the expected ripple is that of the nominal reckoning, which takes a pair's vector for \
+     Table 2's whatever the third leg does. What runs here reckons with the leg as it is, clamped by its diode or \
+     floating, and has less.",
+    "Estimated EMF: the expected figures are those of an estimate that takes the last period's EMF for that of the \
+     target, two periods late. Here the motor's shape moves the estimate on, which leaves less ripple and a higher limit.",
+    "FCS-MPC, nominal (literal): the expected figures lie between two readings. With the delay predicted, as here, \
+     the torque is lost as well, from the limit on and at less ripple; with the delay left out of the prediction the \
+     ripple is larger than expected (`hexagen reproduce` shows that reading).",
+    "PI-PWM three_phase: the expected figures are those of the paper's modulation over neighbouring pair vectors \
+     (`modulation=table2`), which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
+    "PI-PWM six_step: the expected figures are those of a regulator that holds the largest of the three currents, \
+     (|ia| + |ib| + |ic|)/2. Here it holds the mean of the conducting pair's, which sees the incoming phase from the \
+     first period of a commutation on (`cargo test -p hexagen-host --test plant_six_step` runs both).",
 ];
 
 /// Runs the command.
@@ -292,18 +293,14 @@ fn row(variant: &Variant, run: &Run) -> Vec<String> {
 
 /// A figure with so many decimals; what was expected stands in brackets where it was not met.
 fn figure(judged: &Judged, decimals: usize) -> String {
-    let Some(measured) = judged.measured else {
-        return "never".to_owned();
-    };
+    let measured = judged
+        .measured
+        .map_or_else(|| "never".to_owned(), |x| format!("{x:.decimals$}"));
     match judged.expected {
-        Some(band) if !judged.met => {
-            let expected = if band.low == band.high {
-                format!("{}", band.low)
-            } else {
-                format!("{}-{}", band.low, band.high)
-            };
-            format!("{measured:.decimals$} * ({expected})")
+        Some(expected) if !judged.met => {
+            let expected = expected.text("-", |x| x.to_string());
+            format!("{measured} * ({expected})")
         }
-        _ => format!("{measured:.decimals$}"),
+        _ => measured,
     }
 }

@@ -4,34 +4,21 @@
 //! run with the generator's own discretisation, and nothing is expected of them.
 
 use super::accuracy::{OneStep, SideBySide, side_by_side};
+use super::stability;
 use crate::cli::{Emit, Failure};
 use crate::closed_loop::{LimitOptions, Merits, RunOptions, measure, speed_limit_knowing};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report::{
-    Capture, DesignRow, Expected, GeneratedTexts, Parameter, Record, Run, RunPoint, SameWords,
-    SignalError, Stability, StabilityCheck, Variant,
+    Capture, DesignRow, Expected, GeneratedTexts, Record, Run, RunPoint, SameWords, SignalError,
+    Variant,
 };
-use hexagen_codegen::controllers::stable_range;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
-use hexagen_codegen::spec::EmfSource;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Speeds of the result table, in parts of rated speed.
 pub const SPEEDS: [f64; 2] = [0.2, 0.75];
-
-/// True over stated inductance or resistance of the runs that check the stable range.
-const OFF_INDUCTANCE: [f64; 8] = [0.7, 0.75, 0.78, 0.85, 1.2, 1.25, 1.28, 1.3];
-const OFF_RESISTANCE: [f64; 4] = [0.2, 0.5, 2.0, 5.0];
-
-/// Their speed in parts of rated speed: so low that commutations, which wrong parameters disturb
-/// in stable loops, too, take no share of the ripple.
-const STABILITY_SPEED: f64 = 0.02;
-
-/// RMS ripple, in percent of the mean torque, above which such a run counts as unstable. A stable
-/// loop stays below 1 there; an unstable one swings between the limits of voltage at 3 and more.
-pub const UNSTABLE_RIPPLE: f64 = 2.0;
 
 /// One row of the table before it runs: the same variant with both ways of reading Hall edges.
 #[derive(Debug)]
@@ -133,13 +120,14 @@ impl Planned {
         Ok(Variant {
             label: self.row.label.to_owned(),
             variant: self.timer.variant.clone(),
+            chooses_vectors: !drive.spec.controller.modulates(),
             runs,
             records: records.filter(|_| self.row.is_plotted).collect(),
             torque_speed,
             reach: self.reach(),
             same_words,
             signal_errors,
-            stability: Conditions::of(drive).stability(drive)?,
+            stability: stability::checked(drive)?,
             generated: shows_texts.then(|| texts(drive)),
         })
     }
@@ -250,44 +238,6 @@ impl Conditions {
 
     fn at(&self, drive: &Prepared, rpm: f64) -> RunOptions {
         run_of(&drive.spec, rpm * TAU / 60.0, self.torque)
-    }
-
-    /// The stable range and runs on both sides of its edges, for loops that have one.
-    fn stability(&self, drive: &Prepared) -> Result<Option<Stability>, Failure> {
-        let spec = &drive.spec;
-        if spec.controller.common().emf != EmfSource::Estimated {
-            return Ok(None);
-        }
-        let Some(range) = stable_range(spec) else {
-            return Ok(None);
-        };
-        let runs = OFF_INDUCTANCE
-            .map(|factor| (Parameter::Inductance, factor))
-            .into_iter()
-            .chain(OFF_RESISTANCE.map(|factor| (Parameter::Resistance, factor)))
-            .collect::<Vec<_>>();
-        let rpm = STABILITY_SPEED * drive.rated_rpm();
-        let mut run = self.at(drive, rpm);
-        run.starts.truncate(1);
-        let checks = runs
-            .into_par_iter()
-            .map(|(parameter, factor)| {
-                let plant = match parameter {
-                    Parameter::Inductance => self.plant.clone().scaled(1.0, factor, 1.0),
-                    Parameter::Resistance => self.plant.clone().scaled(factor, 1.0, 1.0),
-                };
-                let maker = drive.maker(Model::Fixed, self.set_point);
-                let merits = measure(&plant, &run, maker)?.merits;
-                Ok(StabilityCheck {
-                    parameter,
-                    factor,
-                    rpm,
-                    ripple_rms_pct: merits.ripple_rms_pct,
-                    stable: merits.ripple_rms_pct < UNSTABLE_RIPPLE,
-                })
-            })
-            .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Some(Stability { range, checks }))
     }
 }
 

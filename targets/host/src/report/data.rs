@@ -62,6 +62,8 @@ pub struct Variant {
     pub label: String,
     /// The variant text that selects it: "pdcc:saturation=nearest,emf=model".
     pub variant: String,
+    /// Whether it applies one of a few whole vectors in each period, instead of modulating.
+    pub chooses_vectors: bool,
     /// Runs that were measured: one row each in the result table, best known first.
     pub runs: Vec<Run>,
     /// Records of the first run, one per speed of [`ReportData::speeds_rpm`]; empty for a variant

@@ -20,8 +20,8 @@ pub use data::{
     SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
 };
 pub use expected::{
-    Band, DesignRow, Expected, ExpectedPoint, Judged, design_table, judge_limit, judge_mean,
-    judge_pp, judge_rms,
+    Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
+    judge_mean, judge_pp, judge_rms,
 };
 pub use robustness::{Cell, Column, Figures, Heat, Measured, Outcome, Robustness, SWING_RULE};
 

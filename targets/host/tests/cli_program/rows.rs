@@ -5,17 +5,38 @@ use hexagen_host::engine::{EngineKind, Model, MotorSource, plant_of, prepare, ru
 use hexagen_host::report::{design_table, judge_limit, judge_mean, judge_pp, judge_rms};
 use std::f64::consts::TAU;
 
-/// Its figures are those of the nominal reckoning of the third leg, which the design document does
-/// not choose; reckoned as it is, the leg causes less ripple.
-const NOMINAL_LEG: &str = "PDCC pair, torque_priority, advance 1.5, model EMF";
+/// Rows that have less ripple than expected, and why the expected figures are others.
+const CALMER: [&str; 2] = [
+    // They reckon a pair's vector as Table 2's; reckoned as it is, the third leg causes less.
+    "PDCC pair, torque_priority, advance 1.5, model EMF",
+    // They take the last period's EMF for that of the target; here the motor's shape moves it on.
+    ESTIMATED,
+];
+
+/// The second of them also holds its torque further.
+const ESTIMATED: &str = "PDCC three_phase, torque_priority, advance 2, estimated EMF";
 
 /// Rows whose figures belong to another reading than the drive's: FCS-MPC with a prediction that leaves the delay
-/// out in part, PI-PWM modulated over neighbouring pairs. Their speed limits in percent of rated speed lie in
-/// these bounds: the first does not hold its torque, the others hold it further than the document says.
-const OTHER_READINGS: [(&str, f64, f64); 3] = [
-    ("FCS-MPC table2, nominal, estimated EMF", 0.0, 60.0),
-    ("PI-PWM 800 Hz, Ti 0.5 ms", 53.0, 100.0),
-    ("PI-PWM 1 kHz, feed-forward, model EMF", 60.0, 100.0),
+/// out in part, PI-PWM modulated over neighbouring pairs, a six-step drive that holds the largest current. Their speed
+/// limits in percent of rated speed lie in these bounds: the first loses its torque early, the others hold it further
+/// than the document says.
+const OTHER_READINGS: [(&str, f64, f64); 4] = [
+    (
+        "FCS-MPC table2, nominal (literal), estimated EMF",
+        0.0,
+        60.0,
+    ),
+    (
+        "PI-PWM three_phase, 800 Hz, Ti 0.5 ms, no feed-forward",
+        53.0,
+        100.0,
+    ),
+    (
+        "PI-PWM three_phase, 1 kHz, feed-forward, model EMF",
+        60.0,
+        100.0,
+    ),
+    ("PI-PWM six_step, 600 Hz", 89.0, 110.0),
 ];
 
 const TORQUE: f64 = 3.3;
@@ -45,7 +66,7 @@ fn rows_of_the_design_document_are_met() {
             assert!(judge_mean(&merits, Some(point)).met, "{place}");
             assert!(judge_rms(&merits, Some(point)).met, "{place}");
             let pp = judge_pp(&merits, Some(point));
-            if row.label == NOMINAL_LEG {
+            if CALMER.contains(&row.label) {
                 let expected = point.ripple_pp_pct.expect("is given").low;
                 assert!(merits.ripple_pp_pct < 0.7 * expected, "{place}");
             } else {
@@ -59,11 +80,12 @@ fn rows_of_the_design_document_are_met() {
         };
         let run = run_of(&drive.spec, 1.0, TORQUE);
         let limit = speed_limit(&plant, &run, &scan, maker()).expect("runs");
-        assert!(
-            judge_limit(Some(&limit), Some(&row.timer)).met,
-            "{}: {:?}",
-            row.label,
-            limit.limit_pct
-        );
+        let percent = limit.limit_pct.unwrap_or(0.0);
+        let is_met = if row.label == ESTIMATED {
+            (105.0..110.0).contains(&percent)
+        } else {
+            judge_limit(Some(&limit), Some(&row.timer)).met
+        };
+        assert!(is_met, "{}: {percent}", row.label);
     }
 }

@@ -240,6 +240,7 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
     Variant {
         label: label.to_owned(),
         variant: design.variant.to_owned(),
+        chooses_vectors: false,
         runs,
         records,
         torque_speed: curve,

@@ -13,8 +13,9 @@ pub use print::print;
 
 use super::results::SPEEDS;
 use crate::cli::{Failure, PlantArguments, SelectedMotor, bar};
-use crate::closed_loop::{Swing, measure};
-use crate::engine::{Model, Prepared};
+use crate::closed_loop::{RunOptions, Swing, measure};
+use crate::engine::{Model, Prepared, SetPoint};
+use crate::plant::PlantParams;
 use crate::report::{Cell, Column, Measured, Robustness};
 use disturbance::{Disturbance, disturbances};
 use indicatif::ProgressBar;
@@ -190,8 +191,18 @@ fn run(drive: &Prepared, plant: &PlantArguments, rpm: f64) -> Result<Measured, F
     let params = plant.plant(drive)?;
     let torque = drive.demand();
     let run = plant.run(drive, rpm, torque);
-    let set_point = plant.set_point(drive, torque);
-    let measured = measure(&params, &run, drive.maker(Model::Fixed, set_point))?;
+    measured(drive, &params, &run, plant.set_point(drive, torque), torque)
+}
+
+/// A run of a drive with a set-point for a torque in newton metres, ready to be judged.
+pub(super) fn measured(
+    drive: &Prepared,
+    params: &PlantParams,
+    run: &RunOptions,
+    set_point: SetPoint,
+    torque: f64,
+) -> Result<Measured, Failure> {
+    let measured = measure(params, run, drive.maker(Model::Fixed, set_point))?;
     let swings = measured
         .traces
         .iter()

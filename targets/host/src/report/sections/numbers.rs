@@ -156,6 +156,14 @@ impl Comparison<'_> {
             ideal: (shown.of)(&self.at.ideal),
         }
     }
+
+    /// How many of the merits differ.
+    fn differing(&self, merits: &[Shown]) -> usize {
+        merits
+            .iter()
+            .filter(|shown| !self.pair(shown).alike(shown.percentage))
+            .count()
+    }
 }
 
 fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
@@ -191,15 +199,20 @@ pub fn errors(data: &ReportData) -> Markup {
 
 fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
     let total = comparisons.len() * merits.len();
-    let apart = comparisons
+    let apart: usize = comparisons
         .iter()
-        .flat_map(|comparison| {
-            merits
+        .map(|comparison| comparison.differing(merits))
+        .sum();
+    let groups = || comparisons.chunk_by(|a, b| a.index == b.index);
+    let ties: Vec<&str> = groups()
+        .filter(|group| group[0].variant.chooses_vectors)
+        .filter(|group| {
+            group
                 .iter()
-                .map(|shown| comparison.pair(shown).alike(shown.percentage))
+                .any(|comparison| comparison.differing(merits) > 0)
         })
-        .filter(|alike| !alike)
-        .count();
+        .map(|group| group[0].variant.label.as_str())
+        .collect();
     html! {
         p {
             @if apart == 0 {
@@ -222,7 +235,7 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
                         }
                     }
                 }
-                @for group in comparisons.chunk_by(|a, b| a.index == b.index) {
+                @for group in groups() {
                     tbody {
                         tr {
                             th colspan=(merits.len() + 2) scope="rowgroup" {
@@ -232,6 +245,13 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
                         @for comparison in group { (merit_row(comparison, merits)) }
                     }
                 }
+            }
+        }
+        @if !ties.is_empty() {
+            p.note {
+                (ties.join("; ")) ": such a controller applies one of a few whole vectors. Where two of them are nearly as good, the last bit of a word may decide, \
+                 and from such a near tie on the two runs apply other patterns: the mean torque stays, ripple, harmonics and switchings are those of another \
+                 pattern. The single decisions agree, but for proven ties, from the same state."
             }
         }
     }

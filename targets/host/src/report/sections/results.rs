@@ -3,7 +3,7 @@
 use super::{TorqueScale, capture_name, model_name, number, ripple, variant_swatch, variant_text};
 use crate::closed_loop::LimitOutcome;
 use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
-use crate::report::{Band, Expected, ReportData, Run, RunPoint};
+use crate::report::{Expectation, Expected, ReportData, Run, RunPoint};
 use maud::{Markup, html};
 
 /// The table, how many expected figures were met, and how to read it.
@@ -58,7 +58,7 @@ pub fn section(data: &ReportData) -> Markup {
                 }
             }
         }
-        @for note in &data.notes { p { (unbroken(note)) } }
+        @for note in &data.notes { p { (prose(note)) } }
     }
 }
 
@@ -131,7 +131,7 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
                 @if !judged.met { "\u{2260}\u{a0}" }
                 (judged.measured.map_or_else(|| "\u{2013}".to_owned(), show))
                 @if any_expected {
-                    span.expected { (judged.expected.map_or_else(String::new, |band| band_text(band, expected))) }
+                    span.expected { (judged.expected.map_or_else(String::new, |wanted| expectation(wanted, expected))) }
                 }
             }
         }
@@ -149,7 +149,7 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
         }
         @match run.limit.as_ref().map(|limit| limit.outcome) {
             Some(LimitOutcome::NotReached) => {
-                td.number.edge.missed[!lower_bound_met(run)] {
+                td.number.edge.missed[!judge_limit(run.limit.as_ref(), run.expected.as_ref()).met] {
                     "above " (run.limit.as_ref().and_then(|limit| limit.limit_pct).map_or_else(String::new, |x| number(x, 0)))
                     @if any_expected {
                         span.expected { (expected_limit(run.expected.as_ref())) }
@@ -157,7 +157,7 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
                 }
             }
             Some(LimitOutcome::NeverHeld) => {
-                td.number.edge.missed[!judge_limit(None, run.expected.as_ref()).met] {
+                td.number.edge.missed[!judge_limit(run.limit.as_ref(), run.expected.as_ref()).met] {
                     "never held"
                     @if any_expected {
                         span.expected { (expected_limit(run.expected.as_ref())) }
@@ -179,28 +179,23 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
     }
 }
 
-/// Whether the lower bound of a limit that the scan did not reach agrees with the expectation.
-fn lower_bound_met(run: &Run) -> bool {
-    judge_limit(run.limit.as_ref(), run.expected.as_ref()).met
-}
-
 fn expected_limit(expected: Option<&Expected>) -> String {
     expected
-        .and_then(|expected| expected.limit_pct)
-        .map_or_else(String::new, |band| band_text(band, &|x| number(x, 0)))
+        .and_then(|expected| expected.limit)
+        .map_or_else(String::new, |wanted| expectation(wanted, &|x| number(x, 0)))
 }
 
-/// Percentages that do not break before their sign.
-fn unbroken(text: &str) -> String {
-    text.replace(" %", "\u{a0}%")
-}
-
-/// A band as one value or from-to.
-fn band_text(band: Band, show: &dyn Fn(f64) -> String) -> String {
-    let (low, high) = (show(band.low), show(band.high));
-    if low == high {
-        low
-    } else {
-        format!("{low}\u{2013}{high}")
+/// A note: percentages do not break before their sign, and what stands between back-ticks is code.
+fn prose(text: &str) -> Markup {
+    let text = text.replace(" %", "\u{a0}%");
+    html! {
+        @for (place, part) in text.split('`').enumerate() {
+            @if place % 2 == 1 { code { (part) } } @else { (part) }
+        }
     }
+}
+
+/// An expectation as the page writes it.
+fn expectation(wanted: Expectation, show: &dyn Fn(f64) -> String) -> String {
+    wanted.text("\u{2013}", show)
 }

@@ -49,6 +49,7 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
         }
         @if !plots.is_empty() {
             h3 { "Simulated with one parameter off" }
+            p.note { "Runs just inside and just outside of each edge and one well inside of it, judged by the rule of the robustness sheet. Resistances beyond those shown leave the bus too little voltage for the current." }
             (legend([
                 (swatch(palette::PHASES[0], 3.0, (0.0, 0.0)), "edges of the computed stable range, tinted".to_owned()),
                 (dot(), "run that stays stable".to_owned()),

@@ -1,0 +1,103 @@
+//! Runs on both sides of the edges of a loop's stable range, and how they are judged: by the rule of the robustness
+//! sheet.
+
+use super::robustness::measured;
+use crate::cli::Failure;
+use crate::closed_loop::RunOptions;
+use crate::engine::{Prepared, plant_of, run_of};
+use crate::report::{Figures, Outcome, Parameter, Stability, StabilityCheck};
+use hexagen_codegen::controllers::stable_range;
+use hexagen_codegen::spec::EmfSource;
+use rayon::prelude::*;
+
+/// Edges that are run, in true over stated value. Farther away there are no motors, and a loop with many times the
+/// inductance leaves its range by slow growth, which is not what the rule looks for; the search for the range itself
+/// ends at 0.1 and 10.
+pub const EDGES: (f64, f64) = (0.2, 4.0);
+
+/// How far inside or outside of an edge a loop is run, in parts of the edge.
+pub const DISTANCE: f64 = 0.07;
+
+/// Speed in parts of the rated one: so low that a loop near its edge calms down between commutations.
+const SPEED: f64 = 0.1;
+
+/// Electrical angle in radians that the runs start at.
+const START: f64 = 0.1;
+
+/// True over stated value just inside and just outside of each edge that is run.
+pub fn sides((low, high): (f64, f64)) -> Vec<[f64; 2]> {
+    [(low, 1.0 + DISTANCE), (high, 1.0 - DISTANCE)]
+        .into_iter()
+        .filter(|(edge, _)| (EDGES.0..EDGES.1).contains(edge))
+        .map(|(edge, inward)| [edge * inward, edge / inward])
+        .collect()
+}
+
+/// Where the page runs a loop: on both sides of its edges, and half-way (by ratio) from the stated value to each
+/// end of what is run.
+fn factors((low, high): (f64, f64)) -> Vec<f64> {
+    let inside = [low.max(EDGES.0).sqrt(), high.min(EDGES.1).sqrt()];
+    sides((low, high))
+        .into_iter()
+        .flatten()
+        .chain(inside)
+        .collect()
+}
+
+/// How a drive runs at its rated torque on a motor whose resistance and inductance are that many times the stated
+/// ones.
+///
+/// # Errors
+/// A plant parameter out of range.
+pub fn run_off(drive: &Prepared, resistance: f64, inductance: f64) -> Result<Figures, Failure> {
+    let torque = drive.demand();
+    let run = RunOptions {
+        starts: vec![START],
+        ..run_of(&drive.spec, SPEED * drive.spec.motor.rated_speed, torque)
+    };
+    let plant = plant_of(&drive.spec).scaled(resistance, inductance, 1.0);
+    let found = measured(drive, &plant, &run, drive.set_point(torque), torque)?;
+    // A controller that modulates is judged by its own swing.
+    Ok(found.judged(&found))
+}
+
+/// The stable range of a loop whose EMF is estimated, and runs on both sides of its edges; none for other loops.
+///
+/// # Errors
+/// A plant parameter out of range.
+pub fn checked(drive: &Prepared) -> Result<Option<Stability>, Failure> {
+    if drive.spec.controller.common().emf != EmfSource::Estimated {
+        return Ok(None);
+    }
+    let Some(range) = stable_range(&drive.spec) else {
+        return Ok(None);
+    };
+    let inductances = factors(range.inductance);
+    let resistances = factors(range.resistance);
+    let runs: Vec<(Parameter, f64)> = inductances
+        .into_iter()
+        .map(|factor| (Parameter::Inductance, factor))
+        .chain(
+            resistances
+                .into_iter()
+                .map(|factor| (Parameter::Resistance, factor)),
+        )
+        .collect();
+    let checks = runs
+        .into_par_iter()
+        .map(|(parameter, factor)| {
+            let figures = match parameter {
+                Parameter::Inductance => run_off(drive, 1.0, factor)?,
+                Parameter::Resistance => run_off(drive, factor, 1.0)?,
+            };
+            Ok(StabilityCheck {
+                parameter,
+                factor,
+                rpm: SPEED * drive.rated_rpm(),
+                ripple_rms_pct: figures.ripple_rms_pct,
+                stable: figures.outcome == Outcome::Runs,
+            })
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    Ok(Some(Stability { range, checks }))
+}
