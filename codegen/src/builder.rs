@@ -429,7 +429,8 @@ impl Source {
         Ok(())
     }
 
-    /// Writes beside the file and renames, so that no reader sees half of it.
+    /// Writes beside the file and renames, so that no reader sees half of it. (The program has a writer of its own,
+    /// which makes folders and temporary names by a crate that build scripts do without.)
     fn write(self, out_dir: &Path, motor: String) -> Result<Written, BuildError> {
         let file = out_dir.join(file_name(&motor));
         let beside = file.with_extension(format!("rs.{}", std::process::id()));
@@ -437,8 +438,12 @@ impl Source {
             path: file.display().to_string(),
             error,
         };
-        fs::write(&beside, &self.text).map_err(failed)?;
-        fs::rename(&beside, &file).map_err(failed)?;
+        fs::write(&beside, &self.text)
+            .and_then(|()| fs::rename(&beside, &file))
+            .inspect_err(|_| {
+                let _ = fs::remove_file(&beside);
+            })
+            .map_err(failed)?;
         Ok(Written {
             motor,
             file,

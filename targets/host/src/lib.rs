@@ -6,5 +6,6 @@ pub mod cli;
 pub mod closed_loop;
 pub mod commands;
 pub mod engine;
+mod files;
 pub mod plant;
 pub mod report;

@@ -8,7 +8,7 @@ use crate::commands::{
 use crate::engine::{
     Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
 };
-use crate::plant::{Mechanics, PlantParams};
+use crate::plant::{Mechanics, PlantError, PlantParams};
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{SpecAst, parse_toml};
 use std::f64::consts::TAU;
@@ -255,8 +255,26 @@ impl PlantArguments {
             external_torque: 0.0,
             viscous: 0.0,
         });
-        plant.check()?;
+        plant.check().map_err(|error| self.blame(error))?;
         Ok(plant)
+    }
+
+    /// The option that a parameter out of range comes from, where one was given.
+    fn blame(&self, error: PlantError) -> Failure {
+        let PlantError::Range { name, .. } = &error;
+        let option = match *name {
+            "dead_time" if self.dead_time.is_some() => "--dead-time",
+            "v_bus" if self.v_bus.is_some() => "--v-bus",
+            "resistance" if self.scale_r.is_some() => "--scale-r",
+            "inductance" if self.scale_l.is_some() => "--scale-l",
+            "k_phase" if self.scale_kb.is_some() => "--scale-kb",
+            "adc offset" if self.adc_offset.is_some() => "--adc-offset",
+            "hall_error_deg" if self.hall_error.is_some() => "--hall-error",
+            "inertia" => "--inertia",
+            "opposing_torque" => "--load",
+            _ => return error.into(),
+        };
+        Failure::Argument(format!("{option}: {error}"))
     }
 
     /// The run of a drive at a mechanical speed in rpm and a torque in newton metres.

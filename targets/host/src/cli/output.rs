@@ -2,12 +2,13 @@
 
 use super::Failure;
 use crate::engine::Prepared;
+use crate::files::write_whole;
 use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, Table, Width};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Prints text to stdout, with a line end. A closed pipe is no error: the reader has enough.
 ///
@@ -52,48 +53,15 @@ pub fn tell_warnings(drive: &Prepared) {
     }
 }
 
-/// Writes a file beside its place and renames it, so that no reader sees half of it. Makes the
-/// folder if it is missing; where the file cannot be written, nothing new is left.
+/// Writes a file as a whole or not at all.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let missing: Vec<PathBuf> = folder
-        .ancestors()
-        .take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists())
-        .map(Path::to_owned)
-        .collect();
-    std::fs::create_dir_all(folder)
-        .and_then(|()| write_into(folder, path, contents))
-        .map_err(|error| {
-            // The innermost first; one that somebody else uses meanwhile is not empty and stays.
-            for folder in &missing {
-                let _ = std::fs::remove_dir(folder);
-            }
-            Failure::Write {
-                path: path.to_owned(),
-                reason: error.to_string(),
-            }
-        })
-}
-
-/// Writes a file of a folder that exists.
-fn write_into(folder: &Path, path: &Path, contents: &[u8]) -> std::io::Result<()> {
-    let mut beside = tempfile::Builder::new();
-    // Results are no secrets: the usual permissions of new files.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        beside.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = beside.prefix(".hexagen-").tempfile_in(folder)?;
-    file.write_all(contents)?;
-    file.persist(path)?;
-    Ok(())
+    write_whole(path, contents).map_err(|error| Failure::Write {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })
 }
 
 /// A number with so many significant digits, without exponent where that is readable.

@@ -1,6 +1,7 @@
 //! What the plant needs to know, as plain SI numbers, and the check that they make sense.
 
 use super::adc::full_scale;
+use hexagen_codegen::diagnostics::engineering;
 use serde::{Deserialize, Serialize};
 
 /// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of DESIGN.md section 3.
@@ -98,14 +99,16 @@ pub struct PlantParams {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A quantity is not a finite number in its range.
-    #[error("plant {name} = {value}: must be {limit}")]
+    #[error("plant: {name} is {}, but must be {limit}", engineering(*value, unit))]
     Range {
         /// Name of the field.
         name: &'static str,
-        /// The value given, in SI units.
+        /// The value given.
         value: f64,
+        /// Its unit; empty for a plain number.
+        unit: &'static str,
         /// The range that is allowed.
-        limit: &'static str,
+        limit: String,
     },
 }
 
@@ -151,57 +154,95 @@ impl PlantParams {
     pub fn check(&self) -> Result<(), PlantError> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let not_negative = |x: f64| x.is_finite() && x >= 0.0;
-        let require = |ok: bool, name, value, limit| {
+        let require = |ok: bool, name, (value, unit), limit: &str| {
             if ok {
                 Ok(())
             } else {
-                Err(PlantError::Range { name, value, limit })
+                Err(PlantError::Range {
+                    name,
+                    value,
+                    unit,
+                    limit: limit.to_owned(),
+                })
             }
         };
         let pole_pairs = f64::from(self.pole_pairs);
-        require(self.pole_pairs > 0, "pole_pairs", pole_pairs, "at least 1")?;
+        require(
+            self.pole_pairs > 0,
+            "pole_pairs",
+            (pole_pairs, ""),
+            "at least 1",
+        )?;
         for phase in 0..3 {
             let (r, l, k) = (
                 self.resistance[phase],
                 self.inductance[phase],
                 self.k_phase[phase],
             );
-            require(not_negative(r), "resistance", r, "finite and not negative")?;
-            require(positive(l), "inductance", l, "finite and positive")?;
-            require(not_negative(k), "k_phase", k, "finite and not negative")?;
+            require(
+                not_negative(r),
+                "resistance",
+                (r, "ohm"),
+                "finite and not negative",
+            )?;
+            require(positive(l), "inductance", (l, "H"), "finite and positive")?;
+            require(
+                not_negative(k),
+                "k_phase",
+                (k, "V s/rad"),
+                "finite and not negative",
+            )?;
             let error = self.hall_error_deg[phase];
             require(
                 error.abs() < 30.0,
                 "hall_error_deg",
-                error,
+                (error, "deg"),
                 "within -30 to 30 degrees",
             )?;
         }
         if let EmfShape::Trapezoidal { flat_top_deg } = self.shape {
             let in_range = (0.0..=179.0).contains(&flat_top_deg);
-            require(in_range, "flat_top_deg", flat_top_deg, "0 to 179 degrees")?;
+            require(
+                in_range,
+                "flat_top_deg",
+                (flat_top_deg, "deg"),
+                "0 to 179 degrees",
+            )?;
         }
         require(
             positive(self.v_bus),
             "v_bus",
-            self.v_bus,
+            (self.v_bus, "V"),
             "finite and positive",
         )?;
-        require(positive(self.t_s), "t_s", self.t_s, "finite and positive")?;
+        require(
+            positive(self.t_s),
+            "t_s",
+            (self.t_s, "s"),
+            "finite and positive",
+        )?;
         let period = f64::from(self.timer_period);
-        require(self.timer_period > 0, "timer_period", period, "at least 1")?;
+        require(
+            self.timer_period > 0,
+            "timer_period",
+            (period, ""),
+            "at least 1",
+        )?;
         let dead_ok = (0.0..self.t_s / 2.0).contains(&self.dead_time);
         require(
             dead_ok,
             "dead_time",
-            self.dead_time,
-            "from 0 to below half the period",
+            (self.dead_time, "s"),
+            &format!(
+                "from 0 to below half the period of {}",
+                engineering(self.t_s, "s")
+            ),
         )?;
         let drop = self.diode_drop;
         require(
             not_negative(drop),
             "diode_drop",
-            drop,
+            (drop, "V"),
             "finite and not negative",
         )?;
         for channel in self.adc {
@@ -209,36 +250,36 @@ impl PlantParams {
             require(
                 (1..=16).contains(&channel.bits),
                 "adc bits",
-                bits,
+                (bits, ""),
                 "1 to 16",
             )?;
             let gain = channel.amperes_per_count;
             require(
                 positive(gain.abs()),
                 "adc amperes_per_count",
-                gain,
+                (gain, "A"),
                 "finite and not zero",
             )?;
             let in_range = (0.0..=full_scale(channel.bits)).contains(&channel.offset);
             require(
                 in_range,
                 "adc offset",
-                channel.offset,
-                "within the converter's range",
+                (channel.offset, ""),
+                &format!("from 0 to {} counts", full_scale(channel.bits)),
             )?;
         }
         let ticks = self.hall_ticks_per_period;
         require(
             positive(ticks),
             "hall_ticks_per_period",
-            ticks,
+            (ticks, ""),
             "finite and positive",
         )?;
         for code in self.hall_codes {
             require(
                 (1..=6).contains(&code),
                 "hall code",
-                f64::from(code),
+                (f64::from(code), ""),
                 "1 to 6",
             )?;
         }
@@ -246,22 +287,27 @@ impl PlantParams {
             require(
                 positive(m.inertia),
                 "inertia",
-                m.inertia,
+                (m.inertia, "kg m2"),
                 "finite and positive",
             )?;
             let opposing = m.opposing_torque;
             require(
                 not_negative(opposing),
                 "opposing_torque",
-                opposing,
+                (opposing, "Nm"),
                 "not negative",
             )?;
             let external = m.external_torque;
-            require(external.is_finite(), "external_torque", external, "finite")?;
+            require(
+                external.is_finite(),
+                "external_torque",
+                (external, "Nm"),
+                "finite",
+            )?;
             require(
                 not_negative(m.viscous),
                 "viscous",
-                m.viscous,
+                (m.viscous, "Nm s/rad"),
                 "not negative",
             )?;
         }

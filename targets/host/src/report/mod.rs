@@ -25,6 +25,7 @@ pub use expected::{
 };
 pub use robustness::{Cell, Column, Figures, Heat, Measured, Outcome, Robustness, SWING_RULE};
 
+use crate::files::write_whole;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -62,18 +63,13 @@ pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
     )
 }
 
-/// Writes a page beside its place and renames it.
+/// Writes a page as a whole or not at all.
 fn write_page(html: &str, dir: &Path, name: &str) -> Result<PathBuf, ReportError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |source| ReportError::Write { path, source }
-    };
-    fs::create_dir_all(dir).map_err(failed(dir))?;
     let path = dir.join(name);
-    let beside = path.with_extension("html.part");
-    fs::write(&beside, html).map_err(failed(&beside))?;
-    fs::rename(&beside, &path).map_err(failed(&path))?;
-    Ok(path)
+    match write_whole(&path, html.as_bytes()) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Write { path, source }),
+    }
 }
 
 /// Makes the folder of a page where it is missing, and sees whether files can be made in it: a

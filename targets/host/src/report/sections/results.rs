@@ -45,7 +45,8 @@ pub fn section(data: &ReportData) -> Markup {
                                         (variant.label)
                                         @if !variant.variant.is_empty() {
                                             br;
-                                            (variant_text(&variant.variant))
+                                            // How Hall edges are read stands in a column of its own.
+                                            (variant_text(&variant.variant.replace(",hall_capture=timer", "")))
                                         }
                                     }
                                 }
