@@ -188,9 +188,9 @@ const PAPER_NOTES: [&str; 5] = [
      ripple is larger than expected (`hexagen reproduce` shows that reading).",
     "PI-PWM three_phase: the expected figures are those of the paper's modulation over neighbouring pair vectors \
      (`modulation=table2`), which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
-    "PI-PWM six_step: the expected figures are those of a regulator that holds the largest of the three currents, \
+    "PI-PWM six_step: the expected mean and ripple are those of a regulator that holds the largest of the three currents, \
      (|ia| + |ib| + |ic|)/2. Here it holds the mean of the conducting pair's, which sees the incoming phase from the \
-     first period of a commutation on (`cargo test -p hexagen-host --test plant_six_step` runs both).",
+     first period of a commutation on (`cargo test -p hexagen-host --test plant_six_step` runs both; neither has the expected limit).",
 ];
 
 /// Runs the command.
