@@ -3,16 +3,21 @@
 use crate::arith::Word;
 
 /// One control period's measurements, taken at the start of the period.
+///
+/// `hall` and `hall_ticks` are one snapshot, which no edge may tear apart: latch both in the capture interrupt, or read the
+/// ticks, the code, and the ticks again, until the second count is not below the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
-    /// Phase-a current, raw ADC count.
+    /// Phase-a current, raw ADC count: rises with the current into the motor (`adc_inverted: on`: falls).
     pub adc_a: u16,
-    /// Phase-b current, raw ADC count.
+    /// Phase-b current, likewise.
     pub adc_b: u16,
-    /// Hall code `Ha Hb Hc`, Ha in bit 2. 0 and 7 are invalid and trip the drive.
+    /// Hall code `Ha Hb Hc`, Ha in bit 2. 0 and 7 are invalid and trip the drive; which code is which
+    /// sector, and which way is forward: [`conventions`](crate::conventions).
     pub hall: u8,
-    /// Timer ticks from the last Hall edge to this sample, saturating. Read by drives with
-    /// `hall_capture: timer` only.
+    /// Timer ticks from the last Hall edge to this sample, saturating at 65535; the clock is the
+    /// specification's `hall_timer_clock`. Read by drives
+    /// with `hall_capture: timer` only.
     pub hall_ticks: u16,
 }
 

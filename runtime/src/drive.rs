@@ -48,7 +48,8 @@ pub trait Drive {
     /// Names of the state words, in the order of [`Drive::state_word`].
     const STATE_NAMES: &'static [&'static str];
 
-    /// A drive at rest with zero set-point.
+    /// A drive with zero set-point that controls currents from its first step on, with nominal current offsets.
+    /// Where offsets or bootstrap capacitors need it, call [`Drive::calibrate`] before the first step.
     fn new() -> Self
     where
         Self: Sized;
@@ -111,11 +112,15 @@ pub trait Drive {
 /// an interrupt that can interrupt the control loop it may be called once per control period.
 pub trait DriveSetPoint: Sync {
     /// Sets the current set-point in amperes (peak of the quasi-square wave); saturates at the
-    /// largest current of the specification.
+    /// largest current of the specification to both sides. Positive makes torque forward, negative backward,
+    /// whichever way the rotor turns; against the rotation it brakes into the bus
+    /// ([`conventions`](crate::conventions)).
     fn set_current(&self, current: I16F16);
-    /// Sets the torque set-point in newton metres; saturates likewise.
+    /// Sets the torque set-point in newton metres; sign and saturation likewise.
     fn set_torque(&self, torque: I16F16);
-    /// Tells the bus voltage as an ADC count. Does nothing for drives with `v_bus: fixed`.
+    /// Tells the bus voltage as an ADC count. A voltage outside `bus_min` to `bus_max` of the specification counts as the
+    /// nearer of these, without a fault; until the first call the nominal voltage holds. Does nothing for
+    /// drives with `v_bus: fixed`.
     fn set_bus(&self, counts: u16);
     /// What the drive is doing, and what tripped it: as its control loop last said, which may go on
     /// meanwhile.
@@ -127,12 +132,14 @@ pub trait DriveLoop: Send {
     /// Runs one control period: reads the sample, returns the command for the inverter, publishes
     /// the status.
     fn step(&mut self, sample: &Sample) -> Legs;
-    /// Clears a trip and all control state; keeps calibrated offsets and the set-point. Ignored while
-    /// calibrating and pre-charging.
+    /// Clears a trip and all control state; keeps calibrated offsets and the set-point, at which the next step
+    /// goes on. Ignored while calibrating and pre-charging.
     fn reset(&mut self);
-    /// Starts current-offset calibration: all legs off, the motor at rest. Ignored when tripped.
+    /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the specification has
+    /// one, and control at the set-point that stands follow by themselves. Ignored when tripped.
     fn calibrate(&mut self);
-    /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, while calibrating,
+    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns; control follows by
+    /// itself. Accepted from control, too: call it at rest only. Ignored when tripped, while calibrating,
     /// and where the specification has no pre-charge.
     fn precharge(&mut self);
     /// What the drive is doing, and what tripped it.

@@ -3,12 +3,17 @@
 //! `hexagen::controller!` emits one `no_std` type per motor; this crate holds the few types that
 //! all of them share: the sample that goes into a step, the leg commands that come out, the
 //! double buffer behind the set-point, and the trait that lets generic firmware hold any drive.
+//! Signs, sectors and wiring are in [`conventions`]; what the paper prints and is not so, in [`errata`].
 #![no_std]
 
 pub mod arith;
 mod boundary;
+#[doc = include_str!("conventions.md")]
+pub mod conventions {}
 mod double_buffer;
 mod drive;
+#[doc = include_str!("errata.md")]
+pub mod errata {}
 mod shared_word;
 mod status;
 mod word;

@@ -1,6 +1,6 @@
 //! The EMF's shape over the electrical angle, and the periodic functions derived from it.
 //!
-//! Convention (DESIGN section 3): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase peak.
+//! Convention (`hexagen::conventions`): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase peak.
 
 use crate::spec::EmfShape;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -1,6 +1,6 @@
 //! The unit shape of the phase EMF and the torque factors that follow from it.
 //!
-//! Conventions of DESIGN.md section 3: phase a rises through zero at theta_e = 0, b lags by a
+//! Conventions of `hexagen::conventions`: phase a rises through zero at theta_e = 0, b lags by a
 //! third of a turn; shapes have half-wave symmetry and amplitude 1.
 
 use super::EmfShape;

@@ -1,5 +1,5 @@
 //! A float64 reference experiment: an ideal deadbeat controller on the 660 W motor must give the
-//! PDCC rows of DESIGN.md section 4 that it stands for. Nothing of the generator takes part, so a
+//! PDCC rows of the reference study that it stands for (`report/expected.rs`). Nothing of the generator takes part, so a
 //! difference here is the plant's or the merits'.
 
 use hexagen::{LegState, Legs, Sample};

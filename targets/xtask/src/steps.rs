@@ -97,28 +97,40 @@ fn on_target(command: &'static str, options: &[&str]) -> Step {
     bench(command, &options)
 }
 
-/// Sees to it that proofs can be checked: installs Gappa where the system lets us.
+/// Sees to it that proofs can be checked: as root of a Debian system, installs Gappa where it is missing.
 ///
 /// # Errors
-/// What to install, where it is missing and cannot be installed from here.
+/// What to install, where it is missing and this is not root, or cannot be installed from here.
 pub fn checker() -> Result<(), String> {
     let runs = || {
         let version = Command::new("gappa").arg("--version").output();
         version.is_ok_and(|output| output.status.success())
     };
-    if runs() {
+    if runs() || (is_root() && install("gappa") && runs()) {
         return Ok(());
     }
-    println!("== checker of proofs: apt-get install gappa");
-    let installed = Command::new("apt-get")
-        .args(["install", "--yes", "--no-install-recommends", "gappa"])
-        .env("DEBIAN_FRONTEND", "noninteractive")
-        .status();
-    if installed.is_ok_and(|status| status.success()) && runs() {
-        Ok(())
-    } else {
-        Err("`gappa` is missing, which checks the proofs; install it: `apt install gappa` as root on Debian and Ubuntu, or https://gappa.gitlabpages.inria.fr".to_owned())
-    }
+    Err("`gappa` is missing, which checks the proofs; install it: `apt-get update && apt-get install --no-install-recommends gappa` as root on Debian and Ubuntu, else from https://gappa.gitlabpages.inria.fr".to_owned())
+}
+
+/// Whether this process may install packages.
+fn is_root() -> bool {
+    let user = Command::new("id").arg("-u").output();
+    user.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}
+
+/// Installs a package of the system; whether that went well.
+fn install(package: &str) -> bool {
+    let apt = |arguments: &[&str]| {
+        println!("== set-up: apt-get {}", arguments.join(" "));
+        let status = Command::new("apt-get")
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .status();
+        status.is_ok_and(|status| status.success())
+    };
+    // A stale index is no reason to stop: the package may stand in it, or in a list that could be read.
+    apt(&["update", "-qq"]);
+    apt(&["install", "-y", "-qq", "--no-install-recommends", package])
 }
 
 /// What is too long for a push.

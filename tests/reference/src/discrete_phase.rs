@@ -1,4 +1,4 @@
-//! The discretised plant i(k+1) = a i(k) + b (v(k) - e(k)) of one phase (DESIGN section 4).
+//! The discretised plant i(k+1) = a i(k) + b (v(k) - e(k)) of one phase (`hexagen::conventions`).
 
 use crate::spec::{Discretisation, Spec};
 

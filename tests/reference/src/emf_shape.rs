@@ -1,6 +1,6 @@
 //! The unit EMF of phase a over the electrical angle, its zero-sum part, and their integrals.
 //!
-//! Phase a rises through zero at angle 0; b lags by a third of a turn (DESIGN section 3).
+//! Phase a rises through zero at angle 0; b lags by a third of a turn (`hexagen::conventions`).
 
 use crate::Error;
 use crate::spec::{EmfShapeKind, Motor};

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Electrical start angles in radians (DESIGN.md section 7).
+/// Electrical start angles in radians, so that Hall edges fall differently between the samples.
 pub const STARTS: [f64; 3] = [0.1, 0.117, 0.134];
 
 /// Settling time in seconds, at least.
@@ -91,7 +91,8 @@ fn run_start<C: CurrentLoop>(
     Ok((trace, closed.tripped()))
 }
 
-/// Measures a controller as DESIGN.md section 7 says. `make` builds a fresh controller with its
+/// Measures a controller from every start: the first 15 ms, and at least two electrical periods, settle the loop; the merits are those
+/// of the next six periods, the worst peak-to-peak ripple of all starts and the mean of everything else. `make` builds a fresh controller with its
 /// set-point for each start, told the plant's initial state; starts run in parallel.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! The merits of a run (DESIGN.md section 7), from its record.
+//! The merits of a run as its record shows them: means over bins of 2.5 us.
 
 use super::amplitudes;
 use super::trace::{Trace, quasi_square};

@@ -1,4 +1,4 @@
-//! The closed loop: a controller, the plant, and what is measured on them (DESIGN.md section 7).
+//! The closed loop: a controller, the plant, and what is measured on them.
 //!
 //! Any controller joins through [`CurrentLoop`]: a compiled drive, an interpreted graph, the
 //! bit-true or the ideal model. Sampling is at the start of each period; the command computed in

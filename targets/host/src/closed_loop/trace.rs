@@ -19,7 +19,7 @@ const OFF_PHASE: [usize; 6] = [0, 2, 1, 0, 2, 1];
 const OFF_SIGN: [f64; 6] = [-1.0, 1.0, -1.0, 1.0, -1.0, 1.0];
 
 /// Quasi-square reference of an electrical angle's sector: Clarke of (+I, -I, 0) on the sector's
-/// pair, with `current` = I in amperes, negative for negative torque. DESIGN.md section 3.
+/// pair, with `current` = I in amperes, negative for negative torque ([`hexagen::conventions`]).
 pub fn quasi_square(theta_e: f64, current: f64) -> (f64, f64) {
     let angle = (sector_of(theta_e) as f64 - 1.0) * FRAC_PI_3 - PI / 2.0;
     let length = current * 2.0 / 3.0_f64.sqrt();

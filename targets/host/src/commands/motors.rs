@@ -161,7 +161,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         1,
         [
             "motor",
-            "poles",
+            "pole pairs",
             "R ohm",
             "L mH",
             "EMF V s/rad",
@@ -183,7 +183,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             motor.name.clone(),
             motor
                 .pole_pairs
-                .map_or("-".to_owned(), |pairs| (2 * pairs).to_string()),
+                .map_or("-".to_owned(), |pairs| pairs.to_string()),
             number(motor.resistance_ohm, 1.0),
             number(motor.inductance_h, 1e3),
             number(motor.emf_constant_v_s, 1.0),

@@ -1,4 +1,4 @@
-//! The simulated plant: motor, inverter, Hall sensors and current converters (DESIGN.md section 4).
+//! The simulated plant: motor, inverter, Hall sensors and current converters (`hexagen::conventions`).
 //!
 //! The electrical network is piecewise linear; between two events it is solved by its Taylor
 //! series, which is exact to rounding. Events are switching edges, ends of dead times, corners of
@@ -26,7 +26,7 @@ pub use segment::{Segment, Series, TERMS, Terminal};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Sector 1 to 6 of an electrical angle in radians: S_k covers `[-30 + 60(k-1), 30 + 60(k-1))`
-/// degrees (DESIGN.md section 3).
+/// degrees ([`hexagen::conventions`]).
 pub fn sector_of(theta_e: f64) -> usize {
     ((theta_e / FRAC_PI_3 + 0.5).rem_euclid(6.0).floor() as usize).min(5) + 1
 }

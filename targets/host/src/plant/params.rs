@@ -4,7 +4,7 @@ use super::adc::full_scale;
 use hexagen_codegen::diagnostics::engineering;
 use serde::{Deserialize, Serialize};
 
-/// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of DESIGN.md section 3.
+/// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of [`hexagen::conventions`].
 pub const STANDARD_HALL_CODES: [u8; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
 
 /// Shape of the phase EMF over the electrical angle, amplitude 1, zero and rising at angle 0.

@@ -1,6 +1,6 @@
 //! Model A: the control law in f64 and physical units, with no rounding anywhere.
 //!
-//! Vectors are amplitude-invariant alpha-beta (DESIGN section 3); the inputs are the same ADC
+//! Vectors are amplitude-invariant alpha-beta (`hexagen::conventions`); the inputs are the same ADC
 //! counts, Hall codes and timer ticks that the generated code reads, the outputs exact duties.
 
 mod emf;

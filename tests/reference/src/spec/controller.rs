@@ -85,7 +85,7 @@ macro_rules! options {
 }
 
 options! {
-    /// Options of predictive deadbeat current control (DESIGN section 4).
+    /// Options of predictive deadbeat current control.
     Pdcc {
         /// How a voltage becomes leg commands.
         modulation: Modulation,

@@ -1,4 +1,4 @@
-//! Model A in closed loop meets the rows of DESIGN section 4 for the 660 W motor (`three_phase`).
+//! Model A in closed loop meets the rows of the reference study of the 660 W motor (`three_phase`).
 
 mod plant;
 

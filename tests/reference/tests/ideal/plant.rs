@@ -152,7 +152,7 @@ pub struct Merits {
     pub i_rms: f64,
 }
 
-/// Runs a controller on the plant from three starts (DESIGN section 7) and takes the merits.
+/// Runs a controller on the plant from three starts, as the `hexagen` program does, and takes the merits.
 pub fn merits(
     spec: &Spec,
     rpm: f64,

@@ -7,7 +7,7 @@
 pub struct Readings {
     /// What the paper prints, as far as a drive can do it.
     pub literal: &'static str,
-    /// The errata of DESIGN.md section 3 applied.
+    /// The same with the errata of `hexagen::errata` applied.
     pub corrected: &'static str,
 }
 

@@ -78,7 +78,7 @@ pub fn readings(data: &Reproduction) -> Markup {
         p {
             "Every drive is generated fixed-point code, fed by the simulated motor through "
             (data.inverter.adc_bits) "-bit converters and a Hall timer. The literal reading takes the paper's equations and tables as they are printed; "
-            "the corrected one takes them with the errata that DESIGN.md section 3 lists."
+            "the corrected one takes them with the errata that the documentation of the crate hexagen lists (hexagen::errata)."
         }
         div.scroll {
             table.results.readings {
