@@ -10,7 +10,7 @@ use crate::interface::Interface;
 use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
-use crate::spec::{MacroInput, MotorFile, SpecAst, check, parse_macro, parse_toml};
+use crate::spec::{MacroInput, MotorFile, SpecAst, check, is_absolute, parse_macro, parse_toml};
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, quote};
 use std::path::Path;
@@ -38,9 +38,12 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
             let tracking = input
                 .motor_file
                 .iter()
-                .filter(|file| root.join(file.path.value()).is_file())
+                .filter(|file| {
+                    let path = file.path.value();
+                    !is_absolute(&path) && root.join(path).is_file()
+                })
                 .map(track);
-            let shape = empty_shape(&input.ast, &surface);
+            let shape = named_shape(&input.ast, surface);
             quote!(#errors #shape #(#tracking)*)
         }
     }
@@ -99,6 +102,26 @@ fn track(file: &MotorFile) -> TokenStream {
     quote! {
         const _: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", #path));
     }
+}
+
+/// The empty shape under the name that was given, be it one that a type cannot have: `hub` is the name of its own
+/// module, too, so that such a shape gets another name and the given one as its alias.
+fn named_shape(ast: &SpecAst, surface: Surface) -> TokenStream {
+    let given = surface.name.to_string();
+    if module_name(&given) != given {
+        return empty_shape(ast, &surface);
+    }
+    let alias = surface.name.clone();
+    let visibility = surface.visibility.clone();
+    let name = Ident::new(&format!("Empty_{given}"), alias.span());
+    let shape = empty_shape(
+        ast,
+        &Surface {
+            name: name.clone(),
+            ..surface
+        },
+    );
+    quote!(#shape #[allow(unused_imports)] #visibility use #name as #alias;)
 }
 
 /// The type without a controller in it: its step turns all legs off.
@@ -291,6 +314,24 @@ mod tests {
         assert!(
             !text.contains(&*folder.to_string_lossy()),
             "an absolute path leaks"
+        );
+    }
+
+    #[test]
+    fn an_absolute_path_is_not_tracked() {
+        let file =
+            std::env::temp_dir().join(format!("hexagen-absolute-{}.toml", std::process::id()));
+        std::fs::write(&file, include_str!("example.toml")).expect("a motor file");
+        let path = file.to_string_lossy().into_owned();
+        let text = expand_controller(
+            quote!(pub Hub { motor: #path, controller: pdcc }),
+            &std::env::temp_dir(),
+        );
+        std::fs::remove_file(&file).expect("the file is ours");
+        let text = text.to_string();
+        assert!(
+            text.contains("HX0108") && !text.contains("include_str"),
+            "{text}"
         );
     }
 

@@ -20,7 +20,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
         },
-        controller: pdcc { commutation_timeout: 100 ms },
+        controller: pdcc { modulation: pair, commutation_timeout: 100 ms },
     }
 }
 

@@ -149,6 +149,10 @@ fn variant(spec: &Spec) -> String {
         "kind" => true,
         "emf" => is_set("feed_forward", "off"),
         "emf_filter" => is_set("feed_forward", "off") || is_set("emf", "model"),
+        "commutation_threshold" | "commutation_timeout" => {
+            is_set("modulation", "three_phase")
+                || is_set("kind", "fcs-mpc") && is_set("candidates", "three_phase")
+        }
         _ => false,
     };
     let told = pairs.iter().filter(|(name, _)| !is_idle(name));

@@ -12,13 +12,18 @@ use std::path::Path;
 /// # Errors
 /// If the path is absolute, the file cannot be read or is no TOML.
 pub fn load_motor_file(root: &Path, relative: &str, at: &Location) -> Result<SpecAst, Diagnostics> {
-    if Path::new(relative).has_root() || relative.contains(':') {
+    if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
     }
     let text = std::fs::read_to_string(root.join(relative)).map_err(|error| {
         catalogue::unreadable_motor_file(at, relative, &error.kind().to_string())
     })?;
     parse_toml(&text, relative)
+}
+
+/// Whether a path names a place outside of the crate's folder by itself, on any system.
+pub(crate) fn is_absolute(path: &str) -> bool {
+    Path::new(path).has_root() || path.contains(':')
 }
 
 /// Name of a type for a file without a name of its own: `motors/rear-hub.toml` is `RearHub`.

@@ -4,7 +4,7 @@
 //! reads attributes, visibility and literals.
 
 use super::ast::{Field, Name, Section, SpecAst, Value};
-use super::value::{parse_value, plain_number};
+use super::value::{parse_value, plain_number, unreadable};
 use super::{load_motor_file, schema};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
@@ -82,6 +82,10 @@ pub fn parse_macro(tokens: TokenStream) -> Result<MacroInput, Diagnostics> {
     for entry in entries(body) {
         if let Err(error) = read_section(&mut input, &entry) {
             input.ast.malformed.push(error);
+            // What is there but unreadable is not missing.
+            if let Some(TokenTree::Ident(name)) = entry.tokens.first() {
+                input.ast.excuse(&name.to_string());
+            }
         }
     }
     Ok(input)
@@ -331,9 +335,21 @@ fn read_fields(
 fn read_value(field: &str, tokens: &[TokenTree]) -> Value {
     let at = location(tokens);
     if let [TokenTree::Literal(literal)] = tokens {
+        let written = literal.to_string();
         let literal = TokenTree::from(literal.clone());
         if let Ok(text) = syn::parse2::<syn::LitStr>(literal.clone().into()) {
-            return parse_value(field, &text.value(), &at);
+            // Quotes are for text: in the macro all else stands as tokens.
+            return if schema::is_text(field) {
+                parse_value(field, &text.value(), &at)
+            } else {
+                unreadable(field, &written, &at)
+            };
+        }
+        if ["0x", "0o", "0b"]
+            .iter()
+            .any(|base| written.starts_with(base))
+        {
+            return unreadable(field, &written, &at);
         }
         if let Ok(number) = syn::parse2::<syn::LitInt>(literal.into())
             && number.suffix().is_empty()

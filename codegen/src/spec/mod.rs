@@ -28,6 +28,7 @@ pub use controller::{
     LoopOptions, Modulation, OffLegModel, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec, Reference,
     SwitchingTable,
 };
+pub(crate) use load::is_absolute;
 pub use load::load_motor_file;
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
 pub use model::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};

@@ -220,6 +220,14 @@ pub(crate) fn is_text(name: &str) -> bool {
     find(name).is_some_and(|rule| matches!(rule.kind, Kind::Text))
 }
 
+/// The quantities that the field takes; none for what is no quantity.
+pub(crate) fn dimensions(name: &str) -> &'static [D] {
+    match find(name).map(|rule| rule.kind) {
+        Some(Kind::Quantity { dimensions, .. }) => dimensions,
+        _ => &[],
+    }
+}
+
 /// An example of the field's value.
 pub(crate) fn example(name: &str) -> &'static str {
     find(name).map_or("20 A", |rule| rule.example)

@@ -5,7 +5,7 @@
 //! data sheet lacks; `[source]` free text. Every place is kept as file, line and column.
 
 use super::ast::{Field, Name, Section, SpecAst, Value};
-use super::value::{parse_value, plain_number};
+use super::value::{no_text, parse_value, plain_number, unreadable};
 use super::{load, schema};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
 use std::ops::Range;
@@ -60,11 +60,15 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
         .position(|field| field.name == "name")
     {
         let field = ast.motor.fields.remove(index);
-        if let Value::Text(text) = field.value {
-            ast.name = Name {
-                text,
-                location: field.location,
-            };
+        match field.value {
+            Value::Text(text) => {
+                ast.name = Name {
+                    text,
+                    location: field.location,
+                };
+            }
+            Value::Malformed(error) => ast.malformed.push(*error),
+            _ => {}
         }
     }
     Ok(ast)
@@ -218,10 +222,11 @@ impl File<'_> {
 
 fn read_value(field: &str, item: &Item, at: &Location) -> Value {
     let unreadable = |given: &str| {
-        let example = schema::example(field);
-        Value::Malformed(Box::new(catalogue::malformed_value(
-            at, field, given, example,
-        )))
+        if schema::is_text(field) {
+            no_text(field, given, at)
+        } else {
+            unreadable(field, given, at)
+        }
     };
     match item.as_value() {
         Some(toml_edit::Value::String(text)) => parse_value(field, text.value(), at),
@@ -235,12 +240,14 @@ fn read_value(field: &str, item: &Item, at: &Location) -> Value {
                 .map(str::to_owned);
             plain_number(
                 field,
-                &digits.unwrap_or_else(|| number.value().to_string()),
+                &digits.unwrap_or_else(|| format!("{:?}", number.value())),
                 at,
             )
         }
-        Some(toml_edit::Value::Boolean(flag)) => Value::Word(flag.value().to_string()),
-        Some(toml_edit::Value::Array(list)) => {
+        Some(toml_edit::Value::Boolean(flag)) if !schema::is_text(field) => {
+            Value::Word(flag.value().to_string())
+        }
+        Some(toml_edit::Value::Array(list)) if !schema::is_text(field) => {
             let numbers: Option<Vec<i64>> = list.iter().map(toml_edit::Value::as_integer).collect();
             numbers.map_or_else(|| unreadable(list.to_string().trim()), Value::Integers)
         }

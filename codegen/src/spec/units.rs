@@ -1,4 +1,5 @@
-//! Units of the specification: a closed list of spellings, each with its quantity and SI factor.
+//! Units of the specification: a closed list of spellings, each with its quantity and SI factor. The signs of
+//! print stand for their letters: Ω for `ohm`, µ for `u`, ° for `deg`, ² for `2`.
 //!
 //! Mechanical speed is in rad/s, so `V/krpm` and `V/(rad/s)` are one quantity; `V/Hz` and `Wb` are
 //! flux linkages per electrical angle, another one.
@@ -99,26 +100,45 @@ impl Unit {
     /// The unit of the given spelling. Products are spelled with single spaces (`kg m2`,
     /// `V s/rad`), quotients without spaces.
     pub fn from_symbol(symbol: &str) -> Option<Self> {
-        UNITS.iter().copied().find(|unit| unit.symbol == symbol)
+        let letters = in_letters(symbol);
+        UNITS.iter().copied().find(|unit| unit.symbol == letters)
     }
 
-    /// The known spelling closest to an unknown one, if any is close.
-    pub fn nearest(symbol: &str) -> Option<&'static str> {
-        let folded = symbol.to_lowercase();
+    /// The known spelling of one of some quantities closest to an unknown one, if any is close: a slip of one
+    /// letter in three, or of upper and lower case.
+    pub fn nearest(symbol: &str, dimensions: &[Dimension]) -> Option<&'static str> {
+        let letters = in_letters(symbol);
+        let folded = letters.to_lowercase();
         UNITS
             .iter()
+            .filter(|unit| dimensions.contains(&unit.dimension))
             .map(|unit| {
                 // A wrong case alone (`KHz`, `Ohm`) is the closest of mistakes.
-                let cased = usize::from(unit.symbol != symbol);
+                let cased = usize::from(unit.symbol != letters);
                 (
                     2 * strsim::levenshtein(&unit.symbol.to_lowercase(), &folded) + cased,
                     unit.symbol,
                 )
             })
             .min()
-            .filter(|(distance, _)| *distance <= 3)
+            .filter(|(distance, _)| *distance <= letters.chars().count().min(3))
             .map(|(_, symbol)| symbol)
     }
+}
+
+/// The spelling with letters in place of the signs of print, both code points of ohm and micro among them.
+fn in_letters(symbol: &str) -> String {
+    let mut letters = String::new();
+    for sign in symbol.chars() {
+        match sign {
+            '\u{3a9}' | '\u{2126}' => letters.push_str("ohm"),
+            '\u{b5}' | '\u{3bc}' => letters.push('u'),
+            '\u{b0}' => letters.push_str("deg"),
+            '\u{b2}' => letters.push('2'),
+            letter => letters.push(letter),
+        }
+    }
+    letters
 }
 
 const fn times(symbol: &'static str, dimension: Dimension, factor: f64) -> Unit {
@@ -234,6 +254,21 @@ mod tests {
     }
 
     #[test]
+    fn signs_of_print_are_letters() {
+        for (symbol, letters) in [
+            ("\u{3a9}", "ohm"),
+            ("m\u{2126}", "mohm"),
+            ("\u{b5}H", "uH"),
+            ("\u{3bc}s", "us"),
+            ("\u{b0}", "deg"),
+            ("kg m\u{b2}", "kg m2"),
+        ] {
+            let unit = Unit::from_symbol(symbol);
+            assert_eq!(unit.map(|unit| unit.symbol), Some(letters));
+        }
+    }
+
+    #[test]
     fn symbols_are_unique() {
         for (index, unit) in UNITS.iter().enumerate() {
             assert!(
@@ -247,10 +282,24 @@ mod tests {
 
     #[test]
     fn nearest_spelling() {
-        assert_eq!(Unit::nearest("KHz"), Some("kHz"));
-        assert_eq!(Unit::nearest("Ohm"), Some("ohm"));
-        assert_eq!(Unit::nearest("ohms"), Some("ohm"));
-        assert_eq!(Unit::nearest("furlong"), None);
+        use Dimension::{Current, Frequency, Inductance, Ratio, Resistance, Time};
+        for (symbol, dimension, nearest) in [
+            ("KHz", Frequency, Some("kHz")),
+            ("Ohm", Resistance, Some("ohm")),
+            ("ohms", Resistance, Some("ohm")),
+            ("m\u{3a9}s", Resistance, Some("mohm")),
+            ("v", Current, None),
+            ("a", Current, Some("A")),
+            // One letter is no likeness, nor is another quantity's unit.
+            ("W", Current, None),
+            ("W", Ratio, None),
+            ("pH", Inductance, None),
+            ("mm", Time, None),
+            ("KHz", Time, None),
+            ("furlong", Resistance, None),
+        ] {
+            assert_eq!(Unit::nearest(symbol, &[dimension]), nearest, "{symbol}");
+        }
         assert_eq!(
             Unit::from_symbol("mWb").map(|unit| unit.dimension),
             Some(Dimension::FluxLinkage)

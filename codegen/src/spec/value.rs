@@ -25,6 +25,9 @@ pub(super) fn parse_value(field: &str, text: &str, at: &Location) -> Value {
 
 /// A number of the given digits without unit.
 pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
+    if schema::is_text(field) {
+        return no_text(field, digits, at);
+    }
     match number(digits) {
         Some(value) => Value::Number(Number {
             digits: digits.to_owned(),
@@ -34,6 +37,19 @@ pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
         }),
         None => Value::Malformed(Box::new(malformed(field, digits, at))),
     }
+}
+
+/// Something else where the field takes text.
+pub(super) fn no_text(field: &str, given: &str, at: &Location) -> Value {
+    let example = schema::example(field);
+    Value::Malformed(Box::new(catalogue::wrong_kind(
+        at, field, given, "text", example,
+    )))
+}
+
+/// What no value is written like.
+pub(super) fn unreadable(field: &str, text: &str, at: &Location) -> Value {
+    Value::Malformed(Box::new(malformed(field, text, at)))
 }
 
 fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
@@ -164,7 +180,7 @@ fn read_unit(
     }
     let unit = Unit::from_symbol(&symbol).ok_or_else(|| {
         let given = format!("{digits} {symbol}");
-        let nearest = Unit::nearest(&symbol);
+        let nearest = Unit::nearest(&symbol, schema::dimensions(field));
         catalogue::unknown_unit(at, field, &given, &symbol, nearest, schema::example(field))
     })?;
     Ok((Some(unit), basis))
@@ -224,6 +240,11 @@ mod tests {
             ("0.1648 V s/rad phase peak", "0.1648 V s/rad phase peak"),
             ("2.40e-6 kg*m^2", "2.40e-6 kg m2"),
             ("24 g cm2", "24 g cm2"),
+            ("135 m\u{3a9} per_phase", "135 mohm per_phase"),
+            ("220\u{b5}H", "220 uH"),
+            ("120 \u{b0}", "120 deg"),
+            ("3.3 N\u{b7}m", "3.3 N m"),
+            ("2.4 g\u{b7}cm\u{b2}", "2.4 g cm2"),
             ("1e3us", "1e3 us"),
             ("- 5 mA/count", "-5 mA/count"),
             ("10%", "10 %"),

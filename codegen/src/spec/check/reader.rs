@@ -292,7 +292,7 @@ impl<'a> Reader<'a> {
         if !refuse_unit(errors, &given) {
             return None;
         }
-        if given.si.fract() != 0.0 {
+        if given.number.digits.contains(['.', 'e', 'E']) {
             let (at, text, example) = (
                 &given.part.location,
                 &given.part.given,

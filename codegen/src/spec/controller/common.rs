@@ -241,6 +241,30 @@ pub(crate) fn read_common(
     })
 }
 
+/// Refuses the options of commutations where the controller does not know of any; `other` is the setting that
+/// it follows from.
+pub(crate) fn refuse_commutation(
+    reader: &Reader,
+    [other, value]: [&str; 2],
+    errors: &mut Collector,
+) {
+    for name in ["commutation_threshold", "commutation_timeout"] {
+        let Some(field) = reader.field(name) else {
+            continue;
+        };
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            name,
+            &field.value.to_string(),
+            reader
+                .field(other)
+                .map_or(reader.location(), |field| &field.location),
+            &format!("{other}: {value}"),
+            "where no leg is turned off, no commutation has to end",
+        ));
+    }
+}
+
 fn read_word_length(reader: &Reader, errors: &mut Collector) -> u32 {
     let word = reader.integer(errors, "word").unwrap_or(32);
     if word != 16 && word != 32 {

@@ -1,6 +1,6 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
-use super::common::{EmfSource, LoopOptions, Surroundings, read_common};
+use super::common::{EmfSource, LoopOptions, Surroundings, read_common, refuse_commutation};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::check::reader::Reader;
@@ -75,6 +75,9 @@ pub(crate) fn check_options(
             Candidates::Table2
         });
     let without_sectors = candidates == Candidates::ThreePhase;
+    if without_sectors {
+        refuse_commutation(reader, ["candidates", "three_phase"], errors);
+    }
     let off_leg = read_off_leg(reader, without_sectors, errors);
     let modulated = reader.switch(errors, "modulated").unwrap_or(false);
     let switching_weight = read_switching_weight(reader, surroundings, errors);

@@ -2,7 +2,7 @@
 
 use super::common::{
     EmfSource, LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
-    read_saturation,
+    read_saturation, refuse_commutation,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -42,6 +42,9 @@ pub(crate) fn check_options(
     let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::TorquePriority);
     let without_sectors = modulation == Modulation::ThreePhase;
     let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
+    if without_sectors {
+        refuse_commutation(reader, ["modulation", "three_phase"], errors);
+    }
     let common = read_common(reader, surroundings, without_sectors, errors)?;
     if common.emf == EmfSource::Held
         && modulation == Modulation::Pair

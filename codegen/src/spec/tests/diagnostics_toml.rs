@@ -34,6 +34,21 @@ fn changes_of_a_complete_file() {
     let cases = [
         ("", "", "no error"),
         (
+            "[motor]\n",
+            "[motor]\nname = 7\n",
+            "motors/hub.toml:2:8: error[HX0208]: `name`: 7, but text is wanted; write it like `\"HubDrive\"`",
+        ),
+        (
+            "[motor]\n",
+            "[motor]\ndescription = true\n",
+            "motors/hub.toml:2:15: error[HX0208]: `description`: true, but text is wanted; write it like `\"Rear hub drive\"`",
+        ),
+        (
+            "adc_bits = 12\n",
+            "adc_bits = 12.0\n",
+            "motors/hub.toml:14:12: error[HX0208]: `adc_bits`: 12.0, but a whole number is wanted; write it like `12`",
+        ),
+        (
             "pole_pairs = 4\n",
             "pole_pairs = 4\npole_pairs = 5\n",
             "motors/hub.toml:3:1: error[HX0104]: `pole_pairs` is given twice; keep one of the two\nmotors/hub.toml:2:1: note: `pole_pairs` is given here first",

@@ -13,7 +13,7 @@ pub(super) const MACRO: &str = r"
                  hall_codes: [1, 5, 4, 6, 2, 3] },
         inverter: { bus_voltage: 48V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12,
                     adc_range: 40 A },
-        controller: pdcc { modulation: three_phase, emf: model, advance: 2, word: 32,
+        controller: pdcc { modulation: pair, emf: model, advance: 2, word: 32,
                            commutation_timeout: 10 periods },
     }";
 
@@ -41,7 +41,7 @@ adc_range = "40 A"
 rated_current = { value = "20 A", reason = "from the torque" }
 [controller]
 kind = "pdcc"
-modulation = "three_phase"
+modulation = "pair"
 emf = "model"
 advance = 2
 word = 32

@@ -11,7 +11,7 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
         return Ok(number);
     }
     let Some(unit) = Unit::from_symbol(symbol) else {
-        let nearest = Unit::nearest(symbol)
+        let nearest = Unit::nearest(symbol, &[dimension])
             .map(|nearest| format!("; did you mean `{nearest}`?"))
             .unwrap_or_default();
         return Err(format!("unknown unit `{symbol}`{nearest}"));

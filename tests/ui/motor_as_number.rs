@@ -1,0 +1,17 @@
+use hexagen::controller;
+
+controller! {
+    pub Hub {
+        motor: 5,
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+        },
+        controller: pdcc,
+    }
+}
+
+fn main() {}
