@@ -4,6 +4,7 @@
 //! On errors the type still appears in its empty shape, with every method and constant, so that
 //! the compiler reports what is wrong with the specification and nothing that follows from it.
 
+use crate::controllers::hall_ticks;
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::rust::{Surface, emit_rust, module_name};
 use crate::interface::Interface;
@@ -133,13 +134,17 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     };
     let timer_capture = is(&ast.controller, "hall_capture", "timer");
     let measured_bus = is(&ast.inverter, "v_bus", "measured");
+    let exemplary = exemplary_interface();
+    let mut constants = exemplary.constants;
+    constants.extend(timer_capture.then(|| hall_ticks(50, 50e-6)));
     let interface = Interface {
+        constants,
         type_name: surface.name.to_string(),
         doc: vec!["Not generated: the specification has errors.".to_owned()],
         header: vec!["Empty shape of a drive whose specification has errors.".to_owned()],
         timer_capture,
         measured_bus,
-        ..exemplary_interface()
+        ..exemplary
     };
     match verify(empty_program(&interface)) {
         Ok(graph) => emit_rust(&graph, &interface, surface),

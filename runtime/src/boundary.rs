@@ -16,7 +16,7 @@ pub struct Sample {
     /// sector, and which way is forward: [`conventions`](crate::conventions).
     pub hall: u8,
     /// Timer ticks from the last Hall edge to this sample, saturating at 65535; the clock is the
-    /// specification's `hall_timer_clock`. Read by drives
+    /// specification's `hall_timer_clock`, `HALL_TICKS_PER_PERIOD` ticks in a control period. Read by drives
     /// with `hall_capture: timer` only.
     pub hall_ticks: u16,
 }

@@ -1,7 +1,7 @@
 //! What the generator writes, versioned: emitted Rust, IR text and data sheets.
 //!
 //! Data sheets of every motor, found by directory; code and IR of four very different ones, of two
-//! for each kind of controller, and of the paper's motor in several variants. `INSTA_UPDATE=always cargo test -p hexagen-tests --test
+//! for each kind of controller, and of the paper's motor in several variants and with a measured bus. `INSTA_UPDATE=always cargo test -p hexagen-tests --test
 //! snapshots` writes all of them anew; a person reads the difference.
 
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -60,6 +60,14 @@ const VARIANTS: [(&str, &str); 14] = [
     ("pi-pwm.six-step", "pi-pwm:six_step=on"),
     ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),
 ];
+
+/// The paper's motor with a measured bus and a watch for stalls: fields of its inverter besides.
+const SUPERVISION: &str = r#"[inverter]
+v_bus = "measured"
+bus_adc_bits = 12
+bus_adc_range = "80 V"
+stall_timeout = "200 ms"
+"#;
 
 /// One snapshot: its file name without ending, and its text.
 struct Snapshot {
@@ -130,6 +138,14 @@ fn snapshots() -> Vec<Snapshot> {
         let generated = generated(&paper, variant);
         snapshots.extend(code_of(&format!("{PAPER_MOTOR}.{name}"), &generated));
     }
+    let supervised = Motor {
+        text: paper.text.replacen("[inverter]\n", SUPERVISION, 1),
+        ..paper
+    };
+    let generated = generated(&supervised, OWN_KIND);
+    let name = format!("{PAPER_MOTOR}.measured-bus");
+    snapshots.push(datasheet_of(&name, &generated));
+    snapshots.extend(code_of(&name, &generated));
     snapshots
 }
 

@@ -2,7 +2,8 @@
 
 use super::accuracy::{accuracy_constants, accuracy_notes};
 use super::current_loop::{LoopDesign, StableRange};
-use super::start::start_speed;
+use super::operation;
+use super::start::start_rpm;
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, rpm, significant};
 use crate::interface::{Interface, PublicConstant, PublicValue};
@@ -12,7 +13,6 @@ use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, ControllerSpec, FcsMpcSpec, HallCapture, Spec};
 use nalgebra::Vector2;
-use std::f64::consts::TAU;
 
 /// What is particular to a controller's law.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,30 +110,10 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
         ]);
     }
     doc.extend(accuracy_notes());
-    doc.extend([
-        String::new(),
-        "# Safe states".to_owned(),
-        String::new(),
-        "Each of these turns all legs off until `reset()`: a current converter at an end of its range, a phase current".to_owned(),
-        if inverter.stall_periods > 0 {
-            format!("above the trip level, a Hall code of 000 or 111, {} periods without a Hall edge under current demand.", inverter.stall_periods)
-        } else {
-            "above the trip level, a Hall code of 000 or 111.".to_owned()
-        },
-        format!("`calibrate()` averages {} samples with all legs off, at rest, and trips if an offset is more than {} from nominal.", 1 << inverter.calibration_log2, engineering(f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(), "A")),
-        format!("Control may begin, and begin again by `reset()`, on a rotor that turns at up to {} with set-point 0; on a faster one the", rpm(f64::from(start_rpm(spec, design) as u32) * TAU / 60.0)),
-        "first periods, in which the EMF is not known yet, may trip the drive.".to_owned(),
-        "`precharge()` holds all lower switches on for".to_owned(),
-        format!("{} periods. One ampere of set-point makes {}.", inverter.precharge_periods, engineering(spec.torque_constant(), "Nm")),
-        format!("One volt over one period changes a phase current by {}.", engineering(design.plant.gain, "A")),
-    ]);
+    doc.extend(operation::wiring(spec, design));
+    doc.extend(operation::start_up(spec, design));
+    doc.extend(operation::safe_states(spec));
     doc
-}
-
-/// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
-fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
-    let speed = start_speed(spec, design).min(spec.inverter.maximum_speed);
-    (speed * 60.0 / TAU + 1e-6).floor() as i64
 }
 
 /// The options of the normalised specification, with units.
@@ -307,6 +287,8 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
         integer("T_S_NS", "u32", (inverter.t_s * 1e9).round() as i64, "Control period, ns."),
         integer("TIMER_PERIOD", "u16", i64::from(inverter.timer_period), "Compare value of 100 % duty: top of the centre-aligned timer."),
         integer("ADC_BITS", "u32", i64::from(inverter.adc_bits), "Bits of the phase-current converters."),
+        fixed("ADC_GAIN", inverter.adc_gain, "A", if inverter.adc_gain < 0.0 { "Current into the motor per ADC count, negative because counts fall with it" } else { "Current into the motor per ADC count" }),
+        integer("ADC_OFFSET", "u16", i64::from(inverter.adc_offset), "ADC count at zero current, where calibration has not told another."),
         fixed("V_BUS", v_bus, "V", "Nominal bus voltage"),
         fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
         fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
@@ -372,5 +354,15 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
             },
         ]);
     }
+    if let HallCapture::Timer { ticks } = inverter.hall_capture {
+        list.push(hall_ticks(ticks, inverter.t_s));
+    }
     list
+}
+
+/// `HALL_TICKS_PER_PERIOD`, the last constant of a drive that reads the capture timer.
+pub fn hall_ticks(ticks: u32, t_s: f64) -> PublicConstant {
+    let clock = engineering(f64::from(ticks) / t_s, "Hz");
+    let doc = format!("Ticks of `hall_ticks` per control period: a capture clock of {clock}.");
+    integer("HALL_TICKS_PER_PERIOD", "u16", i64::from(ticks), &doc)
 }

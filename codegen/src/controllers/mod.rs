@@ -7,6 +7,7 @@ mod accuracy;
 pub mod current_loop;
 pub mod fcs_mpc;
 mod interface;
+mod operation;
 pub mod pdcc;
 pub mod phcc;
 pub mod pi_pwm;
@@ -14,7 +15,7 @@ mod start;
 mod whole_vectors;
 
 pub use current_loop::StableRange;
-pub use interface::{Law, interface};
+pub use interface::{Law, hall_ticks, interface};
 
 use crate::spec::{ControllerSpec, Spec};
 use current_loop::{LinearLoop, LoopDesign};

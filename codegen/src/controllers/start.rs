@@ -12,13 +12,19 @@ const ANGLES: u32 = 720;
 /// by this factor.
 const OVERSHOOT: f64 = 1.3;
 
+/// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
+pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
+    let speed = start_speed(spec, design).min(spec.inverter.maximum_speed);
+    (speed * 60.0 / TAU + 1e-6).floor() as i64
+}
+
 /// Greatest speed of the rotor, mechanical rad/s, at which control may begin with set-point 0 without a trip.
 ///
 /// The first command finds no EMF: none was estimated yet, and the Hall sensors have told no speed. So the
 /// EMF, at most z k_phase omega (z the peak of the shape's zero-sum part), moves a current by b z k_phase omega
 /// per period, until the command that knows it, or the current, takes effect. What a controller of whole
 /// vectors adds of its own is the step of one vector.
-pub(super) fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
+fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let angles = (0..ANGLES).map(|n| f64::from(n) * TAU / f64::from(ANGLES));
     let peak = angles

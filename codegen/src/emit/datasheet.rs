@@ -7,8 +7,8 @@ use super::set_point::shared;
 use crate::diagnostics::{list, significant};
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
-    Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, Word,
-    cases, live_words,
+    Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, cases,
+    live_words,
 };
 
 /// The data sheet as Markdown text.
@@ -206,8 +206,11 @@ fn entries(table: &Table) -> String {
 }
 
 fn memory(sheet: &mut Sheet, program: &Program) {
-    let bytes = |words: &[Word]| -> u32 { words.iter().map(|word| word.storage_bits / 8).sum() };
-    let state = bytes(&program.states);
+    // Fields lie in the order that needs least; the whole is padded to the alignment of its largest word.
+    let bytes = || program.states.iter().map(|word| word.storage_bits / 8);
+    let state = bytes()
+        .sum::<u32>()
+        .next_multiple_of(bytes().max().unwrap_or(1));
     let tables: u32 = program
         .tables
         .iter()
@@ -222,7 +225,7 @@ fn memory(sheet: &mut Sheet, program: &Program) {
         .sum();
     sheet.heading(2, "Memory");
     sheet.line(&format!(
-        "State: {} words in {state} bytes.",
+        "State: {} words in {state} bytes, padding included.",
         program.states.len()
     ));
     let set_point: Vec<String> = shared(program)

@@ -289,7 +289,7 @@ impl Lowering<'_> {
         self.b.name("x_heavy", x_heavy);
         let full = self.b.select(x_heavy, reach[0], reach[1]);
         let rest = self.b.sub(kept, full);
-        self.b.name("rest", rest);
+        self.b.name("past_corner", rest);
         let zero = self.zero();
         let beyond = self.b.compare(Comparison::LessEqual, zero, rest);
         self.b.name("beyond_corner", beyond);

@@ -52,8 +52,10 @@ impl Lowering<'_> {
         );
         let word = Interval::new(0, i64::from(u16::MAX));
         let adc = [
-            self.b.input("adc_a", word, "Phase-a current, ADC count."),
-            self.b.input("adc_b", word, "Phase-b current, ADC count."),
+            self.b
+                .input("adc_a", word, "Phase-a current into the motor, ADC count."),
+            self.b
+                .input("adc_b", word, "Phase-b current into the motor, ADC count."),
         ];
         let ends = adc.map(|count| {
             let zero = self.zero();
@@ -64,9 +66,11 @@ impl Lowering<'_> {
         });
         let out_of_range = self.b.or(ends[0], ends[1]);
         self.b.name("out_of_range", out_of_range);
-        let hall = self
-            .b
-            .input("hall", Interval::new(0, 255), "Hall code, Ha in bit 2.");
+        let hall = self.b.input(
+            "hall",
+            Interval::new(0, 255),
+            "Hall code, Ha in bit 2; sectors and forward direction in the type's documentation.",
+        );
         let mut sectors = vec![0; 8];
         for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
             sectors[usize::from(code & 7)] = sector;
@@ -136,7 +140,7 @@ impl Lowering<'_> {
     pub fn find_sector(&mut self, sample: &Sample, word: StateId) -> Hall {
         self.b.stage(
             "find_sector",
-            &["Sector from the Hall code; an invalid code keeps the last sector."],
+            &["Sector from the Hall code; at rest an invalid code keeps the last sector."],
         );
         let sector_prev = self.b.state(word);
         let sector = self.b.select(sample.no_hall, sector_prev, sample.sector);

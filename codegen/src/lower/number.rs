@@ -122,9 +122,12 @@ impl Lowering<'_> {
         let mut lines = vec![doc.to_owned(), String::new()];
         lines.extend(scaled.is_some().then(|| format!("{physical}.")));
         let own = scaled.unwrap_or(physical);
-        lines.push(format!(
-            "{own}; `i{word}`, {shift} fraction bits, relative error {error:.1e}."
-        ));
+        let error = if error == 0.0 {
+            "exact".to_owned()
+        } else {
+            format!("relative error {error:.1e}")
+        };
+        lines.push(format!("{own}; `i{word}`, {shift} fraction bits, {error}."));
         // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
         let id = self.b.program.rounded_constant(name, raw, exact, &lines);

@@ -189,7 +189,7 @@ impl Lowering<'_> {
                 let ticks = self.b.input(
                     "hall_ticks",
                     Interval::new(0, i64::from(u16::MAX)),
-                    "Ticks since the last Hall edge.",
+                    "Ticks from the last Hall edge to this sample, `HALL_TICKS_PER_PERIOD` in a period, stopping at 65535; one snapshot with `hall`.",
                 );
                 // Code and ticks that are read on either side of an edge contradict each other.
                 let recent = self.number(

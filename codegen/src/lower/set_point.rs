@@ -209,7 +209,8 @@ fn set_j(
         _ => "current in amperes, peak of the quasi-square wave",
     };
     let doc = format!("Sets the {quantity}; saturates at {physical} to both sides.");
-    let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc]);
+    let sign = "Positive makes torque forward, negative backward, whichever way the rotor turns.";
+    let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc, "", sign]);
     b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
     let high_doc = [format!("{meaning}: {physical}, 16 fraction bits.")];
@@ -253,12 +254,22 @@ fn set_bus(
     );
     let [doc, stage_doc] = match words.ratio {
         Some(_) => [
-            "Tells the bus voltage; the only division of the set-point path is here.",
+            "Tells the bus voltage as an ADC count; the only division of the set-point path is here.",
             "Bus voltage from its ADC count, and the ratio that scales voltages to timer counts.",
         ],
-        None => ["Tells the bus voltage.", "Bus voltage from its ADC count."],
+        None => [
+            "Tells the bus voltage as an ADC count.",
+            "Bus voltage from its ADC count.",
+        ],
     };
-    let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &[doc]);
+    let limits_doc = format!(
+        "A voltage outside {} to {}, that of a dead sensor too, counts as the nearer of these, without a fault. Until the first call it is {}.",
+        engineering(min, "V"),
+        engineering(max, "V"),
+        engineering(v_bus, "V")
+    );
+    let doc = [doc, "", &limits_doc];
+    let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &doc);
     b.stage("set_bus", &[stage_doc]);
     let counts = b.input(
         "counts",

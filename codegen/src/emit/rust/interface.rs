@@ -23,7 +23,7 @@ impl Types<'_> {
     pub(super) fn drive(&self, attributes: &TokenStream, setters: &[Setter]) -> TokenStream {
         let name = format_ident!("{PLACEHOLDER}");
         let setters = setters.iter().map(|setter| &setter.delegate);
-        let commands = commands(&quote!(self.split().1.publish();));
+        let commands = self.commands(&quote!(self.split().1.publish();));
         let docs = docs(&self.interface.doc);
         let constants = self.interface.constants.iter().map(public_constant);
         let measurements = self.measurements();
@@ -58,7 +58,8 @@ impl Types<'_> {
             }
 
             impl #name {
-                /// A drive at rest: zero set-point, initial state.
+                /// A drive that controls currents from its first step on, with set-point 0 and nominal current offsets. Where
+                /// offsets or bootstrap capacitors need it, call [`calibrate`](Self::calibrate) before the first step.
                 #[must_use]
                 pub const fn new() -> Self {
                     Self {
@@ -110,7 +111,7 @@ impl Types<'_> {
             quote!(#name.into())
         });
         let step_docs = self.step_docs();
-        let commands = commands(&quote!(self.publish();));
+        let commands = self.commands(&quote!(self.publish();));
         quote! {
             /// The half of the drive that the control interrupt owns.
             #[derive(Debug)]
@@ -272,6 +273,65 @@ impl Types<'_> {
             .collect()
     }
 
+    /// What both the drive and its control loop let their owner do, besides stepping. `publish` says what
+    /// the drive is doing.
+    fn commands(&self, publish: &TokenStream) -> TokenStream {
+        let samples = self.interface.calibration_samples;
+        let calibrate = match self.interface.precharge_periods {
+            0 => format!(
+                "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; then control at the set-point that stands. Ignored when tripped."
+            ),
+            periods => format!(
+                "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; then {periods} of pre-charge, then control at the set-point that stands. Ignored when tripped."
+            ),
+        };
+        let precharge = match self.interface.precharge_periods {
+            0 => "Does nothing: the specification has no bootstrap pre-charge.".to_owned(),
+            periods => format!(
+                "Starts bootstrap pre-charge: {periods} steps with all lower switches on, which short-circuits a motor that turns; then control at the set-point that stands. Accepted while running, too: call it at rest only. Ignored when tripped and while calibrating."
+            ),
+        };
+        let (calibrate, precharge) = (doc(&calibrate), doc(&precharge));
+        quote! {
+            /// Clears a trip and all control state; keeps calibrated offsets and the set-point, at which the next step
+            /// goes on. Ignored while calibrating and pre-charging.
+            pub fn reset(&mut self) {
+                self.state.reset();
+                #publish
+            }
+
+            #calibrate
+            pub fn calibrate(&mut self) {
+                self.state.calibrate();
+                #publish
+            }
+
+            #precharge
+            pub fn precharge(&mut self) {
+                self.state.precharge();
+                #publish
+            }
+
+            /// What the drive is doing, and what tripped it.
+            #[must_use]
+            pub fn status(&self) -> Status {
+                Status::from_word(self.state.status())
+            }
+
+            /// What tripped the drive, or [`Fault::None`].
+            #[must_use]
+            pub fn fault(&self) -> Fault {
+                self.status().fault
+            }
+
+            /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+            #[must_use]
+            pub fn is_running(&self) -> bool {
+                self.status().is_running()
+            }
+        }
+    }
+
     fn step_docs(&self) -> TokenStream {
         let effect = match self.interface.delay {
             0 => "The command takes effect at once, in the period that the measurements begin.",
@@ -294,51 +354,6 @@ impl Types<'_> {
                 }),
         );
         docs(&lines)
-    }
-}
-
-/// What both the drive and its control loop let their owner do, besides stepping. `publish` says what
-/// the drive is doing.
-fn commands(publish: &TokenStream) -> TokenStream {
-    quote! {
-        /// Clears a trip and all control state; keeps calibrated offsets and the set-point. Ignored
-        /// while calibrating and pre-charging.
-        pub fn reset(&mut self) {
-            self.state.reset();
-            #publish
-        }
-
-        /// Starts current-offset calibration: all legs off, the motor at rest. Ignored
-        /// when tripped.
-        pub fn calibrate(&mut self) {
-            self.state.calibrate();
-            #publish
-        }
-
-        /// Starts bootstrap pre-charge: all lower switches on. Ignored when tripped, while
-        /// calibrating, and where the specification has no pre-charge.
-        pub fn precharge(&mut self) {
-            self.state.precharge();
-            #publish
-        }
-
-        /// What the drive is doing, and what tripped it.
-        #[must_use]
-        pub fn status(&self) -> Status {
-            Status::from_word(self.state.status())
-        }
-
-        /// What tripped the drive, or [`Fault::None`].
-        #[must_use]
-        pub fn fault(&self) -> Fault {
-            self.status().fault
-        }
-
-        /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
-        #[must_use]
-        pub fn is_running(&self) -> bool {
-            self.status().is_running()
-        }
     }
 }
 

@@ -111,7 +111,8 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     }
 }
 
-/// The module's documentation: the interface's, and what a step costs.
+/// The module's documentation: the interface's, what a step costs, how far it is from the ideal one at most, and the
+/// specification that all of it was made from.
 fn header(program: &Program, interface: &Interface) -> Vec<String> {
     let cost = PathCost::of_function(&program.step);
     let mut lines = interface.header.clone();
@@ -122,6 +123,28 @@ fn header(program: &Program, interface: &Interface) -> Vec<String> {
             format!("Operations of a step, worst case: {}.", cost.worst),
         ]);
     }
+    let errors = interface.constants.iter().filter(|constant| {
+        constant.name.ends_with("_ERROR") || constant.name.ends_with("_ERROR_LIMITED")
+    });
+    let errors: Vec<String> = errors
+        .map(|constant| format!("- `{}`: {}", constant.name, constant.doc.join(" ")))
+        .collect();
+    if !errors.is_empty() {
+        lines.extend([
+            String::new(),
+            "Worst-case errors:".to_owned(),
+            String::new(),
+        ]);
+        lines.extend(errors);
+    }
+    lines.extend([
+        String::new(),
+        "Specification, with every default filled in:".to_owned(),
+        String::new(),
+        "```toml".to_owned(),
+    ]);
+    lines.extend(interface.spec_toml.trim_end().lines().map(str::to_owned));
+    lines.push("```".to_owned());
     lines
 }
 

@@ -125,8 +125,8 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         }
     }
     let (nominal, adc_bits, range) = (v_bus?, adc_bits?, range?);
-    let low = min.map_or(0.7 * nominal.si, |given| given.si);
-    let high = max.map_or(1.3 * nominal.si, |given| given.si);
+    let low = min.map_or(7.0 * nominal.si / 10.0, |given| given.si);
+    let high = max.map_or(13.0 * nominal.si / 10.0, |given| given.si);
     let low_part = reader.part("bus_min", || engineering(low, "V"));
     let high_part = reader.part("bus_max", || engineering(high, "V"));
     if low >= nominal.si {
