@@ -146,7 +146,8 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
         measured_bus,
         ..exemplary
     };
-    match verify(empty_program(&interface)) {
+    let has_speed = is(&ast.controller, "speed_loop", "on");
+    match verify(empty_program(&interface, has_speed)) {
         Ok(graph) => emit_rust(&graph, &interface, surface),
         // Cannot happen; the errors themselves are reported in any case.
         Err(_) => TokenStream::new(),
@@ -179,12 +180,15 @@ fn exemplary_interface() -> Interface {
 }
 
 /// Inputs and setters of a drive, and nothing between them.
-fn empty_program(interface: &Interface) -> Program {
+fn empty_program(interface: &Interface, has_speed: bool) -> Program {
     let count = Interval::new(0, i64::from(u16::MAX));
     let mut setters = vec![
         ("set_current", "bits", Interval::WORD),
         ("set_torque", "bits", Interval::WORD),
     ];
+    if has_speed {
+        setters.push(("set_speed", "bits", Interval::WORD));
+    }
     if interface.measured_bus {
         setters.push(("set_bus", "counts", count));
     }

@@ -75,6 +75,10 @@ pub trait Drive {
     fn set_torque(&self, torque: I16F16) {
         self.set_point().set_torque(torque);
     }
+    /// See [`DriveSetPoint::set_speed`].
+    fn set_speed(&self, speed: I16F16) {
+        self.set_point().set_speed(speed);
+    }
     /// See [`DriveSetPoint::set_bus`].
     fn set_bus(&self, counts: u16) {
         self.set_point().set_bus(counts);
@@ -118,6 +122,10 @@ pub trait DriveSetPoint: Sync {
     fn set_current(&self, current: I16F16);
     /// Sets the torque set-point in newton metres; sign and saturation likewise.
     fn set_torque(&self, torque: I16F16);
+    /// Sets the speed in rpm, forward positive; saturates at the greatest speed of the specification. Does nothing for
+    /// drives without `speed_loop: on`; with it, `set_current` and `set_torque` set the greatest current that the speed
+    /// regulator asks for.
+    fn set_speed(&self, _speed: I16F16) {}
     /// Tells the bus voltage as an ADC count. A voltage outside `bus_min` to `bus_max` of the specification counts as the
     /// nearer of these, without a fault; until the first call the nominal voltage holds. Does nothing for
     /// drives with `v_bus: fixed`.

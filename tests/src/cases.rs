@@ -6,6 +6,7 @@ use hexagen::{Fault, Format, Legs, Sample};
 use hexagen_codegen::ir::Program;
 use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Steps from one arbitrary state, the first of which is the one that matters.
@@ -16,8 +17,8 @@ const STEPS_PER_STATE: usize = 2;
 pub struct Case {
     /// What is set before the first step.
     pub set: Set,
-    /// Set-point words that the model makes of it: current, bus voltage, its reciprocal.
-    pub set_point_words: [i32; 3],
+    /// Set-point words that the model makes of it: current, bus voltage, its reciprocal, speed.
+    pub set_point_words: [i32; 4],
     words: Vec<i32>,
     sample: Sample,
     answers: [Answer; STEPS_PER_STATE],
@@ -32,12 +33,17 @@ pub struct Set {
     pub is_torque: bool,
     /// Bus voltage, ADC counts, where it is measured.
     pub bus: Option<u16>,
+    /// Speed, bits of an `I16F16` in rpm, where it is regulated.
+    pub speed: Option<i32>,
 }
 
 impl Set {
     fn tell(self, model: &mut BitTrue) {
         if let Some(counts) = self.bus {
             model.set_bus(counts);
+        }
+        if let Some(bits) = self.speed {
+            model.set_speed(bits);
         }
         if self.is_torque {
             model.set_torque(self.bits);
@@ -49,6 +55,9 @@ impl Set {
     fn apply<S: Subject>(self, subject: &mut S) {
         if let Some(counts) = self.bus {
             subject.set_bus(counts);
+        }
+        if let Some(bits) = self.speed {
+            subject.set_speed(bits);
         }
         if self.is_torque {
             subject.set_torque(self.bits);
@@ -107,6 +116,7 @@ pub fn record(
         .map_err(|error| error.to_string())?;
     let mut states = States::new(&spec, count_bits, &names, program, seed);
     let most_current = spec.inverter.max_current * 65_536.0;
+    let most_speed = spec.inverter.omega_max * 60.0 / TAU * 65_536.0;
     let most_torque = most_current * spec.motor.torque_constant;
     let mut initial = vec![0; names.len()];
     model.state_words(&mut initial);
@@ -118,6 +128,8 @@ pub fn record(
             bits: states.set_point(most),
             is_torque,
             bus: (spec.inverter.bus == Bus::Measured).then(|| states.bus_counts()),
+            speed: (spec.loop_options().speed_bandwidth > 0.0)
+                .then(|| states.set_point(most_speed)),
         };
         set.tell(&mut model);
         let mut words = vec![0; names.len()];

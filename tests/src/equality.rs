@@ -69,6 +69,9 @@ impl Comparisons {
             // A value that leaves its interval shows in the comparison with the model.
             let _ = machine.set("set_bus", &[counts.into()]);
         }
+        if let Some(bits) = set.speed {
+            let _ = machine.set("set_speed", &[bits]);
+        }
         let inputs = self.probe.step.inputs.iter();
         let inputs = inputs.map(|input| match input.name.as_str() {
             "adc_a" => i32::from(sample.adc_a),

@@ -74,6 +74,10 @@ impl Subject for Interpreted<'_> {
         self.set("set_torque", bits);
     }
 
+    fn set_speed(&mut self, bits: i32) {
+        self.set("set_speed", bits);
+    }
+
     fn set_bus(&mut self, counts: u16) {
         self.set("set_bus", i32::from(counts));
     }
@@ -210,7 +214,7 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
     let mut machine = Machine::of_program(program);
     for Case {
         set,
-        set_point_words: [current, bus, reciprocal],
+        set_point_words: [current, bus, reciprocal, speed],
         ..
     } in cases
     {
@@ -220,6 +224,9 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
         };
         if let Some(counts) = set.bus {
             call("set_bus", counts.into())?;
+        }
+        if let Some(bits) = set.speed {
+            call("set_speed", bits)?;
         }
         if set.is_torque {
             call("set_torque", set.bits)?;
@@ -231,6 +238,7 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
                 "j" => current,
                 "v_bus" => bus,
                 "ratio" => reciprocal,
+                "speed_ref" => speed,
                 _ => continue,
             };
             if found != expected {

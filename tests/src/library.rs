@@ -45,6 +45,15 @@ pub fn motors() -> Vec<Motor> {
     motors
 }
 
+/// A motor's text with an inertia, where it states none: what a speed loop needs.
+pub fn with_inertia(text: &str) -> String {
+    if text.contains("\ninertia") {
+        text.to_owned()
+    } else {
+        text.replacen("[motor]\n", "[motor]\ninertia = \"3 kg cm2\"\n", 1)
+    }
+}
+
 /// The motor of this file name.
 ///
 /// # Panics

@@ -284,6 +284,19 @@ const LOOSE: &[Row] = &[
         ],
     ),
     (
+        "speed_loop",
+        &[
+            ("off", &[]),
+            (
+                "on",
+                &[
+                    ("controller", "speed_loop", "\"on\""),
+                    ("motor", "inertia", "\"3 kg cm2\""),
+                ],
+            ),
+        ],
+    ),
+    (
         "adc_inverted",
         &[
             ("off", &[]),
@@ -350,7 +363,9 @@ pub fn kind(name: &str) -> Kind {
     let (name, own) = known.expect("a kind of controller");
     let is_taken = |row: &&Row| {
         let mut settings = row.1.iter().flat_map(|(_, settings)| *settings);
-        settings.all(|(section, field, _)| *section == "inverter" || own.contains(field))
+        settings.all(|(section, field, _)| {
+            *section != "controller" || *field == "speed_loop" || own.contains(field)
+        })
     };
     let loose = LOOSE.iter().filter(is_taken);
     let axes = OWN.iter().filter(is_taken).chain(SHARED);

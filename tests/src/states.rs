@@ -86,7 +86,7 @@ impl<'a> States<'a> {
                 self.random.i32(-most..=most)
             }
             2 => self.random.i32(..),
-            3 => most as i32 - self.random.i32(-2..=2),
+            3 => (most as i32).saturating_sub(self.random.i32(-2..=2)),
             _ => ((self.random.f64() * 2.0 - 1.0) * most) as i32,
         }
     }

@@ -5,18 +5,19 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust, rustfmt};
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
-use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
+use hexagen_tests::library::{PAPER_MOTOR, motor, motors, with_inertia};
 use hexagen_tests::options::{generate_toml, kinds};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// Besides every kind of controller with all options at their defaults.
-const VARIANTS: [&str; 6] = [
+const VARIANTS: [&str; 7] = [
     "pdcc:modulation=pair,advance=1",
     "pdcc:emf=model,reference=proportional,saturation=nearest",
     "pdcc:saturation=keep_angle,delay=0",
     "fcs-mpc:candidates=all,emf=model",
     "fcs-mpc:off_leg=nominal,delay=0,word=16",
     "pi-pwm:feed_forward=off,saturation=keep_angle",
+    "pdcc:speed_loop=on",
 ];
 
 /// Every motor in every variant that its specification allows: name, tokens; variant by variant.
@@ -51,7 +52,7 @@ fn code_of(variant: &str) -> Vec<(String, TokenStream)> {
 }
 
 fn generate_variant(motor: &str, name: &str, variant: &str) -> Result<Generated, Diagnostics> {
-    let mut ast = parse_toml(motor, name)?;
+    let mut ast = parse_toml(&with_inertia(motor), name)?;
     apply_variant(&mut ast, variant).expect("the variant parses");
     let (spec, origins) = check(&ast)?;
     generate(&spec, &origins)

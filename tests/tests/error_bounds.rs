@@ -5,10 +5,10 @@ use fastrand::Rng;
 use hexagen_codegen::ir::{Case, Exact, Interval, Kind, Op, Program, Value, cases};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
-use hexagen_tests::library::{PAPER_MOTOR, motor};
+use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 
 /// Drives that together have every block of a step.
-const VARIANTS: [&str; 9] = [
+const VARIANTS: [&str; 10] = [
     "pdcc",
     "pdcc:emf=model,saturation=nearest,integral=on",
     "pdcc:modulation=pair,saturation=keep_angle,word=16",
@@ -18,6 +18,7 @@ const VARIANTS: [&str; 9] = [
     "fcs-mpc",
     "fcs-mpc:candidates=all,modulated=on",
     "phcc",
+    "pdcc:speed_loop=on",
 ];
 
 /// Steps per drive.
@@ -152,7 +153,7 @@ fn share(bounds: &hexagen_codegen::ir::Bounds, value: Value, values: &[Option<Pa
 
 #[test]
 fn no_value_is_further_from_the_ideal_one_than_its_bound() {
-    let toml = motor(PAPER_MOTOR).text;
+    let toml = with_inertia(&motor(PAPER_MOTOR).text);
     for variant in VARIANTS {
         let mut ast = parse_toml(&toml, "motor.toml").expect("TOML");
         apply_variant(&mut ast, variant).expect("a variant");

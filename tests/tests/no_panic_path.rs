@@ -4,28 +4,32 @@
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
-use hexagen_tests::library::{PAPER_MOTOR, motor};
+use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Drives that together call every function of the runtime.
-const CONTROLLERS: [&str; 6] = [
+const CONTROLLERS: [&str; 7] = [
     "pdcc:saturation=torque_priority",
     "pdcc:word=16,saturation=keep_angle",
     "pdcc:modulation=pair,emf=model,reference=proportional,saturation=nearest",
     "fcs-mpc:candidates=all",
     "phcc",
     "pi-pwm",
+    REGULATED,
 ];
+
+/// One with a setter more.
+const REGULATED: &str = "pdcc:speed_loop=on";
 
 /// A bus that is measured: all setters, and the double buffer.
 const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"100 V\"\n";
 
 /// The emitted modules of all drives, and functions that call what firmware calls.
 fn firmware() -> String {
-    let toml = motor(PAPER_MOTOR).text;
+    let toml = with_inertia(&motor(PAPER_MOTOR).text);
     let mut text = "#![no_std]\nuse hexagen::{Legs, Status, fixed::types::I16F16};\n".to_owned();
     for (number, controller) in CONTROLLERS.iter().enumerate() {
         let name = format!("Drive{number}");
@@ -37,13 +41,18 @@ fn firmware() -> String {
         let surface = Surface::public(&name);
         let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
         let module = format!("drive_{number}");
+        let set_speed = if *controller == REGULATED {
+            "main.set_speed(set);"
+        } else {
+            ""
+        };
         write!(
             text,
             "{}
             #[unsafe(no_mangle)] pub fn step_{number}(drive: &mut {module}::ControlLoop<'_>, a: u16, b: u16, hall: u8) -> Legs {{ drive.step(a, b, hall) }}
             #[unsafe(no_mangle)] pub fn restart_{number}(drive: &mut {module}::ControlLoop<'_>) {{ drive.reset(); drive.calibrate(); drive.precharge(); }}
             #[unsafe(no_mangle)] pub fn set_{number}(main: &{module}::SetPoint, set: I16F16, bus: u16) -> Status {{
-                main.set_current(set); main.set_torque(set); main.set_bus(bus); main.status()
+                main.set_current(set); main.set_torque(set); main.set_bus(bus); {set_speed} main.status()
             }}\n",
             format_rust(&tokens)
         )
@@ -124,7 +133,7 @@ fn panic_paths(level: &str) -> Vec<String> {
         "asm",
     );
     let code = fs::read_to_string(folder.join("firmware.s")).expect("machine code");
-    assert!(code.contains("step_5:") && code.contains("set_5:"));
+    assert!(code.contains("step_6:") && code.contains("set_6:"));
     let mut function = "";
     let mut paths = vec![];
     for line in code.lines() {

@@ -25,6 +25,9 @@ const OWN_KIND: &str = "pdcc";
 /// Motors for the kinds besides: the first that takes the kind is kept besides the paper's.
 const MOTORS_OF_KINDS: [&str; 2] = ["velineon-3500", "estun-emj-04apb22"];
 
+/// A motor whose data sheet says its inertia, for a speed loop.
+const MOTOR_WITH_INERTIA: &str = "hurst-long";
+
 /// Variants of the paper's motor: the name in the snapshot's file, and the options.
 const VARIANTS: [(&str, &str); 14] = [
     ("pair", "pdcc:modulation=pair"),
@@ -134,6 +137,11 @@ fn snapshots() -> Vec<Snapshot> {
             snapshots.extend(code_of(&name, &generated));
         }
     }
+    let code = code_of(
+        &format!("{MOTOR_WITH_INERTIA}.speed-loop"),
+        &generated(&motor(MOTOR_WITH_INERTIA), "pdcc:speed_loop=on"),
+    );
+    snapshots.extend(code);
     for (name, variant) in VARIANTS {
         let generated = generated(&paper, variant);
         snapshots.extend(code_of(&format!("{PAPER_MOTOR}.{name}"), &generated));

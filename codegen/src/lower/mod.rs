@@ -11,6 +11,7 @@ mod modulate;
 mod number;
 mod rotor;
 pub mod set_point;
+mod speed;
 mod supervise;
 
 pub use emf::{Corner, FluxModel, ModelledEmf};
@@ -20,6 +21,7 @@ pub use modulate::{Applied, Command, OffLeg, PairModulation, PairPulses};
 use number::round_half_up;
 pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};
+pub use speed::{Regulated, SpeedState};
 pub use supervise::{Mode, Rest, SupervisorWords};
 
 use crate::diagnostics::engineering;

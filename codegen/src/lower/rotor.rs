@@ -40,6 +40,8 @@ pub struct Rotor {
     pub step_angle: Value,
     /// Flag: the speed is known and the angle interpolated.
     pub tracking: Value,
+    /// Electrical angle per tick; 0 while the speed is unknown.
+    pub omega: Value,
 }
 
 /// Which way the sector changed at an edge.
@@ -396,6 +398,7 @@ impl Lowering<'_> {
             theta,
             step_angle,
             tracking,
+            omega,
         }
     }
 

@@ -1,11 +1,14 @@
 //! The functions outside the step that set its words (semantics, "Set-point words").
 
 use super::number::round_half_up;
-use super::{Bus, Coefficient, Lowering, Scale, round_down};
+use super::speed::speed_word;
+use super::{Bus, Coefficient, Lowering, Scale, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
 use crate::spec::{BusSource, ControllerSpec, Spec};
+
+use std::f64::consts::TAU;
 
 /// Fraction bits of the ratio of nominal to measured bus.
 const RATIO_BITS: u32 = 28;
@@ -16,6 +19,19 @@ pub struct SetPointWords {
     /// The current set-point times its gain, words of voltage.
     pub j: ParamId,
     bus: Option<BusWords>,
+    /// The set-point's gain, V/A.
+    pub stiffness: f64,
+    /// With a speed loop.
+    pub speed: Option<SpeedWords>,
+}
+
+/// Words of a speed loop.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedWords {
+    /// The speed that is wanted, in words of `omega`.
+    pub reference: ParamId,
+    /// The greatest set-point, `mul(k_set, I_MAX_BITS)`.
+    pub top: i64,
 }
 
 /// Symbol and formula of the gain that makes a voltage of a current set-point.
@@ -38,11 +54,19 @@ impl SetPointWords {
     /// Declares the words; `stiffness` is the set-point's gain in V/A.
     pub fn new(program: &mut Program, spec: &Spec, scale: Scale, stiffness: f64) -> Self {
         let most = (spec.inverter.max_current * stiffness * scale.voltage()).ceil() as i64 + 1;
+        let has_speed = spec.controller.common().speed.is_some();
         let doc = format!(
-            "Set-point as the voltage {} i_ref, words of voltage.",
+            "{} as the voltage {} i_ref, words of voltage.",
+            if has_speed {
+                "Greatest set-point of the speed regulator"
+            } else {
+                "Set-point"
+            },
             gain(spec).0
         );
-        let j = program.param("j", 0, Interval::symmetric(most), &doc);
+        let top = set_point_top(spec, scale, stiffness);
+        let initial = if has_speed { top as i32 } else { 0 };
+        let j = program.param("j", initial, Interval::symmetric(most), &doc);
         let bus = match spec.inverter.bus {
             BusSource::Fixed => None,
             BusSource::Measured { min, max, .. } => {
@@ -69,8 +93,28 @@ impl SetPointWords {
                 Some(BusWords { volts, ratio })
             }
         };
-        Self { j, bus }
+        let speed = has_speed.then(|| {
+            let most = (spec.inverter.maximum_speed / speed_word(spec)).ceil() as i64 + 1;
+            let doc = "Speed that is wanted, electrical angle per tick, 2^32 a turn.";
+            SpeedWords {
+                reference: program.param("speed_ref", 0, Interval::symmetric(most), doc),
+                top,
+            }
+        });
+        Self {
+            j,
+            bus,
+            stiffness,
+            speed,
+        }
     }
+}
+
+/// `mul(k_set, I_MAX_BITS)`.
+fn set_point_top(spec: &Spec, scale: Scale, stiffness: f64) -> i64 {
+    let current = stiffness * scale.voltage() / 65536.0;
+    let bits = round_down(spec.inverter.max_current * 65536.0);
+    product_bound(current, 32, bits as i64)
 }
 
 impl Lowering<'_> {
@@ -179,6 +223,9 @@ pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64
             "Torque set-point, bits of a number with 16 fraction bits, Nm.",
         ),
     ];
+    if let Some(speed) = words.speed {
+        functions.push(set_speed(lowering, speed));
+    }
     if let (
         Some(words),
         BusSource::Measured {
@@ -208,8 +255,17 @@ fn set_j(
         "set_torque" => "torque in newton metres",
         _ => "current in amperes, peak of the quasi-square wave",
     };
-    let doc = format!("Sets the {quantity}; saturates at {physical} to both sides.");
-    let sign = "Positive makes torque forward, negative backward, whichever way the rotor turns.";
+    let (greatest, sign) = match lowering.spec.controller.common().speed {
+        Some(_) => (
+            "greatest ",
+            "The regulator asks for it to either side; the sign plays no part.",
+        ),
+        None => (
+            "",
+            "Positive makes torque forward, negative backward, whichever way the rotor turns.",
+        ),
+    };
+    let doc = format!("Sets the {greatest}{quantity}; saturates at {physical} to both sides.");
     let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc, "", sign]);
     b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
@@ -229,6 +285,54 @@ fn set_j(
     b.name("j_new", volts);
     debug_assert!(b.interval(volts).magnitude() <= range.magnitude() || range.bits() > 32);
     b.set_param(j, volts);
+    b.finish()
+}
+
+fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
+    let spec = lowering.spec;
+    let most = spec.inverter.maximum_speed * 60.0 / TAU;
+    let k_rpm = lowering.scaled_coefficient(
+        "k_rpm",
+        TAU / 60.0 / speed_word(spec) / 65536.0,
+        32,
+        [
+            "Speed in rpm (16 fraction bits) to electrical angle per tick.",
+            &format!("W = {} per word", engineering(speed_word(spec), "rad/s")),
+        ],
+        [
+            "2 pi/60/W 2^-16",
+            "words of speed per bit of the set-point, 2^-16 rpm",
+        ],
+    );
+    let bits = round_down(most * 65536.0).min(f64::from(i32::MAX)) as i32;
+    let doc = format!(
+        "Sets the speed in rpm, forward positive; saturates at {} rpm to both sides.",
+        significant(most)
+    );
+    let mut b = FunctionBuilder::new(lowering.b.program, "set_speed", &[&doc]);
+    b.stage(
+        "set_speed",
+        &["Clamps the speed and turns it into angle per tick."],
+    );
+    let input = b.input(
+        "bits",
+        Interval::WORD,
+        "Speed, bits of a number with 16 fraction bits, rpm.",
+    );
+    let limits = [("speed_min_bits", -bits), ("speed_max_bits", bits)].map(|(name, bits)| {
+        let sign = if bits < 0 { "-" } else { "" };
+        let doc = format!(
+            "Greatest speed, {sign}{} rpm, 16 fraction bits.",
+            significant(most)
+        );
+        let id = b.program.constant(name, bits, &[doc]);
+        b.constant(id)
+    });
+    let clamped = b.clamp(input, limits[0], limits[1]);
+    let factor = b.constant(k_rpm.id);
+    let speed = b.mul(factor, clamped, k_rpm.shift);
+    b.name("speed_ref_new", speed);
+    b.set_param(words.reference, speed);
     b.finish()
 }
 

@@ -26,7 +26,7 @@ pub use check::{Origin, Origins, check};
 pub use controller::{
     Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, LimitRule,
     LoopOptions, Modulation, OffLegModel, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec, Reference,
-    SwitchingTable,
+    SpeedLoop, SwitchingTable,
 };
 pub(crate) use load::is_absolute;
 pub use load::load_motor_file;

@@ -190,6 +190,10 @@ fn write_common(text: &mut Text, controller: &ControllerSpec) {
             Reference::Proportional => "proportional",
         },
     );
+    if let Some(speed) = common.speed {
+        text.number("speed_bandwidth", speed.bandwidth);
+        text.number("inertia", speed.inertia);
+    }
     text.number("advance", common.advance);
     text.number("delay", common.delay);
     text.word(
@@ -290,6 +294,7 @@ mod tests {
                     word: 32,
                     commutation_threshold: 0.5,
                     commutation_timeout: 8,
+                    speed: None,
                 },
             }),
         }

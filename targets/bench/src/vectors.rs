@@ -289,7 +289,8 @@ impl<'g> Recorder<'g> {
                         self.recall(&words);
                     }
                 }
-                None => {}
+                // No drive of the boards has a speed loop, so none is set.
+                Some(Action::SetSpeed(_)) | None => {}
             }
             let legs = self.step(sample);
             stimulus.respond(&legs);

@@ -142,6 +142,10 @@ impl<S: Subject> Pair<S> {
                 self.subject.set_torque(bits);
                 self.model.set_torque(bits);
             }
+            Action::SetSpeed(bits) => {
+                self.subject.set_speed(bits);
+                self.model.set_speed(bits);
+            }
             Action::SetBus(counts) => {
                 self.subject.set_bus(counts);
                 self.model.set_bus(counts);

@@ -109,6 +109,8 @@ pub struct Front {
     pub integral: Option<[Value; 2]>,
     /// The folded words; where the EMF is held.
     pub held: Option<Held>,
+    /// Integral of the speed regulator, and its state; with a speed loop.
+    pub speed_integral: Option<(StateId, Value)>,
 }
 
 /// Names the voltage of phase `x`, 0 or 1, that the law asks for, and states its error.
@@ -125,7 +127,7 @@ pub type Remembered = Vec<(StateId, &'static str, Value)>;
 impl CurrentLoop<'_, '_> {
     /// Steps 1 to 8.
     pub fn front(&mut self, set_point: SetPointWords) -> Front {
-        let words = self.declare();
+        let words = self.declare(set_point);
         let options = *self.options;
         let l = &mut *self.lowering;
         let sample = l.read_sample();
@@ -137,9 +139,20 @@ impl CurrentLoop<'_, '_> {
             l.b.state(direction);
         }
         let j = l.b.param(set_point.j);
-        let rest = l.supervise(words.supervisor, &sample, &currents, hall.as_ref(), j);
+        let demand = set_point
+            .speed
+            .map_or(j, |speed| l.b.param(speed.reference));
+        let rest = l.supervise(words.supervisor, &sample, &currents, hall.as_ref(), demand);
         let rotor = words.rotor.zip(hall.as_ref());
         let rotor = rotor.map(|(words, hall)| l.track_rotor(words, hall));
+        let regulated = match (options.speed, set_point.speed, words.speed, &rotor) {
+            (Some(options), Some(words), Some(state), Some(rotor)) => {
+                let inputs = [rotor.direction, rotor.omega, j];
+                Some(l.regulate_speed(options, set_point.stiffness, words, state, inputs))
+            }
+            _ => None,
+        };
+        let j = regulated.map_or(j, |regulated| regulated.j);
         let direction = match (&rotor, words.direction.zip(hall.as_ref())) {
             (Some(rotor), _) => Some(rotor.direction),
             (None, Some((word, hall))) => Some(l.sense_direction(word, hall)),
@@ -219,6 +232,7 @@ impl CurrentLoop<'_, '_> {
             e_expected: emf.map(|emf| emf.expected),
             integral: emf.and_then(|emf| emf.integral),
             held,
+            speed_integral: regulated.map(|regulated| regulated.integral),
         }
     }
 
@@ -354,6 +368,9 @@ impl CurrentLoop<'_, '_> {
         let words = &front.words;
         if let (Some(held), Some(u)) = (&front.held, v_cmd) {
             remembered.extend(self.fold(held, u));
+        }
+        if let Some((state, integral)) = front.speed_integral {
+            remembered.push((state, "speed_integral_next", integral));
         }
         if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
             self.lowering.b.set_state(pair.sector_prev, front.sector);

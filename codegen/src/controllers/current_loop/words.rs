@@ -2,7 +2,8 @@
 
 use super::CurrentLoop;
 use crate::ir::{Interval, StateId};
-use crate::lower::{PairModulation, RotorWords, SupervisorWords};
+use crate::lower::set_point::SetPointWords;
+use crate::lower::{PairModulation, RotorWords, SpeedState, SupervisorWords};
 use crate::spec::{EmfSource, Reference};
 
 /// What a law needs of the step around it.
@@ -37,6 +38,8 @@ pub struct Words {
     pub direction: Option<StateId>,
     /// Timing of Hall edges.
     pub rotor: Option<RotorWords>,
+    /// The speed regulator.
+    pub speed: Option<SpeedState>,
     /// Commutation.
     pub pair: Option<PairModulation>,
     /// Current of the last sample.
@@ -56,11 +59,12 @@ pub struct Words {
 }
 
 impl CurrentLoop<'_, '_> {
-    pub(super) fn declare(&mut self) -> Words {
+    pub(super) fn declare(&mut self, set_point: SetPointWords) -> Words {
         let (options, needs) = (*self.options, self.needs);
         let needs_rotor = (needs.emf != EmfUse::None && options.emf == EmfSource::Model)
             || options.advance > 0.0
-            || options.reference == Reference::Proportional;
+            || options.reference == Reference::Proportional
+            || options.speed.is_some();
         let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
         let holds = self.holds_emf();
         // What a period shows of its EMF takes part.
@@ -73,6 +77,7 @@ impl CurrentLoop<'_, '_> {
         let supervisor = l.supervisor_words(needs_rotor || needs.commutation);
         let rotor = needs_rotor.then(|| l.rotor_words());
         let direction = (needs.commutation && !needs_rotor).then(|| l.direction_word());
+        let speed = set_point.speed.map(|words| l.speed_state(words.top));
         let pair_words = needs
             .commutation
             .then(|| l.pair_words(options.commutation_timeout));
@@ -157,6 +162,7 @@ impl CurrentLoop<'_, '_> {
             supervisor,
             direction,
             rotor,
+            speed,
             pair: pair_words,
             i_prev,
             v_cmd,

@@ -359,6 +359,7 @@ fn setter_arguments(function: &Function) -> Arguments {
     let quantity = match function.name.as_str() {
         "set_current" => Some(snake("current")),
         "set_torque" => Some(snake("torque")),
+        "set_speed" => Some(snake("speed")),
         _ => None,
     };
     if let (Some(quantity), [input]) = (quantity, function.inputs.as_slice()) {

@@ -58,6 +58,18 @@ impl Types<'_> {
                 fn set_bus(&self, _counts: u16) {}
             )
         };
+        let has_speed = self
+            .program
+            .setters
+            .iter()
+            .any(|setter| setter.name == "set_speed");
+        let set_speed = has_speed.then(|| {
+            quote! {
+                fn set_speed(&self, speed: I16F16) {
+                    self.set_speed(speed);
+                }
+            }
+        });
         quote! {
             impl Drive for #name {
                 type SetPointHalf = SetPoint;
@@ -104,6 +116,8 @@ impl Types<'_> {
                 fn set_torque(&self, torque: I16F16) {
                     self.set_torque(torque);
                 }
+
+                #set_speed
 
                 #set_bus
 

@@ -8,6 +8,7 @@ use crate::spec::ast::{Field, Section, Value};
 use crate::spec::controller::common::{OPTIONS, Surroundings};
 use crate::spec::controller::{fcs_mpc, pdcc, phcc, pi_pwm};
 use crate::spec::{ControllerSpec, HallCapture, KINDS};
+use std::f64::consts::TAU;
 
 /// Options that are known and that this version does not have.
 const PLANNED_OPTIONS: [&str; 1] = ["zero"];
@@ -51,6 +52,11 @@ pub(super) fn read(
             .as_ref()
             .map(|given| (given.si, given.part.clone())),
         dead_time: inverter.dead_time.as_ref().map_or(0.0, |given| given.si),
+        inertia: motor.inertia,
+        rated_frequency: match (motor.pole_pairs, &motor.rated_speed) {
+            (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),
+            _ => None,
+        },
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = match kind {

@@ -46,6 +46,15 @@ pub enum LimitRule {
     TorquePriority,
 }
 
+/// A speed loop around the current loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedLoop {
+    /// Bandwidth, hertz.
+    pub bandwidth: f64,
+    /// Inertia of rotor and load, kg m2.
+    pub inertia: f64,
+}
+
 /// Options that all controllers share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopOptions {
@@ -67,6 +76,8 @@ pub struct LoopOptions {
     pub commutation_threshold: f64,
     /// Periods after which a commutation is taken as ended, 1 to 255.
     pub commutation_timeout: u32,
+    /// Whether a regulator of the speed asks for the current.
+    pub speed: Option<SpeedLoop>,
 }
 
 /// All fields of controllers; [`super::KINDS`] says which kind takes which.
@@ -87,6 +98,8 @@ pub(crate) const OPTIONS: &[Rule] = &[
         255.0,
         "8 periods",
     ),
+    schema::word("speed_loop", "on"),
+    schema::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz"),
     schema::word("hall_capture", "sampled"),
     schema::word("modulation", "three_phase"),
     schema::word("saturation", "torque_priority"),
@@ -124,6 +137,10 @@ pub(crate) struct Surroundings {
     pub adc_gain: Option<f64>,
     /// Dead time, second; 0 where none is stated.
     pub dead_time: f64,
+    /// Inertia, kg m2.
+    pub inertia: Option<f64>,
+    /// Electrical frequency at rated speed, hertz.
+    pub rated_frequency: Option<f64>,
 }
 
 /// Share that the EMF estimate takes over in a period where none is stated: stable from 60 % of the stated
@@ -186,6 +203,7 @@ pub(crate) fn read_common(
     let word = read_word_length(reader, errors);
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
+    let speed = read_speed_loop(reader, surroundings, errors);
 
     let unfiltered = match emf {
         Some(EmfSource::Model) => Some((
@@ -238,6 +256,65 @@ pub(crate) fn read_common(
         word,
         commutation_threshold: commutation_threshold?,
         commutation_timeout: commutation_timeout?,
+        speed,
+    })
+}
+
+/// The speed is a mean over an electrical turn: by default a loop of a fiftieth of the turns per second at
+/// rated speed, at most of an eighth.
+fn read_speed_loop(
+    reader: &Reader,
+    drive: &Surroundings,
+    errors: &mut Collector,
+) -> Option<SpeedLoop> {
+    let is_on = reader.switch(errors, "speed_loop") == Some(true);
+    let bandwidth = reader.plain_quantity(errors, "speed_bandwidth");
+    if !is_on {
+        if let Some(bandwidth) = bandwidth {
+            let why = "there is no speed to regulate";
+            errors.push(catalogue::option_without_effect(
+                &bandwidth.part.location,
+                "speed_bandwidth",
+                &bandwidth.part.given,
+                reader
+                    .field("speed_loop")
+                    .map_or(reader.location(), |field| &field.location),
+                "speed_loop: off",
+                why,
+            ));
+        }
+        return None;
+    }
+    let frequency = drive.rated_frequency?;
+    if let Some(bandwidth) = &bandwidth
+        && bandwidth.si > frequency / 8.0
+    {
+        errors.push(catalogue::out_of_limits(
+            &bandwidth.part.location,
+            "speed_bandwidth",
+            &bandwidth.part.given,
+            "10 mHz",
+            &format!(
+                "{}, an eighth of the electrical turns per second at rated speed",
+                engineering(frequency / 8.0, "Hz")
+            ),
+        ));
+    }
+    let Some(inertia) = drive.inertia else {
+        let at = reader
+            .field("speed_loop")
+            .map_or(reader.location(), |field| &field.location);
+        errors.push(catalogue::needed_field(
+            at,
+            "speed_loop: on",
+            "inertia",
+            "24 g cm2",
+        ));
+        return None;
+    };
+    Some(SpeedLoop {
+        bandwidth: bandwidth.map_or(frequency / 50.0, |given| given.si),
+        inertia,
     })
 }
 

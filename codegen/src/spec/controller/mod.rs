@@ -9,7 +9,7 @@ pub(crate) mod pdcc;
 pub(crate) mod phcc;
 pub(crate) mod pi_pwm;
 
-pub use common::{Discretisation, EmfSource, LimitRule, LoopOptions, Reference};
+pub use common::{Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop};
 pub use fcs_mpc::{Candidates, FcsMpcSpec};
 pub use off_leg::OffLegModel;
 pub use pdcc::{Modulation, PdccSpec};

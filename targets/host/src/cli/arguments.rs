@@ -153,6 +153,21 @@ impl SelectedMotor {
     pub fn prepare(&self, variant: Option<&str>) -> Result<Prepared, Failure> {
         Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
     }
+
+    /// As [`Self::prepare`], for commands that measure the torque that is set.
+    ///
+    /// # Errors
+    /// All diagnostics, or a drive that regulates its speed.
+    pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, Failure> {
+        let drive = self.prepare(variant)?;
+        if drive.spec.controller.common().speed.is_some() {
+            return Err(Failure::Argument(
+                "`speed_loop: on`: the drive regulates its speed, and here the torque is set; give the controller `speed_loop=off`"
+                    .to_owned(),
+            ));
+        }
+        Ok(drive)
+    }
 }
 
 /// Options that change the simulated plant.
@@ -298,6 +313,7 @@ impl PlantArguments {
         SetPoint {
             current,
             v_bus: self.v_bus.unwrap_or(drive.spec.inverter.v_bus),
+            rpm: None,
         }
     }
 }
@@ -333,6 +349,17 @@ impl RunArguments {
     pub fn prepare(&self) -> Result<Prepared, Failure> {
         let drive =
             SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())?;
+        tell_warnings(&drive);
+        Ok(drive)
+    }
+
+    /// As [`Self::prepare`], for commands that measure the torque that is set.
+    ///
+    /// # Errors
+    /// All diagnostics, or a drive that regulates its speed.
+    pub fn prepare_for_torque(&self) -> Result<Prepared, Failure> {
+        let motor = SelectedMotor::find(&self.motor, &self.plant)?;
+        let drive = motor.prepare_for_torque(self.controller.as_deref())?;
         tell_warnings(&drive);
         Ok(drive)
     }

@@ -33,6 +33,17 @@ pub struct RunOptions {
     pub commutation_threshold: f64,
     /// Electrical start angles in radians; each is a run of its own.
     pub starts: Vec<f64>,
+    /// What a speed loop is to reach; none where the speed is held or free.
+    pub aim: Option<Aim>,
+}
+
+/// What a speed loop is to reach before anything is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Aim {
+    /// Mechanical speed in rad/s.
+    pub omega_m: f64,
+    /// Time in seconds that it is given.
+    pub within: f64,
 }
 
 impl RunOptions {
@@ -44,17 +55,20 @@ impl RunOptions {
             delay: Delay::OnePeriod,
             commutation_threshold: 0.5,
             starts: STARTS.to_vec(),
+            aim: None,
         }
     }
 
     /// Control periods of settling and of measurement for a motor.
     pub fn periods(&self, params: &PlantParams) -> (usize, usize) {
-        let turn = TAU / (self.omega_m.abs() * f64::from(params.pole_pairs));
+        let omega_m = self.aim.map_or(self.omega_m, |aim| aim.omega_m);
+        let turn = TAU / (omega_m.abs() * f64::from(params.pole_pairs));
         let (settling, measured) = if turn.is_finite() {
             (SETTLING.max(SETTLING_TURNS * turn), MEASURED_TURNS * turn)
         } else {
             (SETTLING, STANDSTILL)
         };
+        let settling = self.aim.map_or(settling, |aim| settling.max(aim.within));
         (
             (settling / params.t_s).ceil() as usize,
             ((measured / params.t_s).round() as usize).max(1),

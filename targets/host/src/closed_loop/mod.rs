@@ -14,7 +14,7 @@ mod trip;
 
 pub use harmonics::amplitudes;
 pub use limit::{HELD, LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
-pub use measure::{Measurement, RunOptions, STARTS, mean_torque, measure, record};
+pub use measure::{Aim, Measurement, RunOptions, STARTS, mean_torque, measure, record};
 pub use merits::{Merits, merits};
 pub use swing::Swing;
 pub use trace::{PeriodRow, Trace, quasi_square};
@@ -132,6 +132,11 @@ impl<C: CurrentLoop> ClosedLoop<C> {
     /// The plant.
     pub fn plant(&self) -> &Plant {
         &self.plant
+    }
+
+    /// The plant, for instance to change its load between two runs.
+    pub fn plant_mut(&mut self) -> &mut Plant {
+        &mut self.plant
     }
 
     /// The controller, for instance to change its set-point between two runs.

@@ -115,7 +115,7 @@ pub fn collect(options: &Options) -> Result<Vec<Row>, Failure> {
         Some(selection) => selection.variants(),
     };
     // What does not generate at any word length is no matter of accuracy.
-    motor.prepare(variants.first().map(String::as_str))?;
+    motor.prepare_for_torque(variants.first().map(String::as_str))?;
     let mut rows = Vec::new();
     for variant in &variants {
         for word in WORDS {

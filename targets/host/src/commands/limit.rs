@@ -38,7 +38,7 @@ pub struct Outcome {
 /// Diagnostics, or a plant option out of range.
 pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
     let arguments = &options.run;
-    let drive = arguments.prepare()?;
+    let drive = arguments.prepare_for_torque()?;
     let torque = arguments.torque(&drive);
     if torque == 0.0 {
         return Err(Failure::Argument(

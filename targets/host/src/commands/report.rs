@@ -48,7 +48,7 @@ pub fn collect(
 ) -> Result<(ReportData, Vec<Checked>), Failure> {
     let given = options.motor.as_deref().unwrap_or(PAPER_MOTOR);
     let motor = SelectedMotor::find(given, &PlantArguments::default())?;
-    let own = motor.prepare(None)?;
+    let own = motor.prepare_for_torque(None)?;
     let is_paper = motor.source.name == PAPER_MOTOR;
     let mut notes = Vec::new();
     let planned = plan(&motor, is_paper, &mut notes);

@@ -2,13 +2,14 @@
 
 use crate::cli::{
     Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
-    write_file,
+    warn, write_file,
 };
-use crate::closed_loop::{Measurement, Merits, RunOptions, Trip, measure};
+use crate::closed_loop::{Aim, Measurement, Merits, RunOptions, Trip, measure};
 use crate::engine::{EngineKind, Model, Prepared};
 use crate::plant::PlantParams;
 use clap::Args;
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 /// Options of `simulate`.
@@ -20,6 +21,10 @@ pub struct Options {
     /// Mechanical speed in rpm; negative is backward
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
     pub rpm: f64,
+    /// Speed in rpm that the drive's speed loop holds, with `speed_loop=on`: --torque is then the greatest that it asks
+    /// for, the run starts at --rpm, and what is measured begins when the speed has had the time to be there
+    #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, requires = "inertia")]
+    pub speed_set: Option<f64>,
     /// Write the measured window of the first start, one row per period
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -42,9 +47,21 @@ pub struct Outcome {
     pub torque_nm: f64,
     /// What tripped the drive; none if nothing did.
     pub tripped: Option<Trip>,
+    /// The speed loop's result, where there is one.
+    #[serde(flatten)]
+    pub speed: Option<Speed>,
     /// What was measured.
     #[serde(flatten)]
     pub merits: Merits,
+}
+
+/// What a speed loop reached.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Speed {
+    /// Speed that was set, rpm.
+    pub set_rpm: f64,
+    /// Mean speed while it was measured, rpm.
+    pub mean_rpm: f64,
 }
 
 /// Runs and measures.
@@ -56,13 +73,80 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let drive = arguments.prepare()?;
     let torque = arguments.torque(&drive);
     let plant = arguments.plant.plant(&drive)?;
-    let run = arguments.plant.run(&drive, options.rpm, torque);
-    check_duration(&run, &plant, options.rpm)?;
-    let set_point = arguments.plant.set_point(&drive, torque);
+    let mut run = arguments.plant.run(&drive, options.rpm, torque);
+    run.aim = aim(options, &drive, &plant, torque)?;
+    check_duration(&run, &plant, options)?;
+    let mut set_point = arguments.plant.set_point(&drive, torque);
+    set_point.rpm = options.speed_set;
     let progress = spinner("simulating");
     let measured = measure(&plant, &run, drive.maker(arguments.model, set_point));
     progress.finish_and_clear();
-    Ok((drive, run, measured?))
+    let mut measured = measured?;
+    if run.aim.is_some() && torque != 0.0 {
+        // The reference is what the speed loop asked for, not the most that it may.
+        run.current *= measured.merits.mean_torque_nm / torque;
+        measured = Measurement {
+            tripped: measured.tripped,
+            ..Measurement::of(measured.traces, &run)
+        };
+    }
+    Ok((drive, run, measured))
+}
+
+/// Time constants of the speed loop's bandwidth in which it settles.
+const SETTLING_OF_SPEED: f64 = 6.0;
+
+/// What the speed loop is to reach, and the time for it: until its integral bears the load, that of the run-up at the
+/// torque that the load leaves, and that of the loop.
+fn aim(
+    options: &Options,
+    drive: &Prepared,
+    plant: &PlantParams,
+    torque: f64,
+) -> Result<Option<Aim>, Failure> {
+    let wrong = |text: &str| Err(Failure::Argument(text.to_owned()));
+    match (
+        options.speed_set,
+        drive.spec.controller.common().speed,
+        plant.mechanics,
+    ) {
+        (None, None, _) => Ok(None),
+        (Some(_), None, _) => {
+            wrong("--speed-set: the drive has no speed loop; give the controller `speed_loop=on`")
+        }
+        (None, Some(_), _) | (_, _, None) => wrong(
+            "`speed_loop: on`: the drive regulates its speed; give --speed-set and --inertia, or the controller `speed_loop=off`",
+        ),
+        (Some(rpm), Some(speed), Some(mechanics)) => {
+            let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+            if rpm.abs() > most {
+                warn(&format!(
+                    "--speed-set {rpm}: the drive limits its speed to maximum_speed = {most:.0} rpm"
+                ));
+            }
+            // A load that takes all of the torque leaves a tenth: such a run shows that the speed is not reached.
+            let free = (torque.abs() - mechanics.opposing_torque).max(torque.abs() / 10.0);
+            let change = (rpm - options.rpm).abs() * TAU / 60.0;
+            let (omega_m, bandwidth) = (rpm * TAU / 60.0, TAU * speed.bandwidth);
+            let bearing = if rpm == 0.0 {
+                0.0
+            } else {
+                let rate = bandwidth * bandwidth * speed.inertia * omega_m.abs() / 4.0;
+                mechanics.opposing_torque.min(torque.abs()) / rate
+            };
+            let run_up = change * mechanics.inertia / free;
+            Ok(Some(Aim {
+                omega_m,
+                within: bearing + run_up + SETTLING_OF_SPEED / speed.bandwidth,
+            }))
+        }
+    }
+}
+
+/// Mean speed of all starts while they were measured, rpm.
+fn mean_rpm(measured: &Measurement) -> f64 {
+    let rows = || measured.traces.iter().flat_map(|trace| &trace.periods);
+    rows().map(|row| row.omega_m).sum::<f64>() / rows().count() as f64 * 60.0 / TAU
 }
 
 /// Most control periods of a run: their record takes a few hundred megabytes.
@@ -72,12 +156,16 @@ const MOST_PERIODS: usize = 2_000_000;
 const LEAST_PERIODS_PER_TURN: f64 = 6.0;
 
 /// Whether the run's electrical turns fit into the record of a run.
-fn check_duration(run: &RunOptions, plant: &PlantParams, rpm: f64) -> Result<(), Failure> {
+fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> Result<(), Failure> {
+    let (name, rpm) = match options.speed_set {
+        Some(set) => ("--speed-set", set),
+        None => ("--rpm", options.rpm),
+    };
     let pole_pairs = f64::from(plant.pole_pairs);
     let most = 60.0 / (LEAST_PERIODS_PER_TURN * plant.t_s * pole_pairs);
     if rpm.abs() > most {
         return Err(Failure::Argument(format!(
-            "--rpm {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {most:.0} rpm"
+            "{name} {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {most:.0} rpm"
         )));
     }
     let (settling, measured) = run.periods(plant);
@@ -85,9 +173,18 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, rpm: f64) -> Result<(),
     if periods <= MOST_PERIODS {
         return Ok(());
     }
+    if let Some(aim) = run
+        .aim
+        .filter(|aim| aim.within > periods as f64 * plant.t_s / 2.0)
+    {
+        return Err(Failure::Argument(format!(
+            "{name} {rpm}: getting there takes {:.0} s; give a smaller --inertia or --load, a higher --torque, or an --rpm nearer to it",
+            aim.within
+        )));
+    }
     let least = rpm.abs() * periods as f64 / MOST_PERIODS as f64;
     Err(Failure::Argument(format!(
-        "--rpm {rpm}: its electrical turns take {:.0} s; give 0 or at least {} rpm",
+        "{name} {rpm}: its electrical turns take {:.0} s; give 0 or at least {} rpm",
         periods as f64 * plant.t_s,
         significant(least * 1.01, 3)
     )))
@@ -121,6 +218,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         rpm: options.rpm,
         torque_nm: options.run.torque(&drive),
         tripped: measured.tripped,
+        speed: options.speed_set.map(|set_rpm| Speed {
+            set_rpm,
+            mean_rpm: mean_rpm(&measured),
+        }),
         merits: measured.merits,
     };
     if options.run.json {
@@ -143,6 +244,12 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         significant(outcome.torque_nm, 4),
         outcome.rpm
     ))?;
+    if let Some(Speed { set_rpm, mean_rpm }) = outcome.speed {
+        print_text(&format!(
+            "speed set to {set_rpm} rpm: {} rpm",
+            significant(mean_rpm, 5)
+        ))?;
+    }
     let mut table = TextTable::new(1, ["merit", "value", "unit"]);
     for (name, value, unit) in rows(&outcome.merits) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);

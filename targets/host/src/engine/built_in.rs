@@ -85,6 +85,9 @@ impl Subject for AnySubject {
     fn set_torque(&mut self, bits: i32) {
         self.0.set_torque(bits);
     }
+    fn set_speed(&mut self, bits: i32) {
+        self.0.set_speed(bits);
+    }
     fn set_bus(&mut self, counts: u16) {
         self.0.set_bus(counts);
     }

@@ -65,6 +65,10 @@ impl Subject for Interpreted<'_> {
         self.set("set_torque", bits);
     }
 
+    fn set_speed(&mut self, bits: i32) {
+        self.set("set_speed", bits);
+    }
+
     fn set_bus(&mut self, counts: u16) {
         self.set("set_bus", i32::from(counts));
     }

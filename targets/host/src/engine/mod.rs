@@ -84,6 +84,17 @@ impl Engine<'_> {
         }
     }
 
+    /// Sets the speed, in rpm; drives without a speed loop ignore it.
+    pub fn set_speed(&mut self, rpm: f64) {
+        let bits = (rpm * f64::from(1 << 16)).round() as i32;
+        match self {
+            Self::Compiled(drive) => drive.set_speed(bits),
+            Self::Interpreted(drive) => drive.set_speed(bits),
+            Self::BitTrue(model) => model.set_speed(bits),
+            Self::Ideal(model) => model.set_speed(bits),
+        }
+    }
+
     /// Tells the bus voltage as an ADC count; drives with a fixed bus ignore it.
     pub fn set_bus(&mut self, counts: u16) {
         match self {

@@ -44,6 +44,8 @@ pub struct SetPoint {
     pub current: f64,
     /// True bus voltage in volts; drives that measure it are told.
     pub v_bus: f64,
+    /// Speed in rpm, for drives with a speed loop; the current is then the greatest that it asks for.
+    pub rpm: Option<f64>,
 }
 
 /// Takes a motor and a variant (none: the controller of the motor's file) through the generator.
@@ -146,6 +148,9 @@ impl Prepared {
             engine.set_bus(counts);
         }
         engine.set_current(set_point.current);
+        if let Some(rpm) = set_point.rpm {
+            engine.set_speed(rpm);
+        }
         engine
     }
 
@@ -212,6 +217,7 @@ impl Prepared {
         SetPoint {
             current: torque / self.spec.torque_constant(),
             v_bus: self.spec.inverter.v_bus,
+            rpm: None,
         }
     }
 

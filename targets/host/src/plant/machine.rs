@@ -111,6 +111,13 @@ impl Plant {
         self.currents = [i_a, i_b, -i_a - i_b];
     }
 
+    /// Changes the load torque that opposes the motion, where the speed is free.
+    pub fn set_load(&mut self, opposing_torque: f64) {
+        if let Some(mechanics) = &mut self.params.mechanics {
+            mechanics.opposing_torque = opposing_torque;
+        }
+    }
+
     /// Time in seconds: the start of the next period.
     pub fn time(&self) -> f64 {
         self.period as f64 * self.params.t_s

@@ -3,6 +3,10 @@
 use crate::support::{PAPER, run};
 use std::fs;
 
+/// A motor whose file says its inertia, and a drive that regulates its speed.
+const WITH_INERTIA: &str = "hurst-long";
+const REGULATED: &str = "pdcc:speed_loop=on";
+
 #[test]
 fn an_unknown_motor_is_told_with_the_nearest_name() {
     run(["simulate", "trivedi-keshri", "--rpm", "1"]).assert_bad_input(&[
@@ -182,6 +186,57 @@ fn options_out_of_range_or_at_odds_are_told() {
         (
             &["generate", PAPER, "--out", "/proc/nowhere"],
             "cannot write",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "0", "--speed-set", "900"],
+            "--inertia",
+        ),
+        (
+            &[
+                "simulate",
+                PAPER,
+                "--rpm",
+                "0",
+                "--speed-set",
+                "900",
+                "--inertia",
+                "1e-3",
+            ],
+            "`speed_loop=on`",
+        ),
+        (
+            &[
+                "simulate",
+                WITH_INERTIA,
+                "--controller",
+                REGULATED,
+                "--rpm",
+                "0",
+            ],
+            "--speed-set",
+        ),
+        (
+            &[
+                "simulate",
+                WITH_INERTIA,
+                "--controller",
+                REGULATED,
+                "--rpm",
+                "0",
+                "--speed-set",
+                "900",
+                "--inertia",
+                "50",
+            ],
+            "getting there takes",
+        ),
+        (
+            &["limit", WITH_INERTIA, "--controller", REGULATED],
+            "`speed_loop=off`",
+        ),
+        (
+            &["compare", WITH_INERTIA, "--controller", REGULATED],
+            "`speed_loop=off`",
         ),
         (&["limit", PAPER, "--torque", "0"], "--torque 0"),
         (&["limit", PAPER, "--inertia", "1"], "--inertia"),

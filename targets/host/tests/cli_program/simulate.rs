@@ -203,6 +203,35 @@ fn a_free_shaft_settles_where_load_and_torque_balance() {
 }
 
 #[test]
+fn a_speed_loop_reaches_the_speed_that_is_set() {
+    for (set, load) in [("1500", "0.1"), ("-900", "0.2")] {
+        let result = run([
+            "simulate",
+            "hurst-long",
+            "--controller",
+            "pdcc:speed_loop=on",
+            "--rpm",
+            "0",
+            "--speed-set",
+            set,
+            "--inertia",
+            "7.06e-6",
+            "--load",
+            load,
+            "--start-angle",
+            "0.1",
+            "--json",
+        ])
+        .json();
+        let share = number(&result, "mean_rpm") / number(&result, "set_rpm");
+        assert!((share - 1.0).abs() < 0.02, "{result}");
+        let opposing = load.parse::<f64>().expect("a number") * share.signum();
+        let torque = number(&result, "mean_torque_nm") * number(&result, "set_rpm").signum();
+        assert!((torque / opposing - 1.0).abs() < 0.05, "{result}");
+    }
+}
+
+#[test]
 fn a_set_point_beyond_the_limit_is_told() {
     let said = run(["simulate", PAPER, "--rpm", "300", "--torque", "5", "--json"]);
     let result = said.json();

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::env;
 
 /// Variants that together have every block of a step.
-const VARIANTS: [&str; 14] = [
+const VARIANTS: [&str; 15] = [
     "pdcc",
     "pdcc:emf=model,saturation=nearest",
     "pdcc:emf=model,modulation=pair,saturation=keep_angle,advance=1.5",
@@ -31,10 +31,20 @@ const VARIANTS: [&str; 14] = [
     "fcs-mpc:candidates=all,modulated=on",
     "phcc",
     "phcc:word=16",
+    "pdcc:speed_loop=on",
 ];
 
+/// A motor's text with an inertia, where it states none: what a speed loop needs.
+fn with_inertia(text: &str) -> String {
+    if text.contains("\ninertia") {
+        text.to_owned()
+    } else {
+        text.replacen("[motor]\n", "[motor]\ninertia = \"3 kg cm2\"\n", 1)
+    }
+}
+
 fn generated(toml: &str, variant: &str) -> Result<Generated, Diagnostics> {
-    let mut ast = parse_toml(toml, "motor.toml")?;
+    let mut ast = parse_toml(&with_inertia(toml), "motor.toml")?;
     apply_variant(&mut ast, variant)?;
     let (spec, origins) = check(&ast)?;
     generate(&spec, &origins)

@@ -12,6 +12,7 @@ mod law;
 mod limit;
 mod motion;
 mod rotor;
+mod speed;
 mod state;
 mod tables;
 
@@ -25,6 +26,7 @@ use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
+use speed::Regulator;
 use state::{Part, State};
 use std::f64::consts::TAU;
 
@@ -37,8 +39,10 @@ pub struct BitTrue {
     limits: Limits,
     k: Constants,
     law: Law,
+    speed: Option<Regulator>,
     // Set-point words.
     j: f64,
+    speed_ref: f64,
     v_bus: f64,
     ratio: f64,
     /// `ratio`, split.
@@ -84,12 +88,15 @@ impl BitTrue {
     pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
         let scale = Scale::new(spec, formats)?;
         let k = Constants::new(spec, &scale)?;
+        let speed = Regulator::new(spec, &scale, &k)?;
         let mut model = Self {
             variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
             limits: Limits::new(&spec.inverter, k.i_trip)?,
-            j: 0.0,
+            j: speed.as_ref().map_or(0.0, |speed| speed.top),
+            speed_ref: 0.0,
+            speed,
             v_bus: k.v_bus_nominal,
             ratio: pow2(k.ratio_bits as i32),
             to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
@@ -118,6 +125,13 @@ impl BitTrue {
             .mul(f64::from(bits).clamp(-self.k.t_max_bits, self.k.t_max_bits));
     }
 
+    /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
+    pub fn set_speed(&mut self, bits: i32) {
+        if let Some(speed) = &self.speed {
+            self.speed_ref = speed.reference(bits);
+        }
+    }
+
     /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = &self.k.bus {
@@ -133,9 +147,9 @@ impl BitTrue {
         }
     }
 
-    /// The set-point words `j`, `v_bus`, `ratio`.
-    pub fn set_point_words(&self) -> [f64; 3] {
-        [self.j, self.v_bus, self.ratio]
+    /// The set-point words `j`, `v_bus`, `ratio`, `speed_ref`.
+    pub fn set_point_words(&self) -> [f64; 4] {
+        [self.j, self.v_bus, self.ratio, self.speed_ref]
     }
 
     /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
@@ -219,7 +233,8 @@ impl BitTrue {
 
     /// The whole state in physical units: what an ideal model can be rebuilt from.
     pub fn physical_state(&self) -> PhysicalState {
-        self.state.to_physical(&self.k)
+        let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
+        self.state.to_physical(&self.k, integral_ampere)
     }
 
     /// Names of the state words, in the order of [`Self::state_words`].
@@ -259,7 +274,10 @@ impl BitTrue {
             i: [i[0], i[1], i_c],
             code: event.code,
             edge: event.edge,
-            demand: self.j != 0.0,
+            demand: match self.speed {
+                Some(_) => self.speed_ref != 0.0,
+                None => self.j != 0.0,
+            },
         };
         let verdict = self.state.supervisor.step(&self.limits, &seen);
         if verdict.calibrated {
@@ -289,18 +307,24 @@ impl BitTrue {
         }
         let sector_eff = angle.sector_eff;
 
+        // Speed loop
+        let (mut j, mut speed_integral) = (self.j, self.state.speed_integral);
+        if let Some(speed) = &self.speed {
+            let turning = self.state.timing.direction * self.state.omega;
+            (j, speed_integral) = speed.regulate(self.speed_ref, turning, j, speed_integral);
+        }
+
         // 5 commutation
         if self.variant.commutation.is_some() {
-            self.state
-                .commutate(k, sector_eff, self.j, &[i[0], i[1], i_c]);
+            self.state.commutate(k, sector_eff, j, &[i[0], i[1], i_c]);
         }
 
         // 6 reference
         let delayed = self.variant.delayed();
         let j_ref = match self.variant.options.reference {
             Reference::QuasiSquare => [
-                sector::CORNER_A[sector_eff] * self.j,
-                sector::CORNER_B[sector_eff] * self.j,
+                sector::CORNER_A[sector_eff] * j,
+                sector::CORNER_B[sector_eff] * j,
             ],
             Reference::Proportional => {
                 let theta_ref = if delayed {
@@ -310,7 +334,7 @@ impl BitTrue {
                 };
                 k.shape
                     .both(theta_ref)
-                    .map(|shape| k.shape_product.round_product(shape, self.j))
+                    .map(|shape| k.shape_product.round_product(shape, j))
             }
         };
 
@@ -377,7 +401,7 @@ impl BitTrue {
             sector_eff,
             commutating: self.state.commutating,
             integral,
-            set_point: self.j,
+            set_point: j,
             direction: self.state.timing.direction,
             rises: self.state.rises,
             vector_prev: self.state.vector_prev.0,
@@ -412,6 +436,7 @@ impl BitTrue {
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
             self.state.e_prev = expected;
+            self.state.speed_integral = speed_integral;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
             self.state.vector_prev = state::Vector(decision.vector);

@@ -6,6 +6,7 @@
 mod emf;
 mod law;
 mod limit;
+mod speed;
 mod vector;
 
 use super::hall::HallClock;
@@ -21,6 +22,7 @@ use crate::{
 use hexagen::{Fault, LegState, Legs, Sample};
 use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
+use speed::SpeedLoop;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
 use vector::{clarke, from_ab, phases, to_ab};
 
@@ -85,8 +87,11 @@ pub struct Ideal {
     k_t: f64,
     k_phase: f64,
     pp_t_s: f64,
+    speed_loop: Option<SpeedLoop>,
     // Set-points.
     current: f64,
+    /// The speed that is wanted, mechanical rad/s.
+    speed: f64,
     v_bus: f64,
     state: PhysicalState,
     trace: Trace,
@@ -127,7 +132,13 @@ impl Ideal {
             k_t: motor.torque_constant,
             k_phase: motor.emf_constant,
             pp_t_s: pole_pairs * inverter.t_s,
-            current: 0.0,
+            speed_loop: SpeedLoop::new(spec),
+            current: if spec.loop_options().speed_bandwidth > 0.0 {
+                inverter.max_current
+            } else {
+                0.0
+            },
+            speed: 0.0,
             v_bus: inverter.v_bus,
             state: PhysicalState::default(),
             trace: Trace::default(),
@@ -149,6 +160,13 @@ impl Ideal {
     /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
     pub fn set_torque(&mut self, bits: i32) {
         self.set_current_amps(f64::from(bits) / 65_536.0 / self.k_t);
+    }
+
+    /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
+    pub fn set_speed(&mut self, bits: i32) {
+        if let Some(speed_loop) = &self.speed_loop {
+            self.speed = speed_loop.believed(f64::from(bits) / 65_536.0 * TAU / 60.0);
+        }
     }
 
     /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
@@ -213,7 +231,10 @@ impl Ideal {
             i: i_abc.into(),
             code: event.code,
             edge: event.edge,
-            demand: self.current != 0.0,
+            demand: match self.speed_loop {
+                Some(_) => self.speed != 0.0,
+                None => self.current != 0.0,
+            },
         };
         let verdict = self.state.supervisor.step(&self.limits, &seen);
         if verdict.calibrated {
@@ -239,20 +260,28 @@ impl Ideal {
             (0.0, 0.0, sector)
         };
 
+        // Speed loop
+        let (mut current, mut speed_integral) = (self.current, self.state.speed_integral);
+        if let Some(speed_loop) = &self.speed_loop {
+            let speed = self.electrical_speed() * self.state.timing.direction;
+            (current, speed_integral) =
+                speed_loop.regulate(self.speed, speed, current, speed_integral);
+        }
+
         // 5 commutation
         if self.variant.commutation.is_some() {
-            self.commutate(sector_eff, &i_abc);
+            self.commutate(sector_eff, current, &i_abc);
         }
 
         // 6 reference
         let target = f64::from(1 + self.variant.options.delay) * step_angle;
         let i_ref = match self.variant.options.reference {
             Reference::QuasiSquare => {
-                from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * self.current
+                from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * current
             }
             Reference::Proportional => {
                 let f = self.shape.alpha_beta(theta + target);
-                f * (2.0 / 3.0 * self.k_t / self.k_phase * self.current / f.norm_squared())
+                f * (2.0 / 3.0 * self.k_t / self.k_phase * current / f.norm_squared())
             }
         };
 
@@ -323,7 +352,7 @@ impl Ideal {
             sector_eff,
             commutating: self.state.commutating,
             integral,
-            set_point: self.current,
+            set_point: current,
             direction: self.state.timing.direction,
             rises: self.state.rises,
             vector_prev: self.state.vector_prev,
@@ -356,6 +385,7 @@ impl Ideal {
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
             self.state.e_prev = to_ab(&expected);
+            self.state.speed_integral = speed_integral;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
             self.state.vector_prev = decision.vector;
@@ -368,6 +398,7 @@ impl Ideal {
             self.state.off_prev = None;
             self.state.e_prev = [0.0; 2];
             self.state.integral = [0.0; 2];
+            self.state.speed_integral = 0.0;
             self.state.rises = [false; 2];
             self.state.vector_prev = 0;
             self.state.past = Past::default();
@@ -391,14 +422,20 @@ impl Ideal {
         command.duties
     }
 
-    /// Angle at the sample and angle per period (radians), and the sector with its advance.
-    fn angle(&self, sector: usize) -> (f64, f64, usize) {
+    /// Electrical angle per tick, radians; 0 while it is not known.
+    fn electrical_speed(&self) -> f64 {
         let timing = &self.state.timing;
-        let omega = if timing.edges == 2 {
+        if timing.edges == 2 {
             TAU / timing.rev.max(self.clock.rev_min)
         } else {
             0.0
-        };
+        }
+    }
+
+    /// Angle at the sample and angle per period (radians), and the sector with its advance.
+    fn angle(&self, sector: usize) -> (f64, f64, usize) {
+        let timing = &self.state.timing;
+        let omega = self.electrical_speed();
         let progress = (omega * timing.age_prev).min(SECTOR_END);
         let step_angle = timing.direction * (omega * self.clock.ticks).min(FRAC_PI_6);
         let in_sector = if timing.edges != 2 {
@@ -420,11 +457,11 @@ impl Ideal {
     }
 
     /// Follows the commutation (section 5).
-    fn commutate(&mut self, sector_eff: usize, i: &Vector3<f64>) {
+    fn commutate(&mut self, sector_eff: usize, current: f64, i: &Vector3<f64>) {
         let state = &mut self.state;
         let timeout = f64::from(self.end.timeout);
         let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
-        let torque = if self.current < 0.0 { -1.0 } else { 1.0 };
+        let torque = if current < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * state.timing.direction;
         let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= self.end.threshold
             || state.commutation_age >= timeout;

@@ -206,8 +206,8 @@ impl Design {
             let wish = Vector2::from(rises.map(|rise| if rise { 1.0 } else { -1.0 }));
             let emf = |theta| self.shape.alpha_beta(theta);
             if commutating {
-                let early = emf(mid_sector(sector) + self.late) * self.amplitude;
-                nearest(&(early + wish * self.weight))
+                let entering = emf(mid_sector(sector) + self.late) * self.amplitude;
+                nearest(&(entering + wish * self.weight))
             } else if self.pairs {
                 self.along_the_pair(sector, &wish)
             } else {

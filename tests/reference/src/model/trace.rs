@@ -89,4 +89,6 @@ pub struct PhysicalState {
     pub vector_prev: usize,
     /// What the past adds to the voltage, volt.
     pub past: Past,
+    /// Integral of the speed regulator, ampere.
+    pub speed_integral: f64,
 }

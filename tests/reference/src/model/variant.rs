@@ -87,7 +87,8 @@ impl Variant {
             options,
             rotor: emf == Some(EmfSource::Model)
                 || options.advance > 0.0
-                || options.reference == Reference::Proportional,
+                || options.reference == Reference::Proportional
+                || options.speed_bandwidth > 0.0,
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
             held: if held { Switch::On } else { Switch::Off },
@@ -110,6 +111,11 @@ impl Variant {
         self.saturation.is_some()
             || self.modulated == Switch::On
             || self.six_step == Some(Switch::On)
+    }
+
+    /// A regulator of the speed asks for the current.
+    pub fn has_speed_loop(&self) -> bool {
+        self.options.speed_bandwidth > 0.0
     }
 
     /// A command takes effect one period after its sample.

@@ -33,6 +33,10 @@ pub struct LoopOptions {
     pub discretisation: Discretisation,
     /// Word length, 16 or 32 bits.
     pub word: u32,
+    /// Bandwidth of the speed loop, hertz; 0 without one.
+    pub speed_bandwidth: f64,
+    /// Inertia of rotor and load, kg m2; with a speed loop.
+    pub inertia: f64,
 }
 
 /// When a commutation ends.
@@ -65,6 +69,12 @@ macro_rules! options {
             pub discretisation: Discretisation,
             /// Word length, 16 or 32 bits.
             pub word: u32,
+            /// Bandwidth of the speed loop, hertz; 0 without one.
+            #[serde(default)]
+            pub speed_bandwidth: f64,
+            /// Inertia of rotor and load, kg m2; with a speed loop.
+            #[serde(default)]
+            pub inertia: f64,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -78,6 +88,8 @@ macro_rules! options {
                     delay: self.delay,
                     discretisation: self.discretisation,
                     word: self.word,
+                    speed_bandwidth: self.speed_bandwidth,
+                    inertia: self.inertia,
                 }
             }
         }

@@ -8,6 +8,7 @@ use super::toy_motor::ToyMotor;
 use crate::{Bus, BusSense, Error, Spec};
 use fastrand::Rng;
 use hexagen::{Legs, Sample};
+use std::f64::consts::TAU;
 
 /// Steps after which another stream may take over.
 const BLOCK: u32 = 512;
@@ -35,6 +36,8 @@ pub enum Action {
     SetCurrent(i32),
     /// Torque set-point, bits of an `I16F16` in newton metres.
     SetTorque(i32),
+    /// Speed, bits of an `I16F16` in rpm.
+    SetSpeed(i32),
     /// Bus voltage, ADC counts.
     SetBus(u16),
     /// Reset.
@@ -85,6 +88,8 @@ pub struct Stimulus {
     nominal_offset: i32,
     offset_tolerance: i32,
     bus: Option<BusSense>,
+    /// Bits of the greatest speed, with a speed loop.
+    speed_bits: Option<f64>,
 }
 
 impl Stimulus {
@@ -116,6 +121,8 @@ impl Stimulus {
             true_offset: [0; 2],
             nominal_offset: inverter.adc_offset as i32,
             offset_tolerance: inverter.offset_tolerance as i32,
+            speed_bits: (spec.loop_options().speed_bandwidth > 0.0)
+                .then(|| inverter.omega_max * 60.0 / TAU * 65_536.0),
             bus: if inverter.bus == Bus::Measured {
                 inverter.bus_sense()?
             } else {
@@ -208,6 +215,11 @@ impl Stimulus {
     }
 
     fn action(&mut self) -> Option<Action> {
+        if let Some(most) = self.speed_bits
+            && self.random.u8(..4) == 0
+        {
+            return Some(Action::SetSpeed(self.set_point(most)));
+        }
         match self.random.u8(..32) {
             0..=11 => Some(Action::SetCurrent(self.set_point(self.i_max_bits))),
             12..=19 => Some(Action::SetTorque(self.set_point(self.t_max_bits))),

@@ -11,6 +11,8 @@ pub trait Subject {
     fn set_current(&mut self, bits: i32);
     /// Sets the torque set-point, bits of an `I16F16` in newton metres.
     fn set_torque(&mut self, bits: i32);
+    /// Sets the speed, bits of an `I16F16` in rpm, where there is a speed loop.
+    fn set_speed(&mut self, bits: i32);
     /// Tells the bus voltage as an ADC count.
     fn set_bus(&mut self, counts: u16);
     /// Clears a trip and all control state.
@@ -43,6 +45,10 @@ impl<D: Drive> Subject for Compiled<D> {
 
     fn set_torque(&mut self, bits: i32) {
         self.0.set_torque(I16F16::from_bits(bits));
+    }
+
+    fn set_speed(&mut self, bits: i32) {
+        self.0.set_speed(I16F16::from_bits(bits));
     }
 
     fn set_bus(&mut self, counts: u16) {

@@ -40,6 +40,10 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
                 bit_true.set_torque(bits);
                 ideal.set_torque(bits);
             }
+            Some(Action::SetSpeed(bits)) => {
+                bit_true.set_speed(bits);
+                ideal.set_speed(bits);
+            }
             Some(Action::SetBus(counts)) => {
                 bit_true.set_bus(counts);
                 ideal.set_bus(counts);

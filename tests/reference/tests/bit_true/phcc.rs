@@ -151,8 +151,8 @@ fn at_standstill_the_pair_follows_the_wish_along_its_line() {
 }
 
 /// What moves the current in mid-sector or at its beginning, by vector: v - e.
-fn drive(vector: usize, sector: usize, early: bool, shape: fn(f64) -> f64) -> [f64; 2] {
-    let theta = (sector as f64 - 1.0) * 60.0 - if early { 21.0 } else { 0.0 };
+fn drive(vector: usize, sector: usize, entering: bool, shape: fn(f64) -> f64) -> [f64; 2] {
+    let theta = (sector as f64 - 1.0) * 60.0 - if entering { 21.0 } else { 0.0 };
     let e = [0.0, 120.0, 240.0].map(|lag| 0.375 * shape(theta - lag));
     let [v_a, v_b] = alpha_beta(vector);
     [

@@ -22,6 +22,10 @@ impl Subject for Mirror {
     fn set_torque(&mut self, bits: i32) {
         self.model.set_torque(bits);
     }
+    fn set_speed(&mut self, bits: i32) {
+        self.model.set_speed(bits);
+    }
+
     fn set_bus(&mut self, counts: u16) {
         self.model.set_bus(counts);
     }

@@ -67,6 +67,7 @@ fn main() {
                 5 => Drive::reset(&mut drive),
                 6 => Drive::calibrate(&mut drive),
                 7 => Drive::precharge(&mut drive),
+                9 => Drive::set_speed(&drive, I16F16::from_bits(calls.word())),
                 _ => {
                     for index in 0..words {
                         let word = calls.word();

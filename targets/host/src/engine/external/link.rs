@@ -29,6 +29,7 @@ pub enum Call<'w> {
     New,
     SetCurrent(i32),
     SetTorque(i32),
+    SetSpeed(i32),
     SetBus(u16),
     Reset,
     Calibrate,
@@ -96,6 +97,10 @@ impl Link {
             }
             Call::SetTorque(bits) => {
                 calls.push(3);
+                calls.extend(bits.to_le_bytes());
+            }
+            Call::SetSpeed(bits) => {
+                calls.push(9);
                 calls.extend(bits.to_le_bytes());
             }
             Call::SetBus(counts) => {

@@ -128,6 +128,10 @@ impl Subject for Remote<'_> {
         self.call(Call::SetTorque(bits), |model| model.set_torque(bits));
     }
 
+    fn set_speed(&mut self, bits: i32) {
+        self.call(Call::SetSpeed(bits), |model| model.set_speed(bits));
+    }
+
     fn set_bus(&mut self, counts: u16) {
         self.call(Call::SetBus(counts), |model| model.set_bus(counts));
     }

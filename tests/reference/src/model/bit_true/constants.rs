@@ -157,6 +157,12 @@ impl<'a> Scale<'a> {
         }
     }
 
+    /// Fraction bits that a format has beyond those of voltages.
+    pub fn extra_bits(&self, name: &'static str) -> Result<i32, Error> {
+        let bits = self.formats.frac_bits(name)? as i32;
+        Ok(bits - self.formats.frac_bits("voltage")? as i32)
+    }
+
     /// Fraction bits of a format; 0 where the variant does not use it.
     pub fn bits_if(&self, used: bool, name: &'static str) -> Result<u32, Error> {
         if used {
@@ -263,6 +269,7 @@ impl Constants {
                 (Part::Stall, inverter.stall_periods > 0),
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
+                (Part::Speed, variant.has_speed_loop()),
                 (Part::Commutation, commutation.is_some()),
                 (Part::Sight, variant.sees()),
                 (Part::VoltageCommand, variant.applied_now && !floating),

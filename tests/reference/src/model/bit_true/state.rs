@@ -17,6 +17,7 @@ pub struct State {
     pub sector_prev: usize,
     pub timing: HallTiming,
     pub omega: f64,
+    pub speed_integral: f64,
     pub sector_eff_prev: usize,
     pub commutating: bool,
     pub commutation_age: f64,
@@ -44,6 +45,7 @@ pub enum Part {
     Stall,
     Direction,
     Rotor,
+    Speed,
     Commutation,
     Sight,
     VoltageCommand,
@@ -196,6 +198,9 @@ macro_rules! for_each_word {
             $show!("rev", $state.timing.rev);
             $show!("omega", $state.omega);
         }
+        if $parts.has(Part::Speed) {
+            $show!("speed_integral", $state.speed_integral);
+        }
         if $parts.has(Part::Commutation) {
             $show!("sector_eff_prev", $state.sector_eff_prev);
             $show!("commutating", $state.commutating);
@@ -282,6 +287,7 @@ impl State {
 
     /// What a period outside of control leaves behind (section 12).
     pub fn stop(&mut self) {
+        self.speed_integral = 0.0;
         self.v_cmd = [0.0; 2];
         self.t_cmd = [0.0; 3];
         self.off_cmd = 0;
@@ -324,7 +330,7 @@ impl State {
     }
 
     /// The state in physical units.
-    pub fn to_physical(self, k: &Constants) -> PhysicalState {
+    pub fn to_physical(self, k: &Constants, integral_ampere: f64) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
         PhysicalState {
             supervisor: self.supervisor,
@@ -348,6 +354,7 @@ impl State {
                 due: volts(self.past.due),
                 later: volts(self.past.later),
             },
+            speed_integral: self.speed_integral * integral_ampere,
         }
     }
 }

@@ -1,0 +1,215 @@
+//! The speed loop in closed loop, on motors of different size: run-up from standstill under load, reversal, steps of
+//! the load, the limit of the current, and what is said of slow turning.
+
+use hexagen_host::closed_loop::ClosedLoop;
+use hexagen_host::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
+use hexagen_host::plant::{Mechanics, Plant};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Variants of every kind, and how far their phase currents go beyond the current that is asked for, in parts of the rated
+/// one: ripple, the more the fewer vectors they choose from.
+const VARIANTS: [(&str, f64); 5] = [
+    ("pdcc:speed_loop=on", 0.15),
+    (
+        "pdcc:speed_loop=on,emf=model,advance=2,hall_capture=timer",
+        0.1,
+    ),
+    ("pi-pwm:speed_loop=on,six_step=on", 0.6),
+    ("fcs-mpc:speed_loop=on", 0.7),
+    ("phcc:speed_loop=on", 0.9),
+];
+
+/// From this ripple on a small current is none to turn slowly with.
+const RESTLESS: f64 = 0.7;
+
+/// A kind that trips on a motor at rated current: two periods of a vector move it beyond the trip level.
+const TRIPS: (&str, &str) = ("hurst-long", "phcc");
+
+/// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load that a run-up
+/// does not last long with.
+const MOTORS: [(&str, &str); 3] = [
+    ("anaheim-bly171d", "1.5e-5 kg m2"),
+    ("hurst-long", "5e-5 kg m2"),
+    ("trivedi-keshri-660w", "2e-3 kg m2"),
+];
+
+/// The same with loads so heavy that a run-up is one at the limit of the current.
+const HEAVY: [(&str, &str); 3] = [
+    ("anaheim-bly171d", "3e-4 kg m2"),
+    ("hurst-long", "1.5e-3 kg m2"),
+    ("trivedi-keshri-660w", "3e-2 kg m2"),
+];
+
+/// The library's motor with this inertia.
+fn motor_with(name: &str, inertia: &str) -> MotorSource {
+    let mut motor = MotorSource::of_library(name).expect("is in the library");
+    let own = motor
+        .text
+        .lines()
+        .filter(|line| !line.starts_with("inertia"));
+    let text = own.collect::<Vec<_>>().join("\n");
+    motor.text = text.replace("[motor]\n", &format!("[motor]\ninertia = \"{inertia}\"\n"));
+    motor
+}
+
+fn drive(name: &str, inertia: &str, variant: &str) -> Prepared {
+    let motor = motor_with(name, inertia);
+    prepare(&motor, Some(variant)).unwrap_or_else(|why| panic!("{name} {variant}: {why}"))
+}
+
+/// What happened between two looks.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    /// Mean speed over the last fifth, of the set one.
+    mean: f64,
+    /// Least speed over the last fifth, of the set one.
+    least: f64,
+    /// Greatest speed of all, of the set one.
+    peak: f64,
+    /// How far the greatest phase current was above the limit, of the rated one.
+    excess: f64,
+}
+
+/// A drive that turns a shaft of its own.
+struct Bench<'d> {
+    drive: &'d Prepared,
+    closed: ClosedLoop<Engine<'d>>,
+    /// Limit of the current, ampere.
+    limit: f64,
+}
+
+impl<'d> Bench<'d> {
+    /// At rest, with a limit and a load in parts of the rated torque.
+    fn at_rest(drive: &'d Prepared, limit: f64, load: f64) -> Self {
+        let speed = drive.spec.controller.common().speed.expect("a speed loop");
+        let mut params = plant_of(&drive.spec);
+        params.mechanics = Some(Mechanics {
+            inertia: speed.inertia,
+            opposing_torque: load * drive.demand(),
+            external_torque: 0.0,
+            viscous: 0.0,
+        });
+        let plant = Plant::new(params, 0.2, 0.0).expect("a plant");
+        let set_point = drive.set_point(limit * drive.demand());
+        let delay = run_of(&drive.spec, 0.0, 0.0).delay;
+        Self {
+            drive,
+            closed: ClosedLoop::new(plant, drive.engine(Model::Fixed, set_point), delay),
+            limit: set_point.current,
+        }
+    }
+
+    /// So many times 1/f at a part of the rated speed.
+    fn run(&mut self, share: f64, times: f64) -> Leg {
+        let spec = &self.drive.spec;
+        let speed = spec.controller.common().speed.expect("a speed loop");
+        let omega = share * spec.motor.rated_speed;
+        self.closed.controller().set_speed(omega * 60.0 / TAU);
+        let periods = (times / speed.bandwidth / spec.inverter.t_s) as usize;
+        let last = periods * 4 / 5;
+        let (mut peak, mut least, mut current, mut sum) = (0.0_f64, f64::INFINITY, 0.0_f64, 0.0);
+        for period in 0..periods {
+            self.closed.run(1, &mut ());
+            let truth = self.closed.plant().truth();
+            let reached = truth.omega_m / omega;
+            peak = peak.max(reached);
+            current = truth
+                .currents
+                .iter()
+                .fold(current, |most, i| most.max(i.abs()));
+            if period >= last {
+                sum += reached;
+                least = least.min(reached);
+            }
+        }
+        Leg {
+            mean: sum / (periods - last) as f64,
+            least,
+            peak,
+            excess: (current - self.limit) / spec.motor.rated_current,
+        }
+    }
+
+    fn load(&mut self, load: f64) {
+        let torque = load * self.drive.demand();
+        self.closed.plant_mut().set_load(torque);
+    }
+}
+
+/// Runs a test on all motors and variants; it gets the excess that is allowed to the current.
+fn on_all(motors: &[(&str, &str)], test: impl Fn(&str, &Prepared, f64) + Sync) {
+    let all: Vec<_> = motors
+        .iter()
+        .flat_map(|motor| VARIANTS.map(|variant| (*motor, variant)))
+        .filter(|((motor, _), (variant, _))| !(*motor == TRIPS.0 && variant.starts_with(TRIPS.1)))
+        .collect();
+    all.par_iter()
+        .for_each(|&((motor, inertia), (variant, excess))| {
+            let drive = drive(motor, inertia, variant);
+            test(&format!("{motor} {variant}"), &drive, excess);
+        });
+}
+
+#[test]
+fn starts_under_load_reverses_and_bears_steps_of_the_load() {
+    on_all(&MOTORS, |name, drive, excess| {
+        let mut bench = Bench::at_rest(drive, 1.0, 0.3);
+        for (share, load) in [
+            (0.5, 0.3),
+            (0.5, 0.7),
+            (0.5, 0.0),
+            (-0.5, 0.3),
+            (0.2, 0.3),
+            (0.8, 0.3),
+        ] {
+            bench.load(load);
+            let leg = bench.run(share, 6.0);
+            println!("{name} {share} of rated speed, {load} of rated torque: {leg:.3?}");
+            assert!((leg.mean - 1.0).abs() < 0.02, "{name} {share}: {leg:?}");
+            assert!(leg.least > 0.95, "{name} {share}: {leg:?}");
+            assert!(leg.excess < excess, "{name} {share}: {leg:?}");
+        }
+        assert_eq!(bench.closed.tripped(), None, "{name}");
+    });
+}
+
+#[test]
+fn a_long_run_up_at_the_limit_ends_without_overshoot() {
+    on_all(&HEAVY, |name, drive, excess| {
+        for (limit, load, times) in [(1.0, 0.0, 15.0), (0.5, 0.1, 40.0)] {
+            let mut bench = Bench::at_rest(drive, limit, load);
+            let early = bench.run(0.6, 1.0);
+            // At the limit all the time, and far from the speed.
+            assert!(early.peak < 0.7, "{name}: {early:?}");
+            let leg = bench.run(0.6, times);
+            println!("{name} {limit} of rated current, {load} of rated torque: {leg:.3?}");
+            assert!((leg.mean - 1.0).abs() < 0.02, "{name}: {leg:?}");
+            assert!(leg.peak < 1.01, "{name}: {leg:?}");
+            assert!(leg.excess < excess, "{name}: {leg:?}");
+            assert_eq!(bench.closed.tripped(), None, "{name}");
+        }
+    });
+}
+
+#[test]
+fn four_turns_in_the_loops_time_are_enough_and_one_is_not() {
+    on_all(&MOTORS, |name, drive, excess| {
+        if excess >= RESTLESS {
+            return;
+        }
+        let spec = &drive.spec;
+        let speed = spec.controller.common().speed.expect("a speed loop");
+        let pole_pairs = f64::from(spec.motor.pole_pairs);
+        let share =
+            |turns: f64| turns * speed.bandwidth * TAU / pole_pairs / spec.motor.rated_speed;
+        let [slow, slower] = [4.0, 1.0].map(|turns| {
+            let mut bench = Bench::at_rest(drive, 1.0, 0.0);
+            bench.run(share(turns), 12.0)
+        });
+        println!("{name} four turns: {slow:.3?}, one: {slower:.3?}");
+        assert!((slow.mean - 1.0).abs() < 0.01, "{name}: {slow:?}");
+        assert!(slow.least > 0.98, "{name}: {slow:?}");
+        assert!(slower.least < 0.95, "{name}: {slower:?}");
+    });
+}

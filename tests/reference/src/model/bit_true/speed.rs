@@ -1,0 +1,70 @@
+//! The speed regulator (section "Speed loop").
+
+use super::constants::{Constants, Scale};
+use crate::exact::{Coefficient, floor, floor_constant, floor_weighted, pow2};
+use crate::model::variant::reference_gain;
+use crate::{Error, Spec};
+use std::f64::consts::TAU;
+
+/// Constants of the regulator.
+#[derive(Clone, Debug)]
+pub struct Regulator {
+    k_rpm: Coefficient,
+    k_speed: Coefficient,
+    k_speed_share: Coefficient,
+    max_bits: f64,
+    error_max: f64,
+    /// J_TOP.
+    pub top: f64,
+    /// 2^-n.
+    to_voltage: f64,
+    /// Ampere per word of the integral.
+    pub ampere: f64,
+}
+
+impl Regulator {
+    /// None without a speed loop.
+    pub fn new(spec: &Spec, scale: &Scale, k: &Constants) -> Result<Option<Self>, Error> {
+        if !scale.variant.has_speed_loop() {
+            return Ok(None);
+        }
+        let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
+        let bandwidth = TAU * options.speed_bandwidth;
+        let tick = inverter.t_s / f64::from(inverter.ticks);
+        let word = TAU / (pow2(32) * tick * f64::from(motor.pole_pairs));
+        let gain = bandwidth * options.inertia / motor.torque_constant;
+        let stiffness = reference_gain(spec);
+        let extra = scale.extra_bits("speed_integral")?;
+        let share = bandwidth * inverter.t_s / 4.0;
+        Ok(Some(Self {
+            k_rpm: scale.coefficient("k_rpm", TAU / 60.0 / word / 65_536.0)?,
+            k_speed: scale
+                .coefficient("k_speed", gain * word * stiffness / scale.w * scale.two_v)?,
+            k_speed_share: scale.coefficient("k_speed_share", share * pow2(extra))?,
+            max_bits: floor_constant(60.0 * inverter.omega_max / TAU * 65_536.0)
+                .min(2_147_483_647.0),
+            error_max: floor_constant(2.0 * inverter.max_current / (gain * word)).min(pow2(30)),
+            top: k.k_set.mul(k.i_max_bits),
+            to_voltage: pow2(-extra),
+            ampere: k.volt * pow2(-extra) / stiffness,
+        }))
+    }
+
+    /// `speed_ref` of a speed in rpm, bits of an `I16F16`.
+    pub fn reference(&self, bits: i32) -> f64 {
+        self.k_rpm
+            .mul(f64::from(bits).clamp(-self.max_bits, self.max_bits))
+    }
+
+    /// The set-point, and the integral behind the step.
+    #[inline]
+    pub fn regulate(&self, reference: f64, speed: f64, most: f64, integral: f64) -> (f64, f64) {
+        let error = (reference - speed).clamp(-self.error_max, self.error_max);
+        let part = self.k_speed.mul(error);
+        let open = part + floor_weighted(integral, self.to_voltage);
+        let j = open.clamp(-most.abs(), most.abs());
+        let top = self.top / self.to_voltage;
+        let moved = integral + self.k_speed_share.mul(part + 4.0 * (j - open));
+        (j, floor(moved.clamp(-top, top)))
+    }
+}

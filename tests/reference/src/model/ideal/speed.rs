@@ -1,0 +1,47 @@
+//! The speed regulator (section "Speed loop"), in physical units.
+
+use crate::Spec;
+use std::f64::consts::TAU;
+
+/// Numbers of the regulator.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedLoop {
+    /// Ampere per rad/s, mechanical.
+    gain: f64,
+    /// Share that a period integrates.
+    share: f64,
+    /// Mechanical rad/s per electrical radian a tick.
+    per_tick: f64,
+    greatest: f64,
+    max_current: f64,
+}
+
+impl SpeedLoop {
+    /// None without a speed loop.
+    pub fn new(spec: &Spec) -> Option<Self> {
+        let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
+        let bandwidth = TAU * options.speed_bandwidth;
+        (bandwidth > 0.0).then(|| Self {
+            gain: bandwidth * options.inertia / motor.torque_constant,
+            share: bandwidth * inverter.t_s / 4.0,
+            per_tick: f64::from(inverter.ticks) / inverter.t_s / f64::from(motor.pole_pairs),
+            greatest: inverter.omega_max,
+            max_current: inverter.max_current,
+        })
+    }
+
+    /// The speed within what is allowed, mechanical rad/s.
+    pub fn believed(&self, speed: f64) -> f64 {
+        speed.clamp(-self.greatest, self.greatest)
+    }
+
+    /// The current, and the integral behind the step, ampere; `angle` is the electrical angle per tick.
+    pub fn regulate(&self, wanted: f64, angle: f64, most: f64, integral: f64) -> (f64, f64) {
+        let limit = 2.0 * self.max_current;
+        let part = (self.gain * (wanted - angle * self.per_tick)).clamp(-limit, limit);
+        let open = part + integral;
+        let current = open.clamp(-most.abs(), most.abs());
+        let moved = integral + self.share * (part + 4.0 * (current - open));
+        (current, moved.clamp(-self.max_current, self.max_current))
+    }
+}
