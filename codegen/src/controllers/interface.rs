@@ -13,6 +13,7 @@ use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, ControllerSpec, FcsMpcSpec, HallCapture, Spec};
 use nalgebra::Vector2;
+use std::f64::consts::TAU;
 
 /// What is particular to a controller's law.
 #[derive(Clone, Debug, PartialEq)]
