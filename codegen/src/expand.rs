@@ -4,7 +4,6 @@
 //! On errors the type still appears in its empty shape, with every method and constant, so that
 //! the compiler reports what is wrong with the specification and nothing that follows from it.
 
-use crate::controllers::hall_ticks;
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::rust::{Surface, emit_rust, module_name};
 use crate::interface::Interface;
@@ -114,7 +113,12 @@ fn named_shape(ast: &SpecAst, surface: Surface) -> TokenStream {
     }
     let alias = surface.name.clone();
     let visibility = surface.visibility.clone();
-    let name = Ident::new(&format!("Empty_{given}"), alias.span());
+    let words = given.split('_').map(|word| {
+        let mut letters = word.chars();
+        let first = letters.next().map(|first| first.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    });
+    let name = Ident::new(&format!("Empty{}", words.collect::<String>()), alias.span());
     let shape = empty_shape(
         ast,
         &Surface {
@@ -136,7 +140,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     let measured_bus = is(&ast.inverter, "v_bus", "measured");
     let exemplary = exemplary_interface();
     let mut constants = exemplary.constants;
-    constants.extend(timer_capture.then(|| hall_ticks(50, 50e-6)));
+    constants.retain(|constant| timer_capture || constant.name != "HALL_TICKS_PER_PERIOD");
     let interface = Interface {
         constants,
         type_name: surface.name.to_string(),
@@ -157,7 +161,10 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
 /// An interface with every constant that a drive has; their values are those of another motor and
 /// are never seen, since the crate does not compile.
 fn exemplary_interface() -> Interface {
-    let generated = parse_toml(include_str!("example.toml"), "example.toml").and_then(|ast| {
+    // With a capture timer, which has a constant of its own.
+    let timed = "[controller]\nhall_capture = \"timer\"\n";
+    let text = include_str!("example.toml").replacen("[controller]\n", timed, 1);
+    let generated = parse_toml(&text, "example.toml").and_then(|ast| {
         let (spec, origins) = check(&ast)?;
         generate(&spec, &origins)
     });

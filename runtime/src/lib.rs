@@ -8,10 +8,12 @@
 
 pub mod arith;
 mod boundary;
+#[cfg(doc)]
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
 mod double_buffer;
 mod drive;
+#[cfg(doc)]
 #[doc = include_str!("errata.md")]
 pub mod errata {}
 mod shared_word;

@@ -381,7 +381,7 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
 }
 
 /// `HALL_TICKS_PER_PERIOD`, the last constant of a drive that reads the capture timer.
-pub fn hall_ticks(ticks: u32, t_s: f64) -> PublicConstant {
+fn hall_ticks(ticks: u32, t_s: f64) -> PublicConstant {
     let clock = engineering(f64::from(ticks) / t_s, "Hz");
     let doc = format!("Ticks of `hall_ticks` per control period: a capture clock of {clock}.");
     integer("HALL_TICKS_PER_PERIOD", "u16", i64::from(ticks), &doc)

@@ -15,7 +15,7 @@ mod start;
 mod whole_vectors;
 
 pub use current_loop::StableRange;
-pub use interface::{Law, hall_ticks, interface};
+pub use interface::{Law, interface};
 
 use crate::spec::{ControllerSpec, Spec};
 use current_loop::{LinearLoop, LoopDesign};

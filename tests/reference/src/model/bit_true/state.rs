@@ -62,7 +62,7 @@ pub enum Part {
 
 /// The groups that a variant has.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Parts(u16);
+pub struct Parts(u32);
 
 impl Parts {
     /// Those of the groups whose condition is true.
