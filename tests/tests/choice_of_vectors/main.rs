@@ -171,6 +171,13 @@ impl Subject {
         })
     }
 
+    /// Name of the sector that the choice goes by.
+    fn sector(&self) -> &'static str {
+        let names = ["sector_eff", "sector", "sector_seen"];
+        let name = names.into_iter().find(|name| self.has(name));
+        name.expect("a sector")
+    }
+
     /// A check of the choice in any situation.
     fn compared(
         &self,
@@ -191,12 +198,7 @@ impl Subject {
         let [u_a, u_b] = u;
         let u_c = -&(&u_a + &u_b);
         let sector = path.number("sector", 7)?;
-        let name = if self.has("sector_eff") {
-            "sector_eff"
-        } else {
-            "sector"
-        };
-        slice.give(name, Symbol::Word(Linear::number(sector)));
+        slice.give(self.sector(), Symbol::Word(Linear::number(sector)));
         let commutating =
             self.options.candidates == Candidates::Table2 && path.flag("commutating")?;
         slice.give("in_commutation", Symbol::Flag(commutating));
@@ -326,12 +328,10 @@ impl Subject {
         let best = path.variable(name);
         slice.give(name, Symbol::Word(best.clone()));
         let is_known = path.flag("sector")?;
-        let name = if self.has("sector_eff") {
-            "sector_eff"
-        } else {
-            "sector"
-        };
-        slice.give(name, Symbol::Word(Linear::number(i64::from(is_known))));
+        slice.give(
+            self.sector(),
+            Symbol::Word(Linear::number(i64::from(is_known))),
+        );
         let expected = if is_known { best } else { Linear::default() };
         let found = slice.named("vector", path)?.word();
         Ok(if found == expected {
