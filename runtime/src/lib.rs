@@ -8,13 +8,15 @@
 
 pub mod arith;
 mod boundary;
-#[cfg(doc)]
-#[doc = include_str!("conventions.md")]
+/// Signs, angles, sectors, wiring.
+///
+#[cfg_attr(doc, doc = include_str!("conventions.md"))]
 pub mod conventions {}
 mod double_buffer;
 mod drive;
-#[cfg(doc)]
-#[doc = include_str!("errata.md")]
+/// What the paper prints and is not so.
+///
+#[cfg_attr(doc, doc = include_str!("errata.md"))]
 pub mod errata {}
 mod shared_word;
 mod status;
