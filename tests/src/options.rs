@@ -43,6 +43,9 @@ pub struct Kind {
 /// One value per axis of a kind, as indices.
 pub type Choice = Vec<usize>;
 
+/// A value of one axis with a value of another, each as numbers of axis and value.
+pub type Meeting = ((usize, usize), (usize, usize));
+
 /// Stands for a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
@@ -420,8 +423,8 @@ impl Kind {
     }
 
     /// Element `index` of the full product of the options that depend on each other. The loose ones take a
-    /// combination each, by a hash of the index, so that each of their combinations meets every value
-    /// of every other axis.
+    /// combination each, by a hash of the index, so that each of their values meets every value of
+    /// every other axis.
     pub fn product_element(&self, index: usize) -> Choice {
         let mut choice = digits(self.bound(), index);
         // Knuth's multiplicative hash; its upper bits are the mixed ones.
@@ -431,24 +434,22 @@ impl Kind {
         choice
     }
 
-    /// Number of the combination of the loose options in a choice, with every value of another
-    /// axis that it meets there (number of the axis, and of the value).
-    pub fn meetings(&self, choice: &[usize]) -> Vec<(usize, usize, usize)> {
-        let (bound, loose) = choice.split_at(self.bound().len());
-        let axes = self.loose().iter().zip(loose);
-        let combination = axes.fold(0, |number, (axis, value)| {
-            number * axis.values.len() + value
-        });
-        let values = bound.iter().enumerate();
-        values
-            .map(|(axis, &value)| (combination, axis, value))
+    /// What a choice shows of the loose options: each one's value with the value of every other axis.
+    pub fn meetings(&self, choice: &[usize]) -> Vec<Meeting> {
+        let axes = || choice.iter().copied().enumerate();
+        let loose = axes().skip(self.bound().len());
+        loose
+            .flat_map(|one| axes().take(one.0).map(move |other| (one, other)))
             .collect()
     }
 
     /// The number of all meetings.
     pub fn meetings_len(&self) -> usize {
-        let axes = self.bound().iter();
-        combinations(self.loose()) * axes.map(|axis| axis.values.len()).sum::<usize>()
+        let sizes: Vec<usize> = self.axes.iter().map(|axis| axis.values.len()).collect();
+        let loose = self.bound().len()..sizes.len();
+        loose
+            .map(|one| sizes[one] * sizes[..one].iter().sum::<usize>())
+            .sum()
     }
 
     /// The choice with the first value of every axis but those named: `[("emf", "model")]`.
