@@ -49,10 +49,11 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
     let mut open: BTreeSet<Pair> = witnesses.keys().copied().collect();
     while let Some(pair) = open.first() {
         let grown = (0..ATTEMPTS).map(|_| grow(*pair, lengths, &open, &covering.open, &mut order));
-        let row = grown
-            .filter(|row| accepts(row))
-            .max_by_key(|row| gain(row, &open))
-            .unwrap_or_else(|| witnesses[pair].clone());
+        let mut grown: Vec<Vec<usize>> = grown.collect();
+        // The best one first: to ask whether a row is accepted takes long.
+        grown.sort_by_cached_key(|row| gain(row, &open));
+        let row = grown.into_iter().rev().find(|row| accepts(row));
+        let row = row.unwrap_or_else(|| witnesses[pair].clone());
         open.retain(|pair| !covers(&row, *pair));
         covering.rows.push(row);
     }
