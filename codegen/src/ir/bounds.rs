@@ -12,7 +12,9 @@
 use std::collections::BTreeSet;
 
 use super::error::{ErrorInterval, Exact, Real};
-use super::graph::{Comparison, Function, Interval, Kind, Op, Program, Value};
+use super::graph::{Function, Program};
+use super::interval::Interval;
+use super::op::{Comparison, Kind, Op, Value};
 
 /// A part of all that can happen, with its bounds.
 #[derive(Clone, Debug)]

@@ -6,9 +6,10 @@
 
 use super::error::{Exact, Real};
 use super::graph::{
-    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Node, Op, ParamId,
-    Periodic, Program, Quantity, Stage, StateId, Table, TableId, Value, Word,
+    Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
 };
+use super::interval::Interval;
+use super::op::{Comparison, ConstantId, Op, ParamId, StateId, TableId, Value};
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
 /// cannot overflow however wrong a program is.

@@ -3,7 +3,8 @@
 //! Counted over the graph, so the same for every target. The normal path leaves out the stages that
 //! are marked rare; the worst path runs every stage.
 
-use super::graph::{Function, Op, Stage};
+use super::graph::{Function, Stage};
+use super::op::Op;
 use std::fmt;
 use std::ops::AddAssign;
 

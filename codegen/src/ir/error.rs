@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::graph::Interval;
+use super::interval::Interval;
 
 /// Errors are multiples of 2^-24.
 const FRACTION_BITS: u32 = 24;

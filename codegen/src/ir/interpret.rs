@@ -4,7 +4,8 @@
 //! emitted code. A value that leaves its proven interval is reported: that would be a bug of the
 //! generator, and a test that runs the interpreter finds it.
 
-use super::graph::{Function, Op, Program, Value};
+use super::graph::{Function, Program};
+use super::op::{Op, Value};
 use super::verify::VerifiedGraph;
 
 /// A value left its proven interval, or an operand its operator's domain: a bug of the generator.

@@ -1,6 +1,6 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
-//! [`graph`] defines it and its one arithmetic, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
+//! [`graph`] defines it, [`op`] its one arithmetic, [`interval`] what is proven of a value, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
 //! `paths` takes a step apart at its exit,
 //! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`bounds`] says how far its values are from ideal ones,
@@ -13,6 +13,8 @@ pub mod cost;
 pub mod error;
 pub mod graph;
 pub mod interpret;
+pub mod interval;
+pub mod op;
 mod paths;
 mod prune;
 pub mod text;
@@ -25,9 +27,10 @@ pub use build::FunctionBuilder;
 pub use cost::{Cost, PathCost, live_words};
 pub use error::{ErrorInterval, Exact, Real};
 pub use graph::{
-    Comparison, Constant, ConstantId, Function, Guard, Input, Interval, Kind, Node, Op, ParamId,
-    Periodic, Program, Quantity, Stage, StateId, Table, TableId, Value, Word,
+    Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
 };
 pub use interpret::{Escape, Machine};
+pub use interval::Interval;
+pub use op::{Comparison, ConstantId, Kind, Op, ParamId, StateId, TableId, Value};
 pub use paths::Paths;
 pub use verify::{VerifiedGraph, Violation, verify};

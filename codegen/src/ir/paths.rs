@@ -4,7 +4,8 @@
 //! valid), and operators that only guard against the contrary fall away. Both paths compute what the whole function
 //! computes, so the intervals that were verified for it hold for them.
 
-use super::graph::{Comparison, Function, Guard, Kind, Op, Value};
+use super::graph::{Function, Guard};
+use super::op::{Comparison, Kind, Op, Value};
 
 /// The paths of a function.
 #[derive(Clone, Debug)]

@@ -3,7 +3,8 @@
 //! Building blocks compute all that some variant may want; what this variant does not use goes here.
 //! Words (state, set-point) and inputs stay: they are the interface.
 
-use super::graph::{ConstantId, Function, Op, Program, TableId, Value};
+use super::graph::{Function, Program};
+use super::op::{ConstantId, Op, TableId, Value};
 
 impl Program {
     /// The program without dead values, constants and tables.

@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
-use super::graph::{Comparison, Function, Kind, Op, Program, Value};
+use super::graph::{Function, Program};
+use super::op::{Comparison, Kind, Op, Value};
 
 impl fmt::Display for Program {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -23,7 +23,9 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use super::graph::{Function, Guard, Interval, Kind, Op, Program, Value, Word};
+use super::graph::{Function, Guard, Program, Word};
+use super::interval::Interval;
+use super::op::{Kind, Op, Value};
 
 /// A broken invariant.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,8 @@
 //! Each invariant of the verifier, broken in a program that is right but for that.
 
-use super::graph::{Function, Interval, Op, ParamId, Program, StateId, Value};
+use super::graph::{Function, Program};
+use super::interval::Interval;
+use super::op::{Op, ParamId, StateId, Value};
 use super::{Comparison, FunctionBuilder, verify};
 
 /// A program with all that the invariants speak of, that keeps them.

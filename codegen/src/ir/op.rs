@@ -1,0 +1,484 @@
+//! Operators and the meaning of every one of them.
+//!
+//! Every value is a 32-bit two's complement word or a flag. [`Op::apply`] is the one definition of
+//! what operators compute; [`Op::interval`] is its extension to intervals. All integers are exact:
+//! an operator whose result leaves the 32-bit word is an error of the program, except for the
+//! angle operators, which wrap by definition.
+
+use super::interval::Interval;
+
+/// A value of a function: index of the node that defines it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Value(pub(crate) u32);
+
+impl Value {
+    /// Position of the defining node in its function.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Index of a named constant of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ConstantId(pub(crate) u32);
+
+/// Index of a table of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TableId(pub(crate) u32);
+
+/// Index of a set-point word of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ParamId(pub(crate) u32);
+
+/// Index of a state word of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct StateId(pub(crate) u32);
+
+macro_rules! position {
+    ($($id:ident),*) => {$(
+        impl $id {
+            /// Position in the program's list.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+    )*};
+}
+position!(ConstantId, TableId, ParamId, StateId);
+
+/// What a value can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A 32-bit signed word.
+    Word,
+    /// True or false.
+    Flag,
+}
+
+/// Comparison operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// a < b
+    Less,
+    /// a <= b
+    LessEqual,
+    /// a == b
+    Equal,
+    /// a != b
+    NotEqual,
+}
+
+impl Comparison {
+    fn holds(self, a: i64, b: i64) -> bool {
+        match self {
+            Self::Less => a < b,
+            Self::LessEqual => a <= b,
+            Self::Equal => a == b,
+            Self::NotEqual => a != b,
+        }
+    }
+}
+
+/// Operators. `a`, `b` and so on are words unless said otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Op {
+    /// Word `n` of the function's inputs.
+    Input(u32),
+    /// A set-point word.
+    Param(ParamId),
+    /// A state word as it was before the step.
+    State(StateId),
+    /// A named constant.
+    Constant(ConstantId),
+    /// A small number that needs no name.
+    Literal(i32),
+    /// a + b
+    Add(Value, Value),
+    /// a - b
+    Sub(Value, Value),
+    /// -a
+    Neg(Value),
+    /// |a|
+    Abs(Value),
+    /// a b, in one word
+    Product(Value, Value),
+    /// floor((c x + 2^(shift-1)) / 2^shift): coefficient times signal, rounded half up
+    MulRound {
+        /// Coefficient.
+        coefficient: Value,
+        /// Signal.
+        signal: Value,
+        /// 1 to 62.
+        shift: u32,
+    },
+    /// floor(a b / 2^shift)
+    MulFloor {
+        /// Factor.
+        a: Value,
+        /// Factor.
+        b: Value,
+        /// 0 to 62.
+        shift: u32,
+    },
+    /// min(a b, limit) for a, b >= 0
+    MulLimited {
+        /// Factor, not negative.
+        a: Value,
+        /// Factor, not negative.
+        b: Value,
+        /// Upper limit, a word.
+        limit: Value,
+    },
+    /// a 2^n
+    ShiftLeft(Value, u32),
+    /// floor(a / 2^n)
+    ShiftRight(Value, u32),
+    /// min(a, b)
+    Min(Value, Value),
+    /// max(a, b)
+    Max(Value, Value),
+    /// min(max(x, low), high), low <= high
+    Clamp {
+        /// What is clamped.
+        x: Value,
+        /// Lower limit.
+        low: Value,
+        /// Upper limit.
+        high: Value,
+    },
+    /// min(floor(numerator 2^shift / denominator), limit), numerator >= 0, denominator >= 1
+    Divide {
+        /// Not negative.
+        numerator: Value,
+        /// 0 to 31.
+        shift: u32,
+        /// At least 1.
+        denominator: Value,
+        /// Upper limit, a word.
+        limit: Value,
+    },
+    /// floor((2^32 - 1) / a), a >= 2
+    TurnOver(Value),
+    /// (a + b) mod 2^32 as a signed word: angles
+    AngleAdd(Value, Value),
+    /// (a - b) mod 2^32 as a signed word: angles
+    AngleSub(Value, Value),
+    /// floor(u segments / 2^32) with u the angle as an unsigned word
+    AngleIndex {
+        /// Angle.
+        angle: Value,
+        /// Segments of a turn, 1 to 2^16.
+        segments: u32,
+    },
+    /// the top 31 bits of (u segments mod 2^32): position within the segment, 2^31 = its whole width
+    AngleFraction {
+        /// Angle.
+        angle: Value,
+        /// Segments of a turn, 1 to 2^16.
+        segments: u32,
+    },
+    /// table[index mod length]
+    Lookup {
+        /// Table; its length is a power of two.
+        table: TableId,
+        /// Any word.
+        index: Value,
+    },
+    /// Flag: a compared with b
+    Compare(Comparison, Value, Value),
+    /// Flag: both flags
+    And(Value, Value),
+    /// Flag: either flag
+    Or(Value, Value),
+    /// Flag: not the flag
+    Not(Value),
+    /// `then` if the flag holds, else `otherwise`; both of the same kind
+    Select {
+        /// Flag.
+        condition: Value,
+        /// Value where it holds.
+        then: Value,
+        /// Value where it does not.
+        otherwise: Value,
+    },
+    /// Result of a guarded stage: `taken` from inside if the guard held, else `otherwise` from outside
+    Join {
+        /// Value of the guarded stage.
+        taken: Value,
+        /// Value defined before the guarded stage.
+        otherwise: Value,
+    },
+}
+
+impl Op {
+    /// The operands, in order.
+    pub fn operands(&self) -> Vec<Value> {
+        match *self {
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Literal(_) => vec![],
+            Self::Neg(a)
+            | Self::Abs(a)
+            | Self::ShiftLeft(a, _)
+            | Self::ShiftRight(a, _)
+            | Self::TurnOver(a)
+            | Self::Not(a)
+            | Self::AngleIndex { angle: a, .. }
+            | Self::AngleFraction { angle: a, .. }
+            | Self::Lookup { index: a, .. } => vec![a],
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Product(a, b)
+            | Self::MulRound {
+                coefficient: a,
+                signal: b,
+                ..
+            }
+            | Self::MulFloor { a, b, .. }
+            | Self::Min(a, b)
+            | Self::Max(a, b)
+            | Self::AngleAdd(a, b)
+            | Self::AngleSub(a, b)
+            | Self::Compare(_, a, b)
+            | Self::And(a, b)
+            | Self::Or(a, b)
+            | Self::Join {
+                taken: a,
+                otherwise: b,
+            } => vec![a, b],
+            Self::MulLimited { a, b, limit: c }
+            | Self::Divide {
+                numerator: a,
+                denominator: b,
+                limit: c,
+                ..
+            }
+            | Self::Clamp {
+                x: a,
+                low: b,
+                high: c,
+            }
+            | Self::Select {
+                condition: a,
+                then: b,
+                otherwise: c,
+            } => vec![a, b, c],
+        }
+    }
+
+    /// Replaces every operand.
+    pub(crate) fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
+        match self {
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Literal(_) => {}
+            Self::Neg(a)
+            | Self::Abs(a)
+            | Self::ShiftLeft(a, _)
+            | Self::ShiftRight(a, _)
+            | Self::TurnOver(a)
+            | Self::Not(a)
+            | Self::AngleIndex { angle: a, .. }
+            | Self::AngleFraction { angle: a, .. }
+            | Self::Lookup { index: a, .. } => *a = f(*a),
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Product(a, b)
+            | Self::MulRound {
+                coefficient: a,
+                signal: b,
+                ..
+            }
+            | Self::MulFloor { a, b, .. }
+            | Self::Min(a, b)
+            | Self::Max(a, b)
+            | Self::AngleAdd(a, b)
+            | Self::AngleSub(a, b)
+            | Self::Compare(_, a, b)
+            | Self::And(a, b)
+            | Self::Or(a, b)
+            | Self::Join {
+                taken: a,
+                otherwise: b,
+            } => {
+                *a = f(*a);
+                *b = f(*b);
+            }
+            Self::MulLimited { a, b, limit: c }
+            | Self::Divide {
+                numerator: a,
+                denominator: b,
+                limit: c,
+                ..
+            }
+            | Self::Clamp {
+                x: a,
+                low: b,
+                high: c,
+            }
+            | Self::Select {
+                condition: a,
+                then: b,
+                otherwise: c,
+            } => {
+                *a = f(*a);
+                *b = f(*b);
+                *c = f(*c);
+            }
+        }
+    }
+
+    /// What kind of value the operator yields, from the kinds of its operands.
+    pub fn kind(&self, kind_of: impl Fn(Value) -> Kind) -> Kind {
+        match *self {
+            Self::Compare(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => Kind::Flag,
+            Self::Select { then: a, .. } | Self::Join { taken: a, .. } => kind_of(a),
+            _ => Kind::Word,
+        }
+    }
+
+    /// What kinds the operands must have, in the order of [`Op::operands`].
+    pub fn operand_kinds(&self, result: Kind) -> Vec<Kind> {
+        match *self {
+            Self::And(..) | Self::Or(..) => vec![Kind::Flag, Kind::Flag],
+            Self::Not(_) => vec![Kind::Flag],
+            Self::Select { .. } => vec![Kind::Flag, result, result],
+            Self::Join { .. } => vec![result, result],
+            _ => vec![Kind::Word; self.operands().len()],
+        }
+    }
+
+    /// The exact result for operand values `x` (in the order of [`Op::operands`]), before any check
+    /// that it fits its word. `None` for leaves and joins, whose value comes from elsewhere, and for
+    /// operands outside the operator's domain.
+    pub fn apply(&self, x: &[i64], table: impl Fn(TableId, i64) -> i64) -> Option<i64> {
+        let turn = 1_i64 << 32;
+        let unsigned = |a: i64| a.rem_euclid(turn);
+        let wrap = |a: i64| i64::from(a.rem_euclid(turn) as u32 as i32);
+        Some(match *self {
+            Self::Input(_)
+            | Self::Param(_)
+            | Self::State(_)
+            | Self::Constant(_)
+            | Self::Join { .. } => return None,
+            Self::Literal(value) => i64::from(value),
+            Self::Add(..) => x[0] + x[1],
+            Self::Sub(..) => x[0] - x[1],
+            Self::Neg(_) => -x[0],
+            Self::Abs(_) => x[0].abs(),
+            Self::Product(..) => x[0] * x[1],
+            Self::MulRound { shift, .. } => {
+                ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64
+            }
+            Self::MulFloor { shift, .. } => ((i128::from(x[0]) * i128::from(x[1])) >> shift) as i64,
+            Self::MulLimited { .. } => {
+                if x[0] < 0 || x[1] < 0 {
+                    return None;
+                }
+                (x[0] * x[1]).min(x[2])
+            }
+            Self::ShiftLeft(_, n) => x[0] << n,
+            Self::ShiftRight(_, n) => x[0] >> n,
+            Self::Min(..) => x[0].min(x[1]),
+            Self::Max(..) => x[0].max(x[1]),
+            Self::Clamp { .. } => x[0].max(x[1]).min(x[2]),
+            Self::Divide { shift, .. } => {
+                if x[0] < 0 || x[1] < 1 {
+                    return None;
+                }
+                ((x[0] << shift) / x[1]).min(x[2])
+            }
+            Self::TurnOver(_) => {
+                if x[0] < 2 {
+                    return None;
+                }
+                (turn - 1) / x[0]
+            }
+            Self::AngleAdd(..) => wrap(x[0] + x[1]),
+            Self::AngleSub(..) => wrap(x[0] - x[1]),
+            Self::AngleIndex { segments, .. } => (unsigned(x[0]) * i64::from(segments)) >> 32,
+            Self::AngleFraction { segments, .. } => {
+                unsigned(unsigned(x[0]) * i64::from(segments)) >> 1
+            }
+            Self::Lookup { table: id, .. } => table(id, x[0]),
+            Self::Compare(how, ..) => i64::from(how.holds(x[0], x[1])),
+            Self::And(..) => x[0] & x[1],
+            Self::Or(..) => x[0] | x[1],
+            Self::Not(_) => 1 - x[0],
+            Self::Select { .. } => x[if x[0] == 1 { 1 } else { 2 }],
+        })
+    }
+
+    /// An interval that holds every result for operands in the intervals `x`; exact but for
+    /// correlations between operands. `None` where the operator's domain may be left.
+    pub fn interval(
+        &self,
+        x: &[Interval],
+        table: impl Fn(TableId) -> Interval,
+    ) -> Option<Interval> {
+        let exact = |p: i64, q: i64| self.apply(&[p, q, 0], |_, _| 0).unwrap_or(0);
+        Some(match *self {
+            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) => return None,
+            Self::Literal(value) => Interval::point(i64::from(value)),
+            // Monotonic in each operand: the corners decide.
+            Self::Add(..)
+            | Self::Sub(..)
+            | Self::Product(..)
+            | Self::MulRound { .. }
+            | Self::MulFloor { .. }
+            | Self::Min(..)
+            | Self::Max(..) => x[0].corners(x[1], exact),
+            Self::Neg(_) => Interval::new(-x[0].high, -x[0].low),
+            Self::Abs(_) => {
+                let least = if x[0].low <= 0 && x[0].high >= 0 {
+                    0
+                } else {
+                    x[0].low.abs().min(x[0].high.abs())
+                };
+                Interval::new(least, x[0].magnitude())
+            }
+            Self::MulLimited { .. } => {
+                if x[0].low < 0 || x[1].low < 0 {
+                    return None;
+                }
+                Interval::new(
+                    (x[0].low * x[1].low).min(x[2].low),
+                    (x[0].high * x[1].high).min(x[2].high),
+                )
+            }
+            Self::ShiftLeft(_, n) => Interval::new(x[0].low << n, x[0].high << n),
+            Self::ShiftRight(_, n) => Interval::new(x[0].low >> n, x[0].high >> n),
+            Self::Clamp { .. } => {
+                let raised = x[0].corners(x[1], i64::max);
+                raised.corners(x[2], i64::min)
+            }
+            Self::Divide { shift, .. } => {
+                if x[0].low < 0 || x[1].low < 1 {
+                    return None;
+                }
+                let quotient = Interval::new(
+                    (x[0].low << shift) / x[1].high,
+                    (x[0].high << shift) / x[1].low,
+                );
+                Interval::new(quotient.low.min(x[2].low), quotient.high.min(x[2].high))
+            }
+            Self::TurnOver(_) => {
+                if x[0].low < 2 {
+                    return None;
+                }
+                Interval::new(((1 << 32) - 1) / x[0].high, ((1 << 32) - 1) / x[0].low)
+            }
+            Self::AngleAdd(..) | Self::AngleSub(..) => Interval::WORD,
+            Self::AngleIndex { segments, .. } => Interval::new(0, i64::from(segments) - 1),
+            Self::AngleFraction { .. } => Interval::new(0, i64::from(i32::MAX)),
+            Self::Lookup { table: id, .. } => table(id),
+            Self::Compare(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => Interval::FLAG,
+            Self::Select { .. } => x[1].union(x[2]),
+            Self::Join { .. } => x[0].union(x[1]),
+        })
+    }
+}
