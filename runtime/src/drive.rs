@@ -45,7 +45,7 @@ pub trait Drive {
     const SPEC: &'static str;
     /// The fixed-point format of every kind of signals, coefficient and table.
     const FORMATS: &'static [Format];
-    /// Names of the state words, in the order of [`Drive::state_word`].
+    /// Names of the state words, in the order of [`Drive::state_words`].
     const STATE_NAMES: &'static [&'static str];
 
     /// A drive with zero set-point that controls currents from its first step on, with nominal current offsets.
@@ -57,9 +57,10 @@ pub trait Drive {
     fn split(&mut self) -> (&Self::SetPointHalf, Self::LoopHalf<'_>);
     /// The set-point of a drive that is not split.
     fn set_point(&self) -> &Self::SetPointHalf;
-    /// State word `index` (see [`Drive::STATE_NAMES`]); 0 past the end. For verification.
-    fn state_word(&self, index: usize) -> i32;
-    /// Overwrites state word `index` with a value inside its range. For verification.
+    /// Copies the state words, in the order of [`Drive::STATE_NAMES`], to the front of `words`; does nothing where they
+    /// do not fit. For verification.
+    fn state_words(&self, words: &mut [i32]);
+    /// Overwrites state word `index` (of [`Drive::STATE_NAMES`]) with a value inside its range. For verification.
     fn set_state_word(&mut self, index: usize, value: i32);
 
     /// See [`DriveLoop::step`].

@@ -290,8 +290,9 @@ mod tests {
                 .iter()
                 .position(|&name| name == "i_b_prev")
                 .expect("is there");
-            let word = drive.state_word(index);
-            drive.set_state_word(index, word ^ 1);
+            let mut words = vec![0; names.len()];
+            drive.state_words(&mut words);
+            drive.set_state_word(index, words[index] ^ 1);
         }
         legs
     }

@@ -7,6 +7,9 @@ use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outp
 use hexagen::fixed::types::I16F16;
 use hexagen::{Drive, Legs, Sample};
 
+/// Room for the state words of any drive here.
+const MOST_WORDS: usize = 64;
+
 /// Where a session reads its task and writes its answers.
 pub trait Link {
     /// Fills the front of `bytes`; returns how many, fewer than asked for only at the end of the input.
@@ -169,30 +172,38 @@ impl<D: Drive> Replayed<D> {
         )
     }
 
+    /// The state words behind a step, in front of `words`.
+    fn state_words<'w>(&self, words: &'w mut [i32; MOST_WORDS]) -> &'w [i32] {
+        const { assert!(D::STATE_NAMES.len() <= MOST_WORDS) };
+        self.drive.state_words(words);
+        &words[..D::STATE_NAMES.len()]
+    }
+
     fn digest(&mut self, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {
-        let mut digest = Digest::default();
+        let (mut digest, mut words) = (Digest::default(), [0; MOST_WORDS]);
         for &record in records {
             let Some(sample) = self.sample(record)? else {
                 continue;
             };
             let legs = self.step(sample);
             digest.answer(&legs, self.drive.fault());
-            for index in 0..D::STATE_NAMES.len() {
-                digest.word(self.drive.state_word(index) as u32);
+            for &word in self.state_words(&mut words) {
+                digest.word(word as u32);
             }
         }
         Ok(digest)
     }
 
     fn full(&mut self, records: &[[u8; RECORD]], link: &mut dyn Link) -> Result<(), Broken> {
+        let mut words = [0; MOST_WORDS];
         for &record in records {
             let Some(sample) = self.sample(record)? else {
                 continue;
             };
             let legs = self.step(sample);
             link.write(&encode_outputs(&legs, self.drive.fault()))?;
-            for index in 0..D::STATE_NAMES.len() {
-                link.write(&self.drive.state_word(index).to_le_bytes())?;
+            for word in self.state_words(&mut words) {
+                link.write(&word.to_le_bytes())?;
             }
         }
         Ok(())

@@ -29,15 +29,13 @@ impl Types<'_> {
         });
         let words = &self.program.states;
         let state_names = words.iter().map(|word| &word.name);
-        let reads = words.iter().enumerate().map(|(index, word)| {
-            let index = Literal::usize_unsuffixed(index);
+        let reads = words.iter().map(|word| {
             let field = snake(&word.name);
-            let value = if word.storage_bits == 16 {
+            if word.storage_bits == 16 {
                 quote!(i32::from(self.state.#field))
             } else {
                 quote!(self.state.#field.0)
-            };
-            quote!(#index => #value)
+            }
         });
         let writes = words.iter().enumerate().map(|(index, word)| {
             let index = Literal::usize_unsuffixed(index);
@@ -92,10 +90,10 @@ impl Types<'_> {
                     &self.set_point
                 }
 
-                fn state_word(&self, index: usize) -> i32 {
-                    match index {
-                        #(#reads,)*
-                        _ => 0,
+                #[inline]
+                fn state_words(&self, words: &mut [i32]) {
+                    if let Some(words) = words.first_chunk_mut() {
+                        *words = [#(#reads),*];
                     }
                 }
 

@@ -74,9 +74,7 @@ impl<D: Drive> Subject for Compiled<D> {
 
     #[inline]
     fn state_words(&self, words: &mut [i32]) {
-        for (index, word) in words.iter_mut().enumerate() {
-            *word = self.0.state_word(index);
-        }
+        self.0.state_words(words);
     }
 
     fn set_state_words(&mut self, words: &[i32]) {

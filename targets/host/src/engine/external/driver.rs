@@ -32,7 +32,7 @@ impl Calls<'_> {
 
 fn main() {
     let (mut input, mut output) = (std::io::stdin().lock(), std::io::stdout().lock());
-    let words = TheDrive::STATE_NAMES.len();
+    let mut state = vec![0; TheDrive::STATE_NAMES.len()];
     let mut drive = <TheDrive as Drive>::new();
     let (mut batch, mut answers) = (Vec::new(), Vec::new());
     let mut length = [0; 4];
@@ -57,9 +57,8 @@ fn main() {
                     }
                     answers.extend(legs.state.map(|state| state as u8));
                     answers.push(Drive::fault(&drive) as u8);
-                    for index in 0..words {
-                        answers.extend(Drive::state_word(&drive, index).to_le_bytes());
-                    }
+                    Drive::state_words(&drive, &mut state);
+                    answers.extend(state.iter().flat_map(|word| word.to_le_bytes()));
                 }
                 2 => Drive::set_current(&drive, I16F16::from_bits(calls.word())),
                 3 => Drive::set_torque(&drive, I16F16::from_bits(calls.word())),
@@ -69,7 +68,7 @@ fn main() {
                 7 => Drive::precharge(&mut drive),
                 9 => Drive::set_speed(&drive, I16F16::from_bits(calls.word())),
                 _ => {
-                    for index in 0..words {
+                    for index in 0..state.len() {
                         let word = calls.word();
                         Drive::set_state_word(&mut drive, index, word);
                     }
