@@ -11,6 +11,8 @@
 
 /// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to a whole number.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
+/// 2^51. Products below it can be taken whole: with half of their last bit added they still fit 53 bits.
+const WHOLE: f64 = 2_251_799_813_685_248.0;
 const TWO_16: f64 = 65_536.0;
 const TWO_32: f64 = 4_294_967_296.0;
 
@@ -44,20 +46,14 @@ pub fn pow2(exponent: i32) -> f64 {
 /// The whole number nearest to `y`, |y| < 2^51, not half way between two.
 #[inline]
 fn nearest(y: f64) -> f64 {
-    debug_assert!(
-        y.abs() < 2_251_799_813_685_248.0,
-        "{y} is too large to round"
-    );
+    debug_assert!(y.abs() < WHOLE, "{y} is too large to round");
     (y + MAGIC) - MAGIC
 }
 
 /// The greatest whole number not above `y`, |y| < 2^51.
 #[inline]
 pub fn floor(y: f64) -> f64 {
-    debug_assert!(
-        y.abs() < 2_251_799_813_685_248.0,
-        "{y} is too large for floor"
-    );
+    debug_assert!(y.abs() < WHOLE, "{y} is too large for floor");
     let nearest = (y + MAGIC) - MAGIC;
     // A mask, because a branch would be mispredicted every other time.
     let above = u64::from(nearest > y).wrapping_neg();
@@ -137,12 +133,33 @@ pub fn divide(n: f64, s: u32, den: f64, limit: f64) -> f64 {
         "{n}/{den}, at most {limit}"
     );
     let numerator = n * pow2(s as i32);
-    let quotient = floor((numerator / den).min(limit));
+    let quotient = floor(lesser(numerator / den, limit));
     // Each difference is exact: the upper half of the quotient leaves less than 2^49.
     let high = floor_weighted(quotient, 1.0 / TWO_16) * TWO_16;
     let remainder = (numerator - high * den) - (quotient - high) * den;
     let one = |off: bool| either(off, 1.0, 0.0);
-    (quotient + one(remainder >= den) - one(remainder < 0.0)).min(limit)
+    lesser(
+        quotient + one(remainder >= den) - one(remainder < 0.0),
+        limit,
+    )
+}
+
+/// The greater of two numbers, neither of which is NaN: one instruction, where `f64::max` takes five.
+#[inline(always)]
+pub fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers, neither of which is NaN.
+#[inline(always)]
+pub fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// `y` within low <= high, none of which is NaN.
+#[inline(always)]
+pub fn within(y: f64, low: f64, high: f64) -> f64 {
+    lesser(greater(y, low), high)
 }
 
 /// `then` where the condition holds, else `otherwise`: a mask, because a branch would be mispredicted every other time.
@@ -207,8 +224,6 @@ impl Coefficient {
     }
 }
 
-/// Products below 2^51 can be taken whole: with half of their last bit added they still fit 53 bits.
-const WHOLE: f64 = 2_251_799_813_685_248.0;
 /// Most fraction bits that leave room for a half below the last one.
 const FRACTION: u32 = 51;
 

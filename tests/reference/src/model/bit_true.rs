@@ -21,7 +21,7 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation, Period};
 use super::trace::{PhysicalState, Reach, Trace};
 use super::variant::Variant;
-use crate::exact::{Coefficient, both, divide, floor, floor_weighted, pow2};
+use crate::exact::{Coefficient, both, divide, floor, floor_weighted, lesser, pow2, within};
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
@@ -260,7 +260,7 @@ impl BitTrue {
         // 1 measure
         let adc = [f64::from(sample.adc_a), f64::from(sample.adc_b)];
         let counted = |x: usize| {
-            (adc[x].min(self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
+            (lesser(adc[x], self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
         };
         let i = [counted(0), counted(1)];
         let i_c = -(i[0] + i[1]);
@@ -361,7 +361,11 @@ impl BitTrue {
                 let end = k.flux.both(angle.theta + ahead * angle.step);
                 let mean = |from: [f64; 2], to: [f64; 2]| {
                     both(|x| {
-                        floor_weighted(to[x] - from[x], k.flux_to_voltage).clamp(-k.e_max, k.e_max)
+                        within(
+                            floor_weighted(to[x] - from[x], k.flux_to_voltage),
+                            -k.e_max,
+                            k.e_max,
+                        )
                     })
                 };
                 (mean(start, end), mean(now, start))

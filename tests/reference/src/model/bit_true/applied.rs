@@ -1,7 +1,7 @@
 //! The voltage that a command really applies, off leg included (section 7).
 
 use super::constants::Constants;
-use crate::exact::halve;
+use crate::exact::{halve, within};
 
 /// Phase voltages a, b of the terminal voltages `terminal` with leg `off` (0: none, 1 to 3) off,
 /// at currents `i` and EMF `e`.
@@ -24,7 +24,7 @@ pub fn voltage(
         } else if i[leg] < -k.i_comm {
             v_bus
         } else {
-            floating.clamp(0.0, v_bus)
+            within(floating, 0.0, v_bus)
         };
     }
     let mean = k.k_third.mul(t[0] + t[1] + t[2]);

@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::{both, halve};
+use crate::exact::{both, halve, within};
 use crate::model::sector::OUT_PHASE;
 
 /// What the period that ends with the currents `i` shows of the EMF of phases a, b.
@@ -10,7 +10,7 @@ use crate::model::sector::OUT_PHASE;
 fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let State { i_prev, v_prev, .. } = state;
     both(|x| {
-        let d = (i[x] - i_prev[x]).clamp(-k.di_max, k.di_max);
+        let d = within(i[x] - i_prev[x], -k.di_max, k.di_max);
         v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
     })
 }
@@ -25,7 +25,7 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
         } else {
             seen[x]
         };
-        e.clamp(-k.v_largest, k.v_largest)
+        within(e, -k.v_largest, k.v_largest)
     })
 }
 
@@ -33,7 +33,7 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 #[inline]
 pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
     let seen = seen(k, state, i);
-    let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
+    let believed = |e: f64| within(e, -k.v_largest, k.v_largest);
     both(|x| {
         let lack = believed(seen[x] - state.e_prev[x]);
         let sum = state.integral[x];
@@ -44,7 +44,7 @@ pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 /// The estimate `seen` with the EMF of a leg that floated replaced by what the sector says of it.
 #[inline]
 pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64; 2]) -> [f64; 2] {
-    let believed = |e: f64| e.clamp(-k.v_largest, k.v_largest);
+    let believed = |e: f64| within(e, -k.v_largest, k.v_largest);
     let Some(off) = state.off_prev.checked_sub(1).filter(|leg| *leg < 3) else {
         return seen;
     };

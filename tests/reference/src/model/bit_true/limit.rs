@@ -3,7 +3,8 @@
 use super::constants::Constants;
 use crate::Saturation;
 use crate::exact::{
-    Coefficient, Shift, all_three, both, divide, either, floor, floor_shift, halve, pow2,
+    Coefficient, Shift, all_three, both, divide, either, floor, floor_shift, greater, halve,
+    lesser, pow2, within,
 };
 use crate::model::Reach;
 
@@ -27,8 +28,8 @@ pub fn limit(
     e: [f64; 2],
 ) -> ([f64; 2], Reach) {
     let u_c = -(u[0] + u[1]);
-    let max = u[0].max(u[1]).max(u_c);
-    let min = u[0].min(u[1]).min(u_c);
+    let max = greater(greater(u[0], u[1]), u_c);
+    let min = lesser(lesser(u[0], u[1]), u_c);
     let spread = max - min;
     if spread <= v_bus {
         return (u, Reach::Inside);
@@ -63,7 +64,7 @@ pub fn limit(
 fn nearest(k: &Constants, v_bus: f64, u: [f64; 3], max: f64, min: f64) -> [f64; 2] {
     let middle = halve(max + min);
     let half_bus = halve(v_bus);
-    let t = all_three(|x| (u[x] - middle + half_bus).clamp(0.0, v_bus));
+    let t = all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus));
     let mean = k.k_third.mul(t[0] + t[1] + t[2]);
     [t[0] - mean, t[1] - mean]
 }
@@ -89,14 +90,14 @@ fn torque_priority(
         return (near, Reach::Outside);
     }
     let s1 = 1f64.copysign(f[d]);
-    let (f_x, f_y) = ((-s1 * f[x]).max(0.0), (-s1 * f[y]).max(0.0));
+    let (f_x, f_y) = (greater(-s1 * f[x], 0.0), greater(-s1 * f[y], 0.0));
     let (along_x, along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
     let along = product(f_x, along_x) + product(f_y, along_y);
     let flip = 1f64.copysign(along);
     let (along_x, along_y, p, sign) = (flip * along_x, flip * along_y, along.abs(), flip * s1);
     let (q_x, q_y) = (product(f_x, v_bus), product(f_y, v_bus));
     let p_max = q_x + q_y;
-    let p_in = p.min(p_max);
+    let p_in = lesser(p, p_max);
     let x_is_heavy = along_x >= along_y;
     let near = [near[0], near[1], -(near[0] + near[1])];
     let (near_x, near_y) = (sign * (near[d] - near[x]), sign * (near[d] - near[y]));
@@ -106,10 +107,10 @@ fn torque_priority(
     let n = p_in - q_heavy;
     let is_more = n >= 0.0;
     let least = floor_shift(f_max, LIGHT_SHARE);
-    let den = either(is_more, f_light.max(least), f_max).max(1.0);
+    let den = greater(either(is_more, greater(f_light, least), f_max), 1.0);
     let quotient = divide(n.abs(), k.emf_product.bits(), den, v_bus);
-    let light = either(is_more, quotient.max(light_near), -quotient);
-    let heavy = (light + v_bus).min(v_bus);
+    let light = either(is_more, greater(quotient, light_near), -quotient);
+    let heavy = lesser(light + v_bus, v_bus);
     let (mut to_x, mut to_y) = (
         either(x_is_heavy, heavy, light),
         either(x_is_heavy, light, heavy),
@@ -118,8 +119,8 @@ fn torque_priority(
     let mut reach = Reach::Outside;
     if p > p_max {
         reach = Reach::PastReach;
-        let share = floor_shift(p_max, BLEND_SHARE).max(1.0);
-        let blend = floor((p - p_max) * BLEND_ONE / share).min(BLEND_ONE);
+        let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
+        let blend = lesser(floor((p - p_max) * BLEND_ONE / share), BLEND_ONE);
         let mul15 = Shift::new(BLEND_BITS);
         to_x += mul15.round_product(blend, near_x - to_x);
         to_y += mul15.round_product(blend, near_y - to_y);

@@ -1,7 +1,7 @@
 //! An estimated EMF moved on (section 8).
 
 use super::constants::Constants;
-use crate::exact::{floor_shift, floor_weighted};
+use crate::exact::{floor_shift, floor_weighted, within};
 use crate::model::sector::{CORNER_A, CORNER_B};
 
 /// 2^-15.
@@ -10,7 +10,7 @@ const FACTOR: f64 = 1.0 / 32_768.0;
 /// The estimate `e` of the period that just ended, in the target period and in the present one.
 #[inline]
 pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-    let factor = |line: f64| floor_shift(line.clamp(-k.line_max, k.line_max), k.line_shift);
+    let factor = |line: f64| floor_shift(within(line, -k.line_max, k.line_max), k.line_shift);
     let product = |y: f64, z: f64| k.k_slope.mul(floor_weighted(y * z, FACTOR));
     // The pair's EMF with c as minus the sum of a and b.
     let [p, q] = [CORNER_A[sector], CORNER_B[sector]];

@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::{floor, pow2, wrap32};
+use crate::exact::{floor, greater, lesser, pow2, wrap32};
 use crate::model::hall::HallClock;
 use crate::model::sector::HallEvent;
 
@@ -42,12 +42,12 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     let omega = if !turning {
         0.0
     } else if event.edge {
-        floor((pow2(32) - 1.0) / timing.rev.max(clock.rev_min))
+        floor((pow2(32) - 1.0) / greater(timing.rev, clock.rev_min))
     } else {
         state.omega
     };
-    let progress = (omega * timing.age_prev).min(SIXTH - 1.0);
-    let turn = (omega * clock.ticks).min(floor(SIXTH / 2.0));
+    let progress = lesser(omega * timing.age_prev, SIXTH - 1.0);
+    let turn = lesser(omega * clock.ticks, floor(SIXTH / 2.0));
     let step = timing.direction * turn;
     let in_sector = if !turning {
         floor(SIXTH / 2.0)

@@ -1,7 +1,7 @@
 //! The speed regulator (section "Speed loop").
 
 use super::constants::{Constants, Scale};
-use crate::exact::{Coefficient, floor, floor_constant, floor_weighted, pow2};
+use crate::exact::{Coefficient, floor, floor_constant, floor_weighted, pow2, within};
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 use std::f64::consts::TAU;
@@ -59,12 +59,12 @@ impl Regulator {
     /// The set-point, and the integral behind the step.
     #[inline]
     pub fn regulate(&self, reference: f64, speed: f64, most: f64, integral: f64) -> (f64, f64) {
-        let error = (reference - speed).clamp(-self.error_max, self.error_max);
+        let error = within(reference - speed, -self.error_max, self.error_max);
         let part = self.k_speed.mul(error);
         let open = part + floor_weighted(integral, self.to_voltage);
-        let j = open.clamp(-most.abs(), most.abs());
+        let j = within(open, -most.abs(), most.abs());
         let top = self.top / self.to_voltage;
         let moved = integral + self.k_speed_share.mul(part + 4.0 * (j - open));
-        (j, floor(moved.clamp(-top, top)))
+        (j, floor(within(moved, -top, top)))
     }
 }

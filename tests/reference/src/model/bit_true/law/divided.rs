@@ -1,7 +1,7 @@
 //! Two vectors in one period: the shares of the period for which legs are high (sections 10a to 12 of FCS-MPC).
 
 use super::{Command, Inputs, pulses};
-use crate::exact::{all_three, both, floor_shift, halve};
+use crate::exact::{all_three, both, floor_shift, halve, within};
 use crate::model::vectors;
 use hexagen::{LegState, Legs};
 
@@ -25,7 +25,11 @@ pub fn high_and_low(vector: usize) -> (usize, usize) {
 pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
     let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
     let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
-    let t = floor_shift(4.0 * v_bus + scores[lower] - scores[upper], 3).clamp(0.0, v_bus);
+    let t = within(
+        floor_shift(4.0 * v_bus + scores[lower] - scores[upper], 3),
+        0.0,
+        v_bus,
+    );
     all_three(|x| {
         let [in_lower, in_upper] = [lower, upper].map(|place| vectors::LEGS[pair[place]][x] > 0);
         if in_lower {

@@ -7,7 +7,7 @@ use super::two_steps::TwoSteps;
 use super::weighted::Weights;
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Shift, both, floor, halve, round_half_up};
+use crate::exact::{Shift, both, floor, halve, round_half_up, within};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -126,7 +126,7 @@ impl<'a> Choice<'a> {
         } else if self.held[leg] < -self.law.i_comm_volts {
             self.v_bus
         } else {
-            (driven + self.e[leg] + halve(self.e[leg])).clamp(0.0, self.v_bus)
+            within(driven + self.e[leg] + halve(self.e[leg]), 0.0, self.v_bus)
         }
     }
 
@@ -191,7 +191,7 @@ impl<'a> Choice<'a> {
                 Some(rail) => self.u[p] + halve(rail + self.u[p]),
             };
             let mut terminal = [0.0; 3];
-            terminal[p] = t.clamp(0.0, self.v_bus);
+            terminal[p] = within(t, 0.0, self.v_bus);
             divided::command(now, terminal, Some(off))
         } else {
             let partner = (0..vectors::FIRST_PAIR)

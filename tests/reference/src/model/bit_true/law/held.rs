@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use crate::Error;
-use crate::exact::{Coefficient, both};
+use crate::exact::{Coefficient, both, within};
 use crate::model::bit_true::constants::Scale;
 use crate::model::trace::Past;
 
@@ -66,7 +66,7 @@ impl Held {
             } else {
                 due
             };
-            (known - self.di.mul(now.i[x])).clamp(-limit, limit)
+            within(known - self.di.mul(now.i[x]), -limit, limit)
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
-use crate::exact::{Coefficient, both, halve, round_half_up};
+use crate::exact::{Coefficient, both, halve, round_half_up, within};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit;
 use crate::model::variant::reference_gain;
@@ -45,8 +45,8 @@ impl PiPwm {
         let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
         // 12
         let integral = both(|x| {
-            (now.integral[x] + self.k_i.mul(p[x] + u[x] - u_unsat[x]))
-                .clamp(-self.integral_max, self.integral_max)
+            let moved = now.integral[x] + self.k_i.mul(p[x] + u[x] - u_unsat[x]);
+            within(moved, -self.integral_max, self.integral_max)
         });
         Decision {
             u_unsat,
@@ -70,11 +70,11 @@ impl PiPwm {
         let part = now.set_point - self.k_p.mul(pair_current);
         let u = part + now.integral[0];
         // 10
-        let line = (2.0 * u).clamp(-now.v_bus, now.v_bus);
+        let line = within(2.0 * u, -now.v_bus, now.v_bus);
         // 12
         let limited = halve(line);
-        let integral = (now.integral[0] + self.k_i.mul(part + limited - u))
-            .clamp(-self.integral_max, self.integral_max);
+        let moved = now.integral[0] + self.k_i.mul(part + limited - u);
+        let integral = within(moved, -self.integral_max, self.integral_max);
         let phases = |u: f64| {
             let mut phases = [0.0; 3];
             if let Some((plus, minus)) = ends {

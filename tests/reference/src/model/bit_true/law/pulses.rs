@@ -1,7 +1,7 @@
 //! From phase voltages to pulses (section 11).
 
 use super::{Command, Inputs};
-use crate::exact::{all_three, floor, halve, to_u16};
+use crate::exact::{all_three, floor, greater, halve, lesser, to_u16, within};
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
@@ -9,7 +9,11 @@ use hexagen::{LegState, Legs};
 #[inline]
 fn compare(now: &Inputs, counts: f64) -> u16 {
     let k = now.k;
-    to_u16(floor((counts + k.half_count) * k.to_counts).clamp(0.0, k.timer_period))
+    to_u16(within(
+        floor((counts + k.half_count) * k.to_counts),
+        0.0,
+        k.timer_period,
+    ))
 }
 
 /// The voltage that gives the same duty on the nominal bus.
@@ -34,12 +38,12 @@ pub fn compare_of(now: &Inputs, t: f64, shift: f64) -> u16 {
 #[inline]
 pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Command {
     let u = [u[0], u[1], -(u[0] + u[1])];
-    let middle = halve(u[0].max(u[1]).max(u[2]) + u[0].min(u[1]).min(u[2]));
+    let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
     let half = halve(now.v_bus + 1.0);
-    let centred = all_three(|x| (u[x] - middle).clamp(-half, half));
+    let centred = all_three(|x| within(u[x] - middle, -half, half));
     let terminal = if terminals {
         let half_bus = halve(now.v_bus);
-        all_three(|x| (centred[x] + half_bus).clamp(0.0, now.v_bus))
+        all_three(|x| within(centred[x] + half_bus, 0.0, now.v_bus))
     } else {
         [0.0; 3]
     };
@@ -61,7 +65,7 @@ pub fn pair(now: &Inputs, u: [f64; 2], shifts: [f64; 3]) -> Command {
     }
     let u = [u[0], u[1], -(u[0] + u[1])];
     let v = u[sector::PLUS[now.sector_eff]] - u[sector::MINUS[now.sector_eff]];
-    line(now, v.clamp(-now.v_bus, now.v_bus), shifts)
+    line(now, within(v, -now.v_bus, now.v_bus), shifts)
 }
 
 /// The line voltage `v` of the conducting pair, within the bus.
