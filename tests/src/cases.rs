@@ -128,7 +128,9 @@ pub fn record(
             bits: states.set_point(most),
             is_torque,
             bus: (spec.inverter.bus == Bus::Measured).then(|| states.bus_counts()),
-            speed: (spec.loop_options().speed_bandwidth > 0.0)
+            speed: spec
+                .loop_options()
+                .has_speed_loop()
                 .then(|| states.set_point(most_speed)),
         };
         set.tell(&mut model);

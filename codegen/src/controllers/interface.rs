@@ -375,14 +375,14 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
         ]);
     }
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
-        list.push(hall_ticks(ticks, inverter.t_s));
+        let clock = operation::capture_clock(ticks, inverter.t_s);
+        let doc = format!("Ticks of `hall_ticks` per control period: a capture clock of {clock}.");
+        list.push(integer(
+            "HALL_TICKS_PER_PERIOD",
+            "u16",
+            i64::from(ticks),
+            &doc,
+        ));
     }
     list
-}
-
-/// `HALL_TICKS_PER_PERIOD`, the last constant of a drive that reads the capture timer.
-fn hall_ticks(ticks: u32, t_s: f64) -> PublicConstant {
-    let clock = engineering(f64::from(ticks) / t_s, "Hz");
-    let doc = format!("Ticks of `hall_ticks` per control period: a capture clock of {clock}.");
-    integer("HALL_TICKS_PER_PERIOD", "u16", i64::from(ticks), &doc)
 }

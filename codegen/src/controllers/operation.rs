@@ -2,11 +2,22 @@
 
 use super::current_loop::LoopDesign;
 use super::start::start_rpm;
+use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::engineering;
 use crate::spec::{BusSource, HallCapture, Spec};
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: the phase into which the current flows, and that out of which.
-const PAIRS: [&str; 6] = ["c, b", "a, b", "a, c", "b, c", "b, a", "c, a"];
+fn pairs() -> [String; 6] {
+    SECTOR_CURRENT.map(|signs| {
+        let phase_of = |wanted: i32| {
+            let mut phases = ["a", "b", "c"].into_iter().zip(signs);
+            phases
+                .find(|&(_, sign)| sign == wanted)
+                .map_or("", |(phase, _)| phase)
+        };
+        format!("{}, {}", phase_of(1), phase_of(-1))
+    })
+}
 
 /// Signs, sectors, and the sensors' scales.
 pub fn wiring(spec: &Spec, design: &LoopDesign) -> Vec<String> {
@@ -27,7 +38,7 @@ pub fn wiring(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         "| sector | S1 | S2 | S3 | S4 | S5 | S6 |".to_owned(),
         "|---|---|---|---|---|---|---|".to_owned(),
         format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")),
-        format!("| current into, out of phase (positive set-point) | {} |", PAIRS.join(" | ")),
+        format!("| current into, out of phase (positive set-point) | {} |", pairs().join(" | ")),
         String::new(),
         "A positive set-point makes torque forward, a negative one backward, whichever way the rotor turns. Against the rotation the".to_owned(),
         "motor brakes, and the power goes into the bus, whose voltage nothing here limits. Reversal needs no call. How to find".to_owned(),
@@ -38,13 +49,18 @@ pub fn wiring(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
         lines.extend([
             String::new(),
-            format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {}, which are {ticks} ticks", engineering(f64::from(ticks) / inverter.t_s, "Hz")),
+            format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {}, which are {ticks} ticks", capture_clock(ticks, inverter.t_s)),
             "(`HALL_TICKS_PER_PERIOD`) in a control period; the count stops at 65535. With `hall` it is one snapshot: latch both in the".to_owned(),
             "capture interrupt, or read the ticks, the code, and the ticks again, until the second count is not below the first. A pair that an".to_owned(),
             "edge tore apart is noticed where it contradicts the last period; the angle then goes by the time that was to be expected.".to_owned(),
         ]);
     }
     lines
+}
+
+/// The clock that counts `ticks` in a period, with its unit.
+pub fn capture_clock(ticks: u32, t_s: f64) -> String {
+    engineering(f64::from(ticks) / t_s, "Hz")
 }
 
 /// What a new drive does, and what to call first.

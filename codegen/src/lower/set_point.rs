@@ -5,9 +5,8 @@ use super::speed::speed_word;
 use super::{Bus, Coefficient, Lowering, Scale, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program};
+use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program, Value};
 use crate::spec::{BusSource, ControllerSpec, Spec};
-
 use std::f64::consts::TAU;
 
 /// Fraction bits of the ratio of nominal to measured bus.
@@ -152,8 +151,8 @@ impl Lowering<'_> {
 
 /// Builds `set_current`, `set_torque` and, with a measured bus, `set_bus`. `lowering` supplies rounding of
 /// coefficients and collects their formats; its own function is not touched.
-pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords, stiffness: f64) -> Vec<Function> {
-    let spec = lowering.spec;
+pub fn setters(lowering: &mut Lowering<'_>, words: SetPointWords) -> Vec<Function> {
+    let (spec, stiffness) = (lowering.spec, words.stiffness);
     let voltage = lowering.scale.voltage();
     let k_t = spec.torque_constant();
     let current = stiffness * voltage / 65536.0;
@@ -249,7 +248,6 @@ fn set_j(
     (limit, bits, meaning, physical): &(&str, f64, &str, String),
     input_doc: &str,
 ) -> Function {
-    let bits = bits.clamp(0.0, f64::from(i32::MAX)) as i32;
     let range = lowering.b.program.params[j.index()].interval;
     let quantity = match name {
         "set_torque" => "torque in newton metres",
@@ -269,19 +267,11 @@ fn set_j(
     let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc, "", sign]);
     b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
-    let high_doc = [format!("{meaning}: {physical}, 16 fraction bits.")];
-    let high = b.program.constant(limit, bits, &high_doc);
-    let low = b.program.constant(
-        &limit.replace("max", "min"),
-        -bits,
-        &[format!(
-            "{meaning}, negative: -{physical}, 16 fraction bits."
-        )],
-    );
-    let (low, high) = (b.constant(low), b.constant(high));
-    let clamped = b.clamp(input, low, high);
-    let factor = b.constant(coefficient.id);
-    let volts = b.mul(factor, clamped, coefficient.shift);
+    let docs = [
+        format!("{meaning}: {physical}, 16 fraction bits."),
+        format!("{meaning}, negative: -{physical}, 16 fraction bits."),
+    ];
+    let volts = limited_product(&mut b, input, (limit, *bits, docs), coefficient);
     b.name("j_new", volts);
     debug_assert!(b.interval(volts).magnitude() <= range.magnitude() || range.bits() > 32);
     b.set_param(j, volts);
@@ -304,10 +294,9 @@ fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
             "words of speed per bit of the set-point, 2^-16 rpm",
         ],
     );
-    let bits = round_down(most * 65536.0).min(f64::from(i32::MAX)) as i32;
+    let physical = significant(most);
     let doc = format!(
-        "Sets the speed in rpm, forward positive; saturates at {} rpm to both sides.",
-        significant(most)
+        "Sets the speed in rpm, forward positive; saturates at {physical} rpm to both sides."
     );
     let mut b = FunctionBuilder::new(lowering.b.program, "set_speed", &[&doc]);
     b.stage(
@@ -319,21 +308,32 @@ fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
         Interval::WORD,
         "Speed, bits of a number with 16 fraction bits, rpm.",
     );
-    let limits = [("speed_min_bits", -bits), ("speed_max_bits", bits)].map(|(name, bits)| {
-        let sign = if bits < 0 { "-" } else { "" };
-        let doc = format!(
-            "Greatest speed, {sign}{} rpm, 16 fraction bits.",
-            significant(most)
-        );
-        let id = b.program.constant(name, bits, &[doc]);
-        b.constant(id)
-    });
-    let clamped = b.clamp(input, limits[0], limits[1]);
-    let factor = b.constant(k_rpm.id);
-    let speed = b.mul(factor, clamped, k_rpm.shift);
+    let docs =
+        ["", "-"].map(|sign| format!("Greatest speed, {sign}{physical} rpm, 16 fraction bits."));
+    let limit = ("speed_max_bits", round_down(most * 65536.0), docs);
+    let speed = limited_product(&mut b, input, limit, k_rpm);
     b.name("speed_ref_new", speed);
     b.set_param(words.reference, speed);
     b.finish()
+}
+
+/// A coefficient times `input` within `bits` to both sides. `limit` names the constant of the upper limit; the docs
+/// are those of the upper and the lower one.
+fn limited_product(
+    b: &mut FunctionBuilder<'_>,
+    input: Value,
+    (limit, bits, docs): (&str, f64, [String; 2]),
+    coefficient: Coefficient,
+) -> Value {
+    let bits = bits.clamp(0.0, f64::from(i32::MAX)) as i32;
+    let [high_doc, low_doc] = docs;
+    let high = b.program.constant(limit, bits, &[high_doc]);
+    let low = limit.replace("max", "min");
+    let low = b.program.constant(&low, -bits, &[low_doc]);
+    let (low, high) = (b.constant(low), b.constant(high));
+    let clamped = b.clamp(input, low, high);
+    let factor = b.constant(coefficient.id);
+    b.mul(factor, clamped, coefficient.shift)
 }
 
 fn set_bus(

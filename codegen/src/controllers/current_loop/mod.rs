@@ -32,7 +32,7 @@ pub fn lower_with(
     let mut program = Program::new(&spec.name);
     let set_point = SetPointWords::new(&mut program, spec, scale, stiffness);
     let mut lowering = Lowering::new(&mut program, spec, scale);
-    let setters = setters(&mut lowering, set_point, stiffness);
+    let setters = setters(&mut lowering, set_point);
     law(&mut lowering, set_point);
     let Lowering {
         b,

@@ -277,14 +277,13 @@ impl Types<'_> {
     /// the drive is doing.
     fn commands(&self, publish: &TokenStream) -> TokenStream {
         let samples = self.interface.calibration_samples;
-        let calibrate = match self.interface.precharge_periods {
-            0 => format!(
-                "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; then control at the set-point that stands. Ignored when tripped."
-            ),
-            periods => format!(
-                "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; then {periods} of pre-charge, then control at the set-point that stands. Ignored when tripped."
-            ),
+        let charged = match self.interface.precharge_periods {
+            0 => String::new(),
+            periods => format!("then {periods} of pre-charge, "),
         };
+        let calibrate = format!(
+            "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; {charged}then control at the set-point that stands. Ignored when tripped."
+        );
         let precharge = match self.interface.precharge_periods {
             0 => "Does nothing: the specification has no bootstrap pre-charge.".to_owned(),
             periods => format!(

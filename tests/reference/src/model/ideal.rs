@@ -133,7 +133,7 @@ impl Ideal {
             k_phase: motor.emf_constant,
             pp_t_s: pole_pairs * inverter.t_s,
             speed_loop: SpeedLoop::new(spec),
-            current: if spec.loop_options().speed_bandwidth > 0.0 {
+            current: if spec.loop_options().has_speed_loop() {
                 inverter.max_current
             } else {
                 0.0
@@ -165,7 +165,7 @@ impl Ideal {
     /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
     pub fn set_speed(&mut self, bits: i32) {
         if let Some(speed_loop) = &self.speed_loop {
-            self.speed = speed_loop.believed(f64::from(bits) / 65_536.0 * TAU / 60.0);
+            self.speed = speed_loop.allowed(f64::from(bits) / 65_536.0 * TAU / 60.0);
         }
     }
 

@@ -88,7 +88,7 @@ impl Variant {
             rotor: emf == Some(EmfSource::Model)
                 || options.advance > 0.0
                 || options.reference == Reference::Proportional
-                || options.speed_bandwidth > 0.0,
+                || options.has_speed_loop(),
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
             held: if held { Switch::On } else { Switch::Off },
@@ -115,7 +115,7 @@ impl Variant {
 
     /// A regulator of the speed asks for the current.
     pub fn has_speed_loop(&self) -> bool {
-        self.options.speed_bandwidth > 0.0
+        self.options.has_speed_loop()
     }
 
     /// A command takes effect one period after its sample.

@@ -39,6 +39,13 @@ pub struct LoopOptions {
     pub inertia: f64,
 }
 
+impl LoopOptions {
+    /// A regulator of the speed asks for the current.
+    pub fn has_speed_loop(&self) -> bool {
+        self.speed_bandwidth > 0.0
+    }
+}
+
 /// When a commutation ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CommutationEnd {

@@ -121,7 +121,9 @@ impl Stimulus {
             true_offset: [0; 2],
             nominal_offset: inverter.adc_offset as i32,
             offset_tolerance: inverter.offset_tolerance as i32,
-            speed_bits: (spec.loop_options().speed_bandwidth > 0.0)
+            speed_bits: spec
+                .loop_options()
+                .has_speed_loop()
                 .then(|| inverter.omega_max * 60.0 / TAU * 65_536.0),
             bus: if inverter.bus == Bus::Measured {
                 inverter.bus_sense()?

@@ -21,7 +21,7 @@ impl SpeedLoop {
     pub fn new(spec: &Spec) -> Option<Self> {
         let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
         let bandwidth = TAU * options.speed_bandwidth;
-        (bandwidth > 0.0).then(|| Self {
+        options.has_speed_loop().then(|| Self {
             gain: bandwidth * options.inertia / motor.torque_constant,
             share: bandwidth * inverter.t_s / 4.0,
             per_tick: f64::from(inverter.ticks) / inverter.t_s / f64::from(motor.pole_pairs),
@@ -31,7 +31,7 @@ impl SpeedLoop {
     }
 
     /// The speed within what is allowed, mechanical rad/s.
-    pub fn believed(&self, speed: f64) -> f64 {
+    pub fn allowed(&self, speed: f64) -> f64 {
         speed.clamp(-self.greatest, self.greatest)
     }
 
