@@ -5,12 +5,17 @@ use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, Meeting, generate_toml, kind, kinds};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::env;
 
 /// Steps of the paper's default drive of each kind.
 const DEFAULT_STEPS: u64 = 200_000;
 
 /// Steps of each element of the full product; the seeds differ, so all streams take part.
 const PRODUCT_STEPS: u64 = 500;
+
+/// Elements of a kind's product that a push compares; `HEXAGEN_WHOLE_PRODUCTS` in the environment takes all. That of
+/// FCS-MPC is longer.
+const MOST_OF_A_PRODUCT: usize = 10_000;
 
 /// Drives of each library motor and kind, and steps of each of them.
 const SAMPLE: usize = 24;
@@ -94,6 +99,12 @@ impl Tally {
     }
 }
 
+/// Elements of the product in an order of which any part visits all values of every axis: the stride shares no factor
+/// with the axes' lengths.
+fn spread_element(kind: &Kind, index: usize) -> Vec<usize> {
+    kind.product_element(index * 13_831 % kind.product_len())
+}
+
 #[test]
 fn every_set_point_of_the_paper_motor() {
     let kind = kind("pdcc");
@@ -118,16 +129,22 @@ fn default_drive_of_the_paper_motor() {
     }
 }
 
-/// All combinations of the options that depend on each other. The loose ones take turns, and each of their
-/// values meets every value of every other option in some drive that is compared.
+/// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The loose ones take
+/// turns, and each of their values meets every value of every other option in some drive that is compared.
 #[test]
 fn full_product_of_options_on_the_paper_motor() {
     let paper = motor(PAPER_MOTOR);
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
     for kind in kinds() {
-        let tally = (0..kind.product_len())
+        let most = if is_whole {
+            usize::MAX
+        } else {
+            MOST_OF_A_PRODUCT
+        };
+        let tally = (0..kind.product_len().min(most))
             .into_par_iter()
             .map(|index| {
-                let choice = kind.product_element(index);
+                let choice = spread_element(&kind, index);
                 Tally::of(&kind, &paper, &choice, PRODUCT_STEPS, index as u64)
             })
             .reduce(Tally::default, Tally::add);
@@ -145,12 +162,11 @@ fn full_product_of_options_on_the_paper_motor() {
 fn every_library_motor_in_a_sample_of_the_product() {
     let motors = motors();
     for kind in kinds() {
-        // A step that shares no factor with the product's axes visits all values of every axis.
         let tally = (0..motors.len() * SAMPLE)
             .into_par_iter()
             .map(|index| {
                 let motor = &motors[index % motors.len()];
-                let choice = kind.product_element(index * 13_831 % kind.product_len());
+                let choice = spread_element(&kind, index);
                 Tally::of(&kind, motor, &choice, SAMPLE_STEPS, index as u64)
             })
             .reduce(Tally::default, Tally::add);

@@ -23,8 +23,8 @@ struct Arguments {
 enum Command {
     /// Format, lints, documentation and all tests
     Test,
-    /// `test`, then bit-for-bit verification of every library motor over many steps, and the proofs of all of
-    /// them and of a thousand random ones
+    /// `test`, then bit-for-bit verification of every library motor over many steps, all products of options, and the
+    /// proofs of all motors and of a thousand random ones
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]

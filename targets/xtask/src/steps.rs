@@ -155,8 +155,20 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "proofs",
         "random",
     ];
+    let interpreter = [
+        "test",
+        "--package",
+        "hexagen-tests",
+        "--test",
+        "interpreter",
+        "full_product",
+    ];
     vec![
         step("verification", &verify),
+        Step {
+            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
+            ..step("whole products of options", &interpreter)
+        },
         on_target("pil", &["--steps", "1000000"]),
         step("proofs", &prove),
         Step {
