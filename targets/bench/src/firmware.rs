@@ -63,6 +63,32 @@ impl Firmware {
         }
     }
 
+    /// Checks the examples of `targets/frameworks`, which are of the Cortex-M4.
+    ///
+    /// # Errors
+    /// When they do not compile, or have findings.
+    pub fn check_frameworks(&self) -> Result<(), BenchError> {
+        if self.target != Target::CortexM4 {
+            return Ok(());
+        }
+        let (name, lints): (_, &[&str]) = match self.toolchain {
+            Toolchain::Installed { .. } => ("clippy", &["--", "-D", "warnings"]),
+            Toolchain::Debian { .. } => ("check", &[]),
+        };
+        let status = self
+            .command_in("frameworks", name)
+            .arg("--examples")
+            .args(lints)
+            .status()?;
+        if status.success() {
+            Ok(())
+        } else {
+            Err(BenchError::Failed(
+                "the examples of targets/frameworks have findings".to_owned(),
+            ))
+        }
+    }
+
     /// `cargo build` of this firmware.
     fn cargo(&self, arguments: &[&str]) -> Command {
         let mut command = self.command("build");
@@ -72,12 +98,17 @@ impl Firmware {
 
     /// A cargo command on this firmware.
     fn command(&self, name: &str) -> Command {
+        self.command_in(self.target.name(), name)
+    }
+
+    /// A cargo command in a folder of `targets`.
+    fn command_in(&self, folder: &str, name: &str) -> Command {
         let mut command = self.toolchain.cargo(name, self.target);
         command
             .arg("--target-dir")
             .arg(&self.built)
             // The crate's own `.cargo/config.toml` counts in its folder only.
-            .current_dir(workspace().join("targets").join(self.target.name()));
+            .current_dir(workspace().join("targets").join(folder));
         command
     }
 

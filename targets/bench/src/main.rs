@@ -114,6 +114,7 @@ fn possible(mut targets: Vec<Target>, where_possible: bool) -> Vec<Target> {
 fn demonstrate(target: Target) -> Result<(), BenchError> {
     let built = firmware::Firmware::build(target)?;
     built.lint()?;
+    built.check_frameworks()?;
     let folder = tempfile::tempdir()?;
     let printed = built.emulate("firmware", targets::Purpose::Answers, folder.path())?;
     print!(

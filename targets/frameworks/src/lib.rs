@@ -1,0 +1,22 @@
+//! The drive of the examples, and the registers of its motor's peripherals.
+#![no_std]
+
+pub use hexagen;
+pub use hexagen_firmware::Registers;
+
+hexagen::controller! {
+    /// A drive from the motor library.
+    pub HubDrive {
+        motor: "../motors/trivedi-keshri-660w.toml",
+        controller: pdcc {},
+    }
+}
+
+/// The half of the drive that the control interrupt owns.
+pub type Control = <HubDrive as hexagen::Drive>::LoopHalf<'static>;
+
+/// The half of the drive that all else shares.
+pub type SetPoint = <HubDrive as hexagen::Drive>::SetPointHalf;
+
+/// ADCs, Hall port and PWM timer; a chip's are those of its peripheral access crate.
+pub static REGISTERS: Registers = Registers::new();
