@@ -109,16 +109,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
-        because: "the limit is a multiple of the steps that its last bits are shifted out of",
-        drives: &[PAPER, HOVERBOARD, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC],
-        faults: &[(&["line_min", "line_max"], &["one more", "bit 8"])],
-    },
-    Unnoticed {
-        because: "the limit is a multiple of the steps that its last bits are shifted out of",
-        drives: &[FCS_PAPER],
-        faults: &[(&["line_min", "line_max"], &["one more"])],
-    },
-    Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
         drives: &[
             PAPER, HOVERBOARD, TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC,

@@ -73,6 +73,11 @@ pub const RARE: &[Unnoticed] = &[
         faults: &[(&["k_slope"], &["one more", "one less"])],
     },
     Unnoticed {
+        because: "moves the EMF by a part of its last bit, and only at the line EMF's limit",
+        drives: &[PAPER, HOVERBOARD, FCS_PAPER, PHCC_PAPER],
+        faults: &[(&["line_min", "line_max"], &["one more", "one less"])],
+    },
+    Unnoticed {
         because: "differs only where all samples of a calibration are at full scale",
         drives: &[FCS_TEKNIC],
         faults: &[(&["calibration_sum_max"], &["one less", "bit 5"])],

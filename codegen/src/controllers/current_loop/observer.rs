@@ -7,14 +7,12 @@ use crate::ir::Value;
 use crate::lower::{Coefficient, product_bound, round_down};
 use crate::spec::EmfShape;
 
-/// Bits of a line EMF, without its sign, as a factor of the motion: two of them make a word.
-const LINE_BITS: u32 = 15;
-
-/// The line EMF's limit, words of voltage, and the shift that leaves it [`LINE_BITS`] bits.
+/// The line EMF's limit, words of voltage, and the shift to the left (to the right below 0) that makes it the
+/// longest factor of a word, q.
 #[derive(Clone, Copy, Debug)]
 struct LineRange {
     limit: i64,
-    shift: u32,
+    shift: i32,
 }
 
 impl CurrentLoop<'_, '_> {
@@ -25,30 +23,42 @@ impl CurrentLoop<'_, '_> {
         let bits = i64::BITS - limit.leading_zeros();
         LineRange {
             limit,
-            shift: bits.saturating_sub(LINE_BITS),
+            shift: self.options.word as i32 - 1 - bits as i32,
         }
     }
 
-    /// `k_slope`: what a product of two line EMFs, both shifted, is worth in words of voltage.
-    fn slope_value(&self, shift: u32) -> f64 {
+    /// `k_slope`: what the upper word of a product of two line EMFs, both shifted, is worth in words of voltage.
+    fn slope_value(&self, range: LineRange) -> f64 {
         let word = 1.0 / self.lowering.scale.voltage();
-        self.design.slope * word * f64::from(2 * shift + LINE_BITS).exp2()
+        self.design.slope * word * f64::from(self.slope_exponent(range)).exp2()
+    }
+
+    fn slope_exponent(&self, range: LineRange) -> i32 {
+        self.options.word as i32 - 2 * range.shift
     }
 
     /// Largest motion of a phase EMF over one period, words of voltage.
     pub(super) fn motion_bound(&self) -> i64 {
-        let value = self.slope_value(self.line_range().shift);
-        let largest = product_bound(value, self.options.word, 1 << LINE_BITS);
-        match self.lowering.spec.motor.emf_shape {
-            EmfShape::Sinusoidal => largest,
-            EmfShape::Trapezoidal { .. } => 2 * largest,
-        }
+        let (range, word) = (self.line_range(), self.options.word);
+        let factor = if range.shift < 0 {
+            (range.limit >> -range.shift) + 1
+        } else {
+            range.limit << range.shift
+        };
+        // A negative product is rounded away from zero.
+        let product = ((factor * factor) >> word) + 1;
+        let product = match self.lowering.spec.motor.emf_shape {
+            EmfShape::Sinusoidal => product,
+            EmfShape::Trapezoidal { .. } => 2 * product,
+        };
+        product_bound(self.slope_value(range), word, product)
     }
 
     /// The estimate `e` of the period that just ended, moved on to the target period and to the present one.
     pub(super) fn move_emf(&mut self, sector: Value, e: [Value; 2]) -> ([Value; 2], [Value; 2]) {
         let range = self.line_range();
-        let value = self.slope_value(range.shift);
+        let value = self.slope_value(range);
+        let exponent = self.slope_exponent(range);
         let shape = self.lowering.spec.motor.emf_shape;
         let delayed = self.options.delay == 1;
         let doc = match shape {
@@ -68,8 +78,8 @@ impl CurrentLoop<'_, '_> {
                 &format!("c = {:.4e} 1/V", self.design.slope),
             ],
             [
-                &format!("c w 2^({} - f_v)", 2 * range.shift + LINE_BITS),
-                "words of voltage per product, both lines shifted",
+                &format!("c w 2^({exponent} - f_v)"),
+                "words of voltage per upper word of the product, both lines shifted",
             ],
         );
         self.lowering.b.stage(
@@ -123,7 +133,7 @@ impl CurrentLoop<'_, '_> {
         })
     }
 
-    /// A line EMF up to its limit, shifted to the bits of a factor.
+    /// A line EMF up to its limit, shifted to the length of a factor.
     fn shifted_line(&mut self, names: [&str; 2], line: Value, range: LineRange) -> Value {
         let l = &mut *self.lowering;
         let doc = "Line EMF from which on its motion no longer grows";
@@ -135,26 +145,26 @@ impl CurrentLoop<'_, '_> {
         l.b.name(names[0], held);
         let factor = match range.shift {
             0 => held,
-            shift => l.b.shift_right(held, shift),
+            shift @ 1.. => l.b.shift_left(held, shift.unsigned_abs()),
+            shift => l.b.shift_right(held, shift.unsigned_abs()),
         };
         l.b.name(names[1], factor)
     }
 
     /// Two thirds of the ramp for the phase that is off, a third against it for the two others: against the off
-    /// phase's outgoing sign, which is what the weights of the other phase say.
+    /// phase's outgoing sign, which is what the weights of the other phase say. They come before the product, whose
+    /// rounding they would double.
     fn ramping(&mut self, slope: Coefficient, speed: Value, lines: [Value; 2]) -> [Value; 2] {
+        let word = self.options.word;
         let l = &mut *self.lowering;
-        let square = l.b.mul_floor(speed, speed, LINE_BITS);
+        let square = l.b.mul_floor(speed, speed, word);
         l.b.name("e_line_square", square);
-        let third = l.times(slope, square);
-        l.b.name("ramp_third", third);
-        let against = l.b.mul(lines[1], third, 0);
-        let motion_a = l.b.neg(against);
-        let motion_b = l.b.mul(lines[0], third, 0);
-        [
-            l.b.name("motion_a", motion_a),
-            l.b.name("motion_b", motion_b),
-        ]
+        let [with_b, with_a] = lines.map(|weight| {
+            let weighted = l.b.mul(weight, square, 0);
+            l.times(slope, weighted)
+        });
+        let motion_a = l.b.neg(with_a);
+        [l.b.name("motion_a", motion_a), l.b.name("motion_b", with_b)]
     }
 
     /// At right angles to the EMF: the line EMF of the two other phases, at the speed.
@@ -165,6 +175,7 @@ impl CurrentLoop<'_, '_> {
         e: [Value; 2],
         range: LineRange,
     ) -> [Value; 2] {
+        let word = self.options.word;
         let b = &mut self.lowering.b;
         let twice_b = b.shift_left(e[1], 1);
         let across = b.add(e[0], twice_b);
@@ -178,7 +189,7 @@ impl CurrentLoop<'_, '_> {
         [0, 1].map(|x| {
             let factor = self.shifted_line(names[x], [across_a, across_b][x], range);
             let l = &mut *self.lowering;
-            let product = l.b.mul_floor(speed, factor, LINE_BITS);
+            let product = l.b.mul_floor(speed, factor, word);
             let motion = l.times(slope, product);
             l.b.name(["motion_a", "motion_b"][x], motion)
         })

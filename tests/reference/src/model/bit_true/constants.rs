@@ -3,7 +3,7 @@
 use super::state::{Part, Parts};
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
-use crate::exact::{Coefficient, Shift, floor, floor_constant, pow2, round_half_up};
+use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation,
@@ -48,9 +48,14 @@ pub struct Constants {
     pub e_max: f64,
     /// V_LARGEST.
     pub v_largest: f64,
-    /// LINE_MAX and q.
+    /// LINE_MAX.
     pub line_max: f64,
+    /// 2^q, where q is not below 0.
+    pub line_scale: f64,
+    /// -q, where q is.
     pub line_shift: u32,
+    /// Products of two line EMFs, of which the upper word counts.
+    pub line_product: Shift,
     pub emf_turns: bool,
     pub filtered: bool,
     pub advanced: bool,
@@ -256,10 +261,12 @@ impl Constants {
         let v_largest = bus.map_or(timer_period * two_v, |bus| bus.v_max);
         let motion = EmfMotion::new(spec)?;
         let line_max = floor_constant(motion.line_limit / w * two_v).min(v_largest);
-        let line_shift = (0..31)
-            .find(|shift| floor(line_max * pow2(-shift)) < 32_768.0)
+        let word = options.word as i32;
+        let q = (-31..=31)
+            .rev()
+            .find(|&q| line_max * pow2(q) < pow2(word - 1))
             .unwrap_or(0);
-        let slope = motion.per_product * w / two_v * pow2(2 * line_shift + 15);
+        let slope = motion.per_product * w / two_v * pow2(word - 2 * q);
         Ok(Self {
             parts: Parts::new(&[
                 (
@@ -311,7 +318,9 @@ impl Constants {
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
             v_largest,
             line_max,
-            line_shift: line_shift as u32,
+            line_scale: pow2(q.max(0)),
+            line_shift: (-q).max(0) as u32,
+            line_product: Shift::new(options.word),
             emf_turns: motion.turns,
             filtered,
             advanced,
