@@ -37,8 +37,8 @@ fn every_section_is_there_and_linked() {
     }
     assert!(!PAGE.contains("This report has no"), "nothing is missing");
     // Two speeds: six currents, trajectories and torques each, four spectra, one torque-speed
-    // curve, two stable ranges.
-    assert_eq!(PAGE.matches("<svg class=\"plot\"").count(), 25);
+    // curve, two stable ranges; and two histograms of errors.
+    assert_eq!(PAGE.matches("<svg class=\"plot\"").count(), 27);
 }
 
 #[test]
@@ -127,12 +127,31 @@ fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
 }
 
 #[test]
+fn histograms_stand_against_the_bound() {
+    let (_, errors) = PAGE
+        .split_once("Errors of single steps against the proven bound")
+        .expect("the part");
+    let (errors, _) = errors.split_once("</section>").expect("its end");
+    for text in [
+        "<strong>32\u{a0}bits</strong>: 6.956 \u{b5}V of 9.4 \u{b5}V",
+        ">error in \u{b5}V</text>",
+        ">error in mV</text>",
+        ">\u{2212}bound</text>",
+        "Errors of phcc with 16-bit words: 177.6 mV at most, proven 240 mV",
+    ] {
+        let flat = errors.replace('\n', "");
+        assert!(flat.contains(text), "no `{text}` in {flat}");
+    }
+}
+
+#[test]
 fn page_without_runs_says_so_instead_of_failing() {
     let mut data = DATA.clone();
     data.variants = vec![Variant::default()];
     data.verification = None;
     data.marks.clear();
     data.robustness = None;
+    data.errors.clear();
     let page = render(&data).expect("the page renders");
     for what in [
         "records",

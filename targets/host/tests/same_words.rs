@@ -1,5 +1,5 @@
 //! Fixed and ideal runs on the same ADC words: every merit of every row of the result table that modulates,
-//! and the mean torque of the others.
+//! and, within 1 %, the mean torque of the others.
 //!
 //! A controller that applies one of a few vectors may decide a near tie either way, and the patterns differ from
 //! there on. Their single decisions are compared, from the same state,
@@ -33,7 +33,11 @@ fn fixed_and_ideal_agree_in_every_merit_of_rows_that_modulate_and_in_the_torque_
                     if decides && merit.merit != "mean torque" {
                         continue;
                     }
-                    assert!(merit.close, "{variant} at {rpm} rpm: {merit:?}");
+                    let most = if decides { 2.0 } else { 1.0 };
+                    assert!(
+                        merit.of_allowance <= most,
+                        "{variant} at {rpm} rpm: {merit:?}"
+                    );
                     compared += 1;
                 }
                 different += usize::from(both.fixed.merits != both.ideal.merits);

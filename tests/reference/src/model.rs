@@ -13,6 +13,7 @@ mod sector;
 mod supervision;
 mod switching;
 mod trace;
+mod uniform;
 mod variant;
 mod vectors;
 
@@ -20,3 +21,4 @@ pub use bit_true::{BitTrue, Course};
 pub use ideal::{Duties, Ideal};
 pub use supervision::Mode;
 pub use trace::{PhysicalState, Reach, Trace};
+pub use uniform::Uniform;

@@ -134,10 +134,9 @@ impl SelectedMotor {
     ///
     /// # Errors
     /// As [`Self::find`].
-    pub fn library() -> Result<Vec<Self>, Failure> {
-        let none = PlantArguments::default();
+    pub fn library(plant: &PlantArguments) -> Result<Vec<Self>, Failure> {
         let all = library().iter().map(MotorSource::from);
-        all.map(|source| Self::read(source, &none)).collect()
+        all.map(|source| Self::read(source, plant)).collect()
     }
 
     fn read(source: MotorSource, plant: &PlantArguments) -> Result<Self, Failure> {

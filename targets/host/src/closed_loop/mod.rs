@@ -4,6 +4,7 @@
 //! bit-true or the ideal model. Sampling is at the start of each period; the command computed in
 //! period k drives the inverter in period k + 1, or, without delay, in period k.
 
+mod allowance;
 mod harmonics;
 mod limit;
 mod measure;
@@ -12,6 +13,7 @@ mod swing;
 mod trace;
 mod trip;
 
+pub use allowance::{POINTS, RELATIVE, share_of_allowance};
 pub use harmonics::amplitudes;
 pub use limit::{HELD, LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
 pub use measure::{Aim, Measurement, RunOptions, STARTS, mean_torque, measure, record};

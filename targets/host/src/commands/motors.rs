@@ -1,7 +1,8 @@
 //! `hexagen motors`: the library, and whether each motor's default drive holds its rating.
 
 use crate::cli::{
-    Failure, SelectedMotor, TextTable, bar, note, print_json, print_text, significant,
+    Failure, PlantArguments, SelectedMotor, TextTable, bar, note, print_json, print_text,
+    significant,
 };
 use crate::closed_loop::{HELD, RunOptions, STARTS, Trip, mean_torque};
 use crate::engine::{Model, Prepared, plant_of, run_of};
@@ -62,7 +63,7 @@ pub struct Entry {
 /// # Errors
 /// When a file of the library cannot be read.
 pub fn collect() -> Result<Vec<Entry>, Failure> {
-    let motors = SelectedMotor::library()?;
+    let motors = SelectedMotor::library(&PlantArguments::default())?;
     // A motor that cannot have this controller holds nothing with it.
     let drives: Vec<Option<Prepared>> = motors
         .iter()

@@ -1,5 +1,7 @@
 //! `hexagen report`: the result table and the page of one motor.
 
+use super::accuracy::one_step;
+use super::compare::{WORDS, at_speeds, with_word};
 use super::results::{Planned, SPEEDS};
 use super::robustness;
 use super::verify::{self, Checked};
@@ -8,8 +10,8 @@ use crate::cli::{
 };
 use crate::engine::{EngineKind, Prepared};
 use crate::report::{
-    self, Capture, Judged, Model, ReportData, Run, SpeedMark, Variant, Verification, design_table,
-    judge_limit, judge_mean, judge_pp, judge_rms,
+    self, Capture, ErrorsSeen, Judged, Model, ReportData, Run, SpeedMark, Variant, Verification,
+    design_table, judge_limit, judge_mean, judge_pp, judge_rms,
 };
 use clap::Args;
 use rayon::prelude::*;
@@ -91,6 +93,7 @@ pub fn collect(
     progress.finish_and_clear();
     let variants = variants?;
 
+    let errors = errors(&motor, &mut notes)?;
     let kinds = KINDS.map(str::to_owned);
     let as_given = PlantArguments::default();
     let robustness = robustness::collect(given, &kinds, &as_given)
@@ -109,6 +112,7 @@ pub fn collect(
         speeds_rpm: SPEEDS.map(|part| part * own.rated_rpm()).to_vec(),
         verification: Some(verification(&checked)),
         variants,
+        errors,
         robustness,
         marks: if is_paper { paper_marks() } else { vec![] },
         notes,
@@ -140,6 +144,34 @@ fn plan(motor: &SelectedMotor, is_paper: bool, notes: &mut Vec<String>) -> Vec<P
         }
     }
     planned
+}
+
+/// Errors of single steps of every kind of controller at every word length; what does not generate is a note.
+fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSeen>, Failure> {
+    let mut drives = vec![];
+    for kind in KINDS {
+        for word in WORDS {
+            let variant = with_word(kind, word);
+            match motor.prepare(variant.as_deref()) {
+                Ok(drive) => drives.push((kind, word, drive)),
+                Err(failure) => notes.push(format!("{kind}, {word} bits: {failure}")),
+            }
+        }
+    }
+    let seen = drives.par_iter().map(|(kind, word, drive)| {
+        let measured = at_speeds(drive, &PlantArguments::default())?;
+        let (one_step, counts) = one_step(drive, measured.iter().map(|(_, both)| both));
+        Ok(ErrorsSeen {
+            controller: (*kind).to_owned(),
+            word: *word,
+            snr_db: one_step.snr_db,
+            largest_v: one_step.largest_v,
+            bound_v: one_step.bound_v,
+            decisions_equal_pct: one_step.decisions_equal_pct,
+            counts,
+        })
+    });
+    seen.collect()
 }
 
 fn verification(checked: &[Checked]) -> Verification {

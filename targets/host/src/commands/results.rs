@@ -3,7 +3,7 @@
 //! The rows are those of the design document; for other motors than the paper's the same variants
 //! run with the generator's own discretisation, and nothing is expected of them.
 
-use super::accuracy::{OneStep, SideBySide, side_by_side};
+use super::accuracy::{OneStep, SideBySide, one_step, side_by_side};
 use super::stability;
 use crate::cli::{Emit, Failure};
 use crate::closed_loop::{LimitOptions, Merits, RunOptions, measure, speed_limit_knowing};
@@ -112,7 +112,7 @@ impl Planned {
             .unwrap_or_default();
         let by_timer = measured.into_iter().next().map(|at| at.both);
         let by_timer = by_timer.unwrap_or_default();
-        let signal_errors = signal_errors(&by_timer);
+        let signal_errors = signal_errors(drive, &by_timer);
         let records = rpm.into_iter().zip(by_timer).filter_map(|(rpm, both)| {
             let trace = both.fixed.traces.into_iter().next()?;
             Some(Record { rpm, trace })
@@ -198,24 +198,33 @@ impl Line<'_> {
 }
 
 /// Distances of single steps along the measured runs.
-fn signal_errors(measured: &[SideBySide]) -> Vec<SignalError> {
-    let OneStep {
-        u_largest_v,
-        u_rms_v,
-        duty_largest_counts,
-        duty_rms_counts,
-        ..
-    } = SideBySide::one_step(measured);
-    let error = |signal: &str, unit: &str, largest, rms| SignalError {
+fn signal_errors(drive: &Prepared, measured: &[SideBySide]) -> Vec<SignalError> {
+    let (
+        OneStep {
+            largest_v,
+            bound_v,
+            rms_v,
+            duty_largest_counts,
+            duty_rms_counts,
+            ..
+        },
+        _,
+    ) = one_step(drive, measured);
+    let error = |signal: &str, unit: &str, [largest, rms]: [f64; 2], bound| SignalError {
         signal: signal.to_owned(),
         unit: unit.to_owned(),
         largest,
         rms,
-        bound: None,
+        bound,
     };
     vec![
-        error("u_unsat", "V", u_largest_v, u_rms_v),
-        error("compare", "counts", duty_largest_counts, duty_rms_counts),
+        error("u_unsat", "V", [largest_v, rms_v], Some(bound_v)),
+        error(
+            "compare",
+            "counts",
+            [duty_largest_counts, duty_rms_counts],
+            None,
+        ),
     ]
 }
 

@@ -27,7 +27,7 @@ pub fn select(
 ) -> Result<(Vec<Prepared>, Vec<Refused>), Failure> {
     let none = PlantArguments::default();
     let motors = if motors.is_empty() {
-        SelectedMotor::library()?
+        SelectedMotor::library(&none)?
     } else {
         motors
             .iter()

@@ -165,9 +165,8 @@ impl Prepared {
         }
     }
 
-    /// The bit-true and the ideal model with a set-point; the same one to the last bit when
-    /// `is_rounded`, else the ideal model's is exact.
-    pub fn references(&self, set_point: SetPoint, is_rounded: bool) -> (BitTrue, Ideal) {
+    /// The bit-true and the ideal model with a set-point: that which the bit-true one's word stands for.
+    pub fn references(&self, set_point: SetPoint) -> (BitTrue, Ideal) {
         let (mut bit_true, mut ideal) = (self.bit_true(), self.ideal());
         if let Some(counts) = self.bus_counts(set_point.v_bus) {
             bit_true.set_bus(counts);
@@ -175,11 +174,7 @@ impl Prepared {
         }
         let bits = (set_point.current * f64::from(1 << 16)).round() as i32;
         bit_true.set_current(bits);
-        if is_rounded {
-            ideal.set_current(bits);
-        } else {
-            ideal.set_current_amps(set_point.current);
-        }
+        ideal.set_current_amps(bit_true.set_point_amps());
         (bit_true, ideal)
     }
 

@@ -36,6 +36,8 @@ pub struct ReportData {
     pub verification: Option<Verification>,
     /// The variants in the table's order.
     pub variants: Vec<Variant>,
+    /// Errors of single steps of the default controllers, per word length, in the plots' order.
+    pub errors: Vec<ErrorsSeen>,
     /// The default controllers on plants that differ from the motor file, where they were run.
     pub robustness: Option<Robustness>,
     /// Marks along the speed axis of the torque-speed plot (the paper's claims, the bound).
@@ -162,8 +164,27 @@ pub struct SignalError {
     pub largest: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Proven bound, once known.
+    /// Proven bound, where there is one.
     pub bound: Option<f64>,
+}
+
+/// Errors of single steps of one controller at one word length, from the same state as the ideal model's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorsSeen {
+    /// The variant, without its word length.
+    pub controller: String,
+    /// Word length in bits.
+    pub word: u32,
+    /// Signal over error, decibel.
+    pub snr_db: f64,
+    /// Largest error, volt.
+    pub largest_v: f64,
+    /// Proven bound, volt.
+    pub bound_v: f64,
+    /// Share of steps on which both decided alike, percent.
+    pub decisions_equal_pct: f64,
+    /// How many errors lie in each of equal parts of the range from the negative to the positive bound.
+    pub counts: Vec<u64>,
 }
 
 /// Stable range as computed from the closed-loop poles, and what simulation says.

@@ -16,8 +16,8 @@ mod sections;
 mod window;
 
 pub use data::{
-    Capture, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint, SameWords,
-    SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
+    Capture, ErrorsSeen, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint,
+    SameWords, SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
 };
 pub use expected::{
     Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,

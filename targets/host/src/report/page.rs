@@ -3,7 +3,8 @@
 use super::document::{Section, document};
 use super::highlight::Highlighter;
 use super::sections::{
-    header, numbers, results, robustness, spectra, stability, texts, torque_speed, waves,
+    header, histograms, numbers, results, robustness, spectra, stability, texts, torque_speed,
+    waves,
 };
 use super::{ReportData, ReportError};
 
@@ -31,7 +32,11 @@ pub fn render(data: &ReportData) -> Result<String, ReportError> {
             torque_speed::section(data)?,
         ),
         section("formats", "Formats", numbers::formats(data)),
-        section("errors", "Fixed point against float", numbers::errors(data)),
+        section(
+            "errors",
+            "Fixed point against float",
+            maud::html! { (numbers::errors(data)) (histograms::section(data)?) },
+        ),
         section("stability", "Stable ranges", stability::section(data)?),
         section("robustness", "Robustness", robustness::section(data)),
         section("code", "Emitted code", texts::code(data, &highlighter)?),

@@ -139,24 +139,116 @@ fn a_fault_planted_in_the_emitted_text_is_found() {
     }
 }
 
+/// Controllers that modulate, in rows of `compare`.
+fn modulates(row: &Value) -> bool {
+    let controller = row["controller"].as_str().expect("a name");
+    controller.starts_with("pdcc") || controller.starts_with("pi-pwm")
+}
+
 #[test]
-fn compare_tells_accuracy_per_word_length() {
+fn compare_tells_accuracy_per_controller_and_word_length() {
     let result = run(["compare", PAPER, "--json"]).json();
     let rows = result["rows"].as_array().expect("a list");
-    let words: Vec<f64> = rows.iter().map(|row| number(row, "word")).collect();
-    assert_eq!(words, [32.0, 16.0]);
-    let snr = |row: &Value| number(&row["one_step"], "snr_db");
-    // The line EMF that an estimate is moved on with has 15 bits, whatever the word.
-    assert!(snr(&rows[0]) > 100.0 && snr(&rows[0]) > snr(&rows[1]) + 30.0);
-    assert!(number(&rows[0]["one_step"], "u_largest_v") < 1e-3);
-    assert!(number(&rows[0]["one_step"], "equal_compares_pct") > 99.0);
-    for at in rows[0]["closed_loop"].as_array().expect("a list") {
-        let merits = at["merits"].as_array().expect("a list");
-        assert_eq!(merits.len(), 14);
-        for merit in merits {
-            assert_eq!(merit["close"], true, "{merit}");
+    let named = |row: &Value| row["controller"].as_str().map(str::to_owned);
+    let names: Vec<String> = rows.iter().filter_map(named).collect();
+    let kinds = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+    let all = kinds.map(|kind| [32, 16].map(|word| format!("{kind}:word={word}")));
+    assert_eq!(names, all.as_flattened());
+    for row in rows {
+        let one_step = &row["one_step"];
+        let (largest, bound) = (number(one_step, "largest_v"), number(one_step, "bound_v"));
+        let seen = number(one_step, "seen_to_bound");
+        assert_eq!(seen, largest / bound);
+        // A bound that nothing comes near would say nothing.
+        assert!(seen <= 1.0 && seen > 0.02, "{row}");
+        let decisions = number(one_step, "decisions_equal_pct");
+        assert!(
+            decisions > if modulates(row) { 99.9 } else { 96.0 },
+            "{row}"
+        );
+        let counts = row["histogram"].as_array().expect("a list");
+        let counted: f64 = counts.iter().filter_map(Value::as_f64).sum();
+        assert_eq!(counted, 2.0 * number(one_step, "steps"));
+        let least_snr = if number(row, "word") == 32.0 {
+            110.0
+        } else {
+            60.0
+        };
+        assert!(number(one_step, "snr_db") > least_snr, "{row}");
+    }
+}
+
+#[test]
+fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
+    let result = run(["compare", PAPER, "--json"]).json();
+    let rows = result["rows"].as_array().expect("a list");
+    let of_32_bits = rows.iter().filter(|row| number(row, "word") == 32.0);
+    let mut compared = 0;
+    for row in of_32_bits.filter(|row| modulates(row)) {
+        let one_step = &row["one_step"];
+        assert!(number(one_step, "bound_v") <= 1e-5, "{row}");
+        assert!(number(one_step, "equal_steps_pct") >= 99.9, "{row}");
+        assert!(number(one_step, "compares_apart_counts") <= 1.0, "{row}");
+        for at in row["closed_loop"].as_array().expect("a list") {
+            let merits = at["merits"].as_array().expect("a list");
+            assert_eq!(merits.len(), 14);
+            for merit in merits {
+                assert_eq!(merit["close"], true, "{merit}");
+                assert!(number(merit, "of_allowance") <= 1.0, "{merit}");
+                compared += 1;
+            }
         }
     }
+    assert_eq!(compared, 2 * 2 * 14);
+}
+
+#[test]
+fn compare_prints_a_row_per_controller_and_the_merits_of_one() {
+    let all = run(["compare", PAPER, "--start-angle", "0.1"]);
+    assert_eq!(all.code, 0, "{all:?}");
+    for text in [
+        "SNR dB",
+        "bound V",
+        "ratio",
+        "decisions %",
+        "closed loop",
+        "phcc:word=16",
+    ] {
+        assert!(all.stdout.contains(text), "no `{text}` in\n{}", all.stdout);
+    }
+    assert!(
+        !all.stdout.contains("| tracking error, rms"),
+        "{}",
+        all.stdout
+    );
+    let one = run([
+        "compare",
+        PAPER,
+        "--controller",
+        "pi-pwm",
+        "--start-angle",
+        "0.1",
+    ]);
+    assert!(
+        one.stdout.contains("| tracking error, rms"),
+        "{}",
+        one.stdout
+    );
+    assert!(!one.stdout.contains("phcc:word"), "{}", one.stdout);
+}
+
+#[test]
+fn formats_of_a_motor_are_better_than_one_for_the_whole_library() {
+    let result = run(["compare", "--json"]).json();
+    assert!(number(&result, "better_by_db") >= 20.0, "{result}");
+    let rows = result["rows"].as_array().expect("a list");
+    assert_eq!(rows.len(), 16);
+    for row in rows {
+        assert_eq!(row["refused"], Value::Null);
+        assert!(number(row, "better_by_db") >= 20.0, "{row}");
+        assert!(number(&row["one_step"], "seen_to_bound") <= 1.0, "{row}");
+    }
+    run(["compare", "--controller", "pdcc"]).assert_bad_input(&["<MOTOR>"]);
 }
 
 #[test]
@@ -164,6 +256,8 @@ fn compare_says_why_a_word_length_is_refused() {
     let result = run([
         "compare",
         PAPER,
+        "--controller",
+        "pdcc",
         "--adc-bits",
         "16",
         "--start-angle",

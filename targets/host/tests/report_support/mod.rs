@@ -13,9 +13,9 @@ use hexagen_host::closed_loop::{
 use hexagen_host::engine::EngineKind;
 use hexagen_host::plant::{PlantParams, Truth};
 use hexagen_host::report::{
-    Capture, Cell, Column, DesignRow, Figures, GeneratedTexts, Heat, Model, Outcome, Parameter,
-    Record, ReportData, Robustness, Run, RunPoint, SameWords, SignalError, SpeedMark, Stability,
-    StabilityCheck, Variant, Verification, design_table,
+    Capture, Cell, Column, DesignRow, ErrorsSeen, Figures, GeneratedTexts, Heat, Model, Outcome,
+    Parameter, Record, ReportData, Robustness, Run, RunPoint, SameWords, SignalError, SpeedMark,
+    Stability, StabilityCheck, Variant, Verification, design_table,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -258,6 +258,24 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
     }
 }
 
+/// Errors of which most are small and a few reach three quarters of the bound.
+fn errors(controller: &str, word: u32, bound_v: f64) -> ErrorsSeen {
+    let count = |place: i32| match place.abs() {
+        0..4 => 9_000 / (1 + place.unsigned_abs().pow(3)),
+        4..23 => 5,
+        _ => 0,
+    };
+    ErrorsSeen {
+        controller: controller.to_owned(),
+        word,
+        snr_db: 136.0,
+        largest_v: 0.74 * bound_v,
+        bound_v,
+        decisions_equal_pct: 99.9,
+        counts: (-30..=30).map(|place| u64::from(count(place))).collect(),
+    }
+}
+
 /// A sheet with every heat, every outcome, and what was refused.
 fn robustness() -> Robustness {
     let disturbances = [
@@ -363,6 +381,7 @@ pub fn data() -> ReportData {
                 false,
             ),
         ],
+        errors: vec![errors("pdcc", 32, 9.4e-6), errors("phcc", 16, 0.24)],
         robustness: Some(robustness()),
         marks: vec![
             mark("PI-PWM (paper)", 67.0),

@@ -20,7 +20,7 @@ use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation, Period};
 use super::trace::{PhysicalState, Reach, Trace};
-use super::variant::Variant;
+use super::variant::{Variant, reference_gain};
 use crate::exact::{Coefficient, both, divide, floor, floor_weighted, lesser, pow2, within};
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
@@ -40,6 +40,8 @@ pub struct BitTrue {
     k: Constants,
     law: Law,
     speed: Option<Regulator>,
+    /// Volt per ampere of the set-point.
+    gain: f64,
     // Set-point words.
     j: f64,
     speed_ref: f64,
@@ -98,6 +100,7 @@ impl BitTrue {
             speed_ref: 0.0,
             speed,
             v_bus: k.v_bus_nominal,
+            gain: reference_gain(spec),
             ratio: pow2(k.ratio_bits as i32),
             to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
             state: State::default(),
@@ -150,6 +153,11 @@ impl BitTrue {
     /// The set-point words `j`, `v_bus`, `ratio`, `speed_ref`.
     pub fn set_point_words(&self) -> [f64; 4] {
         [self.j, self.v_bus, self.ratio, self.speed_ref]
+    }
+
+    /// The current set-point that the word `j` stands for, ampere.
+    pub fn set_point_amps(&self) -> f64 {
+        self.j * self.k.volt / self.gain
     }
 
     /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while

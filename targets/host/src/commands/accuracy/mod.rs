@@ -1,97 +1,23 @@
 //! How far fixed point is from floating point: in one step from the same state, and in the merits
 //! of a closed loop.
 
+mod one_step;
+mod uniform;
+
+pub use one_step::{BINS, Compared, OneStep};
+pub use uniform::{Uniform16, uniform_format};
+
 use crate::cli::Failure;
-use crate::closed_loop::{ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace};
+use crate::closed_loop::{
+    ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace, share_of_allowance,
+};
 use crate::engine::{Engine, Model, Prepared, SetPoint};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
 use hexagen::{Legs, Sample};
-use hexagen_reference::{BitTrue, Duties, Ideal};
+use hexagen_reference::{BitTrue, Ideal};
+use one_step::{Step, Sums};
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// Distance of the bit-true from the ideal model after one step from the same state and sample.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct OneStep {
-    /// Steps that were compared: in control, and with the same decisions in both.
-    pub steps: u64,
-    /// Steps on which the two decided differently (sector, commutation, reach, leg states): a tie
-    /// that rounding broke.
-    pub other_decisions: u64,
-    /// Largest distance of a phase's deadbeat voltage before limiting, volt.
-    pub u_largest_v: f64,
-    /// Root mean square of the same, volt.
-    pub u_rms_v: f64,
-    /// Largest distance of a compare value from the exact duty, timer counts; its own rounding
-    /// makes up to half a count.
-    pub duty_largest_counts: f64,
-    /// Root mean square of the same, timer counts.
-    pub duty_rms_counts: f64,
-    /// Deadbeat voltage over its error, decibel.
-    pub snr_db: f64,
-    /// Share of compare values equal to the ideal ones after rounding, percent.
-    pub equal_compares_pct: f64,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    steps: u64,
-    other_decisions: u64,
-    u_largest: f64,
-    u_error: f64,
-    u_signal: f64,
-    duty_largest: f64,
-    duty_error: f64,
-    equal: u64,
-}
-
-impl Sums {
-    /// Takes in a step of both models from the same state.
-    fn add(&mut self, found: &BitTrue, legs: &Legs, exact: &Ideal, duties: &Duties, period: u16) {
-        let (found, exact) = (found.trace(), *exact.trace());
-        if !found.run {
-            return;
-        }
-        let same = found.sector_eff == exact.sector_eff
-            && found.commutating == exact.commutating
-            && found.reach == exact.reach
-            && legs.state == duties.state;
-        if !same {
-            self.other_decisions += 1;
-            return;
-        }
-        self.steps += 1;
-        let phases = |u: [f64; 2]| [u[0], u[1], -u[0] - u[1]];
-        for (found, exact) in phases(found.u_unsat).into_iter().zip(phases(exact.u_unsat)) {
-            let error = (found - exact).abs();
-            self.u_largest = self.u_largest.max(error);
-            self.u_error += error * error;
-            self.u_signal += exact * exact;
-        }
-        let rounded = duties.to_legs(period);
-        for phase in 0..3 {
-            let exact = duties.duty[phase] * f64::from(period);
-            let error = (f64::from(legs.compare[phase]) - exact).abs();
-            self.duty_largest = self.duty_largest.max(error);
-            self.duty_error += error * error;
-            self.equal += u64::from(legs.compare[phase] == rounded.compare[phase]);
-        }
-    }
-
-    /// Both together.
-    fn and(&self, other: &Self) -> Self {
-        Self {
-            steps: self.steps + other.steps,
-            other_decisions: self.other_decisions + other.other_decisions,
-            u_largest: self.u_largest.max(other.u_largest),
-            u_error: self.u_error + other.u_error,
-            u_signal: self.u_signal + other.u_signal,
-            duty_largest: self.duty_largest.max(other.duty_largest),
-            duty_error: self.duty_error + other.duty_error,
-            equal: self.equal + other.equal,
-        }
-    }
-}
 
 /// The ideal model on the samples that the fixed-point drive read on its own plant, from the same
 /// state at every step.
@@ -106,12 +32,13 @@ struct SameWords {
 impl CurrentLoop for SameWords {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         let words = self.samples.next().unwrap_or(*sample);
-        self.ideal.rebuild_from(&self.bit_true.physical_state());
+        let before = self.bit_true.physical_state();
+        self.ideal.rebuild_from(&before);
         let legs = self.bit_true.step(&words);
         let duties = self.ideal.step(&words);
-        let (sums, period) = (&mut self.sums, self.timer_period);
-        sums.add(&self.bit_true, &legs, &self.ideal, &duties, period);
-        duties.to_legs(period)
+        let step = Step::of(&before, (&self.bit_true, legs), (&self.ideal, duties));
+        self.sums.add(&step, self.timer_period);
+        duties.to_legs(self.timer_period)
     }
 }
 
@@ -138,24 +65,16 @@ pub struct SideBySide {
     sums: Sums,
 }
 
-impl SideBySide {
-    /// The distance of single steps over several measurements, start-up included.
-    pub fn one_step<'a>(measured: impl IntoIterator<Item = &'a Self>) -> OneStep {
-        let none = Sums::default();
-        let all = measured.into_iter();
-        let total = all.fold(none, |sum, part| sum.and(&part.sums));
-        let values = 3.0 * total.steps as f64;
-        OneStep {
-            steps: total.steps,
-            other_decisions: total.other_decisions,
-            u_largest_v: total.u_largest,
-            u_rms_v: (total.u_error / values).sqrt(),
-            duty_largest_counts: total.duty_largest,
-            duty_rms_counts: (total.duty_error / values).sqrt(),
-            snr_db: 10.0 * (total.u_signal / total.u_error).log10(),
-            equal_compares_pct: 100.0 * total.equal as f64 / values,
-        }
-    }
+/// The distance of single steps over measurements of a drive, start-up included, and how often errors of which size
+/// were seen: [`BINS`] equal parts of the range from the negative to the positive bound.
+pub fn one_step<'a>(
+    drive: &Prepared,
+    measured: impl IntoIterator<Item = &'a SideBySide>,
+) -> (OneStep, Vec<u64>) {
+    let none = Sums::new(Compared::of(drive));
+    let parts = measured.into_iter();
+    let total = parts.fold(none, |sum, part| sum.and(&part.sums));
+    (total.one_step(), total.histogram())
 }
 
 /// Measures the fixed-point drive, and the ideal model from the same starts, on the same ADC and
@@ -172,6 +91,7 @@ pub fn side_by_side(
     set_point: SetPoint,
 ) -> Result<SideBySide, Failure> {
     let (settling, measured) = run.periods(plant);
+    let none = Sums::new(Compared::of(drive));
     let starts = run.starts.par_iter().map(|&start| {
         let motor = Plant::new(plant.clone(), start, run.omega_m)?;
         let noting = Noting {
@@ -179,13 +99,13 @@ pub fn side_by_side(
             samples: Vec::with_capacity(settling + measured),
         };
         let (fixed, noting) = settled(motor.clone(), noting, run, settling, measured);
-        let (bit_true, ideal) = drive.references(set_point, true);
+        let (bit_true, ideal) = drive.references(set_point);
         let same_words = SameWords {
             bit_true,
             ideal,
             samples: noting.samples.into_iter(),
             timer_period: plant.timer_period,
-            sums: Sums::default(),
+            sums: none.clone(),
         };
         let (ideal, same_words) = settled(motor, same_words, run, settling, measured);
         Ok((fixed, ideal, same_words.sums))
@@ -193,7 +113,7 @@ pub fn side_by_side(
     let starts = starts.collect::<Result<Vec<_>, PlantError>>()?;
     let sums = starts
         .iter()
-        .fold(Sums::default(), |sum, start| sum.and(&start.2));
+        .fold(none.clone(), |sum, start| sum.and(&start.2));
     let (fixed, ideal) = starts.into_iter().map(|(f, i, _)| (f, i)).unzip();
     Ok(SideBySide {
         fixed: Measurement::of(fixed, run),
@@ -230,15 +150,27 @@ pub struct MeritDifference {
     pub ideal: f64,
     /// Of the ideal model in a loop of its own.
     pub ideal_alone: f64,
-    /// Whether `fixed` and `ideal` differ by less than 1 %, or 0.05 points where the unit is %.
+    /// How far `fixed` and `ideal` are apart, in parts of what still counts as close: 0.5 %, or 0.05 points where
+    /// the unit is %.
+    pub of_allowance: f64,
+    /// Whether that is at most 1.
     pub close: bool,
 }
 
-/// Largest relative difference that counts as close.
-const RELATIVE: f64 = 0.01;
-
-/// Largest difference in points that counts as close.
-const POINTS: f64 = 0.05;
+impl MeritDifference {
+    /// The difference with its unit: points of percentages, percent of everything else.
+    pub fn text(&self) -> String {
+        let distance = (self.fixed - self.ideal).abs();
+        let (value, unit) = if self.unit == "%" {
+            (distance, "points")
+        } else if distance == 0.0 {
+            (0.0, "%")
+        } else {
+            (100.0 * distance / self.ideal.abs(), "%")
+        };
+        format!("{} {unit}", crate::cli::significant(value, 2))
+    }
+}
 
 /// Compares merits one by one.
 pub fn differences(fixed: &Merits, ideal: &Merits, alone: &Merits) -> Vec<MeritDifference> {
@@ -248,18 +180,15 @@ pub fn differences(fixed: &Merits, ideal: &Merits, alone: &Merits) -> Vec<MeritD
         .zip(rows(ideal).into_iter().zip(rows(alone)))
         .map(
             |((merit, fixed, unit), ((_, ideal, _), (_, ideal_alone, _)))| {
-                let distance = (fixed - ideal).abs();
-                // Merits that do not exist (percent of a zero torque) agree when both do not.
-                let close = distance <= RELATIVE * ideal.abs()
-                    || unit == "%" && distance <= POINTS
-                    || fixed.is_nan() && ideal.is_nan();
+                let of_allowance = share_of_allowance(fixed, ideal, unit == "%");
                 MeritDifference {
                     merit,
                     unit,
                     fixed,
                     ideal,
                     ideal_alone,
-                    close,
+                    of_allowance,
+                    close: of_allowance <= 1.0,
                 }
             },
         )

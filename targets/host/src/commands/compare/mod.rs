@@ -1,11 +1,14 @@
-//! `hexagen compare`: fixed against floating point, per controller and word length.
+//! `hexagen compare`: fixed against floating point, per controller and word length; without a motor, words of 16 bits
+//! against one format for the whole library.
 
-use super::accuracy::{MeritDifference, OneStep, SideBySide, differences, side_by_side};
+mod library;
+mod print;
+
+use super::accuracy::{MeritDifference, OneStep, SideBySide, differences, one_step, side_by_side};
 use super::results::SPEEDS;
 use super::robustness;
 use crate::cli::{
-    Failure, PlantArguments, SelectedMotor, Selection, TextTable, print_json, print_text,
-    significant, spinner, write_file,
+    Failure, PlantArguments, SelectedMotor, Selection, print_json, spinner, write_file,
 };
 use crate::closed_loop::measure;
 use crate::engine::{EngineKind, Model, Prepared};
@@ -15,21 +18,22 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 /// Word lengths that are compared.
-const WORDS: [u32; 2] = [32, 16];
+pub const WORDS: [u32; 2] = [32, 16];
 
 /// Options of `compare`.
 #[derive(Args, Clone, Debug)]
 pub struct Options {
-    /// Motor file, or name of a library motor
+    /// Motor file, or name of a library motor. Without one: words of 16 bits against one 16-bit format for the whole
+    /// library
     #[arg(value_name = "MOTOR")]
-    pub motor: String,
-    /// Controller variant, or `all` [default: the motor file's; with --robustness all]
-    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub motor: Option<String>,
+    /// Controller variant, whose merits are printed one by one; or `all` [default: all]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]", requires = "motor")]
     pub controller: Option<Selection>,
     /// Run controllers on plants that differ from the motor file instead: R, L, k_b +-30 %, bus -10 %,
     /// dead time 0 to 2 us, Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset. The plant
     /// options then say what all of these plants have in common
-    #[arg(long)]
+    #[arg(long, requires = "motor")]
     pub robustness: bool,
     /// Write the sheet of --robustness, one row per controller, disturbance and speed
     #[arg(long, value_name = "FILE", requires = "robustness")]
@@ -63,8 +67,20 @@ pub struct Accuracy {
     pub engine: EngineKind,
     /// One step from the same state.
     pub one_step: OneStep,
+    /// How often errors of which size were seen in phases a and b: equal parts of the range from the negative to the
+    /// positive bound.
+    pub histogram: Vec<u64>,
     /// Closed loops, per speed.
     pub closed_loop: Vec<AtSpeed>,
+}
+
+impl Accuracy {
+    /// The merit of the closed loops that differs most, by what may differ, and its speed in rpm.
+    pub fn furthest(&self) -> Option<(&MeritDifference, f64)> {
+        let merits = self.closed_loop.iter();
+        let merits = merits.flat_map(|at| at.merits.iter().map(move |merit| (merit, at.rpm)));
+        merits.max_by(|(one, _), (other, _)| one.of_allowance.total_cmp(&other.of_allowance))
+    }
 }
 
 /// Merits at one speed.
@@ -76,6 +92,24 @@ pub struct AtSpeed {
     pub merits: Vec<MeritDifference>,
 }
 
+/// One drive beside the ideal model at rated torque, as far as its set-point reaches, and each of the speeds in rpm.
+///
+/// # Errors
+/// A plant option out of range.
+pub fn at_speeds(
+    drive: &Prepared,
+    plant: &PlantArguments,
+) -> Result<Vec<(f64, SideBySide)>, Failure> {
+    let (params, torque) = (plant.plant(drive)?, drive.demand());
+    let set_point = plant.set_point(drive, torque);
+    let speeds = SPEEDS.map(|part| part * drive.rated_rpm());
+    let measured = speeds.into_iter().map(|rpm| {
+        let run = plant.run(drive, rpm, torque);
+        Ok((rpm, side_by_side(drive, &params, &run, set_point)?))
+    });
+    measured.collect()
+}
+
 /// Accuracy of one drive at rated torque, as far as its set-point reaches.
 ///
 /// # Errors
@@ -83,22 +117,19 @@ pub struct AtSpeed {
 pub fn accuracy(drive: &Prepared, plant: &PlantArguments) -> Result<Accuracy, Failure> {
     let (params, torque) = (plant.plant(drive)?, drive.demand());
     let set_point = plant.set_point(drive, torque);
-    let speeds = SPEEDS.map(|part| part * drive.rated_rpm());
-    let runs = speeds.map(|rpm| plant.run(drive, rpm, torque));
-    let mut closed_loop = Vec::new();
-    let mut measured = Vec::new();
-    for (rpm, run) in speeds.into_iter().zip(&runs) {
-        let both = side_by_side(drive, &params, run, set_point)?;
-        let alone = measure(&params, run, drive.maker(Model::Ideal, set_point))?;
-        closed_loop.push(AtSpeed {
-            rpm,
-            merits: differences(&both.fixed.merits, &both.ideal.merits, &alone.merits),
-        });
-        measured.push(both);
-    }
+    let measured = at_speeds(drive, plant)?;
+    let closed_loop = measured.iter().map(|(rpm, both)| {
+        let run = plant.run(drive, *rpm, torque);
+        let alone = measure(&params, &run, drive.maker(Model::Ideal, set_point))?;
+        let merits = differences(&both.fixed.merits, &both.ideal.merits, &alone.merits);
+        Ok(AtSpeed { rpm: *rpm, merits })
+    });
+    let closed_loop = closed_loop.collect::<Result<_, Failure>>()?;
+    let (one_step, histogram) = one_step(drive, measured.iter().map(|(_, both)| both));
     Ok(Accuracy {
         engine: drive.engine_kind(),
-        one_step: SideBySide::one_step(&measured),
+        one_step,
+        histogram,
         closed_loop,
     })
 }
@@ -108,22 +139,24 @@ pub fn accuracy(drive: &Prepared, plant: &PlantArguments) -> Result<Accuracy, Fa
 /// # Errors
 /// No such motor, an unreadable file, or a plant option out of range. A controller that does not
 /// generate is a row with the reason.
-pub fn collect(options: &Options) -> Result<Vec<Row>, Failure> {
-    let motor = SelectedMotor::find(&options.motor, &options.plant)?;
-    let variants = match &options.controller {
-        None => vec!["pdcc".to_owned()],
-        Some(selection) => selection.variants(),
-    };
-    // What does not generate at any word length is no matter of accuracy.
-    motor.prepare_for_torque(variants.first().map(String::as_str))?;
+pub fn collect(
+    motor: &str,
+    selection: &Selection,
+    plant: &PlantArguments,
+) -> Result<Vec<Row>, Failure> {
+    let motor = SelectedMotor::find(motor, plant)?;
+    if let Selection::One(variant) = selection {
+        // What does not generate at any word length is no matter of accuracy.
+        motor.prepare_for_torque(Some(variant))?;
+    }
     let mut rows = Vec::new();
-    for variant in &variants {
+    for variant in &selection.variants() {
         for word in WORDS {
             let Some(controller) = with_word(variant, word) else {
                 continue;
             };
             let (refused, accuracy) = match motor.prepare(Some(&controller)) {
-                Ok(drive) => (None, Some(accuracy(&drive, &options.plant)?)),
+                Ok(drive) => (None, Some(accuracy(&drive, plant)?)),
                 Err(failure) => (Some(failure.to_string()), None),
             };
             rows.push(Row {
@@ -138,7 +171,7 @@ pub fn collect(options: &Options) -> Result<Vec<Row>, Failure> {
 }
 
 /// The variant with a word length; none where it names another one itself.
-fn with_word(variant: &str, word: u32) -> Option<String> {
+pub fn with_word(variant: &str, word: u32) -> Option<String> {
     let options = variant.split_once(':').map_or("", |(_, options)| options);
     let named = options
         .split(',')
@@ -160,53 +193,57 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     #[derive(Serialize)]
     struct Comparison<'a> {
         motor: &'a str,
-        rows: Vec<Row>,
+        rows: &'a [Row],
     }
+    let Some(motor) = &options.motor else {
+        return library::run(&options.plant, options.json);
+    };
+    let all = Selection::All;
+    let selection = options.controller.as_ref().unwrap_or(&all);
     if options.robustness {
-        return run_robustness(options);
+        return run_robustness(options, motor, selection);
     }
     let progress = spinner("comparing");
-    let rows = collect(options);
+    let rows = collect(motor, selection, &options.plant);
     progress.finish_and_clear();
     let rows = rows?;
     if options.json {
-        return print_json(&Comparison {
-            motor: &options.motor,
-            rows,
-        });
+        print_json(&Comparison { motor, rows: &rows })?;
+    } else {
+        print::rows(&rows, matches!(selection, Selection::One(_)))?;
     }
-    print_text(&one_step_table(&rows))?;
-    for row in &rows {
-        let Some(accuracy) = &row.accuracy else {
-            continue;
-        };
-        for at in &accuracy.closed_loop {
-            print_text(&format!(
-                "\n{}, {:.0} rpm ({}):",
-                row.controller,
-                at.rpm,
-                accuracy.engine.name()
-            ))?;
-            print_text(&merit_table(&at.merits))?;
-        }
-    }
-    print_text(
-        "\nideal: on the words that the fixed-point drive read and from its state; alone: in a loop of its own.",
-    )
+    within_bounds(&rows)
 }
 
+/// Whether no error was larger than what is proven of it.
+fn within_bounds(rows: &[Row]) -> Result<(), Failure> {
+    let beyond = rows.iter().filter_map(|row| {
+        let one_step = &row.accuracy.as_ref()?.one_step;
+        // Also where there is no number at all.
+        let is_within = one_step.seen_to_bound <= 1.0;
+        (!is_within).then(|| {
+            format!(
+                "{}: an error of {:e} V was seen, beyond the proven bound of {:e} V",
+                row.controller, one_step.largest_v, one_step.bound_v
+            )
+        })
+    });
+    let beyond: Vec<String> = beyond.collect();
+    if beyond.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Check(beyond.join("\n")))
+    }
+}
 /// The robustness sheet instead.
-fn run_robustness(options: &Options) -> Result<(), Failure> {
+fn run_robustness(options: &Options, motor: &str, selection: &Selection) -> Result<(), Failure> {
     #[derive(Serialize)]
     struct Sheet<'a> {
         motor: &'a str,
         #[serde(flatten)]
         robustness: Robustness,
     }
-    let all = Selection::All;
-    let variants = options.controller.as_ref().unwrap_or(&all).variants();
-    let (motor, plant) = (&options.motor, &options.plant);
-    let sheet = robustness::collect(motor, &variants, plant)?;
+    let sheet = robustness::collect(motor, &selection.variants(), &options.plant)?;
     if let Some(path) = &options.csv {
         let contents = robustness::csv(&sheet).map_err(|error| Failure::Write {
             path: path.clone(),
@@ -221,59 +258,6 @@ fn run_robustness(options: &Options) -> Result<(), Failure> {
         });
     }
     robustness::print(&sheet)
-}
-
-fn one_step_table(rows: &[Row]) -> String {
-    let mut table = TextTable::new(
-        1,
-        [
-            "controller",
-            "word",
-            "steps",
-            "ties",
-            "u max V",
-            "u rms V",
-            "duty max",
-            "duty rms",
-            "SNR dB",
-            "equal %",
-        ],
-    );
-    for row in rows {
-        let Some(Accuracy { one_step, .. }) = &row.accuracy else {
-            let reason = row.refused.clone().unwrap_or_default();
-            table.row([row.controller.clone(), row.word.to_string(), reason]);
-            continue;
-        };
-        table.row([
-            row.controller.clone(),
-            row.word.to_string(),
-            one_step.steps.to_string(),
-            one_step.other_decisions.to_string(),
-            significant(one_step.u_largest_v, 3),
-            significant(one_step.u_rms_v, 3),
-            significant(one_step.duty_largest_counts, 3),
-            significant(one_step.duty_rms_counts, 3),
-            format!("{:.1}", one_step.snr_db),
-            format!("{:.2}", one_step.equal_compares_pct),
-        ]);
-    }
-    table.render()
-}
-
-fn merit_table(merits: &[MeritDifference]) -> String {
-    let mut table = TextTable::new(1, ["merit", "fixed", "ideal", "alone", "unit", "close"]);
-    for merit in merits {
-        table.row([
-            merit.merit.to_owned(),
-            significant(merit.fixed, 5),
-            significant(merit.ideal, 5),
-            significant(merit.ideal_alone, 5),
-            merit.unit.to_owned(),
-            if merit.close { "yes" } else { "NO" }.to_owned(),
-        ]);
-    }
-    table.render()
 }
 
 #[cfg(test)]

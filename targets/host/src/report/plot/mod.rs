@@ -2,6 +2,7 @@
 
 mod bars;
 mod canvas;
+mod histogram;
 mod levels;
 pub mod palette;
 mod plane;
@@ -11,6 +12,7 @@ mod trajectory;
 mod wave;
 
 pub use bars::{Bars, Group, bars};
+pub use histogram::{Histogram, histogram};
 pub use levels::{Level, levels};
 pub use plane::{Named, Path, Plane, plane};
 pub use stability::{SEARCH, stability};

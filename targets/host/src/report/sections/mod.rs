@@ -1,6 +1,7 @@
 //! The sections of the page, and the small pieces of HTML that they share.
 
 pub mod header;
+pub mod histograms;
 pub mod numbers;
 pub mod results;
 pub mod robustness;

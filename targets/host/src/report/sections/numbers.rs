@@ -2,17 +2,11 @@
 
 use super::header::grouped;
 use super::{TorqueScale, capture_name, nothing, number, variant_swatch};
-use crate::closed_loop::Merits;
+use crate::closed_loop::{Merits, POINTS, RELATIVE, share_of_allowance};
 use crate::report::{ReportData, SameWords, Variant};
 use hexagen_codegen::diagnostics::significant;
 use hexagen_codegen::interface::{FormatEntry, Rounding};
 use maud::{Markup, html};
-
-/// Relative difference between fixed point and float that is still as good as none.
-const RELATIVE: f64 = 0.01;
-
-/// The same for percentages, in points.
-const POINTS: f64 = 0.05;
 
 /// Formats of every controller that shows them.
 pub fn formats(data: &ReportData) -> Markup {
@@ -137,8 +131,7 @@ struct Pair {
 
 impl Pair {
     fn alike(&self, percentage: bool) -> bool {
-        let difference = (self.fixed - self.ideal).abs();
-        difference <= RELATIVE * self.ideal.abs() || (percentage && difference <= POINTS)
+        share_of_allowance(self.fixed, self.ideal, percentage) <= 1.0
     }
 }
 
@@ -221,7 +214,7 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
                 strong { (apart) " of " (grouped(total as u64)) " pairs differ (marked \u{2260}): " }
             }
             "same start, same plant, and the ideal model reads the ADC and Hall words that the fixed-point code read, so that arithmetic alone can make a difference. \
-             Alike means within 1 %, or within 0.05 points for percentages. Each cell shows fixed point above ideal float. \
+             Alike means within " (100.0 * RELATIVE) " %, or within " (POINTS) " points for percentages. Each cell shows fixed point above ideal float. \
              (The result table above has the ideal model in a loop of its own, where a converter's last bit takes another course.)"
         }
         div.scroll {

@@ -1,0 +1,50 @@
+//! When two merits count as alike.
+
+/// Greatest relative difference of merits that count as alike.
+pub const RELATIVE: f64 = 0.005;
+
+/// Greatest difference of percentages that count as alike, whatever their ratio, in points.
+pub const POINTS: f64 = 0.05;
+
+/// How far a merit is from what it should be, in parts of the difference that still counts as alike. Merits that
+/// do not exist (percent of a zero torque) are alike when both do not.
+pub fn share_of_allowance(found: f64, expected: f64, is_percentage: bool) -> f64 {
+    let distance = (found - expected).abs();
+    if distance == 0.0 || found.is_nan() && expected.is_nan() {
+        return 0.0;
+    }
+    if !distance.is_finite() {
+        return f64::INFINITY;
+    }
+    let relative = distance / (RELATIVE * expected.abs());
+    if is_percentage {
+        relative.min(distance / POINTS)
+    } else {
+        relative
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share_of_allowance;
+
+    #[test]
+    fn percentages_may_differ_by_points_and_all_else_in_proportion() {
+        for (found, expected, is_percentage, share) in [
+            (100.5, 100.0, false, 1.0),
+            (0.1, 0.05, true, 1.0),
+            (0.1, 0.05, false, 200.0),
+            (40.1, 40.0, true, 0.5),
+            (0.0, 0.0, false, 0.0),
+            (f64::NAN, f64::NAN, true, 0.0),
+            (f64::NAN, 1.0, true, f64::INFINITY),
+            (1.0, 0.0, false, f64::INFINITY),
+        ] {
+            let got = share_of_allowance(found, expected, is_percentage);
+            assert!(
+                got == share || (got - share).abs() < 1e-9,
+                "{found}, {expected}: {got}"
+            );
+        }
+    }
+}

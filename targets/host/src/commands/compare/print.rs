@@ -1,0 +1,126 @@
+//! The comparison as tables.
+
+use super::{Accuracy, Row};
+use crate::cli::{Failure, TextTable, print_text, significant};
+use crate::commands::accuracy::MeritDifference;
+
+/// Prints the rows, and every merit where they are of one controller.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
+    print_text(&accuracy_table(rows))?;
+    print_text(
+        "SNR, largest error and proven bound: of the deadbeat voltage in volt (pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
+         one step from the same state, phases a and b.\n\
+         Decisions: sector, commutation, limit, vector. Where they differ (a tie that rounding broke) no errors are compared.\n\
+         Closed loop: the merit that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
+         A controller of whole vectors takes another course from a broken tie on.\n",
+    )?;
+    print_text(&step_table(rows))?;
+    if !with_merits {
+        return print_text("Every merit: --controller with one variant, or --json.");
+    }
+    for row in rows {
+        let Some(accuracy) = &row.accuracy else {
+            continue;
+        };
+        for at in &accuracy.closed_loop {
+            print_text(&format!(
+                "\n{}, {:.0} rpm ({}):",
+                row.controller,
+                at.rpm,
+                accuracy.engine.name()
+            ))?;
+            print_text(&merit_table(&at.merits))?;
+        }
+    }
+    print_text(
+        "\nideal: on the words that the fixed-point drive read and from its state; alone: in a loop of its own.",
+    )
+}
+
+/// A table with one row for each that generates; the others say why not.
+fn table<const N: usize>(
+    rows: &[Row],
+    header: [&str; N],
+    cells: impl Fn(&Accuracy) -> Vec<String>,
+) -> String {
+    let first = ["controller", "word"].into_iter();
+    let mut table = TextTable::new(1, first.chain(header));
+    for row in rows {
+        let mut all = vec![row.controller.clone(), row.word.to_string()];
+        match &row.accuracy {
+            Some(accuracy) => all.extend(cells(accuracy)),
+            None => all.extend(row.refused.clone()),
+        }
+        table.row(all);
+    }
+    table.render()
+}
+
+fn accuracy_table(rows: &[Row]) -> String {
+    let header = [
+        "SNR dB",
+        "largest V",
+        "bound V",
+        "ratio",
+        "decisions %",
+        "closed loop",
+    ];
+    table(rows, header, |accuracy| {
+        let one_step = &accuracy.one_step;
+        let closed_loop = accuracy
+            .furthest()
+            .map_or_else(String::new, |(merit, rpm)| {
+                format!("{}: {}, {rpm:.0} rpm", merit.text(), merit.merit)
+            });
+        vec![
+            format!("{:.1}", one_step.snr_db),
+            significant(one_step.largest_v, 3),
+            significant(one_step.bound_v, 3),
+            format!("{:.3}", one_step.seen_to_bound),
+            format!("{:.2}", one_step.decisions_equal_pct),
+            closed_loop,
+        ]
+    })
+}
+
+fn step_table(rows: &[Row]) -> String {
+    let header = [
+        "steps",
+        "rms V",
+        "duty max",
+        "duty rms",
+        "equal %",
+        "equal steps %",
+        "counts apart",
+    ];
+    table(rows, header, |accuracy| {
+        let one_step = &accuracy.one_step;
+        vec![
+            one_step.steps.to_string(),
+            significant(one_step.rms_v, 3),
+            significant(one_step.duty_largest_counts, 3),
+            significant(one_step.duty_rms_counts, 3),
+            format!("{:.2}", one_step.equal_compares_pct),
+            format!("{:.2}", one_step.equal_steps_pct),
+            one_step.compares_apart_counts.to_string(),
+        ]
+    })
+}
+
+fn merit_table(merits: &[MeritDifference]) -> String {
+    let mut table = TextTable::new(1, ["merit", "fixed", "ideal", "alone", "unit", "close"]);
+    for merit in merits {
+        table.row([
+            merit.merit.to_owned(),
+            significant(merit.fixed, 5),
+            significant(merit.ideal, 5),
+            significant(merit.ideal_alone, 5),
+            merit.unit.to_owned(),
+            if merit.close { "yes" } else { "NO" }.to_owned(),
+        ]);
+    }
+    table.render()
+}

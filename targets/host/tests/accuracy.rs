@@ -1,0 +1,75 @@
+//! Fixed point beside the ideal model over the whole library: single steps from the same state keep within what is proven
+//! of them, and the proofs promise what a drive is to reach.
+
+use hexagen_codegen::emit::datasheet::emit_datasheet;
+use hexagen_codegen::ir::{StatedError, stated_errors};
+use hexagen_host::cli::PlantArguments;
+use hexagen_host::commands::accuracy::{OneStep, one_step};
+use hexagen_host::commands::compare::at_speeds;
+use hexagen_host::engine::{MotorSource, Prepared, library, prepare};
+use rayon::prelude::*;
+
+/// Controllers that modulate.
+const KINDS: [&str; 2] = ["pdcc", "pi-pwm"];
+
+fn drive(motor: &MotorSource, variant: &str) -> Prepared {
+    prepare(motor, Some(variant)).unwrap_or_else(|errors| panic!("{}: {errors}", motor.name))
+}
+
+fn accuracy(drive: &Prepared) -> OneStep {
+    let measured = at_speeds(drive, &PlantArguments::default()).expect("runs");
+    one_step(drive, measured.iter().map(|(_, both)| both)).0
+}
+
+#[test]
+fn steps_keep_within_the_proven_bounds_and_compare_values_within_a_count() {
+    let mut drives = vec![];
+    for motor in library().iter().map(MotorSource::from) {
+        for kind in KINDS {
+            drives.push((32, drive(&motor, kind)));
+            drives.push((16, drive(&motor, &format!("{kind}:word=16"))));
+        }
+    }
+    assert_eq!(drives.len(), 16 * 4);
+    drives.par_iter().for_each(|(word, drive)| {
+        let found = accuracy(drive);
+        let named = || format!("{}, {}: {found:?}", drive.motor, drive.variant);
+        assert!(found.steps > 4000, "{}", named());
+        assert!(found.seen_to_bound <= 1.0, "{}", named());
+        assert!(found.decisions_equal_pct > 99.98, "{}", named());
+        if *word == 32 {
+            assert!(found.compares_apart_counts <= 1, "{}", named());
+            // Compare values differ where the exact duty is half a count from a whole one.
+            assert!(found.equal_steps_pct >= 99.5, "{}", named());
+        }
+    });
+}
+
+#[test]
+fn errors_of_the_papers_motor_are_proven_as_small_as_asked() {
+    let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
+    for kind in KINDS {
+        let drive = drive(&motor, kind);
+        let stated = stated_errors(drive.generated.graph.program());
+        let bound = |name: &str| {
+            let stated = stated.iter().find(|stated| stated.name == name);
+            stated.map(StatedError::normal_bound).expect("is stated")
+        };
+        assert!(bound("voltage") <= 1e-5, "{kind}: {} V", bound("voltage"));
+        assert!(bound("duty") <= 0.02, "{kind}: {} counts", bound("duty"));
+    }
+}
+
+#[test]
+fn data_sheets_state_what_16_bit_words_reach() {
+    for motor in library().iter().map(MotorSource::from) {
+        for kind in KINDS {
+            let drive = drive(&motor, &format!("{kind}:word=16"));
+            let sheet = emit_datasheet(&drive.generated.graph, &drive.generated.interface);
+            for name in ["VOLTAGE_ERROR", "DUTY_ERROR"] {
+                let row = format!("\n| `{name}` | ");
+                assert!(sheet.contains(&row), "{} {kind}: {name}", motor.name);
+            }
+        }
+    }
+}
