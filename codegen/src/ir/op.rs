@@ -213,63 +213,18 @@ pub enum Op {
 impl Op {
     /// The operands, in order.
     pub fn operands(&self) -> Vec<Value> {
-        match *self {
-            Self::Input(_)
-            | Self::Param(_)
-            | Self::State(_)
-            | Self::Constant(_)
-            | Self::Literal(_) => vec![],
-            Self::Neg(a)
-            | Self::Abs(a)
-            | Self::ShiftLeft(a, _)
-            | Self::ShiftRight(a, _)
-            | Self::TurnOver(a)
-            | Self::Not(a)
-            | Self::AngleIndex { angle: a, .. }
-            | Self::AngleFraction { angle: a, .. }
-            | Self::Lookup { index: a, .. } => vec![a],
-            Self::Add(a, b)
-            | Self::Sub(a, b)
-            | Self::Product(a, b)
-            | Self::MulRound {
-                coefficient: a,
-                signal: b,
-                ..
-            }
-            | Self::MulFloor { a, b, .. }
-            | Self::Min(a, b)
-            | Self::Max(a, b)
-            | Self::AngleAdd(a, b)
-            | Self::AngleSub(a, b)
-            | Self::Compare(_, a, b)
-            | Self::And(a, b)
-            | Self::Or(a, b)
-            | Self::Join {
-                taken: a,
-                otherwise: b,
-            } => vec![a, b],
-            Self::MulLimited { a, b, limit: c }
-            | Self::Divide {
-                numerator: a,
-                denominator: b,
-                limit: c,
-                ..
-            }
-            | Self::Clamp {
-                x: a,
-                low: b,
-                high: c,
-            }
-            | Self::Select {
-                condition: a,
-                then: b,
-                otherwise: c,
-            } => vec![a, b, c],
-        }
+        let (mut op, mut operands) = (*self, vec![]);
+        op.each_operand(|operand| operands.push(*operand));
+        operands
     }
 
     /// Replaces every operand.
     pub(crate) fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
+        self.each_operand(|operand| *operand = f(*operand));
+    }
+
+    /// Visits every operand, in order.
+    fn each_operand(&mut self, mut visit: impl FnMut(&mut Value)) {
         match self {
             Self::Input(_)
             | Self::Param(_)
@@ -284,7 +239,7 @@ impl Op {
             | Self::Not(a)
             | Self::AngleIndex { angle: a, .. }
             | Self::AngleFraction { angle: a, .. }
-            | Self::Lookup { index: a, .. } => *a = f(*a),
+            | Self::Lookup { index: a, .. } => visit(a),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Product(a, b)
@@ -305,8 +260,8 @@ impl Op {
                 taken: a,
                 otherwise: b,
             } => {
-                *a = f(*a);
-                *b = f(*b);
+                visit(a);
+                visit(b);
             }
             Self::MulLimited { a, b, limit: c }
             | Self::Divide {
@@ -325,9 +280,9 @@ impl Op {
                 then: b,
                 otherwise: c,
             } => {
-                *a = f(*a);
-                *b = f(*b);
-                *c = f(*c);
+                visit(a);
+                visit(b);
+                visit(c);
             }
         }
     }
