@@ -113,11 +113,6 @@ impl Variant {
             || self.six_step == Some(Switch::On)
     }
 
-    /// A regulator of the speed asks for the current.
-    pub fn has_speed_loop(&self) -> bool {
-        self.options.has_speed_loop()
-    }
-
     /// A command takes effect one period after its sample.
     pub fn delayed(&self) -> bool {
         self.options.delay == 1

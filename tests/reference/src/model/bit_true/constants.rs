@@ -276,7 +276,7 @@ impl Constants {
                 (Part::Stall, inverter.stall_periods > 0),
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
-                (Part::Speed, variant.has_speed_loop()),
+                (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Commutation, commutation.is_some()),
                 (Part::Sight, variant.sees()),
                 (Part::VoltageCommand, variant.applied_now && !floating),

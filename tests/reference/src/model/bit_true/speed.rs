@@ -25,7 +25,7 @@ pub struct Regulator {
 impl Regulator {
     /// None without a speed loop.
     pub fn new(spec: &Spec, scale: &Scale, k: &Constants) -> Result<Option<Self>, Error> {
-        if !scale.variant.has_speed_loop() {
+        if !scale.variant.options.has_speed_loop() {
             return Ok(None);
         }
         let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
