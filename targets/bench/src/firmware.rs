@@ -49,17 +49,9 @@ impl Firmware {
     /// # Errors
     /// When there are findings.
     pub fn lint(&self) -> Result<(), BenchError> {
-        let Toolchain::Installed { .. } = self.toolchain else {
-            return Ok(());
-        };
-        let mut clippy = self.command("clippy");
-        if clippy.args(["--", "-D", "warnings"]).status()?.success() {
-            Ok(())
-        } else {
-            Err(BenchError::Failed(format!(
-                "the firmware of {} has findings",
-                self.target.name()
-            )))
+        match self.toolchain {
+            Toolchain::Installed { .. } => self.check(self.target.name(), &[]),
+            Toolchain::Debian { .. } => Ok(()),
         }
     }
 
@@ -68,41 +60,35 @@ impl Firmware {
     /// # Errors
     /// When they do not compile, or have findings.
     pub fn check_frameworks(&self) -> Result<(), BenchError> {
-        if self.target != Target::CortexM4 {
-            return Ok(());
+        match self.target {
+            Target::CortexM4 => self.check("frameworks", &["--examples"]),
+            Target::CortexM0 | Target::Riscv32 => Ok(()),
         }
+    }
+
+    /// Lints what a folder of `targets` holds; Debian's compiler checks that it compiles.
+    fn check(&self, folder: &str, arguments: &[&str]) -> Result<(), BenchError> {
         let (name, lints): (_, &[&str]) = match self.toolchain {
             Toolchain::Installed { .. } => ("clippy", &["--", "-D", "warnings"]),
             Toolchain::Debian { .. } => ("check", &[]),
         };
-        let status = self
-            .command_in("frameworks", name)
-            .arg("--examples")
-            .args(lints)
-            .status()?;
-        if status.success() {
+        let mut command = self.command(folder, name);
+        if command.args(arguments).args(lints).status()?.success() {
             Ok(())
         } else {
-            Err(BenchError::Failed(
-                "the examples of targets/frameworks have findings".to_owned(),
-            ))
+            Err(BenchError::Failed(format!("targets/{folder} has findings")))
         }
     }
 
     /// `cargo build` of this firmware.
     fn cargo(&self, arguments: &[&str]) -> Command {
-        let mut command = self.command("build");
+        let mut command = self.command(self.target.name(), "build");
         command.args(arguments);
         command
     }
 
-    /// A cargo command on this firmware.
-    fn command(&self, name: &str) -> Command {
-        self.command_in(self.target.name(), name)
-    }
-
     /// A cargo command in a folder of `targets`.
-    fn command_in(&self, folder: &str, name: &str) -> Command {
+    fn command(&self, folder: &str, name: &str) -> Command {
         let mut command = self.toolchain.cargo(name, self.target);
         command
             .arg("--target-dir")

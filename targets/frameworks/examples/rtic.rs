@@ -27,7 +27,7 @@ mod app {
     }
 
     /// The converters have sampled: once per control period, above everything else.
-    #[task(binds = ADC0_SEQUENCE_0, priority = 7, local = [control])]
+    #[task(binds = ADC0_SEQUENCE_0, priority = 8, local = [control])]
     fn control_period(context: control_period::Context) {
         let control = context.local.control;
         let sample = REGISTERS.sample();
