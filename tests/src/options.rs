@@ -43,8 +43,8 @@ pub struct Kind {
 /// One value per axis of a kind, as indices.
 pub type Choice = Vec<usize>;
 
-/// A value of one axis with a value of another, each as numbers of axis and value.
-pub type Meeting = ((usize, usize), (usize, usize));
+/// Number of a combination of loose options, with the value of another axis (their numbers).
+pub type Meeting = (usize, (usize, usize));
 
 /// Stands for a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
@@ -422,34 +422,42 @@ impl Kind {
         combinations(self.bound())
     }
 
-    /// Element `index` of the full product of the options that depend on each other. The loose ones take a
-    /// combination each, by a hash of the index, so that each of their values meets every value of
-    /// every other axis.
+    /// Element `index` of the full product of the options that depend on each other. The loose ones take a combination
+    /// each, by a hash of the index, so that values of both meet in any order.
     pub fn product_element(&self, index: usize) -> Choice {
-        let mut choice = digits(self.bound(), index);
         // Knuth's multiplicative hash; its upper bits are the mixed ones.
         let hash = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
         let turn = hash as usize % combinations(self.loose());
-        choice.extend(digits(self.loose(), turn));
-        choice
+        self.with_loose(&digits(self.bound(), index), turn)
     }
 
-    /// What a choice shows of the loose options: each one's value with the value of every other axis.
+    /// A choice with combination `number` of the loose options.
+    pub fn with_loose(&self, choice: &[usize], number: usize) -> Choice {
+        let bound = &choice[..self.bound().len()];
+        [bound, &digits(self.loose(), number)].concat()
+    }
+
+    /// Number of the combination of the loose options in a choice, with every value of another
+    /// axis that it meets there (number of the axis, and of the value).
     pub fn meetings(&self, choice: &[usize]) -> Vec<Meeting> {
-        let axes = || choice.iter().copied().enumerate();
-        let loose = axes().skip(self.bound().len());
-        loose
-            .flat_map(|one| axes().take(one.0).map(move |other| (one, other)))
-            .collect()
+        let (bound, loose) = choice.split_at(self.bound().len());
+        let axes = self.loose().iter().zip(loose);
+        let combination = axes.fold(0, |number, (axis, value)| {
+            number * axis.values.len() + value
+        });
+        let values = bound.iter().copied().enumerate();
+        values.map(|showing| (combination, showing)).collect()
     }
 
-    /// The number of all meetings.
-    pub fn meetings_len(&self) -> usize {
-        let sizes: Vec<usize> = self.axes.iter().map(|axis| axis.values.len()).collect();
-        let loose = self.bound().len()..sizes.len();
-        loose
-            .map(|one| sizes[one] * sizes[..one].iter().sum::<usize>())
-            .sum()
+    /// All meetings.
+    pub fn all_meetings(&self) -> impl Iterator<Item = Meeting> {
+        let values = |(axis, values): (usize, &Axis)| {
+            (0..values.values.len()).map(move |value| (axis, value))
+        };
+        (0..combinations(self.loose())).flat_map(move |combination| {
+            let showings = self.bound().iter().enumerate().flat_map(values);
+            showings.map(move |showing| (combination, showing))
+        })
     }
 
     /// The choice with the first value of every axis but those named: `[("emf", "model")]`.

@@ -29,8 +29,9 @@ struct Tally {
     /// Codes of the diagnostics that refused a drive, with the number of drives and the first one.
     refused: BTreeMap<String, (usize, String)>,
     failures: Vec<String>,
-    /// Values of the loose options with values of other options that they met.
+    /// What the loose options met, each with the first choice that shows the other option's value.
     met: BTreeSet<Meeting>,
+    shown: BTreeMap<(usize, usize), Vec<usize>>,
 }
 
 impl Tally {
@@ -49,6 +50,8 @@ impl Tally {
             Ok((_, generated)) => {
                 tally.compared = 1;
                 tally.met = kind.meetings(choice).into_iter().collect();
+                let shown = tally.met.iter().map(|(_, value)| (*value, choice.to_vec()));
+                tally.shown = shown.collect();
                 let program = generated.graph.program();
                 // A step from an arbitrary state costs many of a stream, and shows as much.
                 let from_states = steps / 8;
@@ -69,6 +72,9 @@ impl Tally {
         self.steps += other.steps;
         self.failures.extend(other.failures);
         self.met.extend(other.met);
+        for (value, choice) in other.shown {
+            self.shown.entry(value).or_insert(choice);
+        }
         for (code, (count, example)) in other.refused {
             let entry = self.refused.entry(code).or_insert((0, example));
             entry.0 += count;
@@ -130,7 +136,7 @@ fn default_drive_of_the_paper_motor() {
 }
 
 /// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The loose ones take
-/// turns, and each of their values meets every value of every other option in some drive that is compared.
+/// turns, and then what they have not met: each of their combinations with every value of every other option.
 #[test]
 fn full_product_of_options_on_the_paper_motor() {
     let paper = motor(PAPER_MOTOR);
@@ -141,15 +147,26 @@ fn full_product_of_options_on_the_paper_motor() {
         } else {
             MOST_OF_A_PRODUCT
         };
-        let tally = (0..kind.product_len().min(most))
-            .into_par_iter()
-            .map(|index| {
-                let choice = spread_element(&kind, index);
-                Tally::of(&kind, &paper, &choice, PRODUCT_STEPS, index as u64)
-            })
-            .reduce(Tally::default, Tally::add);
+        let compared = |choices: Vec<Vec<usize>>| {
+            let choices = choices.into_par_iter().enumerate();
+            choices
+                .map(|(seed, choice)| Tally::of(&kind, &paper, &choice, PRODUCT_STEPS, seed as u64))
+                .reduce(Tally::default, Tally::add)
+        };
+        let elements = 0..kind.product_len().min(most);
+        let first = compared(elements.map(|k| spread_element(&kind, k)).collect());
+        let mut missing = BTreeSet::new();
+        for (combination, value) in kind.all_meetings() {
+            let shown = first.shown.get(&value);
+            let shown = shown.unwrap_or_else(|| panic!("{}: {value:?} never shows", kind.name));
+            if !first.met.contains(&(combination, value)) {
+                missing.insert(kind.with_loose(shown, combination));
+            }
+        }
+        let tally = first.add(compared(missing.into_iter().collect()));
         tally.check(&format!("full product of {}", kind.name));
-        assert_eq!(tally.met.len(), kind.meetings_len());
+        let all: BTreeSet<Meeting> = kind.all_meetings().collect();
+        assert_eq!(tally.met, all);
         assert_eq!(
             tally.refused.keys().collect::<Vec<_>>(),
             ["OptionWithoutEffect"],
