@@ -1,136 +1,15 @@
 //! The comparison notices every small fault planted in the IR, but for those that change nothing, and a few
 //! that change next to nothing.
 
-mod equivalent;
-mod unnoticed;
-
-use equivalent::EQUIVALENT;
 use hexagen_codegen::ir::{Op, Program};
-use hexagen_tests::faults::{Fault, faults};
+use hexagen_tests::faults::{DRIVES, EQUIVALENT, Fault, RARE, faults, listed};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_record, record_states};
 use hexagen_tests::options::{Drive, generate_toml};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use unnoticed::{RARE, Unnoticed};
 
 /// Steps of each kind within which a fault must show.
 const STEPS: u64 = 40_000;
-
-/// Together these have every stage of a step of every kind of controller.
-const DRIVES: &[Drive] = &[
-    Drive {
-        kind: "pdcc",
-        motor: "trivedi-keshri-660w",
-        settings: &[("saturation", "torque_priority")],
-    },
-    Drive {
-        kind: "pdcc",
-        motor: "hoverboard-hub",
-        settings: &[
-            ("modulation", "pair"),
-            ("saturation", "nearest"),
-            ("advance", "1.5"),
-            ("v_bus", "measured"),
-            ("stall_timeout", "100ms"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "pdcc",
-        motor: "estun-emj-04apb22",
-        settings: &[
-            ("saturation", "keep_angle"),
-            ("emf", "model"),
-            ("reference", "proportional"),
-            ("hall_capture", "timer"),
-            ("adc_inverted", "on"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "pdcc",
-        motor: "teknic-m2310p",
-        settings: &[
-            ("modulation", "pair"),
-            ("saturation", "keep_angle"),
-            ("emf", "unfiltered"),
-            ("delay", "0"),
-            ("word", "16"),
-            ("discretisation", "euler"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "fcs-mpc",
-        motor: "trivedi-keshri-660w",
-        settings: &[("start_up", "short")],
-    },
-    Drive {
-        kind: "fcs-mpc",
-        motor: "hoverboard-hub",
-        settings: &[
-            ("candidates", "all"),
-            ("emf", "model"),
-            ("v_bus", "measured"),
-            ("hall_capture", "timer"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "fcs-mpc",
-        motor: "estun-emj-04apb22",
-        settings: &[
-            ("candidates", "all"),
-            ("off_leg", "nominal"),
-            ("delay", "0"),
-            ("word", "16"),
-            ("discretisation", "euler"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "fcs-mpc",
-        motor: "teknic-m2310p",
-        settings: &[
-            ("off_leg", "nominal"),
-            ("adc_inverted", "on"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "phcc",
-        motor: "trivedi-keshri-660w",
-        settings: &[("start_up", "short")],
-    },
-    Drive {
-        kind: "phcc",
-        motor: "estun-emj-04apb22",
-        settings: &[
-            ("table", "given"),
-            ("band", "narrow"),
-            ("delay", "0"),
-            ("word", "16"),
-            ("start_up", "short"),
-        ],
-    },
-    Drive {
-        kind: "pi-pwm",
-        motor: "teknic-m2310p",
-        settings: &[("saturation", "nearest"), ("start_up", "short")],
-    },
-    Drive {
-        kind: "pi-pwm",
-        motor: "anaheim-bly172s",
-        settings: &[
-            ("saturation", "keep_angle"),
-            ("feed_forward", "off"),
-            ("tuning", "slow"),
-            ("word", "16"),
-            ("v_bus", "measured"),
-            ("start_up", "short"),
-        ],
-    },
-];
 
 /// Names of the constants that the setters use.
 fn constants_of_setters(program: &Program) -> BTreeSet<String> {
@@ -176,24 +55,6 @@ fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize)
         .map(|(_, name)| name)
         .collect();
     (unnoticed, planted.len())
-}
-
-/// The listed faults of a drive, with the reasons; `wrong` gets those that are listed twice.
-fn listed<'r>(
-    rows: &'r [Unnoticed],
-    drive: &str,
-    wrong: &mut Vec<String>,
-) -> BTreeMap<String, &'r str> {
-    let mut listed = BTreeMap::new();
-    for row in rows.iter().filter(|row| row.drives.contains(&drive)) {
-        for (place, what) in row.faults() {
-            let fault = format!("{place}: {what}");
-            if listed.insert(fault, row.because).is_some() {
-                wrong.push(format!("{drive}: {place}: {what}: listed twice"));
-            }
-        }
-    }
-    listed
 }
 
 #[test]

@@ -33,4 +33,4 @@ pub use interpret::{Escape, Machine};
 pub use interval::Interval;
 pub use op::{Comparison, ConstantId, Kind, Op, ParamId, StateId, TableId, Value};
 pub use paths::Paths;
-pub use verify::{VerifiedGraph, Violation, verify};
+pub use verify::{VerifiedGraph, Violation, derived_interval, verify};

@@ -347,16 +347,6 @@ impl FunctionCheck<'_> {
 
     fn check_nodes(&mut self) {
         let function = self.function;
-        let guard_of = |index: usize| {
-            let guards = function
-                .stages
-                .iter()
-                .filter_map(|stage| stage.guard.as_ref());
-            guards
-                .filter(|guard| guard.joins.contains(&Value(index as u32)))
-                .map(|guard| guard.condition)
-                .next()
-        };
         for (index, node) in function.nodes.iter().enumerate() {
             let kinds: Vec<Kind> = node
                 .op
@@ -379,19 +369,7 @@ impl FunctionCheck<'_> {
                 self.fail(index, "operands may leave the operator's domain");
                 continue;
             }
-            let derived = match node.op {
-                Op::Input(n) => Some(function.inputs[n as usize].interval),
-                Op::Param(id) => Some(self.program.params[id.index()].interval),
-                Op::State(id) => Some(self.program.states[id.index()].interval),
-                Op::Constant(id) => Some(Interval::point(i64::from(
-                    self.program.constants[id.index()].raw,
-                ))),
-                Op::Join { otherwise, .. } => guard_of(index)
-                    .map(|guard| operands[0].union(function.interval_where_not(guard, otherwise))),
-                op => op.interval(&operands, |table| {
-                    self.program.tables[table.index()].interval()
-                }),
-            };
+            let derived = derived_interval(self.program, function, index);
             if !Interval::WORD.contains(node.interval) {
                 let place = self.place(index);
                 self.violations.escape(&place, node.interval, 32);
@@ -477,6 +455,33 @@ impl FunctionCheck<'_> {
         for what in wrong {
             self.violations.add(&function.name, &what);
         }
+    }
+}
+
+/// The interval of node `index` that follows from those of its operands, as the function holds them; `None` where an
+/// operator's domain may be left.
+pub fn derived_interval(program: &Program, function: &Function, index: usize) -> Option<Interval> {
+    let op = function.nodes[index].op;
+    let operands = op.operands().into_iter();
+    let x: Vec<Interval> = operands.map(|x| function.node(x).interval).collect();
+    let guards = function
+        .stages
+        .iter()
+        .filter_map(|stage| stage.guard.as_ref());
+    match op {
+        Op::Input(n) => Some(function.inputs[n as usize].interval),
+        Op::Param(id) => Some(program.params[id.index()].interval),
+        Op::State(id) => Some(program.states[id.index()].interval),
+        Op::Constant(id) => {
+            let raw = program.constants[id.index()].raw;
+            Some(Interval::point(i64::from(raw)))
+        }
+        Op::Join { otherwise, .. } => {
+            let mut guards = guards.filter(|guard| guard.joins.contains(&Value(index as u32)));
+            let condition = guards.next()?.condition;
+            Some(x[0].union(function.interval_where_not(condition, otherwise)))
+        }
+        op => op.interval(&x, |table| program.tables[table.index()].interval()),
     }
 }
 

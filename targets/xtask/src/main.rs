@@ -36,6 +36,8 @@ enum Command {
     Pil(Forwarded),
     /// What a step costs on every target: instructions, bytes, cycles (`--target`, `--only`, `--accept`)
     Cost(Forwarded),
+    /// Plants 300 faults and lists who notices each: interval verifier, Gappa, or the comparison with the bit-true model
+    Faults,
     /// Refreshes every recorded expectation (snapshots, compiler messages); read the diff afterwards
     Accept,
 }
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
+        Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),
     };
     match outcome {

@@ -134,6 +134,22 @@ fn install(package: &str) -> bool {
     apt(&["install", "-y", "-qq", "--no-install-recommends", package])
 }
 
+/// All planted faults, with the list of who notices each.
+pub fn faults() -> Step {
+    let arguments = [
+        "test",
+        "--workspace",
+        "--test",
+        "planted_faults",
+        "--",
+        "--nocapture",
+    ];
+    Step {
+        environment: vec![("HEXAGEN_ALL_FAULTS", "1")],
+        ..step("planted faults", &arguments)
+    }
+}
+
 /// What is too long for a push.
 pub fn long_checks(steps: u64) -> Vec<Step> {
     let steps = steps.to_string();
@@ -170,6 +186,7 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
             environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
             ..step("whole products of options", &interpreter)
         },
+        faults(),
         on_target("pil", &["--steps", "1000000"]),
         step("proofs", &prove),
         Step {

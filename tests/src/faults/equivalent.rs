@@ -1,6 +1,6 @@
 //! Planted faults that change no output and no state, each with its reason.
 
-use crate::unnoticed::{
+use super::unnoticed::{
     ALL, ESTUN, FCS, FCS_ESTUN, FCS_HOVERBOARD, FCS_PAPER, FCS_TEKNIC, HOVERBOARD, PAPER,
     PHCC_ESTUN, PHCC_PAPER, PI_ANAHEIM, PI_TEKNIC, TEKNIC, Unnoticed,
 };

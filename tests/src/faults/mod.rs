@@ -1,7 +1,16 @@
 //! Every small fault of a kind that can be planted in a program: a wrong bit in a constant or a
-//! table, a shift or a rounding, operators and operands exchanged, a state word forgotten.
+//! table, a shift or a rounding, operators and operands exchanged, a state word forgotten. And the drives that they are
+//! planted in, with those that change nothing, or next to nothing.
 
-use hexagen_codegen::ir::{Comparison, Function, Interval, Op, Program, Value};
+mod drives;
+mod equivalent;
+mod unnoticed;
+
+pub use drives::DRIVES;
+pub use equivalent::EQUIVALENT;
+pub use unnoticed::{Faults, RARE, Unnoticed, listed};
+
+use hexagen_codegen::ir::{Comparison, Function, Interval, Op, Program, Value, derived_interval};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
@@ -15,6 +24,43 @@ pub struct Fault {
     /// The faulty program. Its intervals are opened to the whole word, so that only a wrong result
     /// (or one that leaves the word) gives it away.
     pub program: Program,
+    change: Change,
+}
+
+impl Fault {
+    /// The fault in `program`, of which it is one, with the intervals that follow: what a generator would have made of it.
+    ///
+    /// # Errors
+    /// The value that leaves its word, or whose operator has no result, and then has no interval.
+    pub fn planted_in(&self, program: &Program) -> Result<Program, String> {
+        let mut faulty = program.clone();
+        self.change.apply(&mut faulty);
+        for function in 0..=faulty.setters.len() {
+            for index in 0..function_of(program, function).nodes.len() {
+                let held = function_of(&faulty, function);
+                let derived = derived_interval(&faulty, held, index)
+                    .filter(|&interval| Interval::WORD.contains(interval))
+                    .ok_or_else(|| place(held, index))?;
+                function_mut(&mut faulty, function).nodes[index].interval = derived;
+            }
+        }
+        Ok(faulty)
+    }
+}
+
+/// The step, or a setter behind it.
+fn function_of(program: &Program, number: usize) -> &Function {
+    match number {
+        0 => &program.step,
+        setter => &program.setters[setter - 1],
+    }
+}
+
+fn function_mut(program: &mut Program, number: usize) -> &mut Function {
+    match number {
+        0 => &mut program.step,
+        setter => &mut program.setters[setter - 1],
+    }
 }
 
 /// All faults of the program, one at a time.
@@ -44,6 +90,7 @@ pub fn faults(program: &Program) -> impl Iterator<Item = Fault> + '_ {
             place,
             what,
             program,
+            change,
         }
     })
 }
@@ -67,8 +114,7 @@ impl Change {
             Self::Entry(table, entry, value) => program.tables[table].values[entry] = value,
             Self::Initial(word, value) => program.states[word].initial = value,
             Self::Forget(index, old) => program.step.next_state[index].1 = old,
-            Self::Op(0, node, op) => program.step.nodes[node].op = op,
-            Self::Op(setter, node, op) => program.setters[setter - 1].nodes[node].op = op,
+            Self::Op(function, node, op) => function_mut(program, function).nodes[node].op = op,
         }
     }
 }
@@ -291,10 +337,7 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
         ],
         Op::MulLimited { a, b, limit } => vec![
             ("limit alone", same(limit)),
-            ("factors added", {
-                let _ = limit;
-                Op::Add(a, b)
-            }),
+            ("factors added", Op::Add(a, b)),
         ],
         Op::ShiftLeft(a, n) => vec![
             ("shift one more", Op::ShiftLeft(a, n + 1)),

@@ -1,14 +1,20 @@
 //! Faults that the comparison does not notice, and why.
 
-/// Faults for the same reason: all of `what` at all of `places`.
+use std::collections::BTreeMap;
+
+/// Faults that are not noticed for the same reason.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unnoticed {
+    /// The reason.
     pub because: &'static str,
+    /// The drives, by kind and motor.
     pub drives: &'static [&'static str],
+    /// All faults of each second list at all places of the first.
     pub faults: &'static [Faults],
 }
 
 /// Places and what is wrong at each of them.
-type Faults = (&'static [&'static str], &'static [&'static str]);
+pub type Faults = (&'static [&'static str], &'static [&'static str]);
 
 impl Unnoticed {
     /// Place and what is wrong there.
@@ -20,24 +26,24 @@ impl Unnoticed {
     }
 }
 
-pub const PAPER: &str = "pdcc trivedi-keshri-660w";
-pub const HOVERBOARD: &str = "pdcc hoverboard-hub";
-pub const ESTUN: &str = "pdcc estun-emj-04apb22";
-pub const TEKNIC: &str = "pdcc teknic-m2310p";
-pub const FCS_PAPER: &str = "fcs-mpc trivedi-keshri-660w";
-pub const FCS_HOVERBOARD: &str = "fcs-mpc hoverboard-hub";
-pub const FCS_ESTUN: &str = "fcs-mpc estun-emj-04apb22";
-pub const FCS_TEKNIC: &str = "fcs-mpc teknic-m2310p";
-pub const PHCC_PAPER: &str = "phcc trivedi-keshri-660w";
-pub const PHCC_ESTUN: &str = "phcc estun-emj-04apb22";
-pub const PI_TEKNIC: &str = "pi-pwm teknic-m2310p";
-pub const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
+pub(super) const PAPER: &str = "pdcc trivedi-keshri-660w";
+pub(super) const HOVERBOARD: &str = "pdcc hoverboard-hub";
+pub(super) const ESTUN: &str = "pdcc estun-emj-04apb22";
+pub(super) const TEKNIC: &str = "pdcc teknic-m2310p";
+pub(super) const FCS_PAPER: &str = "fcs-mpc trivedi-keshri-660w";
+pub(super) const FCS_HOVERBOARD: &str = "fcs-mpc hoverboard-hub";
+pub(super) const FCS_ESTUN: &str = "fcs-mpc estun-emj-04apb22";
+pub(super) const FCS_TEKNIC: &str = "fcs-mpc teknic-m2310p";
+pub(super) const PHCC_PAPER: &str = "phcc trivedi-keshri-660w";
+pub(super) const PHCC_ESTUN: &str = "phcc estun-emj-04apb22";
+pub(super) const PI_TEKNIC: &str = "pi-pwm teknic-m2310p";
+pub(super) const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
 
 /// Those of FCS-MPC.
-pub const FCS: &[&str] = &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC];
+pub(super) const FCS: &[&str] = &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC];
 
 /// Every drive.
-pub const ALL: &[&str] = &[
+pub(super) const ALL: &[&str] = &[
     PAPER,
     HOVERBOARD,
     ESTUN,
@@ -153,3 +159,21 @@ pub const RARE: &[Unnoticed] = &[
         ],
     },
 ];
+
+/// The listed faults of a drive, kind and motor, with the reasons; `wrong` gets those that are listed twice.
+pub fn listed<'r>(
+    rows: &'r [Unnoticed],
+    drive: &str,
+    wrong: &mut Vec<String>,
+) -> BTreeMap<String, &'r str> {
+    let mut listed = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.drives.contains(&drive)) {
+        for (place, what) in row.faults() {
+            let fault = format!("{place}: {what}");
+            if listed.insert(fault, row.because).is_some() {
+                wrong.push(format!("{drive}: {place}: {what}: listed twice"));
+            }
+        }
+    }
+    listed
+}
