@@ -28,8 +28,16 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
         let file = lines.next()?.strip_prefix("motor ")?;
         let motor = file.rsplit('/').next()?.strip_suffix(".toml")?.to_owned();
         let kind = lines.next()?.strip_prefix("kind ")?.replace('_', "-");
-        let options = options(lines.next()?.strip_prefix("options")?);
-        let words = lines.next()?.strip_prefix("words")?;
+        let mut written = lines.next()?.strip_prefix("options")?.to_owned();
+        // The compiler breaks a long list of tokens into lines.
+        let words = loop {
+            let line = lines.next()?;
+            match line.strip_prefix("words") {
+                Some(words) => break words,
+                None => written.push_str(line),
+            }
+        };
+        let options = options(&written);
         let size = lines.next()?.strip_prefix("size ")?.parse().ok()?;
         let mut spec = String::new();
         loop {
@@ -70,7 +78,7 @@ mod tests {
 
     #[test]
     fn reads_what_the_firmware_writes() {
-        let text = "drive step_x\nmotor ../motors/x-1.toml\nkind fcs_mpc\noptions emf : model, advance : 1.5,\n\
+        let text = "drive step_x\nmotor ../motors/x-1.toml\nkind fcs_mpc\noptions emf : model,\nadvance : 1.5,\n\
                     words mode fault\nsize 000068\nname = \"X\"\n[motor]\nend\n";
         let drives = parse(text).expect("a list");
         assert_eq!(drives.len(), 1);

@@ -5,6 +5,7 @@ pub mod checker;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
+pub mod counted;
 pub mod engine;
 mod files;
 pub mod plant;

@@ -3,42 +3,24 @@
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use serde::{Deserialize, Serialize};
+use hexagen_host::counted::{Counted, Figures};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
 /// What is expected on a target.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Expected {
-    /// What compiled the figures.
-    pub compiler: String,
-    /// Figures by symbol.
-    pub steps: BTreeMap<String, Figures>,
-}
+#[derive(Debug)]
+pub struct Expected(pub Counted);
 
-/// Figures of a step that must not rise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Figures {
-    /// Instructions on the normal path.
-    pub normal: u32,
-    /// Instructions of the worst step.
-    pub worst: u32,
-    /// Bytes of the function's own code.
-    pub code: u32,
-    /// Bytes of stack.
-    pub stack: u32,
-}
-
-impl Figures {
-    fn named(self) -> [(&'static str, u32); 4] {
-        [
-            ("normal path", self.normal),
-            ("worst path", self.worst),
-            ("code", self.code),
-            ("stack", self.stack),
-        ]
-    }
+/// The figures by their names.
+fn named(figures: Figures) -> [(&'static str, u32); 5] {
+    [
+        ("normal path", figures.normal),
+        ("worst path", figures.worst),
+        ("cycles", figures.cycles),
+        ("code", figures.code),
+        ("stack", figures.stack),
+    ]
 }
 
 fn path(target: Target) -> PathBuf {
@@ -56,7 +38,8 @@ impl Expected {
     pub fn read(target: Target) -> Result<Self, BenchError> {
         let path = path(target);
         let text = fs::read_to_string(&path)?;
-        toml::from_str(&text)
+        Counted::parse(&text)
+            .map(Self)
             .map_err(|error| BenchError::Failed(format!("{}: {error}", path.display())))
     }
 
@@ -65,7 +48,8 @@ impl Expected {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, target: Target) -> Result<(), BenchError> {
-        let text = toml::to_string(self).map_err(|error| BenchError::Failed(error.to_string()))?;
+        let text =
+            toml::to_string(&self.0).map_err(|error| BenchError::Failed(error.to_string()))?;
         let head = "# Written by `cargo xtask cost --accept`; a figure that rises fails `cargo xtask cost`.\n";
         fs::write(path(target), format!("{head}{text}"))?;
         Ok(())
@@ -80,11 +64,11 @@ impl Expected {
     ) -> Vec<String> {
         let mut rises = vec![];
         for (symbol, figures) in found {
-            match self.steps.get(symbol) {
+            match self.0.steps.get(symbol) {
                 None => rises.push(format!("{symbol} is not expected")),
-                Some(expected) if self.compiler == compiler => {
+                Some(expected) if self.0.compiler == compiler => {
                     for ((name, expected), (_, found)) in
-                        expected.named().into_iter().zip(figures.named())
+                        named(*expected).into_iter().zip(named(*figures))
                     {
                         if found > expected {
                             rises.push(format!("{symbol}: {name} rose from {expected} to {found}"));
@@ -99,6 +83,7 @@ impl Expected {
             }
         }
         let gone = self
+            .0
             .steps
             .keys()
             .filter(|symbol| !found.contains_key(*symbol));
@@ -116,14 +101,15 @@ mod tests {
         let figures = |normal: u32| Figures {
             normal,
             worst: 100,
+            cycles: 60,
             code: 200,
             stack: 8,
         };
         let of = |normal: u32| BTreeMap::from([("step_x".to_owned(), figures(normal))]);
-        let expected = Expected {
+        let expected = Expected(Counted {
             compiler: "rustc 1".to_owned(),
             steps: of(50),
-        };
+        });
         let above = |_: &str, figures: &Figures| figures.normal > 54;
         assert_eq!(expected.rises("rustc 1", &of(50), above), [""; 0]);
         assert_eq!(expected.rises("rustc 1", &of(49), above), [""; 0]);

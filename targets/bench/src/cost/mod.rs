@@ -15,8 +15,10 @@ use crate::vectors::drive_of;
 use comfy_table::{CellAlignment, Table, presets};
 use count::{Counts, Inputs, count};
 use elf::{Code, Image, Isa};
-use expected::{Expected, Figures};
+use expected::Expected;
 use goals::{SUPERVISION, goal};
+use hexagen_host::commands::reproduce::counted_readings;
+use hexagen_host::counted::{Counted, Figures};
 use hexagen_host::engine::{MotorSource, Prepared, prepare};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -28,6 +30,9 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 const INTERRUPT: &str = "interrupt_trivedi_keshri_660w_pdcc";
 const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf_filter=1";
 
+/// The program with the drives of the paper's experiment.
+const EXPERIMENT: &str = "experiment";
+
 /// What to count.
 #[derive(Debug, clap::Args)]
 pub struct Options {
@@ -37,6 +42,13 @@ pub struct Options {
     /// Writes the figures down as expected
     #[arg(long)]
     pub accept: bool,
+}
+
+impl Options {
+    fn wants(&self, symbol: &str) -> bool {
+        let part = self.only.as_ref();
+        part.is_none_or(|part| symbol.contains(part.as_str()))
+    }
 }
 
 /// One line of the table.
@@ -63,11 +75,8 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let figures = figures(&rows);
         if options.accept {
             let compiler = compiler.to_owned();
-            Expected {
-                compiler,
-                steps: figures,
-            }
-            .write(target)?;
+            let steps = figures;
+            Expected(Counted { compiler, steps }).write(target)?;
         } else if options.only.is_none() {
             let found = Expected::read(target)?.rises(compiler, &figures, |symbol, figures| {
                 goal(target, symbol).is_some_and(|goal| !goal.is_met(figures.normal, figures.worst))
@@ -96,45 +105,20 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
 }
 
 fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> {
-    let isa = match firmware.target {
-        Target::CortexM4 | Target::CortexM0 => Isa::Thumb,
-        Target::Riscv32 => Isa::RiscV,
-    };
-    let is_wanted = |symbol: &str| {
-        options
-            .only
-            .as_ref()
-            .is_none_or(|part| symbol.contains(part.as_str()))
-    };
     let mut rows = vec![];
+    let of_drive = |listed: &Listed| {
+        let drive = drive_of(listed)?;
+        Ok((Inputs::record(&drive)?, Some(tables(&drive))))
+    };
+    rows.extend(rows_of(firmware, "bench", options, of_drive)?);
+    if firmware.target == Target::CortexM4 {
+        check_experiment(&firmware.drives(EXPERIMENT)?)?;
+        rows.extend(rows_of(firmware, EXPERIMENT, options, of_drive)?);
+    }
 
-    let image = Image::read(&firmware.elf("bench"), isa)?;
-    let mut drives = firmware.drives("bench")?;
-    drives.retain(|drive| is_wanted(&drive.symbol));
-    let of_drives: Vec<Row> = drives
-        .par_iter()
-        .map(|listed| {
-            let drive = drive_of(listed)?;
-            let inputs = Inputs::record(&drive)?;
-            let tables = tables(&drive);
-            let counts = count(
-                firmware,
-                "bench",
-                &image,
-                (listed.place, &listed.symbol),
-                &inputs,
-            )?;
-            row(&image, listed, counts, Some(tables))
-        })
-        .collect::<Result<_, BenchError>>()?;
-    rows.extend(of_drives);
-
-    let paper = MotorSource::of_library(PAPER_MOTOR)
-        .ok_or_else(|| BenchError::Motor(PAPER_MOTOR.to_owned()))?;
-    let paper = prepare(&paper, Some(INTERRUPT_VARIANT))
-        .map_err(|errors| BenchError::Drive(INTERRUPT.to_owned(), errors.to_string()))?;
-    if is_wanted(INTERRUPT) {
-        let image = Image::read(&firmware.elf("interrupt"), isa)?;
+    let paper = paper_drive(INTERRUPT_VARIANT)?;
+    if options.wants(INTERRUPT) {
+        let image = Image::read(&firmware.elf("interrupt"), isa(firmware.target))?;
         let inputs = Inputs::record(&paper)?;
         let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs)?;
         rows.push(Row {
@@ -147,25 +131,58 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     }
 
     firmware.build_peers()?;
-    let image = Image::read(&firmware.elf("peers"), isa)?;
-    let mut peers = firmware.drives("peers")?;
-    peers.retain(|peer| is_wanted(&peer.symbol));
-    let of_peers: Vec<Row> = peers
-        .par_iter()
-        .map(|listed| {
-            let inputs = peers::inputs(&paper, &listed.symbol)?;
-            let counts = count(
-                firmware,
-                "peers",
-                &image,
-                (listed.place, &listed.symbol),
-                &inputs,
-            )?;
-            row(&image, listed, counts, None)
-        })
-        .collect::<Result<_, BenchError>>()?;
-    rows.extend(of_peers);
+    let of_peer = |listed: &Listed| Ok((peers::inputs(&paper, &listed.symbol)?, None));
+    rows.extend(rows_of(firmware, "peers", options, of_peer)?);
     Ok(rows)
+}
+
+fn isa(target: Target) -> Isa {
+    match target {
+        Target::CortexM4 | Target::CortexM0 => Isa::Thumb,
+        Target::Riscv32 => Isa::RiscV,
+    }
+}
+
+/// A drive of the paper's motor.
+fn paper_drive(variant: &str) -> Result<Prepared, BenchError> {
+    let paper = MotorSource::of_library(PAPER_MOTOR)
+        .ok_or_else(|| BenchError::Motor(PAPER_MOTOR.to_owned()))?;
+    prepare(&paper, Some(variant))
+        .map_err(|errors| BenchError::Drive(variant.to_owned(), errors.to_string()))
+}
+
+/// The drives of the paper's experiment are those that `hexagen reproduce` runs.
+fn check_experiment(drives: &[Listed]) -> Result<(), BenchError> {
+    for (symbol, variant) in counted_readings() {
+        let listed = drives.iter().find(|drive| drive.symbol == symbol);
+        let listed = listed.ok_or_else(|| BenchError::Failed(format!("{symbol} is missing")))?;
+        let [run, counted] = [paper_drive(variant)?, drive_of(listed)?];
+        if run.spec != counted.spec {
+            return Err(BenchError::Failed(format!(
+                "{symbol} is not `{variant}`, which `hexagen reproduce` runs"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Counts what a program lists, on the inputs of each, with the bytes of its tables.
+fn rows_of(
+    firmware: &Firmware,
+    program: &str,
+    options: &Options,
+    inputs_of: impl Fn(&Listed) -> Result<(Inputs, Option<usize>), BenchError> + Sync,
+) -> Result<Vec<Row>, BenchError> {
+    let image = Image::read(&firmware.elf(program), isa(firmware.target))?;
+    let mut steps = firmware.drives(program)?;
+    steps.retain(|step| options.wants(&step.symbol));
+    let row_of = |listed: &Listed| {
+        let (inputs, tables) = inputs_of(listed)?;
+        let step = (listed.place, listed.symbol.as_str());
+        let counts = count(firmware, program, &image, step, &inputs)?;
+        row(&image, listed, counts, tables)
+    };
+    steps.par_iter().map(row_of).collect()
 }
 
 fn row(
@@ -208,6 +225,7 @@ fn figures(rows: &[Row]) -> BTreeMap<String, Figures> {
     let figures = |row: &Row| Figures {
         normal: row.counts.normal,
         worst: row.counts.worst,
+        cycles: row.counts.cycles,
         code: row.code.own,
         stack: row.counts.stack,
     };

@@ -2,6 +2,7 @@
 
 use crate::checker::Missing;
 use crate::closed_loop::Trip;
+use crate::counted::CountedError;
 use crate::engine::SourceError;
 use crate::plant::PlantError;
 use crate::report::ReportError;
@@ -38,6 +39,9 @@ pub enum Failure {
     /// There is no checker of proofs.
     #[error("error: {0}")]
     Checker(#[from] Missing),
+    /// There is no count of a step.
+    #[error("error: {0}")]
+    Counted(#[from] CountedError),
     /// The report's page cannot be made.
     #[error("error: {0}")]
     Report(#[from] ReportError),

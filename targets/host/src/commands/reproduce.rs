@@ -11,16 +11,16 @@ use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_t
 use crate::closed_loop::{
     Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
 };
+use crate::counted::{Figures as StepCost, on_cortex_m4};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report;
 use crate::report::reproduction::{
     self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables,
-    cycles, cycles_text, distance_rms, times,
+    TIMES_TEXT, Times, distance_rms,
 };
 use clap::Args;
 use hexagen_codegen::interface::PublicValue;
-use hexagen_codegen::ir::PathCost;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -62,6 +62,23 @@ impl Effort {
     }
 }
 
+/// Symbol of the step function that `cargo xtask cost` counts for each reading of each method, and its variant; in the
+/// order of [`READINGS`], literal before corrected.
+pub fn counted_readings() -> impl Iterator<Item = (String, &'static str)> {
+    let methods = Method::ALL.into_iter().zip(READINGS);
+    methods.flat_map(|(method, readings)| {
+        let controller = method.name().to_lowercase().replace('-', "_");
+        Reading::ALL.map(|reading| {
+            let variant = match reading {
+                Reading::Literal => readings.literal,
+                Reading::Corrected => readings.corrected,
+            };
+            let symbol = format!("step_trivedi_keshri_660w_{controller}_{}", reading.name());
+            (symbol, variant)
+        })
+    })
+}
+
 /// Runs everything. A folder that the page is meant for is tried before the long work.
 ///
 /// # Errors
@@ -71,19 +88,18 @@ pub fn collect(effort: &Effort, folder: Option<&Path>) -> Result<Reproduction, F
         report::prepare_folder(folder)?;
     }
     let motor = SelectedMotor::find(PAPER_MOTOR, &PlantArguments::default())?;
-    let texts: Vec<&str> = READINGS
-        .iter()
-        .flat_map(|readings| [readings.literal, readings.corrected])
-        .collect();
-    let drives = texts
-        .iter()
-        .map(|variant| motor.prepare(Some(variant)))
+    let drives = counted_readings()
+        .map(|(_, variant)| motor.prepare(Some(variant)))
         .collect::<Result<Vec<_>, _>>()?;
     let per_drive = SPEEDS.len() + effort.curve_rpm.len() + 1;
     let progress = bar((per_drive * drives.len()) as u64, "simulating");
+    let costs = counted_readings()
+        .map(|(symbol, _)| on_cortex_m4(&symbol))
+        .collect::<Result<Vec<_>, _>>()?;
     let runs = drives
         .par_iter()
-        .map(|drive| Bench::of(drive, effort).run(&progress))
+        .zip(costs)
+        .map(|(drive, cost)| Bench::of(drive, effort, cost).run(&progress))
         .collect::<Result<Vec<_>, Failure>>();
     progress.finish_and_clear();
     let mut runs = runs?.into_iter();
@@ -134,15 +150,17 @@ struct Bench<'p> {
     effort: &'p Effort,
     plant: PlantParams,
     set_point: SetPoint,
+    cost: StepCost,
 }
 
 impl<'p> Bench<'p> {
-    fn of(drive: &'p Prepared, effort: &'p Effort) -> Self {
+    fn of(drive: &'p Prepared, effort: &'p Effort, cost: StepCost) -> Self {
         Self {
             drive,
             effort,
             plant: plant_of(&drive.spec),
             set_point: drive.set_point(TORQUE),
+            cost,
         }
     }
 
@@ -196,7 +214,7 @@ impl<'p> Bench<'p> {
             points,
             curve,
             limit,
-            cost: PathCost::of_function(&drive.generated.graph.program().step),
+            cost: self.cost,
         })
     }
 
@@ -272,10 +290,10 @@ fn table_5(data: &Reproduction) -> String {
         [
             "method".to_owned(),
             "reading".to_owned(),
-            "operations".to_owned(),
+            "instructions".to_owned(),
             "worst".to_owned(),
-            "cycles".to_owned(),
             "T_c us".to_owned(),
+            "worst".to_owned(),
             "T_f us".to_owned(),
             format!("f_sw kHz, {low:.0} rpm"),
             format!("{high:.0} rpm"),
@@ -284,7 +302,14 @@ fn table_5(data: &Reproduction) -> String {
     for method in Method::ALL {
         for reading in Reading::ALL {
             let run = data.methods[method.index()].of(reading);
-            let (t_c, t_f) = times(run, data.inverter.t_s);
+            let usual = |text: String| {
+                if run.has_tripped() {
+                    "-".to_owned()
+                } else {
+                    text
+                }
+            };
+            let times = Times::of(&run.cost, data.inverter.t_s);
             let switching = run.points.iter().map(|point| match point.trip {
                 None => format!("{:.1}", point.merits.switching_hz / 1e3),
                 Some(_) => "-".to_owned(),
@@ -292,19 +317,14 @@ fn table_5(data: &Reproduction) -> String {
             let cells = [
                 method.name().to_owned(),
                 reading.name().to_owned(),
-                run.cost.normal.total().to_string(),
-                run.cost.worst.total().to_string(),
-                cycles(&run.cost.worst).to_string(),
-                format!("{:.1}", 1e6 * t_c),
-                format!("{:.1}", 1e6 * t_f),
+                usual(run.cost.normal.to_string()),
+                run.cost.worst.to_string(),
+                usual(format!("{:.1}", 1e6 * times.usual)),
+                format!("{:.1}", 1e6 * times.worst),
+                format!("{:.1}", 1e6 * times.free),
             ];
             table.row(cells.into_iter().chain(switching));
         }
     }
-    format!(
-        "{}\nOperations of the generator's integer graph, not yet instructions; T_c at worst, {} MHz, {}.",
-        table.render(),
-        CLOCK_HZ / 1e6,
-        cycles_text()
-    )
+    format!("{}\n{TIMES_TEXT}; {} MHz.", table.render(), CLOCK_HZ / 1e6)
 }

@@ -1,9 +1,9 @@
 //! What was run, as plain data: four methods, each in two readings of the paper.
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
-use super::timing::{CLOCK_HZ, cycles};
+use super::timing::CLOCK_HZ;
 use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace, Trip};
-use hexagen_codegen::ir::PathCost;
+use crate::counted::Figures as StepCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 
 /// The paper's methods, (a) to (d) of its figures.
@@ -124,8 +124,15 @@ pub struct Run {
     pub curve: Vec<(f64, f64)>,
     /// Constant-torque speed limit.
     pub limit: SpeedLimit,
-    /// Operations of one step.
-    pub cost: PathCost,
+    /// What a step costs on a Cortex-M4.
+    pub cost: StepCost,
+}
+
+impl Run {
+    /// Whether the drive lost its current: most of the steps that were counted for it are no control then.
+    pub fn has_tripped(&self) -> bool {
+        self.points.iter().any(|point| point.trip.is_some())
+    }
 }
 
 /// What a drive did at one speed.
@@ -203,6 +210,6 @@ fn figures(run: &Run) -> Figures {
             LimitOutcome::Found | LimitOutcome::NotReached => run.limit.limit_pct.unwrap_or(0.0),
         },
         speeds: [low, high],
-        cycles: cycles(&run.cost.worst),
+        cycles: run.cost.worst_cycles(),
     }
 }

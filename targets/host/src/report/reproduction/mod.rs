@@ -21,8 +21,7 @@ pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, Switchin
 pub use experiment::{AtSpeed, Experiment, Figures, Setting};
 pub use judge::{Claim, Finding, Statement, Verdict};
 pub use outline::distance_rms;
-pub use tables::times;
-pub use timing::{CLOCK_HZ, cycles, cycles_text};
+pub use timing::{CLOCK_HZ, TIMES_TEXT, Times};
 
 use super::ReportError;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Tables 1, 2, 3 and 5.
 
-use super::data::{Method, Reading, Reproduction, Run};
-use super::timing::{CLOCK_HZ, cycles, cycles_text};
+use super::data::{Method, Reading, Reproduction};
+use super::timing::{CLOCK_HZ, TIMES_TEXT, Times};
 use crate::closed_loop::Merits;
 use crate::report::sections::{number, quantity};
 use hexagen_codegen::design::vectors::{
@@ -226,29 +226,27 @@ pub fn table_3(data: &Reproduction) -> Markup {
     }
 }
 
-/// Table 5: operations, computation time, free time, switching frequency.
+/// Table 5: instructions, computation time, free time, switching frequency.
 pub fn table_5(data: &Reproduction) -> Markup {
     let t_s = data.inverter.t_s;
     html! {
         p {
-            "Operations of one step, counted in the generator's integer graph: these are not yet instructions, which come with the firmware targets. "
-            "T" sub { "c" } " is the worst case at " (quantity(CLOCK_HZ, "Hz")) " with " (cycles_text())
-            "; T" sub { "f" } " = T" sub { "s" } " \u{2212} T" sub { "c" } ", T" sub { "s" } " = " (quantity(t_s, "s")) "."
+            (TIMES_TEXT) "; " (quantity(CLOCK_HZ, "Hz")) ", T" sub { "s" } " = " (quantity(t_s, "s")) "."
         }
         div.scroll {
             table {
                 thead {
                     tr {
                         th rowspan="2" { "Method" } th rowspan="2" { "Reading" }
-                        th.group.edge colspan="2" { "Operations per step" }
-                        th.group.edge colspan="5" { "Worst case, by kind" }
-                        th.group.edge colspan="3" { "Time" }
+                        th.group.edge colspan="2" { "Instructions per step" }
+                        th.group.edge colspan="2" { "Bytes" }
+                        th.group.edge colspan="3" { "Time, \u{b5}s" }
                         th.group.edge colspan="2" { "f" sub { "sw" } " per device, kHz" }
                     }
                     tr {
                         th.number.edge { "usual" } th.number { "worst" }
-                        th.number.edge { "add" } th.number { "multiply" } th.number { "compare" } th.number { "look up" } th.number { "divide" }
-                        th.number.edge { "cycles" } th.number { "T" sub { "c" } ", \u{b5}s" } th.number { "T" sub { "f" } ", \u{b5}s" }
+                        th.number.edge { "code" } th.number { "stack" }
+                        th.number.edge { "T" sub { "c" } } th.number { "T" sub { "c" } " worst" } th.number { "T" sub { "f" } }
                         @for (k, rpm) in data.speeds_rpm.iter().enumerate() {
                             th.number.edge[k == 0] { (number(*rpm, 0)) " rpm" }
                         }
@@ -258,15 +256,16 @@ pub fn table_5(data: &Reproduction) -> Markup {
                     @for method in Method::ALL {
                         @for reading in Reading::ALL {
                             @let run = data.methods[method.index()].of(reading);
-                            @let cost = run.cost.worst;
-                            @let time = times(run, t_s);
+                            @let cost = run.cost;
+                            @let times = Times::of(&cost, t_s);
                             tr {
                                 td { @if reading == Reading::Literal { "(" (method.letter()) ") " (method.name()) } }
                                 td { (reading.name()) }
-                                td.number.edge { (run.cost.normal.total()) } td.number { (cost.total()) }
-                                td.number.edge { (cost.additions) } td.number { (cost.multiplications) } td.number { (cost.comparisons) }
-                                td.number { (cost.lookups) } td.number { (cost.divisions) }
-                                td.number.edge { (cycles(&cost)) } td.number { (number(1e6 * time.0, 1)) } td.number { (number(1e6 * time.1, 1)) }
+                                td.number.edge { @if run.has_tripped() { (number(f64::NAN, 0)) } @else { (cost.normal) } } td.number { (cost.worst) }
+                                td.number.edge { (cost.code) } td.number { (cost.stack) }
+                                @for (k, time) in [if run.has_tripped() { f64::NAN } else { times.usual }, times.worst, times.free].into_iter().enumerate() {
+                                    td.number.edge[k == 0] { (number(1e6 * time, 1)) }
+                                }
                                 @for (k, point) in run.points.iter().enumerate() {
                                     td.number.edge[k == 0] { (switching(&point.merits)) }
                                 }
@@ -286,12 +285,6 @@ fn switching(merits: &Merits) -> String {
     } else {
         number(merits.switching_hz / 1e3, 1)
     }
-}
-
-/// T_c and T_f in seconds, worst case.
-pub fn times(run: &Run, t_s: f64) -> (f64, f64) {
-    let t_c = f64::from(cycles(&run.cost.worst)) / CLOCK_HZ;
-    (t_c, t_s - t_c)
 }
 
 /// The centre of sector k + 1 of the plane's twelve, in radians.

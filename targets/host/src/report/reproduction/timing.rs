@@ -1,36 +1,38 @@
-//! Table 5's times, from operations: a stated clock and stated cycles per operation.
-//!
-//! The operations are those of the generator's integer graph. A compiler makes instructions of
-//! them that depend on the target; what a target really takes is counted with its firmware.
+//! Table 5's times: the counted instructions of a Cortex-M4 at a stated clock.
 
-use hexagen_codegen::ir::Cost;
+use crate::counted::Figures;
 
 /// Clock of the processor in hertz: that of the motor file's timer.
 pub const CLOCK_HZ: f64 = 72e6;
 
-/// Cycles per operation on a 32-bit core with a single-cycle multiplier: a product is rounded and
-/// shifted down from 64 bits; a comparison decides a selection; a look-up reads flash.
-const ADDITION: u32 = 1;
-const MULTIPLICATION: u32 = 4;
-const COMPARISON: u32 = 2;
-const LOOKUP: u32 = 3;
-const DIVISION: u32 = 12;
+/// Where the times come from.
+pub const TIMES_TEXT: &str = "Instructions of one step on a Cortex-M4, from the function's entry to its return, as cargo xtask cost \
+     counts them: usual is the median of settled steps, worst is any step, start and overspeed included. T_c are its estimated cycles \
+     without wait states (load, store 2, taken branch 3, division 12, all else 1; at worst the cycles per instruction of the usual \
+     step); T_f = T_s - T_c at worst. A drive that trips has no usual step";
 
-/// Cycles of so many operations.
-pub fn cycles(cost: &Cost) -> u32 {
-    ADDITION * cost.additions
-        + MULTIPLICATION * cost.multiplications
-        + COMPARISON * cost.comparisons
-        + LOOKUP * cost.lookups
-        + DIVISION * cost.divisions
+/// Times of a step in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// Of a settled step.
+    pub usual: f64,
+    /// Of the worst step.
+    pub worst: f64,
+    /// What the worst step leaves of the period.
+    pub free: f64,
 }
 
-/// The stated cycles, in words.
-pub fn cycles_text() -> String {
-    format!(
-        "{ADDITION} cycle per addition or shift, {MULTIPLICATION} per multiplication with its rounding, \
-         {COMPARISON} per comparison or selection, {LOOKUP} per look-up, {DIVISION} per division"
-    )
+impl Times {
+    /// The times of a step in a control period `t_s`, seconds.
+    pub fn of(cost: &Figures, t_s: f64) -> Self {
+        let time = |cycles: u32| f64::from(cycles) / CLOCK_HZ;
+        let worst = time(cost.worst_cycles());
+        Self {
+            usual: time(cost.cycles),
+            worst,
+            free: t_s - worst,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -38,14 +40,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_of_operation_counts() {
-        let cost = Cost {
-            additions: 10,
-            multiplications: 5,
-            comparisons: 7,
-            lookups: 2,
-            divisions: 1,
+    fn times_share_the_period() {
+        let cost = Figures {
+            normal: 100,
+            worst: 200,
+            cycles: 144,
+            code: 400,
+            stack: 8,
         };
-        assert_eq!(cycles(&cost), 10 + 20 + 14 + 6 + 12);
+        let times = Times::of(&cost, 50e-6);
+        assert!((times.usual - 2e-6).abs() < 1e-12, "{times:?}");
+        assert!((times.worst - 4e-6).abs() < 1e-12, "{times:?}");
+        assert!((times.free - 46e-6).abs() < 1e-12, "{times:?}");
     }
 }

@@ -1,0 +1,64 @@
+//! The drives of the paper's experiment, as `hexagen reproduce` runs them, to be counted for its Table 5.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+use drives::DRIVES;
+// The vector table.
+use hexagen_cortex_m4 as _;
+use hexagen_firmware::semihosted::run;
+
+/// Each controller as the paper prints it, and corrected.
+mod drives {
+    #![expect(deprecated, reason = "the printed switching table draws a warning")]
+
+    hexagen_firmware::drives! {
+        FcsMpcLiteral, step_trivedi_keshri_660w_fcs_mpc_literal:
+            "../motors/trivedi-keshri-660w.toml",
+            fcs_mpc {
+                off_leg: nominal, emf: estimated, emf_filter: 1, delay: 0, discretisation: euler,
+                hall_capture: timer
+            };
+        FcsMpcCorrected, step_trivedi_keshri_660w_fcs_mpc_corrected:
+            "../motors/trivedi-keshri-660w.toml",
+            fcs_mpc { off_leg: physical, emf: model, discretisation: euler, hall_capture: timer };
+        PdccLiteral, step_trivedi_keshri_660w_pdcc_literal:
+            "../motors/trivedi-keshri-660w.toml",
+            pdcc {
+                saturation: keep_angle, emf: estimated, emf_filter: 1, discretisation: euler,
+                hall_capture: timer
+            };
+        PdccCorrected, step_trivedi_keshri_660w_pdcc_corrected:
+            "../motors/trivedi-keshri-660w.toml",
+            pdcc {
+                saturation: torque_priority, advance: 2, emf: model, discretisation: euler,
+                hall_capture: timer
+            };
+        PhccLiteral, step_trivedi_keshri_660w_phcc_literal:
+            "../motors/trivedi-keshri-660w.toml",
+            phcc {
+                table: printed, emf: estimated, emf_filter: 1, discretisation: euler,
+                hall_capture: timer
+            };
+        PhccCorrected, step_trivedi_keshri_660w_phcc_corrected:
+            "../motors/trivedi-keshri-660w.toml",
+            phcc { table: derived, emf: model, discretisation: euler, hall_capture: timer };
+        PiPwmLiteral, step_trivedi_keshri_660w_pi_pwm_literal:
+            "../motors/trivedi-keshri-660w.toml",
+            pi_pwm {
+                feed_forward: off, bandwidth: 800 Hz, integral_time: 0.5 ms, discretisation: euler,
+                hall_capture: timer
+            };
+        PiPwmCorrected, step_trivedi_keshri_660w_pi_pwm_corrected:
+            "../motors/trivedi-keshri-660w.toml",
+            pi_pwm {
+                feed_forward: on, bandwidth: 1 kHz, emf: model, discretisation: euler,
+                hall_capture: timer
+            };
+    }
+}
+
+#[entry]
+fn main() -> ! {
+    run(DRIVES)
+}
