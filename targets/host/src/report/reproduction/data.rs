@@ -211,5 +211,6 @@ fn figures(run: &Run) -> Figures {
         },
         speeds: [low, high],
         cycles: run.cost.worst_cycles(),
+        usual_cycles: (!run.has_tripped()).then_some(run.cost.cycles),
     }
 }

@@ -51,6 +51,8 @@ pub struct Figures {
     pub speeds: [AtSpeed; 2],
     /// Cycles of a step at worst.
     pub cycles: u32,
+    /// Cycles of a usual step; none of a drive that trips.
+    pub usual_cycles: Option<u32>,
 }
 
 /// The figures of one reading.
