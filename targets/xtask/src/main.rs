@@ -24,7 +24,7 @@ enum Command {
     /// Format, lints, documentation and all tests
     Test,
     /// `test`, then bit-for-bit verification of every library motor over many steps, all products of options, and the
-    /// proofs of all motors and of a thousand random ones
+    /// proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -55,6 +55,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Test => steps::checker().and_then(|()| steps::run(&steps::checks())),
         Command::Nightly { steps } => steps::checker()
+            .and_then(|()| steps::certificate_checker())
             .and_then(|()| steps::run(&steps::checks()))
             .and_then(|()| steps::run(&steps::long_checks(steps))),
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),

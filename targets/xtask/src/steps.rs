@@ -113,6 +113,23 @@ pub fn checker() -> Result<(), String> {
     Err("`gappa` is missing, which checks the proofs; install it: `apt-get update && apt-get install --no-install-recommends gappa` as root on Debian and Ubuntu, else from https://gappa.gitlabpages.inria.fr".to_owned())
 }
 
+/// Sees to it that Gappa's proofs can be checked again by Coq: as root of a Debian system, installs it and the library
+/// of Gappa where they are missing.
+///
+/// # Errors
+/// As [`checker`].
+pub fn certificate_checker() -> Result<(), String> {
+    let runs = || {
+        let library = ["-q", "-batch", "-require-import", "Gappa.Gappa_library"];
+        let loaded = Command::new("coqtop").args(library).output();
+        loaded.is_ok_and(|output| output.status.success())
+    };
+    if runs() || (is_root() && install("coq") && install("libcoq-gappa") && runs()) {
+        return Ok(());
+    }
+    Err("`coqtop` with the library of Gappa is missing, which checks certificates; install it: `apt-get update && apt-get install --no-install-recommends coq libcoq-gappa` as root on Debian and Ubuntu, else `opam install coq-gappa`".to_owned())
+}
+
 /// Whether this process may install packages.
 fn is_root() -> bool {
     let user = Command::new("id").arg("-u").output();
@@ -164,6 +181,25 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         &steps,
     ];
     let prove = ["run", "--release", "--", "prove", "--controller", "all"];
+    let certify = ["run", "--release", "--", "prove", "--coq"];
+    let certify_all = [
+        "run",
+        "--release",
+        "--",
+        "prove",
+        "trivedi-keshri-660w",
+        "--controller",
+        "all",
+        "--coq",
+    ];
+    let tampered = [
+        "test",
+        "--package",
+        "hexagen-host",
+        "--test",
+        "proofs",
+        "certificates",
+    ];
     let random = [
         "test",
         "--package",
@@ -189,6 +225,12 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         faults(),
         on_target("pil", &["--steps", "1000000"]),
         step("proofs", &prove),
+        step("certificates of the library", &certify),
+        step("certificates of all controllers", &certify_all),
+        Step {
+            environment: vec![("HEXAGEN_COQ", "1")],
+            ..step("false certificates", &tampered)
+        },
         Step {
             environment: vec![("HEXAGEN_RANDOM_MOTORS", "1000")],
             ..step("proofs of random motors", &random)

@@ -4,6 +4,8 @@
 //! A script that asks for bounds succeeds whatever they are, and says them on stderr. So the number of
 //! bounds that are read must be the number that was asked, and what counts is that they hold as goals.
 
+mod coq;
+mod program;
 mod run;
 
 use hexagen_codegen::emit::gappa::{Script, Subject};
@@ -11,6 +13,7 @@ use hexagen_codegen::ir::Real;
 use run::{Bounds, Finding, Run};
 use std::time::Duration;
 
+pub use coq::{MissingCoq, certificate, check_certificate, coq_version};
 pub use run::{Missing, gappa_version};
 
 /// A proof may take so long; the longest of the library's takes a hundredth of it.

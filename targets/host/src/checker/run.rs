@@ -1,19 +1,15 @@
 //! One run of Gappa, and what it says.
 
+use super::program::run_within;
 use hexagen_codegen::emit::gappa::Script;
 use hexagen_codegen::ir::Real;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::io::{Read, Seek, Write};
-use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// Least and greatest value.
 pub(super) type Bounds = [f64; 2];
-
-/// How long to wait before a look at whether the checker is done: a hundredth of what it takes.
-const LOOK: Duration = Duration::from_micros(500);
 
 /// Gappa could not be started.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -22,13 +18,20 @@ const LOOK: Duration = Duration::from_micros(500);
 )]
 pub struct Missing(String);
 
+impl Missing {
+    /// What the system said.
+    pub(super) fn of(error: &std::io::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// Version of the checker.
 ///
 /// # Errors
 /// When there is none.
 pub fn gappa_version() -> Result<String, Missing> {
     let output = Command::new("gappa").arg("--version").output();
-    let output = output.map_err(|error| Missing(error.to_string()))?;
+    let output = output.map_err(|error| Missing::of(&error))?;
     let text = [output.stdout, output.stderr].concat();
     Ok(String::from_utf8_lossy(&text).trim().to_owned())
 }
@@ -65,46 +68,17 @@ pub(super) struct Run {
 impl Run {
     /// Has a script checked within a time.
     pub(super) fn new(script: &str, limit: Duration) -> Result<Self, Missing> {
-        let failed = |error: std::io::Error| Missing(error.to_string());
-        let mut file = tempfile::tempfile().map_err(failed)?;
-        file.write_all(script.as_bytes()).map_err(failed)?;
-        file.rewind().map_err(failed)?;
-        let mut said = tempfile::tempfile().map_err(failed)?;
-        let begin = Instant::now();
-        let mut child = Command::new("gappa")
-            .stdin(Stdio::from(file))
-            .stdout(Stdio::null())
-            .stderr(Stdio::from(said.try_clone().map_err(failed)?))
-            .spawn()
-            .map_err(failed)?;
-        let status = loop {
-            if let Some(status) = child.try_wait().map_err(failed)? {
-                break Some(status);
-            }
-            if begin.elapsed() > limit {
-                child.kill().map_err(failed)?;
-                child.wait().map_err(failed)?;
-                break None;
-            }
-            sleep(LOOK);
-        };
-        let took = begin.elapsed();
-        let mut text = String::new();
-        said.rewind().map_err(failed)?;
-        said.read_to_string(&mut text).map_err(failed)?;
-        let finding = match status {
+        let ended = run_within(&mut Command::new("gappa"), script, limit)
+            .map_err(|error| Missing::of(&error))?;
+        let finding = match ended.status {
             None => Finding::TooLong(limit),
             Some(status) if status.success() => Finding::Proved,
-            Some(_) => {
-                let lines = text.lines().filter(|line| !line.starts_with("Warning"));
-                let lines: Vec<&str> = lines.take(4).map(str::trim).collect();
-                Finding::Refused(lines.join(" "))
-            }
+            Some(_) => Finding::Refused(ended.reason()),
         };
         Ok(Self {
             finding,
-            took,
-            said: text,
+            took: ended.took,
+            said: ended.said,
         })
     }
 

@@ -1,14 +1,23 @@
 //! `hexagen prove`: that nothing overflows and how far values are from the ideal ones, checked by Gappa.
 
-use crate::checker::{Proof, gappa_version, prove};
-use crate::cli::{Failure, Selection, TextTable, bar, print_json, print_text, significant};
+mod certificates;
+
+pub use certificates::{Certificates, Certify};
+
+use crate::checker::{Proof, coq_version, gappa_version, prove};
+use crate::cli::{Failure, Selection, TextTable, bar, note, print_json, print_text, significant};
 use crate::commands::selected::{Refused, select};
 use crate::engine::Prepared;
+use certificates::Certified;
 use clap::Args;
 use hexagen_codegen::emit::gappa::{Script, emit_gappa};
 use hexagen_codegen::ir::stated_errors;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::path::PathBuf;
+
+/// Where certificates go if nothing is said.
+const FOLDER: &str = "target/hexagen/coq";
 
 /// Options of `prove`.
 #[derive(Args, Clone, Debug)]
@@ -19,6 +28,16 @@ pub struct Options {
     /// Controller variant, or `all`, with 32-bit and with 16-bit words [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
+    /// Write the proofs for Coq, MOTOR/CONTROLLER/*.v in a folder [default: target/hexagen/coq], and check them where
+    /// there is a coqc
+    #[arg(
+        long,
+        value_name = "DIR",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = FOLDER
+    )]
+    pub coq: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -41,6 +60,8 @@ pub struct Proved {
     pub widest: f64,
     /// Time of the longest script, seconds.
     pub longest_s: f64,
+    /// Proofs for Coq, where they are asked for.
+    pub certificates: Option<Certificates>,
     /// Bounds on the distance from the ideal computation.
     pub errors: Vec<Stated>,
     /// Whether everything is proved.
@@ -67,8 +88,8 @@ pub struct Stated {
 /// Proves all drives; the scripts of all of them share the cores.
 ///
 /// # Errors
-/// When there is no Gappa.
-pub fn collect(drives: &[Prepared]) -> Result<Vec<Proved>, Failure> {
+/// When there is no Gappa, or a certificate cannot be written.
+pub fn collect(drives: &[Prepared], certify: Option<Certify>) -> Result<Vec<Proved>, Failure> {
     gappa_version()?;
     let scripts: Vec<(usize, Script)> = drives
         .iter()
@@ -79,32 +100,36 @@ pub fn collect(drives: &[Prepared]) -> Result<Vec<Proved>, Failure> {
         })
         .collect();
     let progress = bar(scripts.len() as u64, "proving");
-    let proofs: Result<Vec<(usize, Proof)>, _> = scripts
+    let proofs: Result<Vec<(usize, Proof, Option<Certified>)>, _> = scripts
         .par_iter()
         .map(|(drive, script)| {
-            let proof = prove(script)?;
+            let mut proof = prove(script)?;
+            let certified = certify.map(|certify| certify.script(&drives[*drive], script));
+            let certified = certified.transpose()?;
+            let refused = certified.as_ref().and_then(|one| one.failure(&script.name));
+            proof.failure = proof.failure.or(refused);
             progress.inc(1);
-            Ok::<_, Failure>((*drive, proof))
+            Ok::<_, Failure>((*drive, proof, certified))
         })
         .collect();
     progress.finish_and_clear();
     let proofs = proofs?;
     let of_drive = |(number, drive): (usize, &Prepared)| {
-        let own = || {
-            let own = proofs.iter().filter(|(of, _)| *of == number);
-            own.map(|(_, proof)| proof)
-        };
-        let failures: Vec<String> = own().filter_map(|proof| proof.failure.clone()).collect();
+        let own = || proofs.iter().filter(|(of, ..)| *of == number);
+        let proofs = || own().map(|(_, proof, _)| proof);
+        let failures: Vec<String> = proofs().filter_map(|proof| proof.failure.clone()).collect();
         Proved {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),
             scripts: own().count(),
-            goals: own().map(|proof| proof.goals).sum(),
-            proved: own().map(|proof| proof.proved).sum(),
-            widest: own().map(|proof| proof.widest).fold(1.0, f64::max),
-            longest_s: own()
+            goals: proofs().map(|proof| proof.goals).sum(),
+            proved: proofs().map(|proof| proof.proved).sum(),
+            widest: proofs().map(|proof| proof.widest).fold(1.0, f64::max),
+            longest_s: proofs()
                 .map(|proof| proof.took.as_secs_f64())
                 .fold(0.0, f64::max),
+            certificates: certify
+                .map(|_| Certificates::of(own().filter_map(|(.., certified)| certified.as_ref()))),
             errors: stated(drive),
             passed: failures.is_empty(),
             failures,
@@ -135,6 +160,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     struct Proofs {
         passed: bool,
         checker: String,
+        certificate_checker: Option<String>,
         goals: usize,
         results: Vec<Proved>,
         refused: Vec<Refused>,
@@ -149,8 +175,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let checker = gappa_version()?;
+    let coq = options.coq.as_ref().map(|_| coq_version());
     let (drives, refused) = select(&options.motors, &variants, takes_all)?;
-    let results = collect(&drives)?;
+    let certify = options.coq.as_ref().map(|folder| Certify {
+        folder,
+        checks: matches!(coq, Some(Ok(_))),
+    });
+    let results = collect(&drives, certify)?;
     let failures: Vec<String> = results
         .iter()
         .flat_map(|proved| {
@@ -164,12 +195,19 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&Proofs {
             passed,
             checker,
+            certificate_checker: coq.as_ref().and_then(|coq| coq.clone().ok()),
             goals: results.iter().map(|proved| proved.goals).sum(),
             results,
             refused,
         })?;
     } else {
         print_text(&table(&results))?;
+    }
+    if let (Some(folder), Some(Err(missing))) = (&options.coq, &coq) {
+        note(&format!(
+            "certificates are in {}, not checked: {missing}",
+            folder.display()
+        ));
     }
     if passed {
         Ok(())
@@ -179,23 +217,25 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 fn table(results: &[Proved]) -> String {
-    let mut table = TextTable::new(
-        3,
-        [
-            "motor",
-            "controller",
-            "result",
-            "scripts",
-            "goals",
-            "proved",
-            "own/found",
-            "longest s",
-            "error of v, uV",
-            "ulp",
-            "error of duty, counts",
-            "limited",
-        ],
-    );
+    let certifies = results.iter().any(|proved| proved.certificates.is_some());
+    let mut header = vec![
+        "motor",
+        "controller",
+        "result",
+        "scripts",
+        "goals",
+        "proved",
+        "own/found",
+        "longest s",
+        "error of v, uV",
+        "ulp",
+        "error of duty, counts",
+        "limited",
+    ];
+    if certifies {
+        header.extend(["certificates", "checked by Coq", "longest s"]);
+    }
+    let mut table = TextTable::new(3, header);
     for proved in results {
         let of = |quantity: &str| {
             proved
@@ -206,7 +246,7 @@ fn table(results: &[Proved]) -> String {
         let shown = |value: Option<f64>| {
             value.map_or_else(|| "-".to_owned(), |value| significant(value, 3))
         };
-        table.row([
+        let mut cells = vec![
             proved.motor.clone(),
             proved.controller.clone(),
             if proved.passed { "proved" } else { "UNPROVED" }.to_owned(),
@@ -219,7 +259,15 @@ fn table(results: &[Proved]) -> String {
             shown(of("voltage").map(|error| error.bound_ulp)),
             shown(of("duty").map(|error| error.bound)),
             shown(of("duty").and_then(|error| error.limited)),
-        ]);
+        ];
+        if let Some(certificates) = proved.certificates {
+            cells.extend([
+                certificates.written.to_string(),
+                certificates.checked.to_string(),
+                significant(certificates.longest_s, 2),
+            ]);
+        }
+        table.row(cells);
     }
     table.render()
 }

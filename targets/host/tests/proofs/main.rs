@@ -1,6 +1,7 @@
 //! What Gappa makes of the generator's bounds: true ones are proved, for motors of the library and for random
 //! ones, and false ones are refused.
 
+mod certificates;
 mod faults;
 mod random_motor;
 
