@@ -5,13 +5,18 @@ use crate::diagnostics::significant;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::ir::{Program, StatedError, stated_errors};
 
-/// A bound as a constant, rounded up.
-fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> PublicConstant {
+/// A number, rounded up.
+fn rounded_up(value: f64) -> PublicValue {
     let frac_bits = fraction_bits(value);
     let bits = (value * f64::from(frac_bits).exp2()).ceil() as i32;
+    PublicValue::Fixed { bits, frac_bits }
+}
+
+/// A bound as a constant, rounded up.
+fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> PublicConstant {
     PublicConstant {
         name: name.to_owned(),
-        value: PublicValue::Fixed { bits, frac_bits },
+        value: rounded_up(value),
         doc: vec![format!(
             "{meaning}: at most {} {unit} from the ideal controller, {} units of the last place.",
             significant(value),
@@ -20,7 +25,22 @@ fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> Publi
     }
 }
 
-/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`. What is not bounded more closely than
+/// Twice the error of a score: of two candidates, both are off.
+fn tie_band(stated: &StatedError) -> PublicConstant {
+    let error = stated.rare_bound().unwrap_or(0.0);
+    let value = 2.0 * error.max(stated.normal_bound());
+    PublicConstant {
+        name: "TIE_BAND".to_owned(),
+        value: rounded_up(value),
+        doc: vec![format!(
+            "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {} {}, twice the error of a score.",
+            significant(value),
+            stated.unit
+        )],
+    }
+}
+
+/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`; `TIE_BAND` of scores. What is not bounded more closely than
 /// `widest`, in its unit, has no constant.
 pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Vec<PublicConstant> {
     let mut constants = vec![];
@@ -52,6 +72,9 @@ pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Ve
             let name = format!("{name}_LIMITED");
             let meaning = format!("{doc}, where a limit acts");
             constants.push(bound(&name, value, rare.magnitude(), unit, &meaning));
+        }
+        if stated.name == "score" {
+            constants.push(tie_band(&stated));
         }
     }
     constants

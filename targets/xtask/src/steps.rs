@@ -216,8 +216,13 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "interpreter",
         "full_product",
     ];
+    let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
     vec![
         step("verification", &verify),
+        Step {
+            environment: vec![("HEXAGEN_DECISIONS", "100000000")],
+            ..step("decisions", &decisions)
+        },
         Step {
             environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
             ..step("whole products of options", &interpreter)

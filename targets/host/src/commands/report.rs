@@ -146,13 +146,17 @@ fn plan(motor: &SelectedMotor, is_paper: bool, notes: &mut Vec<String>) -> Vec<P
     planned
 }
 
-/// Errors of single steps of every kind of controller at every word length; what does not generate is a note.
+/// Errors of single steps of every kind of controller at every word length; a word length that is refused is a note.
 fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSeen>, Failure> {
     let mut drives = vec![];
     for kind in KINDS {
-        for word in WORDS {
-            let variant = with_word(kind, word);
-            match motor.prepare(variant.as_deref()) {
+        let made = WORDS.map(|word| (word, motor.prepare(with_word(kind, word).as_deref())));
+        // Why a controller is refused altogether, the rows of the table have said.
+        if made.iter().all(|(_, drive)| drive.is_err()) {
+            continue;
+        }
+        for (word, drive) in made {
+            match drive {
                 Ok(drive) => drives.push((kind, word, drive)),
                 Err(failure) => notes.push(format!("{kind}, {word} bits: {failure}")),
             }

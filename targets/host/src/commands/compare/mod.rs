@@ -145,10 +145,11 @@ pub fn collect(
     plant: &PlantArguments,
 ) -> Result<Vec<Row>, Failure> {
     let motor = SelectedMotor::find(motor, plant)?;
-    if let Selection::One(variant) = selection {
-        // What does not generate at any word length is no matter of accuracy.
-        motor.prepare_for_torque(Some(variant))?;
-    }
+    // What does not generate at any word length is no matter of accuracy.
+    match selection {
+        Selection::All => motor.prepare(None)?,
+        Selection::One(variant) => motor.prepare_for_torque(Some(variant))?,
+    };
     let mut rows = Vec::new();
     for variant in &selection.variants() {
         for word in WORDS {
