@@ -108,6 +108,12 @@ impl Stretch {
         Ok(Plant::new(plant_of(&drive.spec), 0.1, omega)?)
     }
 
+    /// What a speed loop is asked for, bits of an `I16F16` in rpm: a little more than there is, so that it asks for current.
+    fn wanted_rpm(&self, drive: &Prepared) -> i32 {
+        let share = self.speed + 0.02_f64.copysign(self.speed);
+        (share * drive.rated_rpm() * 65_536.0) as i32
+    }
+
     /// Runs a controller that knows its set-point on the drive's plant.
     ///
     /// # Errors
@@ -191,6 +197,7 @@ impl<'g> Recorder<'g> {
             Record::New => self.subject = (self.fresh)(),
             Record::SetCurrent(bits) => self.subject.set_current(bits),
             Record::SetTorque(bits) => self.subject.set_torque(bits),
+            Record::SetSpeed(bits) => self.subject.set_speed(bits),
             Record::SetBus(counts) => self.subject.set_bus(counts),
             Record::Reset => self.subject.reset(),
             Record::Calibrate => self.subject.calibrate(),
@@ -247,6 +254,9 @@ impl<'g> Recorder<'g> {
         if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
             self.call(Record::SetBus(counts));
         }
+        if drive.spec.controller.common().speed.is_some() {
+            self.call(Record::SetSpeed(stretch.wanted_rpm(drive)));
+        }
         let inverter = &drive.spec.inverter;
         let mut closed = ClosedLoop::new(stretch.plant(drive)?, InLoop(self), delay(drive));
         if stretch.starts_up {
@@ -289,8 +299,8 @@ impl<'g> Recorder<'g> {
                         self.recall(&words);
                     }
                 }
-                // No drive of the boards has a speed loop, so none is set.
-                Some(Action::SetSpeed(_)) | None => {}
+                Some(Action::SetSpeed(bits)) => self.call(Record::SetSpeed(bits)),
+                None => {}
             }
             let legs = self.step(sample);
             stimulus.respond(&legs);

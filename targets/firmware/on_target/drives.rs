@@ -15,6 +15,8 @@ hexagen_firmware::drives! {
     TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
     TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
 
+    HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
+
     // The variants that the goals of the cost table are about.
     TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
         "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held };

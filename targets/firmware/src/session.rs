@@ -151,6 +151,7 @@ impl<D: Drive> Replayed<D> {
             Record::New => self.drive = D::new(),
             Record::SetCurrent(bits) => self.drive.set_current(I16F16::from_bits(bits)),
             Record::SetTorque(bits) => self.drive.set_torque(I16F16::from_bits(bits)),
+            Record::SetSpeed(bits) => self.drive.set_speed(I16F16::from_bits(bits)),
             Record::SetBus(counts) => self.drive.set_bus(counts),
             Record::Reset => self.drive.reset(),
             Record::Calibrate => self.drive.calibrate(),

@@ -103,6 +103,8 @@ pub enum Record {
     Calibrate,
     /// Start of the bootstrap pre-charge.
     Precharge,
+    /// Speed set-point, bits of an `I16F16` in rpm.
+    SetSpeed(i32),
     /// Overwrites a state word.
     SetStateWord {
         /// Place among the state words.
@@ -135,6 +137,7 @@ impl Record {
             Self::Calibrate => number(6, 0, 0),
             Self::Precharge => number(7, 0, 0),
             Self::SetStateWord { index, value } => number(8, value, index),
+            Self::SetSpeed(bits) => number(9, bits, 0),
         }
     }
 
@@ -158,6 +161,7 @@ impl Record {
             6 => Self::Calibrate,
             7 => Self::Precharge,
             8 => Self::SetStateWord { index, value },
+            9 => Self::SetSpeed(value),
             _ => return None,
         })
     }
