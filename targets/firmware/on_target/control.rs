@@ -12,7 +12,7 @@ hexagen::controller! {
     /// The drive of this firmware, a type of its own beside those of the test bench.
     pub HubDrive {
         motor: "../motors/trivedi-keshri-660w.toml",
-        controller: pdcc { saturation: keep_angle, emf_filter: 1 },
+        controller: pdcc { saturation: keep_angle, emf: held },
     }
 }
 

@@ -28,7 +28,7 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The whole interrupt of the firmware, and its drive.
 const INTERRUPT: &str = "interrupt_trivedi_keshri_660w_pdcc";
-const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf_filter=1";
+const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf=held";
 
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";
