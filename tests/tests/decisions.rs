@@ -101,7 +101,8 @@ struct Tally {
     different: u64,
     /// On which a vector that neither chose is beyond the tie band: the check can fail.
     refuted: u64,
-    /// Left out: an off leg's current at the diode's threshold, or the end of a commutation decided otherwise.
+    /// Left out: an off leg's current at the diode's threshold, or a trip or the end of a commutation decided otherwise,
+    /// by a current at its level to the last word.
     left_out: u64,
     /// Greatest excess over the least cost, in parts of 2 eps.
     worst: f64,
@@ -328,7 +329,8 @@ impl Subject {
         if !found.run {
             return (legs, None);
         }
-        if found.commutating != exact.commutating || self.is_at_threshold(&before, exact.i) {
+        let decided_alike = exact.run && found.commutating == exact.commutating;
+        if !decided_alike || self.is_at_threshold(&before, exact.i) {
             tally.left_out += 1;
             return (legs, Some(found.vector));
         }

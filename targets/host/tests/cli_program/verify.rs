@@ -238,6 +238,25 @@ fn compare_prints_a_row_per_controller_and_the_merits_of_one() {
 }
 
 #[test]
+fn compare_says_below_its_table_why_controllers_are_refused() {
+    let said = run(["compare", "odrive-d6374-150kv", "--start-angle", "0.1"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let rows = said.stdout.lines().filter(|line| line.starts_with('|'));
+    for row in rows.clone() {
+        assert!(row.chars().count() < 160, "{row}");
+    }
+    let refused = rows.filter(|row| row.contains(" refused "));
+    // Two controllers at two word lengths, in both tables.
+    assert_eq!(refused.count(), 8, "{}", said.stdout);
+    assert_eq!(
+        said.stdout.matches("error[HX0406]").count(),
+        4,
+        "{}",
+        said.stdout
+    );
+}
+
+#[test]
 fn formats_of_a_motor_are_better_than_one_for_the_whole_library() {
     let result = run(["compare", "--json"]).json();
     assert!(number(&result, "better_by_db") >= 20.0, "{result}");

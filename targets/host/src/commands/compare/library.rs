@@ -128,7 +128,7 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
     );
     for row in &library.rows {
         let Some(own) = &row.one_step else {
-            table.row([row.motor.clone(), row.refused.clone().unwrap_or_default()]);
+            table.row([row.motor.as_str(), "refused"]);
             continue;
         };
         let decibel = |db: Option<f64>| db.map_or_else(String::new, |db| format!("{db:.1}"));
@@ -143,6 +143,9 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
         ]);
     }
     print_text(&table.render())?;
+    for reason in library.rows.iter().filter_map(|row| row.refused.as_ref()) {
+        print_text(reason)?;
+    }
     print_text(&format!(
         "Deadbeat voltage of {LAW} with 16-bit words, one step from the same state, 20 and 75 % of rated speed: signal over error in the \
          formats that the generator chose, and in one saturating 16-bit format of SI units with {} fraction bits, which just holds bus \

@@ -10,6 +10,9 @@ use crate::commands::accuracy::MeritDifference;
 /// As [`print_text`].
 pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
     print_text(&accuracy_table(rows))?;
+    for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
+        print_text(reason)?;
+    }
     print_text(
         "SNR, largest error and proven bound: of the deadbeat voltage in volt (pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
          one step from the same state, phases a and b.\n\
@@ -40,7 +43,7 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
     )
 }
 
-/// A table with one row for each that generates; the others say why not.
+/// A table with the figures of each that generates.
 fn table<const N: usize>(
     rows: &[Row],
     header: [&str; N],
@@ -52,7 +55,7 @@ fn table<const N: usize>(
         let mut all = vec![row.controller.clone(), row.word.to_string()];
         match &row.accuracy {
             Some(accuracy) => all.extend(cells(accuracy)),
-            None => all.extend(row.refused.clone()),
+            None => all.push("refused".to_owned()),
         }
         table.row(all);
     }
