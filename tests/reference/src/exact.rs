@@ -3,26 +3,24 @@
 //! A word is an f64 with a whole value of at most 32 bits and sign. Sums and products that stay
 //! below 2^53 are exact in f64; longer products are split at 16 bits first (floor(C x/2^s) =
 //! floor((Ch x + floor(Cl x/2^16))/2^(s-16)) with C = Ch 2^16 + Cl), so every intermediate is
-//! exact. Debug builds assert the bounds; the tests compare with 128-bit integers.
+//! exact. That they are, for all words that a drive's formats allow, is what the crate
+//! `hexagen-exactness` proves of this text; the tests compare with 128-bit integers.
 #![expect(
     clippy::inline_always,
     reason = "the models spend their time in these few instructions"
 )]
 
-/// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to a whole number.
-const MAGIC: f64 = 6_755_399_441_055_744.0;
-/// 2^51. Products below it can be taken whole: with half of their last bit added they still fit 53 bits.
-const WHOLE: f64 = 2_251_799_813_685_248.0;
+use crate::word::{debug_at_most, nearest, product_below};
+
+#[cfg(bounded)]
+pub use crate::word::divide;
+pub use crate::word::{
+    WHOLE, Word, debug_whole, either, floor, greater, here, input, known, lesser, sign, tabulated,
+    to_i32, to_index, to_u16, word,
+};
+
 const TWO_16: f64 = 65_536.0;
 const TWO_32: f64 = 4_294_967_296.0;
-
-#[inline]
-fn debug_whole(x: f64) {
-    debug_assert!(
-        x.trunc() == x && x.abs() < 9_007_199_254_740_992.0,
-        "{x} is not exact"
-    );
-}
 
 /// What `of` says of phases a and b. Unlike `map` of an array it leaves nothing for the optimiser to unwind.
 #[inline(always)]
@@ -43,40 +41,29 @@ pub fn pow2(exponent: i32) -> f64 {
     f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
 }
 
-/// The whole number nearest to `y`, |y| < 2^51, not half way between two.
-#[inline]
-fn nearest(y: f64) -> f64 {
-    debug_assert!(y.abs() < WHOLE, "{y} is too large to round");
-    (y + MAGIC) - MAGIC
-}
-
-/// The greatest whole number not above `y`, |y| < 2^51.
-#[inline]
-pub fn floor(y: f64) -> f64 {
-    debug_assert!(y.abs() < WHOLE, "{y} is too large for floor");
-    let nearest = (y + MAGIC) - MAGIC;
-    // A mask, because a branch would be mispredicted every other time.
-    let above = u64::from(nearest > y).wrapping_neg();
-    nearest - f64::from_bits(1f64.to_bits() & above)
-}
-
 /// floor(x weight) for a whole x and a weight 2^-n, n >= 0: with n fraction bits, subtracting half
 /// less half an ulp turns "downwards" into "to the nearest" without ties.
 #[inline]
-pub fn floor_weighted(x: f64, weight: f64) -> f64 {
+#[cfg_attr(bounded, track_caller)]
+pub fn floor_weighted(x: Word, weight: f64) -> Word {
+    let _site = here();
     debug_whole(x);
     nearest(x * weight + (0.5 * weight - 0.5))
 }
 
 /// floor(x/2): the arithmetic shift by one, |x| < 2^50.
 #[inline]
-pub fn halve(x: f64) -> f64 {
+#[cfg_attr(bounded, track_caller)]
+pub fn halve(x: Word) -> Word {
+    let _site = here();
     floor_weighted(x, 0.5)
 }
 
 /// floor(x/2^n), |x| < 2^50.
 #[inline]
-pub fn floor_shift(x: f64, n: u32) -> f64 {
+#[cfg_attr(bounded, track_caller)]
+pub fn floor_shift(x: Word, n: u32) -> Word {
+    let _site = here();
     floor_weighted(x, pow2(-(n as i32)))
 }
 
@@ -96,33 +83,26 @@ pub fn floor_constant(x: f64) -> f64 {
 
 /// x modulo 2^32, from 0 up; |x| < 2^50.
 #[inline]
-pub fn wrap32(x: f64) -> f64 {
+#[cfg_attr(bounded, track_caller)]
+pub fn wrap32(x: Word) -> Word {
+    let _site = here();
     debug_whole(x);
-    x - floor_weighted(x, 1.0 / TWO_32) * TWO_32
+    let wrapped = x - floor_weighted(x, 1.0 / TWO_32) * TWO_32;
+    known(wrapped, 0.0, TWO_32 - 1.0)
 }
 
-/// The two's complement word of a whole x, |x| < 2^31.
+/// floor(y), |y| < 2^51, and the rest.
 #[inline]
-pub fn to_i32(x: f64) -> i32 {
-    debug_assert!(
-        x.trunc() == x && (-2_147_483_648.0..2_147_483_648.0).contains(&x),
-        "{x} is no 32-bit word"
-    );
-    (x + MAGIC).to_bits() as i32
-}
-
-/// The 16-bit count of a whole x, 0 <= x < 2^16.
-#[inline]
-pub fn to_u16(x: f64) -> u16 {
-    debug_assert!(
-        x.trunc() == x && (0.0..TWO_16).contains(&x),
-        "{x} is no 16-bit count"
-    );
-    (x + MAGIC).to_bits() as u16
+#[cfg_attr(bounded, track_caller)]
+pub fn split(y: Word) -> (Word, Word) {
+    let _site = here();
+    let whole = floor(y);
+    (whole, known(y - whole, 0.0, 1.0))
 }
 
 /// min(floor(n 2^s/den), limit) for words n >= 0, den > 0 and limit >= 0, by one division: the rounded quotient is at
 /// most one off, which the remainder tells.
+#[cfg(not(bounded))]
 #[inline]
 pub fn divide(n: f64, s: u32, den: f64, limit: f64) -> f64 {
     debug_whole(n);
@@ -144,38 +124,20 @@ pub fn divide(n: f64, s: u32, den: f64, limit: f64) -> f64 {
     )
 }
 
-/// The greater of two numbers, neither of which is NaN: one instruction, where `f64::max` takes five.
-#[inline(always)]
-pub fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// The lesser of two numbers, neither of which is NaN.
-#[inline(always)]
-pub fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
 /// `y` within low <= high, none of which is NaN.
 #[inline(always)]
-pub fn within(y: f64, low: f64, high: f64) -> f64 {
+#[cfg_attr(bounded, track_caller)]
+pub fn within(y: impl Into<Word>, low: impl Into<Word>, high: impl Into<Word>) -> Word {
     lesser(greater(y, low), high)
-}
-
-/// `then` where the condition holds, else `otherwise`: a mask, because a branch would be mispredicted every other time.
-#[inline]
-pub fn either(condition: bool, then: f64, otherwise: f64) -> f64 {
-    let mask = u64::from(condition).wrapping_neg();
-    f64::from_bits(then.to_bits() & mask | otherwise.to_bits() & !mask)
 }
 
 /// A coefficient word with its shift, split for [`Coefficient::mul`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficient {
     /// The upper part over 2^(s-16).
-    high: f64,
+    high: Word,
     /// The lower 16 bits over 2^16.
-    low: f64,
+    low: Word,
     /// 2^(16-s).
     low_weight: f64,
     /// Half an ulp of the sum that is rounded: breaks ties upwards.
@@ -185,18 +147,19 @@ pub struct Coefficient {
 impl Coefficient {
     /// Splits the word `raw` with shift `s` <= 62.
     #[inline]
-    pub fn new(raw: f64, s: u32) -> Self {
+    #[cfg_attr(bounded, track_caller)]
+    pub fn new(raw: impl Into<Word>, s: u32) -> Self {
+        let _site = here();
+        let raw = raw.into();
         debug_whole(raw);
-        debug_assert!(
-            raw.abs() < TWO_32 && s <= 62,
-            "coefficient {raw}, shift {s}"
-        );
+        debug_at_most(raw, TWO_32);
+        debug_assert!(s <= 62, "shift {s}");
         if s > 16 {
             let high = floor_weighted(raw, 1.0 / TWO_16);
             let low_weight = pow2(16 - s as i32);
             Self {
                 high: high * low_weight,
-                low: (raw - high * TWO_16) * (1.0 / TWO_16),
+                low: known(raw - high * TWO_16, 0.0, TWO_16 - 1.0) * (1.0 / TWO_16),
                 low_weight,
                 nudge: 0.5 * low_weight,
             }
@@ -206,7 +169,7 @@ impl Coefficient {
             let nudge = if s == 0 { 0.0 } else { 0.5 * weight };
             Self {
                 high: raw * weight,
-                low: 0.0,
+                low: word(0.0),
                 low_weight: 0.0,
                 nudge,
             }
@@ -215,9 +178,12 @@ impl Coefficient {
 
     /// mul(c, x) = floor((c x + 2^(s-1))/2^s) for a word x; the bare product for s = 0.
     #[inline]
-    pub fn mul(&self, x: f64) -> f64 {
+    #[cfg_attr(bounded, track_caller)]
+    pub fn mul(&self, x: impl Into<Word>) -> Word {
+        let _site = here();
+        let x = x.into();
         debug_whole(x);
-        debug_assert!(x.abs() <= 2.0 * TWO_32, "{x} is no word");
+        debug_at_most(x, 2.0 * TWO_32);
         // floor(Cl x/2^16), a sum with 16 fraction bits.
         let tail = nearest(self.low * x + (0.5 / TWO_16 - 0.5));
         nearest(self.high * x + (tail * self.low_weight + self.nudge))
@@ -261,46 +227,47 @@ impl Shift {
         self.bits
     }
 
-    /// x y/2^s and the weight of its last bit. A product too long for f64 loses 16 bits, which the shift cuts off
-    /// in any case: its upper and lower half are multiplied apart.
+    /// x y/2^s rounded to the nearest with `nudge` of the weight of its last bit added. A product too long for f64
+    /// loses 16 bits, which the shift cuts off in any case: its upper and lower half are multiplied apart.
     #[inline]
-    fn product(&self, x: f64, y: f64) -> (f64, f64) {
+    fn product(&self, x: Word, y: Word, nudge: impl Fn(f64) -> f64) -> Word {
         debug_whole(x);
         debug_whole(y);
-        debug_assert!(
-            x.abs() <= TWO_32 && y.abs() <= 2.0 * TWO_32,
-            "{x} times {y}"
-        );
-        let whole = x * y;
-        if whole.abs() < self.whole {
+        debug_at_most(x, TWO_32);
+        debug_at_most(y, 2.0 * TWO_32);
+        if let Some(whole) = product_below(x, y, self.whole) {
             debug_whole(whole);
-            (whole * self.weight, self.weight)
+            nearest(whole * self.weight + nudge(self.weight))
         } else {
             let high = floor_weighted(x, 1.0 / TWO_16);
-            let low = x - high * TWO_16;
+            let low = known(x - high * TWO_16, 0.0, TWO_16 - 1.0);
             let cut = high * y + floor_weighted(low * y, 1.0 / TWO_16);
-            (cut * self.cut_weight, self.cut_weight)
+            nearest(cut * self.cut_weight + nudge(self.cut_weight))
         }
     }
 
     /// floor(x y/2^s) for words x, y.
     #[inline]
-    pub fn floor_product(&self, x: f64, y: f64) -> f64 {
-        let (product, weight) = self.product(x, y);
-        nearest(product + (0.5 * weight - 0.5))
+    #[cfg_attr(bounded, track_caller)]
+    pub fn floor_product(&self, x: impl Into<Word>, y: impl Into<Word>) -> Word {
+        let _site = here();
+        self.product(x.into(), y.into(), |weight| 0.5 * weight - 0.5)
     }
 
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
     #[inline]
-    pub fn round_product(&self, x: f64, y: f64) -> f64 {
-        let (product, weight) = self.product(x, y);
+    #[cfg_attr(bounded, track_caller)]
+    pub fn round_product(&self, x: impl Into<Word>, y: impl Into<Word>) -> Word {
+        let _site = here();
         // Half an ulp breaks ties upwards; without fraction bits there are none.
-        let nudge = if self.bits == 0 { 0.0 } else { 0.5 * weight };
-        nearest(product + nudge)
+        let is_whole = self.bits == 0;
+        self.product(x.into(), y.into(), |weight| {
+            if is_whole { 0.0 } else { 0.5 * weight }
+        })
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, not(bounded)))]
 mod tests {
     use super::*;
 

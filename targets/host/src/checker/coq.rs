@@ -81,7 +81,7 @@ pub fn certificate(script: &Script) -> Result<String, String> {
         ""
     };
     Ok(format!(
-        "(* {}: the bounds that hexagen states, proved by Gappa; `coqc` checks them. *)\n\n{prelude}{}\nPrint Assumptions l1.\n",
+        "(* {}: the bounds that hexagen states, proved by Gappa; `coqc` checks them. *)\n\n{prelude}\n{}\nPrint Assumptions l1.\n",
         script.name, ended.printed
     ))
 }

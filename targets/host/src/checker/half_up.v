@@ -37,4 +37,3 @@ Qed.
 Notation UNKNOWN_fixed_round_nu :=
   (Gappa_fixed.fixed_round roundNU_cs _ _ _ _ ltac:(eassumption) _) (only parsing).
 Notation UNKNOWN_fixed_error_nu := (fixed_error_nu _ _ _ _) (only parsing).
-

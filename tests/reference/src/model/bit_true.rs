@@ -11,6 +11,8 @@ mod emf;
 mod law;
 mod limit;
 mod motion;
+#[cfg(not(bounded))]
+mod physical;
 mod rotor;
 mod speed;
 mod state;
@@ -19,16 +21,17 @@ mod tables;
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Mode, Observation, Period};
-use super::trace::{PhysicalState, Reach, Trace};
+use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
-use crate::exact::{Coefficient, both, divide, floor, floor_weighted, lesser, pow2, within};
+use crate::exact::{
+    Coefficient, Word, both, divide, floor, floor_weighted, input, lesser, pow2, within, word,
+};
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
 use speed::Regulator;
 use state::{Part, State};
-use std::f64::consts::TAU;
 
 /// The bit-true controller of one drive.
 #[derive(Clone, Debug)]
@@ -43,10 +46,10 @@ pub struct BitTrue {
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
-    j: f64,
-    speed_ref: f64,
-    v_bus: f64,
-    ratio: f64,
+    j: Word,
+    speed_ref: Word,
+    v_bus: Word,
+    ratio: Word,
     /// `ratio`, split.
     to_duty: Coefficient,
     state: State,
@@ -61,19 +64,19 @@ pub struct Course {
     /// A commutation is under way (where it is followed).
     pub commutating: bool,
     /// Angle per period, angle words (2^32 per turn), signed; 0 while the angle is not timed.
-    pub step_angle: f64,
+    pub step_angle: Word,
 }
 
 /// Words of the last step, for [`BitTrue::trace`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Signals {
-    i: [f64; 2],
-    e: [f64; 2],
-    v_now: [f64; 2],
-    u_unsat: [f64; 2],
-    u: [f64; 2],
-    theta: f64,
-    step_angle: f64,
+    i: [Word; 2],
+    e: [Word; 2],
+    v_now: [Word; 2],
+    u_unsat: [Word; 2],
+    u: [Word; 2],
+    theta: Word,
+    step_angle: Word,
     sector_eff: usize,
     commutating: bool,
     reach: Reach,
@@ -96,19 +99,19 @@ impl BitTrue {
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
             limits: Limits::new(&spec.inverter, k.i_trip)?,
-            j: speed.as_ref().map_or(0.0, |speed| speed.top),
-            speed_ref: 0.0,
+            j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
+            speed_ref: word(0.0),
             speed,
-            v_bus: k.v_bus_nominal,
+            v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
-            ratio: pow2(k.ratio_bits as i32),
+            ratio: word(pow2(k.ratio_bits as i32)),
             to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
             state: State::default(),
             last: Signals::default(),
             law: Law::new(spec, &scale)?,
             k,
         };
-        model.state.offset = [model.k.offset; 2];
+        model.state.offset = [word(model.k.offset); 2];
         Ok(model)
     }
 
@@ -117,7 +120,7 @@ impl BitTrue {
         self.j = self
             .k
             .k_set
-            .mul(f64::from(bits).clamp(-self.k.i_max_bits, self.k.i_max_bits));
+            .mul(input(bits).clamp(-self.k.i_max_bits, self.k.i_max_bits));
     }
 
     /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
@@ -125,7 +128,7 @@ impl BitTrue {
         self.j = self
             .k
             .k_torque
-            .mul(f64::from(bits).clamp(-self.k.t_max_bits, self.k.t_max_bits));
+            .mul(input(bits).clamp(-self.k.t_max_bits, self.k.t_max_bits));
     }
 
     /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
@@ -138,26 +141,21 @@ impl BitTrue {
     /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = &self.k.bus {
-            let measured = bus.k_bus.mul(f64::from(counts).min(bus.count_max));
+            let measured = bus.k_bus.mul(input(counts).min(bus.count_max));
             self.v_bus = measured.clamp(bus.v_min, bus.v_max);
             self.ratio = divide(
-                self.k.v_bus_nominal,
+                word(self.k.v_bus_nominal),
                 self.k.ratio_bits,
                 self.v_bus,
-                f64::from(i32::MAX),
+                word(f64::from(i32::MAX)),
             );
             self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
         }
     }
 
     /// The set-point words `j`, `v_bus`, `ratio`, `speed_ref`.
-    pub fn set_point_words(&self) -> [f64; 4] {
+    pub fn set_point_words(&self) -> [Word; 4] {
         [self.j, self.v_bus, self.ratio, self.speed_ref]
-    }
-
-    /// The current set-point that the word `j` stands for, ampere.
-    pub fn set_point_amps(&self) -> f64 {
-        self.j * self.k.volt / self.gain
     }
 
     /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
@@ -191,11 +189,6 @@ impl BitTrue {
         self.state.supervisor.mode
     }
 
-    /// Current offsets, ADC counts.
-    pub fn offset_counts(&self) -> [f64; 2] {
-        self.state.offset.map(|word| word / self.k.count)
-    }
-
     /// Which way the last step went.
     #[inline]
     pub fn course(&self) -> Course {
@@ -204,45 +197,6 @@ impl BitTrue {
             commutating: self.last.commutating,
             step_angle: self.last.step_angle,
         }
-    }
-
-    /// Signals of the last step in physical units.
-    pub fn trace(&self) -> Trace {
-        let Signals {
-            i,
-            e,
-            v_now,
-            u_unsat,
-            u,
-            theta,
-            step_angle,
-            sector_eff,
-            commutating,
-            reach,
-            vector,
-            run,
-        } = self.last;
-        let turn = TAU * pow2(-32);
-        Trace {
-            i: i.map(|word| word * self.k.ampere),
-            e: e.map(|word| word * self.k.volt),
-            v_now: v_now.map(|word| word * self.k.volt),
-            u_unsat: u_unsat.map(|word| word * self.k.volt),
-            u: u.map(|word| word * self.k.volt),
-            theta: theta * turn,
-            step_angle: step_angle * turn,
-            sector_eff,
-            commutating,
-            reach,
-            vector,
-            run,
-        }
-    }
-
-    /// The whole state in physical units: what an ideal model can be rebuilt from.
-    pub fn physical_state(&self) -> PhysicalState {
-        let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
-        self.state.to_physical(&self.k, integral_ampere)
     }
 
     /// Names of the state words, in the order of [`Self::state_words`].
@@ -261,12 +215,18 @@ impl BitTrue {
         self.state.read(self.k.parts, words);
     }
 
+    /// Makes the state words any of these intervals, in the order of [`Self::state_words`].
+    #[cfg(bounded)]
+    pub fn widen_state(&mut self, intervals: &[[f64; 2]]) {
+        self.state.widen(self.k.parts, intervals);
+    }
+
     /// One control period: reads the sample, returns the command for the inverter.
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> Legs {
         let k = &self.k;
         // 1 measure
-        let adc = [f64::from(sample.adc_a), f64::from(sample.adc_b)];
+        let adc = [input(sample.adc_a), input(sample.adc_b)];
         let counted = |x: usize| {
             (lesser(adc[x], self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
         };
@@ -308,7 +268,7 @@ impl BitTrue {
                 &self.clock,
                 &event,
                 direction_before,
-                f64::from(sample.hall_ticks),
+                input(sample.hall_ticks),
             );
             angle = rotor::angle(&self.clock, k, &self.state, &event);
             self.state.omega = angle.omega;
@@ -348,7 +308,7 @@ impl BitTrue {
 
         // 8 EMF
         let (mut e, mut e_now) = match self.variant.emf {
-            None | Some(EmfSource::Held) => ([0.0; 2], [0.0; 2]),
+            None | Some(EmfSource::Held) => ([word(0.0); 2], [word(0.0); 2]),
             Some(EmfSource::Estimated) => {
                 let seen = emf::estimate(k, &self.state, i);
                 let e = if self.variant.unseen() {
@@ -367,7 +327,7 @@ impl BitTrue {
                 };
                 let ahead = if delayed { 2.0 } else { 1.0 };
                 let end = k.flux.both(angle.theta + ahead * angle.step);
-                let mean = |from: [f64; 2], to: [f64; 2]| {
+                let mean = |from: [Word; 2], to: [Word; 2]| {
                     both(|x| {
                         within(
                             floor_weighted(to[x] - from[x], k.flux_to_voltage),
@@ -392,7 +352,7 @@ impl BitTrue {
 
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
-            (false, _) => [0.0; 2],
+            (false, _) => [word(0.0); 2],
             (true, false) => self.state.v_cmd,
             (true, true) => {
                 let State { t_cmd, off_cmd, .. } = &self.state;

@@ -2,6 +2,7 @@
 //! turn, and when they stop being trustworthy. Ticks are whole numbers, so nothing is rounded.
 
 use super::sector::HallEvent;
+use crate::exact::{Word, word};
 use crate::spec::{HallCapture, Inverter, Spec};
 
 /// Constants of the timing, in ticks.
@@ -35,25 +36,25 @@ impl HallClock {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallTiming {
     /// 1 forward, -1 backward.
-    pub direction: f64,
+    pub direction: Word,
     /// Ticks from the last edge to the last sample.
-    pub age_prev: f64,
+    pub age_prev: Word,
     /// 0: nothing known; 1: one edge seen; 2: `turn` is valid.
     pub edges: u8,
     /// The last six edge-to-edge intervals, newest first.
-    pub intervals: [f64; 6],
+    pub intervals: [Word; 6],
     /// Their sum: ticks of one electrical turn.
-    pub rev: f64,
+    pub rev: Word,
 }
 
 impl Default for HallTiming {
     fn default() -> Self {
         Self {
-            direction: 0.0,
-            age_prev: 0.0,
+            direction: word(0.0),
+            age_prev: word(0.0),
             edges: 0,
-            intervals: [1.0; 6],
-            rev: 6.0,
+            intervals: [word(1.0); 6],
+            rev: word(6.0),
         }
     }
 }
@@ -64,9 +65,9 @@ impl HallTiming {
     pub fn turn_direction(&mut self, event: &HallEvent) {
         if event.edge {
             if event.forward {
-                self.direction = 1.0;
+                self.direction = word(1.0);
             } else if event.backward {
-                self.direction = -1.0;
+                self.direction = word(-1.0);
             }
         }
     }
@@ -78,15 +79,15 @@ impl HallTiming {
         &mut self,
         clock: &HallClock,
         event: &HallEvent,
-        direction_before: f64,
-        hall_ticks: f64,
+        direction_before: Word,
+        hall_ticks: Word,
     ) {
         let age_before = self.age_prev + clock.ticks;
         let since = match (clock.timer, event.edge) {
-            (true, true) if hall_ticks > 2.0 * clock.ticks => 0.0,
+            (true, true) if hall_ticks > 2.0 * clock.ticks => word(0.0),
             (true, true) => hall_ticks,
             (true, false) => hall_ticks.max(age_before),
-            (false, true) => 1.0,
+            (false, true) => word(1.0),
             (false, false) => age_before,
         };
         let age = since.min(clock.age_max + 1.0);

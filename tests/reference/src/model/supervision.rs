@@ -2,6 +2,7 @@
 //! currents and trip level are compared in whatever unit the model uses.
 
 use crate::Error;
+use crate::exact::{Word, word};
 use crate::spec::Inverter;
 use hexagen::Fault;
 
@@ -81,9 +82,9 @@ impl Limits {
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
     /// ADC counts as read.
-    pub adc: [f64; 2],
+    pub adc: [Word; 2],
     /// Phase currents.
-    pub i: [f64; 3],
+    pub i: [Word; 3],
     /// Sector of the Hall code, 0 for an invalid code.
     pub code: usize,
     /// A Hall edge was seen.
@@ -116,9 +117,9 @@ pub struct Verdict {
 pub struct Supervisor {
     pub mode: Mode,
     pub fault: Fault,
-    pub countdown: f64,
-    pub sum: [f64; 2],
-    pub stall_count: f64,
+    pub countdown: Word,
+    pub sum: [Word; 2],
+    pub stall_count: Word,
 }
 
 impl Supervisor {
@@ -126,8 +127,8 @@ impl Supervisor {
     pub fn calibrate(&mut self, limits: &Limits) {
         if self.mode != Mode::Tripped {
             self.mode = Mode::Calibrate;
-            self.countdown = limits.calibration_samples;
-            self.sum = [0.0; 2];
+            self.countdown = word(limits.calibration_samples);
+            self.sum = [word(0.0); 2];
         }
     }
 
@@ -141,7 +142,7 @@ impl Supervisor {
         let may_start = matches!(self.mode, Mode::Run | Mode::Precharge);
         if may_start && limits.precharge_periods > 0.0 {
             self.mode = Mode::Precharge;
-            self.countdown = limits.precharge_periods;
+            self.countdown = word(limits.precharge_periods);
         }
     }
 
@@ -150,7 +151,7 @@ impl Supervisor {
     pub fn step(&mut self, limits: &Limits, seen: &Observation) -> Verdict {
         if limits.stall_periods > 0.0 {
             self.stall_count = if seen.edge || !seen.demand || self.mode != Mode::Run {
-                0.0
+                word(0.0)
             } else {
                 (self.stall_count + 1.0).min(limits.stall_periods)
             };
@@ -191,15 +192,15 @@ impl Supervisor {
                 }
                 self.countdown = (self.countdown - 1.0).max(0.0);
                 let samples = limits.calibration_samples;
-                let is_far = |sum: &f64| {
-                    (sum - limits.adc_offset * samples).abs() > limits.offset_tolerance * samples
+                let is_far = |sum: &Word| {
+                    (*sum - limits.adc_offset * samples).abs() > limits.offset_tolerance * samples
                 };
                 if self.countdown == 0.0 && self.sum.iter().any(is_far) {
                     self.mode = Mode::Tripped;
                     self.fault = Fault::Offset;
                 } else if self.countdown == 0.0 {
                     calibrated = true;
-                    self.countdown = limits.precharge_periods;
+                    self.countdown = word(limits.precharge_periods);
                     self.mode = if limits.precharge_periods > 0.0 {
                         Mode::Precharge
                     } else {

@@ -5,6 +5,7 @@
 
 use super::sector::{MINUS, OUT_PHASE, PLUS};
 use super::vectors::{self, FIRST_PAIR, FIRST_PAIR_ZERO};
+use crate::exact::Word;
 use crate::{Candidates, EmfShape, Error, Spec, SwitchingTable};
 use nalgebra::Vector2;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, PI};
@@ -28,7 +29,7 @@ pub enum Set {
 impl Set {
     /// That of a sense of rotation (1, -1, or 0 while it is unknown) and a set-point.
     #[inline]
-    pub fn of(direction: f64, set_point: f64) -> Self {
+    pub fn of(direction: Word, set_point: Word) -> Self {
         if direction > 0.0 && set_point >= 0.0 {
             Self::Forward
         } else if direction < 0.0 && set_point < 0.0 {
@@ -43,7 +44,7 @@ impl Set {
 
 /// Whether a component is to rise: as the error says outside of the band, as before within it.
 #[inline]
-pub fn wish(error: f64, band: f64, before: bool) -> bool {
+pub fn wish(error: Word, band: f64, before: bool) -> bool {
     if error > band {
         true
     } else if error < -band {

@@ -3,6 +3,7 @@
 
 use super::hall::HallTiming;
 use super::supervision::Supervisor;
+use crate::exact::Word;
 
 /// Signals of the last step. Pairs are phases a, b; phase c is minus their sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,9 +50,9 @@ pub enum Reach {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Past {
     /// To this step's.
-    pub due: [f64; 2],
+    pub due: [Word; 2],
     /// To the next one's.
-    pub later: [f64; 2],
+    pub later: [Word; 2],
 }
 
 /// A controller's whole state in physical units.

@@ -1,26 +1,26 @@
 //! The voltage that a command really applies, off leg included (section 7).
 
 use super::constants::Constants;
-use crate::exact::{halve, within};
+use crate::exact::{Word, halve, within, word};
 
 /// Phase voltages a, b of the terminal voltages `terminal` with leg `off` (0: none, 1 to 3) off,
 /// at currents `i` and EMF `e`.
 #[inline]
 pub fn voltage(
     k: &Constants,
-    v_bus: f64,
-    terminal: &[f64; 3],
+    v_bus: Word,
+    terminal: &[Word; 3],
     off: usize,
-    i: &[f64; 3],
-    e: [f64; 2],
-) -> [f64; 2] {
+    i: &[Word; 3],
+    e: [Word; 2],
+) -> [Word; 2] {
     let mut t = *terminal;
     if let Some(leg) = off.checked_sub(1).filter(|leg| *leg < 3) {
         let e = [e[0], e[1], -(e[0] + e[1])];
         let driven = halve(t[0] + t[1] + t[2] - t[leg]);
         let floating = driven + e[leg] + halve(e[leg]);
         t[leg] = if i[leg] > k.i_comm {
-            0.0
+            word(0.0)
         } else if i[leg] < -k.i_comm {
             v_bus
         } else {

@@ -2,12 +2,12 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::{both, halve, within};
+use crate::exact::{Word, both, halve, within, word};
 use crate::model::sector::OUT_PHASE;
 
 /// What the period that ends with the currents `i` shows of the EMF of phases a, b.
 #[inline]
-fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+fn seen(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
     let State { i_prev, v_prev, .. } = state;
     both(|x| {
         let d = within(i[x] - i_prev[x], -k.di_max, k.di_max);
@@ -17,7 +17,7 @@ fn seen(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 
 /// EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
-pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+pub fn estimate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
     let (seen, e_prev) = (seen(k, state, i), &state.e_prev);
     both(|x| {
         let e = if k.filtered {
@@ -31,9 +31,9 @@ pub fn estimate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 
 /// What the modelled EMF of phases a, b lacks, with what the period that ends with the currents `i` adds to it.
 #[inline]
-pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
+pub fn integrate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
     let seen = seen(k, state, i);
-    let believed = |e: f64| within(e, -k.v_largest, k.v_largest);
+    let believed = |e: Word| within(e, -k.v_largest, k.v_largest);
     both(|x| {
         let lack = believed(seen[x] - state.e_prev[x]);
         let sum = state.integral[x];
@@ -43,8 +43,8 @@ pub fn integrate(k: &Constants, state: &State, i: [f64; 2]) -> [f64; 2] {
 
 /// The estimate `seen` with the EMF of a leg that floated replaced by what the sector says of it.
 #[inline]
-pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64; 2]) -> [f64; 2] {
-    let believed = |e: f64| within(e, -k.v_largest, k.v_largest);
+pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [Word; 2]) -> [Word; 2] {
+    let believed = |e: Word| within(e, -k.v_largest, k.v_largest);
     let Some(off) = state.off_prev.checked_sub(1).filter(|leg| *leg < 3) else {
         return seen;
     };
@@ -56,7 +56,7 @@ pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [f64;
     let half = if outgoing == off {
         halve(-e[off])
     } else if i_off.abs() > k.i_comm {
-        0.0
+        word(0.0)
     } else {
         k.k_third.mul(e[outgoing] - e[off])
     };

@@ -14,7 +14,7 @@ mod weighted;
 mod whole;
 
 use super::constants::{Constants, Scale};
-use crate::exact::Coefficient;
+use crate::exact::{Coefficient, Word, word};
 use crate::model::Reach;
 use crate::model::trace::Past;
 use crate::{Controller, Error, Spec};
@@ -24,23 +24,23 @@ use hexagen::Legs;
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
     pub k: &'a Constants,
-    pub v_bus: f64,
+    pub v_bus: Word,
     /// From volts of the measured bus to those of the nominal one.
     pub to_duty: &'a Coefficient,
-    pub j: [f64; 2],
-    pub i: [f64; 2],
-    pub v_now: [f64; 2],
+    pub j: [Word; 2],
+    pub i: [Word; 2],
+    pub v_now: [Word; 2],
     /// EMF in the target period.
-    pub e: [f64; 2],
+    pub e: [Word; 2],
     /// EMF in the period that starts now.
-    pub e_now: [f64; 2],
+    pub e_now: [Word; 2],
     pub sector_eff: usize,
     pub commutating: bool,
-    pub integral: [f64; 2],
+    pub integral: [Word; 2],
     /// The set-point word itself.
-    pub set_point: f64,
+    pub set_point: Word,
     /// Sense of rotation, 1 or -1.
-    pub direction: f64,
+    pub direction: Word,
     /// `h_a`, `h_b` (PHCC).
     pub rises: [bool; 2],
     /// `vector_prev` (FCS-MPC).
@@ -52,15 +52,15 @@ pub struct Inputs<'a> {
 /// What a controller decides.
 #[derive(Clone, Copy, Debug)]
 pub struct Decision {
-    pub u_unsat: [f64; 2],
+    pub u_unsat: [Word; 2],
     /// Limited to what the inverter can do; becomes `v_x_cmd`.
-    pub u: [f64; 2],
+    pub u: [Word; 2],
     pub reach: Reach,
     /// Number of the chosen vector (controllers of whole vectors).
     pub vector: usize,
     pub command: Command,
     /// `integral_x` (PI).
-    pub integral: [f64; 2],
+    pub integral: [Word; 2],
     /// `h_a`, `h_b` (PHCC).
     pub rises: [bool; 2],
     /// What the past adds to the voltage (deadbeat with a held EMF).
@@ -72,7 +72,7 @@ pub struct Decision {
 pub struct Command {
     pub legs: Legs,
     /// `t_a_cmd` to `t_c_cmd`, where a leg may be off.
-    pub terminal: [f64; 3],
+    pub terminal: [Word; 3],
     /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
     pub off: usize,
 }
@@ -82,7 +82,7 @@ impl Command {
     pub fn idle(legs: Legs) -> Self {
         Self {
             legs,
-            terminal: [0.0; 3],
+            terminal: [word(0.0); 3],
             off: 0,
         }
     }

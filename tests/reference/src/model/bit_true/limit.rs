@@ -3,8 +3,8 @@
 use super::constants::Constants;
 use crate::Saturation;
 use crate::exact::{
-    Coefficient, Shift, all_three, both, divide, either, floor, floor_shift, greater, halve,
-    lesser, pow2, within,
+    Coefficient, Shift, WHOLE, Word, all_three, both, divide, either, floor, floor_shift, greater,
+    halve, known, lesser, pow2, sign as sign_of, within, word,
 };
 use crate::model::Reach;
 
@@ -23,10 +23,10 @@ const NEXT: [usize; 3] = [1, 2, 0];
 pub fn limit(
     rule: Saturation,
     k: &Constants,
-    v_bus: f64,
-    u: [f64; 2],
-    e: [f64; 2],
-) -> ([f64; 2], Reach) {
+    v_bus: Word,
+    u: [Word; 2],
+    e: [Word; 2],
+) -> ([Word; 2], Reach) {
     let u_c = -(u[0] + u[1]);
     let max = greater(greater(u[0], u[1]), u_c);
     let min = lesser(lesser(u[0], u[1]), u_c);
@@ -36,6 +36,8 @@ pub fn limit(
     }
     match rule {
         Saturation::KeepAngle => {
+            // More than the bus.
+            let spread = known(spread, 1.0, WHOLE);
             let scale = Coefficient::new(
                 divide(v_bus, k.scale_bits, spread, pow2(k.scale_bits as i32)),
                 k.scale_bits,
@@ -61,7 +63,7 @@ pub fn limit(
 
 /// The nearest point of the hexagon.
 #[inline]
-fn nearest(k: &Constants, v_bus: f64, u: [f64; 3], max: f64, min: f64) -> [f64; 2] {
+fn nearest(k: &Constants, v_bus: Word, u: [Word; 3], max: Word, min: Word) -> [Word; 2] {
     let middle = halve(max + min);
     let half_bus = halve(v_bus);
     let t = all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus));
@@ -73,11 +75,11 @@ fn nearest(k: &Constants, v_bus: f64, u: [f64; 3], max: f64, min: f64) -> [f64; 
 /// nearest point.
 fn torque_priority(
     k: &Constants,
-    v_bus: f64,
-    u: [f64; 3],
-    f: [f64; 3],
-    near: [f64; 2],
-) -> ([f64; 2], Reach) {
+    v_bus: Word,
+    u: [Word; 3],
+    f: [Word; 3],
+    near: [Word; 2],
+) -> ([Word; 2], Reach) {
     let product = |x, y| k.emf_product.floor_product(x, y);
     let strong = [f[0].abs(), f[1].abs(), f[2].abs()];
     let mut d = usize::from(strong[1] > strong[0]);
@@ -89,11 +91,11 @@ fn torque_priority(
     if f_max < floor_shift(v_bus, 8) {
         return (near, Reach::Outside);
     }
-    let s1 = 1f64.copysign(f[d]);
+    let s1 = sign_of(f[d]);
     let (f_x, f_y) = (greater(-s1 * f[x], 0.0), greater(-s1 * f[y], 0.0));
     let (along_x, along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
     let along = product(f_x, along_x) + product(f_y, along_y);
-    let flip = 1f64.copysign(along);
+    let flip = sign_of(along);
     let (along_x, along_y, p, sign) = (flip * along_x, flip * along_y, along.abs(), flip * s1);
     let (q_x, q_y) = (product(f_x, v_bus), product(f_y, v_bus));
     let p_max = q_x + q_y;
@@ -120,12 +122,14 @@ fn torque_priority(
     if p > p_max {
         reach = Reach::PastReach;
         let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
-        let blend = lesser(floor((p - p_max) * BLEND_ONE / share), BLEND_ONE);
+        // As the condition says.
+        let past = known(p - p_max, 0.0, WHOLE);
+        let blend = lesser(floor(past * BLEND_ONE / share), BLEND_ONE);
         let mul15 = Shift::new(BLEND_BITS);
         to_x += mul15.round_product(blend, near_x - to_x);
         to_y += mul15.round_product(blend, near_y - to_y);
     }
-    let mut limited = [0.0; 3];
+    let mut limited = [word(0.0); 3];
     limited[d] = k.k_third.mul(sign * (to_x + to_y));
     limited[x] = limited[d] - sign * to_x;
     limited[y] = limited[d] - sign * to_y;

@@ -1,17 +1,17 @@
 //! An estimated EMF moved on (section 8).
 
 use super::constants::Constants;
-use crate::exact::{floor_shift, within};
+use crate::exact::{Word, floor_shift, here, within};
 use crate::model::sector::{CORNER_A, CORNER_B};
 
 /// The estimate `e` of the period that just ended, in the target period and in the present one.
 #[inline]
-pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-    let factor = |line: f64| {
+pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [Word; 2]) -> ([Word; 2], [Word; 2]) {
+    let factor = |line: Word| {
         let line = within(line, -k.line_max, k.line_max);
         floor_shift(line * k.line_scale, k.line_shift)
     };
-    let product = |y: f64, z: f64| k.line_product.floor_product(y, z);
+    let product = |y: Word, z: Word| k.line_product.floor_product(y, z);
     // The pair's EMF with c as minus the sum of a and b.
     let [p, q] = [CORNER_A[sector], CORNER_B[sector]];
     let [line_a, line_b] = [2.0 * p + q, p + 2.0 * q];
@@ -28,7 +28,19 @@ pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [f64; 2]) -> ([f64;
             k.k_slope.mul(line_a * square),
         ]
     };
-    let moved = |e: [f64; 2]| [e[0] + motion[0], e[1] + motion[1]];
-    let present = moved(e);
-    (if delayed { moved(present) } else { present }, present)
+    let present = moved(e, motion);
+    let target = if delayed {
+        moved(present, motion)
+    } else {
+        present
+    };
+    (target, present)
+}
+
+/// The EMF a period later.
+#[inline]
+#[cfg_attr(bounded, track_caller)]
+fn moved(e: [Word; 2], motion: [Word; 2]) -> [Word; 2] {
+    let _site = here();
+    [e[0] + motion[0], e[1] + motion[1]]
 }

@@ -2,12 +2,14 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::{floor, greater, lesser, pow2, wrap32};
+use crate::exact::{Word, floor, greater, lesser, pow2, to_index, word, wrap32};
 use crate::model::hall::HallClock;
 use crate::model::sector::HallEvent;
 
 /// SIXTH: 60 degrees as an angle word, floor(2^32/6).
 const SIXTH: f64 = 715_827_882.0;
+/// Half of that.
+const HALF_SIXTH: f64 = 357_913_941.0;
 /// 30 degrees as an angle word, rounded up.
 const TWELFTH: f64 = 357_913_942.0;
 /// Angle words at which sectors 1 to 6 begin (entry 0 stands for "no sector").
@@ -25,11 +27,11 @@ const SECTOR_START: [f64; 7] = [
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Angle {
     /// Angle word, 0 to 2^32 - 1.
-    pub theta: f64,
+    pub theta: Word,
     /// Angle per period, signed.
-    pub step: f64,
+    pub step: Word,
     /// Angle per tick.
-    pub omega: f64,
+    pub omega: Word,
     /// Sector with its advance.
     pub sector_eff: usize,
 }
@@ -40,17 +42,17 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     let timing = &state.timing;
     let turning = timing.edges == 2;
     let omega = if !turning {
-        0.0
+        word(0.0)
     } else if event.edge {
         floor((pow2(32) - 1.0) / greater(timing.rev, clock.rev_min))
     } else {
         state.omega
     };
     let progress = lesser(omega * timing.age_prev, SIXTH - 1.0);
-    let turn = lesser(omega * clock.ticks, floor(SIXTH / 2.0));
+    let turn = lesser(omega * clock.ticks, HALF_SIXTH);
     let step = timing.direction * turn;
     let in_sector = if !turning {
-        floor(SIXTH / 2.0)
+        word(HALF_SIXTH)
     } else if timing.direction > 0.0 {
         progress
     } else {
@@ -59,7 +61,7 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     let theta = wrap32(SECTOR_START[event.sector] + in_sector);
     let sector_eff = if k.advanced && turning {
         let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
-        floor(ahead * 6.0 * pow2(-32)) as usize + 1
+        to_index(floor(ahead * 6.0 * pow2(-32))) + 1
     } else {
         event.sector
     };
@@ -71,7 +73,7 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, not(bounded)))]
 mod tests {
     use super::*;
 

@@ -1,7 +1,7 @@
 //! The speed regulator (section "Speed loop").
 
 use super::constants::{Constants, Scale};
-use crate::exact::{Coefficient, floor, floor_constant, floor_weighted, pow2, within};
+use crate::exact::{Coefficient, Word, floor, floor_constant, floor_weighted, input, pow2, within};
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 use std::f64::consts::TAU;
@@ -15,7 +15,9 @@ pub struct Regulator {
     max_bits: f64,
     error_max: f64,
     /// J_TOP.
-    pub top: f64,
+    pub top: Word,
+    /// The same for the integral.
+    integral_top: Word,
     /// 2^-n.
     to_voltage: f64,
     /// Ampere per word of the integral.
@@ -36,6 +38,7 @@ impl Regulator {
         let stiffness = reference_gain(spec);
         let extra = scale.extra_bits("speed_integral")?;
         let share = bandwidth * inverter.t_s / 4.0;
+        let top = k.k_set.mul(k.i_max_bits);
         Ok(Some(Self {
             k_rpm: scale.coefficient("k_rpm", TAU / 60.0 / word / 65_536.0)?,
             k_speed: scale
@@ -44,27 +47,36 @@ impl Regulator {
             max_bits: floor_constant(60.0 * inverter.omega_max / TAU * 65_536.0)
                 .min(2_147_483_647.0),
             error_max: floor_constant(2.0 * inverter.max_current / (gain * word)).min(pow2(30)),
-            top: k.k_set.mul(k.i_max_bits),
+            top,
+            integral_top: top * pow2(extra),
             to_voltage: pow2(-extra),
             ampere: k.volt * pow2(-extra) / stiffness,
         }))
     }
 
     /// `speed_ref` of a speed in rpm, bits of an `I16F16`.
-    pub fn reference(&self, bits: i32) -> f64 {
+    pub fn reference(&self, bits: i32) -> Word {
         self.k_rpm
-            .mul(f64::from(bits).clamp(-self.max_bits, self.max_bits))
+            .mul(input(bits).clamp(-self.max_bits, self.max_bits))
     }
 
     /// The set-point, and the integral behind the step.
     #[inline]
-    pub fn regulate(&self, reference: f64, speed: f64, most: f64, integral: f64) -> (f64, f64) {
+    pub fn regulate(
+        &self,
+        reference: Word,
+        speed: Word,
+        most: Word,
+        integral: Word,
+    ) -> (Word, Word) {
         let error = within(reference - speed, -self.error_max, self.error_max);
         let part = self.k_speed.mul(error);
         let open = part + floor_weighted(integral, self.to_voltage);
         let j = within(open, -most.abs(), most.abs());
-        let top = self.top / self.to_voltage;
         let moved = integral + self.k_speed_share.mul(part + 4.0 * (j - open));
-        (j, floor(within(moved, -top, top)))
+        (
+            j,
+            floor(within(moved, -self.integral_top, self.integral_top)),
+        )
     }
 }

@@ -1,11 +1,11 @@
 //! The state of the bit-true model, and its words in the order of `semantics.md`.
 
 use super::constants::Constants;
-use crate::exact::to_i32;
+use crate::exact::{Word, input, to_i32, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
 use crate::model::supervision::{Mode, Supervisor, fault_from_word};
-use crate::model::trace::{Past, PhysicalState};
+use crate::model::trace::Past;
 use hexagen::Fault;
 
 /// State words in f64; small enums as such. Words that the variant does not have are kept as well
@@ -13,22 +13,22 @@ use hexagen::Fault;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     pub supervisor: Supervisor,
-    pub offset: [f64; 2],
+    pub offset: [Word; 2],
     pub sector_prev: usize,
     pub timing: HallTiming,
-    pub omega: f64,
-    pub speed_integral: f64,
+    pub omega: Word,
+    pub speed_integral: Word,
     pub sector_eff_prev: usize,
     pub commutating: bool,
-    pub commutation_age: f64,
-    pub i_prev: [f64; 2],
-    pub v_cmd: [f64; 2],
-    pub t_cmd: [f64; 3],
+    pub commutation_age: Word,
+    pub i_prev: [Word; 2],
+    pub v_cmd: [Word; 2],
+    pub t_cmd: [Word; 3],
     pub off_cmd: usize,
-    pub v_prev: [f64; 2],
+    pub v_prev: [Word; 2],
     pub off_prev: usize,
-    pub e_prev: [f64; 2],
-    pub integral: [f64; 2],
+    pub e_prev: [Word; 2],
+    pub integral: [Word; 2],
     pub rises: [bool; 2],
     pub vector_prev: Vector,
     pub past: Past,
@@ -86,16 +86,24 @@ impl Parts {
 trait WordValue {
     fn to_word(&self) -> i32;
     fn set_word(&mut self, word: i32);
+    /// Makes a number any of an interval.
+    #[cfg(bounded)]
+    fn widen(&mut self, _interval: [f64; 2]) {}
 }
 
-impl WordValue for f64 {
+impl WordValue for Word {
     #[inline]
     fn to_word(&self) -> i32 {
         to_i32(*self)
     }
 
     fn set_word(&mut self, word: i32) {
-        *self = f64::from(word);
+        *self = input(word);
+    }
+
+    #[cfg(bounded)]
+    fn widen(&mut self, interval: [f64; 2]) {
+        *self = self.within(interval);
     }
 }
 
@@ -271,7 +279,7 @@ pub fn names(parts: Parts) -> Vec<&'static str> {
 impl State {
     /// Follows the commutation (section 5).
     #[inline]
-    pub fn commutate(&mut self, k: &Constants, sector_eff: usize, j: f64, i: &[f64; 3]) {
+    pub fn commutate(&mut self, k: &Constants, sector_eff: usize, j: Word, i: &[Word; 3]) {
         let changed = sector_eff != self.sector_eff_prev && self.sector_eff_prev != 0;
         let torque = if j < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * self.timing.direction;
@@ -279,7 +287,7 @@ impl State {
             || self.commutation_age >= k.comm_timeout;
         self.commutating = changed || (self.commutating && !ended);
         self.commutation_age = if changed {
-            0.0
+            word(0.0)
         } else {
             (self.commutation_age + 1.0).min(k.comm_timeout)
         };
@@ -287,19 +295,19 @@ impl State {
 
     /// What a period outside of control leaves behind (section 12).
     pub fn stop(&mut self) {
-        self.speed_integral = 0.0;
-        self.v_cmd = [0.0; 2];
-        self.t_cmd = [0.0; 3];
+        self.speed_integral = word(0.0);
+        self.v_cmd = [word(0.0); 2];
+        self.t_cmd = [word(0.0); 3];
         self.off_cmd = 0;
-        self.v_prev = [0.0; 2];
+        self.v_prev = [word(0.0); 2];
         self.off_prev = 0;
-        self.e_prev = [0.0; 2];
-        self.integral = [0.0; 2];
+        self.e_prev = [word(0.0); 2];
+        self.integral = [word(0.0); 2];
         self.rises = [false; 2];
         self.vector_prev = Vector(0);
         self.past = Past::default();
         self.commutating = false;
-        self.commutation_age = 0.0;
+        self.commutation_age = word(0.0);
     }
 
     /// Writes the words in order.
@@ -329,32 +337,17 @@ impl State {
         for_each_word!(self, parts, take);
     }
 
-    /// The state in physical units.
-    pub fn to_physical(self, k: &Constants, integral_ampere: f64) -> PhysicalState {
-        let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
-        PhysicalState {
-            supervisor: self.supervisor,
-            timing: self.timing,
-            sector_prev: self.sector_prev,
-            sector_eff_prev: self.sector_eff_prev,
-            commutating: self.commutating,
-            commutation_age: self.commutation_age,
-            offset: self.offset.map(|word| word / k.count),
-            i_prev: self.i_prev.map(|word| word * k.ampere),
-            v_cmd: volts(self.v_cmd),
-            t_cmd: self.t_cmd.map(|word| word * k.volt),
-            off_cmd: self.off_cmd.checked_sub(1),
-            v_prev: volts(self.v_prev),
-            off_prev: self.off_prev.checked_sub(1),
-            e_prev: volts(self.e_prev),
-            integral: volts(self.integral),
-            rises: self.rises,
-            vector_prev: self.vector_prev.0,
-            past: Past {
-                due: volts(self.past.due),
-                later: volts(self.past.later),
-            },
-            speed_integral: self.speed_integral * integral_ampere,
+    /// Makes the words any of these intervals, in order.
+    #[cfg(bounded)]
+    pub fn widen(&mut self, parts: Parts, intervals: &[[f64; 2]]) {
+        let mut intervals = intervals.iter();
+        macro_rules! widen {
+            ($name:literal, $place:expr) => {
+                if let Some(interval) = intervals.next() {
+                    $place.widen(*interval);
+                }
+            };
         }
+        for_each_word!(self, parts, widen);
     }
 }

@@ -1,6 +1,6 @@
 //! Tables of periodic functions of the electrical angle, quadratic in every segment.
 
-use crate::exact::{Shift, floor, pow2, round_half_up, wrap32};
+use crate::exact::{Shift, Word, floor, pow2, round_half_up, split, tabulated, to_index, wrap32};
 use std::f64::consts::TAU;
 
 /// A third of a turn as an angle word.
@@ -12,7 +12,7 @@ pub struct Table {
     /// Segments per turn over 2^32.
     scale: f64,
     mul31: Shift,
-    segments: Vec<[f64; 3]>,
+    segments: Vec<[Word; 3]>,
 }
 
 impl Table {
@@ -29,33 +29,33 @@ impl Table {
                 raw(2.0 * (y0 + y2) - 4.0 * y1),
             ]
         };
+        let rows: Vec<[f64; 3]> = (0..segments).map(coefficients).collect();
         Self {
             scale: f64::from(segments) * pow2(-32),
             mul31: Shift::new(31),
-            segments: (0..segments).map(coefficients).collect(),
+            segments: tabulated(&rows),
         }
     }
 
     /// The function of phases a and b at an angle word of phase a (not yet wrapped).
     #[inline]
-    pub fn both(&self, theta: f64) -> [f64; 2] {
+    pub fn both(&self, theta: Word) -> [Word; 2] {
         [self.at(wrap32(theta)), self.at(wrap32(theta - THIRD))]
     }
 
     /// The function at an angle word from 0 to 2^32 - 1.
     #[inline]
-    fn at(&self, theta: f64) -> f64 {
-        let position = theta * self.scale;
-        let index = floor(position);
-        let t = floor((position - index) * pow2(31));
-        let [c0, c1, c2] = self.segments[index as usize];
+    fn at(&self, theta: Word) -> Word {
+        let (index, position) = split(theta * self.scale);
+        let t = floor(position * pow2(31));
+        let [c0, c1, c2] = self.segments[to_index(index)];
         c0 + self
             .mul31
             .round_product(t, c1 + self.mul31.round_product(t, c2))
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, not(bounded)))]
 mod tests {
     use super::*;
 

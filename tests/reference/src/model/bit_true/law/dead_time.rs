@@ -1,7 +1,7 @@
 //! Shifts of the compare values against the dead time (section 11).
 
 use super::Inputs;
-use crate::exact::{Coefficient, round_half_up, within};
+use crate::exact::{Coefficient, Word, round_half_up, within};
 use crate::model::bit_true::constants::Scale;
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
@@ -32,7 +32,7 @@ impl DeadTime {
 
     /// Shifts of legs a, b, c; `held` is the measured current as a voltage, phases a, b.
     #[inline]
-    pub fn shifts(&self, now: &Inputs, held: [f64; 2]) -> [f64; 3] {
+    pub fn shifts(&self, now: &Inputs, held: [Word; 2]) -> [Word; 3] {
         let [a, b] = [now.j[0] + held[0], now.j[1] + held[1]];
         [a, b, -(a + b)].map(|flow| within(self.k_dead.mul(flow), -self.limit, self.limit))
     }

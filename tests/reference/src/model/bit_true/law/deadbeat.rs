@@ -3,7 +3,7 @@
 use super::Inputs;
 use super::held::Held;
 use crate::Error;
-use crate::exact::{Coefficient, both};
+use crate::exact::{Coefficient, Word, both};
 use crate::model::bit_true::constants::Scale;
 use crate::model::trace::Past;
 
@@ -28,7 +28,7 @@ impl Form {
 
     /// Phases a, b, not limited.
     #[inline]
-    pub fn voltage(&self, now: &Inputs) -> [f64; 2] {
+    pub fn voltage(&self, now: &Inputs) -> [Word; 2] {
         match self {
             Self::TwoStep(form) => form.voltage(now),
             Self::Held(form) => form.voltage(now),
@@ -37,7 +37,7 @@ impl Form {
 
     /// EMF of phases a, b.
     #[inline]
-    pub fn emf(&self, now: &Inputs) -> [f64; 2] {
+    pub fn emf(&self, now: &Inputs) -> [Word; 2] {
         match self {
             Self::TwoStep(_) => now.e,
             Self::Held(form) => form.emf(now),
@@ -46,7 +46,7 @@ impl Form {
 
     /// What is left of the measured current when the voltage takes effect, as a voltage.
     #[inline]
-    pub fn kept(&self, now: &Inputs) -> [f64; 2] {
+    pub fn kept(&self, now: &Inputs) -> [Word; 2] {
         match self {
             Self::TwoStep(form) => form.held(now),
             Self::Held(form) => form.kept(now),
@@ -55,7 +55,7 @@ impl Form {
 
     /// What the currents and the voltage `u` leave to later steps.
     #[inline]
-    pub fn past(&self, now: &Inputs, u: [f64; 2]) -> Past {
+    pub fn past(&self, now: &Inputs, u: [Word; 2]) -> Past {
         match self {
             Self::TwoStep(_) => now.past,
             Self::Held(form) => form.past(now, u),
@@ -85,13 +85,13 @@ impl Deadbeat {
 
     /// The measured current as a voltage, phases a, b.
     #[inline]
-    fn held(&self, now: &Inputs) -> [f64; 2] {
+    fn held(&self, now: &Inputs) -> [Word; 2] {
         both(|x| self.k_hold.mul(now.i[x]))
     }
 
     /// Phases a, b, not limited.
     #[inline]
-    fn voltage(&self, now: &Inputs) -> [f64; 2] {
+    fn voltage(&self, now: &Inputs) -> [Word; 2] {
         let held = self.held(now);
         both(|x| {
             let held = now.j[x] - held[x];

@@ -1,7 +1,7 @@
 //! Two vectors in one period: the shares of the period for which legs are high (sections 10a to 12 of FCS-MPC).
 
 use super::{Command, Inputs, pulses};
-use crate::exact::{all_three, both, floor_shift, halve, within};
+use crate::exact::{Word, all_three, both, floor_shift, halve, within, word};
 use crate::model::vectors;
 use hexagen::{LegState, Legs};
 
@@ -22,7 +22,7 @@ pub fn high_and_low(vector: usize) -> (usize, usize) {
 }
 
 /// Terminals between two vectors of three driven legs with those exact scores.
-pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
+pub fn between(v_bus: Word, pair: [usize; 2], scores: [Word; 2]) -> [Word; 3] {
     let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
     let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
     let t = within(
@@ -37,16 +37,16 @@ pub fn between(v_bus: f64, pair: [usize; 2], scores: [f64; 2]) -> [f64; 3] {
         } else if in_upper {
             t
         } else {
-            0.0
+            word(0.0)
         }
     })
 }
 
 /// The command for these terminals.
-pub fn command(now: &Inputs, terminal: [f64; 3], off: Option<usize>) -> Command {
+pub fn command(now: &Inputs, terminal: [Word; 3], off: Option<usize>) -> Command {
     Command {
         legs: Legs {
-            compare: terminal.map(|t| pulses::compare_of(now, t, 0.0)),
+            compare: terminal.map(|t| pulses::compare_of(now, t, word(0.0))),
             state: all_three(|x| {
                 if off == Some(x) {
                     LegState::Off
@@ -63,7 +63,7 @@ pub fn command(now: &Inputs, terminal: [f64; 3], off: Option<usize>) -> Command 
 }
 
 /// Phase voltages a, b of the command, a leg that is off midway between the two others.
-pub fn mean(now: &Inputs, command: &Command) -> [f64; 2] {
+pub fn mean(now: &Inputs, command: &Command) -> [Word; 2] {
     let mut t = command.terminal;
     if let Some(off) = command.off.checked_sub(1) {
         t[off] = halve(t[0] + t[1] + t[2]);

@@ -7,7 +7,7 @@ use super::two_steps::TwoSteps;
 use super::weighted::Weights;
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Shift, both, floor, halve, round_half_up, within};
+use crate::exact::{Shift, Word, both, floor, halve, round_half_up, within, word};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -79,16 +79,16 @@ impl FcsMpc {
 /// What the scores are made of.
 pub struct Choice<'a> {
     pub law: &'a FcsMpc,
-    pub v_bus: f64,
-    pub u: [f64; 3],
-    e: [f64; 3],
+    pub v_bus: Word,
+    pub u: [Word; 3],
+    e: [Word; 3],
     /// K a i(k+1).
-    held: [f64; 3],
+    held: [Word; 3],
 }
 
 impl<'a> Choice<'a> {
-    fn new(law: &'a FcsMpc, now: &Inputs, u: [f64; 2]) -> Self {
-        let abc = |x: [f64; 2]| [x[0], x[1], -(x[0] + x[1])];
+    fn new(law: &'a FcsMpc, now: &Inputs, u: [Word; 2]) -> Self {
+        let abc = |x: [Word; 2]| [x[0], x[1], -(x[0] + x[1])];
         Self {
             law,
             v_bus: now.v_bus,
@@ -120,9 +120,9 @@ impl<'a> Choice<'a> {
     }
 
     /// Terminal voltage of the off leg, the two others' mean being `driven`.
-    pub fn off_terminal(&self, leg: usize, driven: f64) -> f64 {
+    pub fn off_terminal(&self, leg: usize, driven: Word) -> Word {
         if self.held[leg] > self.law.i_comm_volts {
-            0.0
+            word(0.0)
         } else if self.held[leg] < -self.law.i_comm_volts {
             self.v_bus
         } else {
@@ -131,7 +131,7 @@ impl<'a> Choice<'a> {
     }
 
     /// The vector's score; `exact` without the product that all scores of an exact list share.
-    fn score(&self, vector: usize, exact: bool) -> f64 {
+    fn score(&self, vector: usize, exact: bool) -> Word {
         let along = self.by_bus(vector);
         if exact {
             along
@@ -141,21 +141,21 @@ impl<'a> Choice<'a> {
     }
 
     /// The part of the score that is a multiple of the bus, over the bus.
-    pub fn by_bus(&self, vector: usize) -> f64 {
+    pub fn by_bus(&self, vector: usize) -> Word {
         score_by_bus(self.v_bus, &self.u, vector)
     }
 
     /// What an off leg that does not lie midway adds.
-    pub fn aside(&self, vector: usize) -> f64 {
+    pub fn aside(&self, vector: usize) -> Word {
         let product = |x, y| self.law.score.floor_product(x, y);
         match vectors::off_leg(vector).filter(|_| self.law.floating) {
-            None => 0.0,
+            None => word(0.0),
             Some(off) if vector < vectors::FIRST_PAIR_ZERO => {
                 let d = 2.0 * self.off_terminal(off, halve(self.v_bus)) - self.v_bus;
                 product(d, d - 6.0 * self.u[off])
             }
             Some(off) => {
-                let tau = self.off_terminal(off, 0.0);
+                let tau = self.off_terminal(off, word(0.0));
                 product(tau, 4.0 * tau - 12.0 * self.u[off])
             }
         }
@@ -164,7 +164,7 @@ impl<'a> Choice<'a> {
     /// The decision with a second vector (10a).
     fn divide(&self, now: &Inputs, vector: usize) -> Decision {
         let command = if now.sector_eff == 0 {
-            divided::command(now, [0.0; 3], None)
+            divided::command(now, [word(0.0); 3], None)
         } else if let Some(off) = vectors::off_leg(vector) {
             let [first, second] = divided::with_off_leg(off);
             let line = |vector: usize| {
@@ -180,7 +180,7 @@ impl<'a> Choice<'a> {
             let rail = if !self.law.floating {
                 None
             } else if self.held[off] > self.law.i_comm_volts {
-                Some(0.0)
+                Some(word(0.0))
             } else if self.held[off] < -self.law.i_comm_volts {
                 Some(self.v_bus)
             } else {
@@ -190,7 +190,7 @@ impl<'a> Choice<'a> {
                 None => line(pair),
                 Some(rail) => self.u[p] + halve(rail + self.u[p]),
             };
-            let mut terminal = [0.0; 3];
+            let mut terminal = [word(0.0); 3];
             terminal[p] = within(t, 0.0, self.v_bus);
             divided::command(now, terminal, Some(off))
         } else {
@@ -223,7 +223,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Voltages of phases a, b with the off leg where it is predicted, for the trace.
-    fn judged(&self, command: &super::Command) -> [f64; 2] {
+    fn judged(&self, command: &super::Command) -> [Word; 2] {
         let mut terminal = command.terminal;
         if let Some(off) = command.off.checked_sub(1) {
             let driven = halve(terminal[0] + terminal[1] + terminal[2]);
@@ -234,9 +234,9 @@ impl<'a> Choice<'a> {
     }
 
     /// Voltages of phases a, b as the score takes them, for the trace.
-    fn voltage(&self, vector: usize) -> [f64; 2] {
+    fn voltage(&self, vector: usize) -> [Word; 2] {
         let legs = vectors::LEGS[vector];
-        let mut terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { 0.0 });
+        let mut terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { word(0.0) });
         if let Some(off) = vectors::off_leg(vector) {
             let driven = halve(terminal[0] + terminal[1] + terminal[2]);
             terminal[off] = self.off_terminal(off, driven);
@@ -247,7 +247,7 @@ impl<'a> Choice<'a> {
 }
 
 /// 6 (|v|^2 - 2 u v) over the bus, a leg that is off midway.
-pub fn score_by_bus(v_bus: f64, u: &[f64; 3], vector: usize) -> f64 {
+pub fn score_by_bus(v_bus: Word, u: &[Word; 3], vector: usize) -> Word {
     let legs = vectors::LEGS[vector];
     let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
     let high = legs.iter().filter(|leg| **leg > 0).count();
@@ -257,6 +257,6 @@ pub fn score_by_bus(v_bus: f64, u: &[f64; 3], vector: usize) -> f64 {
         // One leg low.
         (None, Some(_), Some(x)) => 4.0 * v_bus + 12.0 * u[x],
         (Some(_), Some(p), Some(q)) => 3.0 * v_bus - 6.0 * (u[p] - u[q]),
-        _ => 0.0,
+        _ => word(0.0),
     }
 }

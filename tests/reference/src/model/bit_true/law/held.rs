@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use crate::Error;
-use crate::exact::{Coefficient, both, within};
+use crate::exact::{Coefficient, Word, both, within, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::trace::Past;
 
@@ -48,15 +48,15 @@ impl Held {
 
     /// Phases a, b, not limited.
     #[inline]
-    pub fn voltage(&self, now: &Inputs) -> [f64; 2] {
+    pub fn voltage(&self, now: &Inputs) -> [Word; 2] {
         both(|x| now.j[x] + now.past.due[x] + self.now.mul(now.i[x]))
     }
 
     /// The EMF that the last period showed, phases a, b.
     #[inline]
-    pub fn emf(&self, now: &Inputs) -> [f64; 2] {
+    pub fn emf(&self, now: &Inputs) -> [Word; 2] {
         if !self.asked {
-            return [0.0; 2];
+            return [word(0.0); 2];
         }
         let limit = now.k.v_largest;
         both(|x| {
@@ -72,13 +72,13 @@ impl Held {
 
     /// What is left of the measured current when the voltage takes effect, as a voltage.
     #[inline]
-    pub fn kept(&self, now: &Inputs) -> [f64; 2] {
+    pub fn kept(&self, now: &Inputs) -> [Word; 2] {
         both(|x| self.hold.mul(now.i[x]))
     }
 
     /// What this step's current and voltage `u` leave to the next two.
     #[inline]
-    pub fn past(&self, now: &Inputs, u: [f64; 2]) -> Past {
+    pub fn past(&self, now: &Inputs, u: [Word; 2]) -> Past {
         let sampled = both(|x| self.past.mul(now.i[x]));
         if self.delayed {
             let left = both(|x| u[x] - self.decay.mul(u[x]));
@@ -89,7 +89,7 @@ impl Held {
         } else {
             Past {
                 due: both(|x| u[x] + sampled[x]),
-                later: [0.0; 2],
+                later: [word(0.0); 2],
             }
         }
     }

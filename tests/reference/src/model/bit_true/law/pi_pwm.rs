@@ -2,7 +2,7 @@
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
-use crate::exact::{Coefficient, both, halve, round_half_up, within};
+use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit;
 use crate::model::variant::reference_gain;
@@ -65,7 +65,7 @@ impl PiPwm {
         let i = [now.i[0], now.i[1], -(now.i[0] + now.i[1])];
         let ends = (now.sector_eff != 0)
             .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
-        let pair_current = ends.map_or(0.0, |(plus, minus)| halve(i[plus]) - halve(i[minus]));
+        let pair_current = ends.map_or(word(0.0), |(plus, minus)| halve(i[plus]) - halve(i[minus]));
         let flow = both(|x| self.k_p.mul(now.i[x]));
         let part = now.set_point - self.k_p.mul(pair_current);
         let u = part + now.integral[0];
@@ -75,8 +75,8 @@ impl PiPwm {
         let limited = halve(line);
         let moved = now.integral[0] + self.k_i.mul(part + limited - u);
         let integral = within(moved, -self.integral_max, self.integral_max);
-        let phases = |u: f64| {
-            let mut phases = [0.0; 3];
+        let phases = |u: Word| {
+            let mut phases = [word(0.0); 3];
             if let Some((plus, minus)) = ends {
                 (phases[plus], phases[minus]) = (u, -u);
             }
@@ -92,7 +92,7 @@ impl PiPwm {
             },
             vector: 0,
             command: pulses::line(now, line, self.dead_time.shifts(now, flow)),
-            integral: [integral, 0.0],
+            integral: [integral, word(0.0)],
             rises: now.rises,
             past: now.past,
         }

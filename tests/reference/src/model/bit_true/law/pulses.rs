@@ -1,13 +1,13 @@
 //! From phase voltages to pulses (section 11).
 
 use super::{Command, Inputs};
-use crate::exact::{all_three, floor, greater, halve, lesser, to_u16, within};
+use crate::exact::{Word, all_three, floor, greater, halve, lesser, to_u16, within, word};
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
 /// A timer compare value from a word of whole and half counts.
 #[inline]
-fn compare(now: &Inputs, counts: f64) -> u16 {
+fn compare(now: &Inputs, counts: Word) -> u16 {
     let k = now.k;
     to_u16(within(
         floor((counts + k.half_count) * k.to_counts),
@@ -18,7 +18,7 @@ fn compare(now: &Inputs, counts: f64) -> u16 {
 
 /// The voltage that gives the same duty on the nominal bus.
 #[inline]
-fn nominal(now: &Inputs, t: f64) -> f64 {
+fn nominal(now: &Inputs, t: Word) -> Word {
     if now.k.bus.is_some() {
         now.to_duty.mul(t)
     } else {
@@ -29,14 +29,14 @@ fn nominal(now: &Inputs, t: f64) -> f64 {
 /// The compare value of a leg that is high for the share of the period that `t` is of the bus; `shift` is against the
 /// dead time.
 #[inline]
-pub fn compare_of(now: &Inputs, t: f64, shift: f64) -> u16 {
+pub fn compare_of(now: &Inputs, t: Word, shift: Word) -> u16 {
     compare(now, nominal(now, t) + shift)
 }
 
 /// Three pulsed legs, their common mode in the middle of the bus; with terminal voltages where the
 /// variant keeps them. `shifts` are against the dead time.
 #[inline]
-pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Command {
+pub fn three(now: &Inputs, u: [Word; 2], shifts: [Word; 3], terminals: bool) -> Command {
     let u = [u[0], u[1], -(u[0] + u[1])];
     let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
     let half = halve(now.v_bus + 1.0);
@@ -45,7 +45,7 @@ pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Co
         let half_bus = halve(now.v_bus);
         all_three(|x| within(centred[x] + half_bus, 0.0, now.v_bus))
     } else {
-        [0.0; 3]
+        [word(0.0); 3]
     };
     Command {
         legs: Legs {
@@ -59,7 +59,7 @@ pub fn three(now: &Inputs, u: [f64; 2], shifts: [f64; 3], terminals: bool) -> Co
 
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are against the dead time.
 #[inline]
-pub fn pair(now: &Inputs, u: [f64; 2], shifts: [f64; 3]) -> Command {
+pub fn pair(now: &Inputs, u: [Word; 2], shifts: [Word; 3]) -> Command {
     if now.sector_eff == 0 {
         return Command::idle(Legs::OFF);
     }
@@ -70,7 +70,7 @@ pub fn pair(now: &Inputs, u: [f64; 2], shifts: [f64; 3]) -> Command {
 
 /// The line voltage `v` of the conducting pair, within the bus.
 #[inline]
-pub fn line(now: &Inputs, v: f64, shifts: [f64; 3]) -> Command {
+pub fn line(now: &Inputs, v: Word, shifts: [Word; 3]) -> Command {
     let mut command = Command::idle(Legs::OFF);
     let sector_eff = now.sector_eff;
     if sector_eff == 0 {

@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use super::fcs_mpc::score_by_bus;
-use crate::exact::Coefficient;
+use crate::exact::{Coefficient, Word, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error};
@@ -29,8 +29,8 @@ impl TwoSteps {
     }
 
     /// The first vector of the best sequence.
-    pub fn choose(&self, candidates: Candidates, now: &Inputs, u: [f64; 2]) -> usize {
-        let abc = |x: [f64; 2]| [x[0], x[1], -(x[0] + x[1])];
+    pub fn choose(&self, candidates: Candidates, now: &Inputs, u: [Word; 2]) -> usize {
+        let abc = |x: [Word; 2]| [x[0], x[1], -(x[0] + x[1])];
         let y = [0, 1].map(|x| now.j[x] + now.e[x] + self.pole.mul(u[x] - now.j[x]));
         let z = abc([0, 1].map(|x| u[x] + self.pole.mul(y[x])));
         let y = abc(y);
@@ -40,7 +40,7 @@ impl TwoSteps {
             let (zero, others) = vectors::candidates(candidates, now.commutating, now.sector_eff);
             std::iter::once(zero).chain(others)
         };
-        let (mut chosen, mut least) = (0, f64::INFINITY);
+        let (mut chosen, mut least) = (0, word(f64::INFINITY));
         for one in list() {
             let moved = vectors::sixths(one);
             let left = [0, 1, 2].map(|x| y[x] - moved[x] * sixth);

@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use super::fcs_mpc::Choice;
-use crate::exact::{Coefficient, halve, round_half_up};
+use crate::exact::{Coefficient, Word, halve, round_half_up, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Error, Switch};
@@ -68,17 +68,17 @@ impl Weights {
     }
 
     /// S n.
-    fn changed(&self, now: &Inputs, vector: usize) -> f64 {
-        self.change * vectors::changes(now.vector_prev, vector)
+    fn changed(&self, now: &Inputs, vector: usize) -> Word {
+        word(self.change) * vectors::changes(now.vector_prev, vector)
     }
 
     /// The score over the bus, without what an off leg adds.
-    fn by_bus(&self, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+    fn by_bus(&self, choice: &Choice, now: &Inputs, vector: usize) -> Word {
         choice.by_bus(vector) + self.changed(now, vector)
     }
 
     /// The score with rounded products.
-    fn rounded(&self, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+    fn rounded(&self, choice: &Choice, now: &Inputs, vector: usize) -> Word {
         let along = self.by_bus(choice, now, vector);
         choice.aside(vector) + choice.law.score.floor_product(choice.v_bus, along)
     }
@@ -94,8 +94,8 @@ fn kind(vector: usize) -> usize {
 }
 
 /// The first of the least score.
-fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> f64) -> usize {
-    let mut least: Option<(usize, f64)> = None;
+fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> Word) -> usize {
+    let mut least: Option<(usize, Word)> = None;
     for vector in list {
         let found = score(vector);
         if least.is_none_or(|(_, known)| found < known) {
@@ -106,16 +106,16 @@ fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> f64) 
 }
 
 /// What the torque's error weighs.
-fn torque(weight: &Coefficient, choice: &Choice, now: &Inputs, vector: usize) -> f64 {
+fn torque(weight: &Coefficient, choice: &Choice, now: &Inputs, vector: usize) -> Word {
     let v = choice.v_bus;
     let terminal = |x: usize| match vectors::LEGS[vector][x] {
         1 => v,
-        -1 => 0.0,
+        -1 => word(0.0),
         _ if vector >= vectors::FIRST_PAIR_ZERO => {
             if choice.law.floating {
-                choice.off_terminal(x, 0.0)
+                choice.off_terminal(x, word(0.0))
             } else {
-                0.0
+                word(0.0)
             }
         }
         _ if choice.law.floating => choice.off_terminal(x, halve(v)),

@@ -2,7 +2,7 @@
 
 use super::{Command, Inputs};
 use crate::Error;
-use crate::exact::{Coefficient, floor};
+use crate::exact::{Coefficient, Word, floor, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use hexagen::{LegState, Legs};
@@ -21,7 +21,7 @@ pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
                 [LegState::Pulsed; 3]
             },
         },
-        terminal: legs.map(|leg| if leg > 0 { now.v_bus } else { 0.0 }),
+        terminal: legs.map(|leg| if leg > 0 { now.v_bus } else { word(0.0) }),
         off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
     }
 }
@@ -45,7 +45,7 @@ impl Sixth {
 
     /// Phase voltages a, b of a vector.
     #[inline]
-    pub fn voltage(&self, now: &Inputs, vector: usize) -> [f64; 2] {
+    pub fn voltage(&self, now: &Inputs, vector: usize) -> [Word; 2] {
         let sixth = match &self.k_sixth {
             Some(k_sixth) => k_sixth.mul(now.v_bus),
             None => floor(now.v_bus / 6.0),

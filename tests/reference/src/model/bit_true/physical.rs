@@ -1,0 +1,90 @@
+//! What the bit-true model tells in physical units: none of its own arithmetic.
+
+use super::constants::Constants;
+use super::state::State;
+use super::{BitTrue, Signals};
+use crate::exact::pow2;
+use crate::model::trace::{Past, PhysicalState, Trace};
+use std::f64::consts::TAU;
+
+impl BitTrue {
+    /// The current set-point that the word `j` stands for, ampere.
+    pub fn set_point_amps(&self) -> f64 {
+        self.j * self.k.volt / self.gain
+    }
+
+    /// Current offsets, ADC counts.
+    pub fn offset_counts(&self) -> [f64; 2] {
+        self.state.offset.map(|word| word / self.k.count)
+    }
+
+    /// Signals of the last step in physical units.
+    pub fn trace(&self) -> Trace {
+        let Signals {
+            i,
+            e,
+            v_now,
+            u_unsat,
+            u,
+            theta,
+            step_angle,
+            sector_eff,
+            commutating,
+            reach,
+            vector,
+            run,
+        } = self.last;
+        let turn = TAU * pow2(-32);
+        Trace {
+            i: i.map(|word| word * self.k.ampere),
+            e: e.map(|word| word * self.k.volt),
+            v_now: v_now.map(|word| word * self.k.volt),
+            u_unsat: u_unsat.map(|word| word * self.k.volt),
+            u: u.map(|word| word * self.k.volt),
+            theta: theta * turn,
+            step_angle: step_angle * turn,
+            sector_eff,
+            commutating,
+            reach,
+            vector,
+            run,
+        }
+    }
+
+    /// The whole state in physical units: what an ideal model can be rebuilt from.
+    pub fn physical_state(&self) -> PhysicalState {
+        let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
+        self.state.to_physical(&self.k, integral_ampere)
+    }
+}
+
+impl State {
+    /// The state in physical units.
+    pub fn to_physical(self, k: &Constants, integral_ampere: f64) -> PhysicalState {
+        let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
+        PhysicalState {
+            supervisor: self.supervisor,
+            timing: self.timing,
+            sector_prev: self.sector_prev,
+            sector_eff_prev: self.sector_eff_prev,
+            commutating: self.commutating,
+            commutation_age: self.commutation_age,
+            offset: self.offset.map(|word| word / k.count),
+            i_prev: self.i_prev.map(|word| word * k.ampere),
+            v_cmd: volts(self.v_cmd),
+            t_cmd: self.t_cmd.map(|word| word * k.volt),
+            off_cmd: self.off_cmd.checked_sub(1),
+            v_prev: volts(self.v_prev),
+            off_prev: self.off_prev.checked_sub(1),
+            e_prev: volts(self.e_prev),
+            integral: volts(self.integral),
+            rises: self.rises,
+            vector_prev: self.vector_prev.0,
+            past: Past {
+                due: volts(self.past.due),
+                later: volts(self.past.later),
+            },
+            speed_integral: self.speed_integral * integral_ampere,
+        }
+    }
+}
