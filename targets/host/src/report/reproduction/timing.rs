@@ -7,9 +7,9 @@ pub const CLOCK_HZ: f64 = 72e6;
 
 /// Where the times come from.
 pub const TIMES_TEXT: &str = "Instructions of one step on a Cortex-M4, from the function's entry to its return, as cargo xtask cost \
-     counts them: usual is the median of settled steps, worst is any step, start and overspeed included. T_c are its estimated cycles \
-     without wait states (load, store 2, taken branch 3, division 12, all else 1; at worst the cycles per instruction of the usual \
-     step); T_f = T_s - T_c at worst. A drive that trips has no usual step";
+     counts them: usual is the median of settled steps (none of a drive that trips), worst is any step, start and overspeed \
+     included. Computation times are estimated cycles without wait states (load, store 2, taken branch 3, division 12, all else 1; \
+     at worst with the cycles per instruction of the usual step); free is what the worst step leaves of the period";
 
 /// Times of a step in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
