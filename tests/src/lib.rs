@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: the motor library, the options of a drive, covering arrays,
-//! planted faults, proofs over programs, that of the model's exactness, and what the bit-for-bit test is extended by: the interpreter as a subject, and
-//! arbitrary states.
+//! planted faults, proofs over programs and of the model's exactness, and what the bit-for-bit test is
+//! extended by: the interpreter as a subject, and arbitrary states.
 
 pub mod cases;
 pub mod edges;
