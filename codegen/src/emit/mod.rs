@@ -4,9 +4,12 @@
 //! emitter, and none can fail.
 
 pub mod datasheet;
+mod expression;
 pub mod gappa;
+mod plan;
 pub mod rust;
 mod set_point;
+mod signal;
 
 #[cfg(test)]
 mod tests;

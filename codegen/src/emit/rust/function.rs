@@ -1,10 +1,11 @@
 //! The step and the setters: stage calls in order, then what they leave behind.
 
+use super::super::expression::Scope;
+use super::super::plan::Context;
 use super::super::set_point::shared;
-use super::expression::Scope;
-use super::groups::Shape;
+use super::super::signal::Shape;
+use super::expression::RustScope;
 use super::names::{docs, loaded, number, snake};
-use super::plan::Context;
 use super::stage::{StageFunction, output};
 use crate::ir::{Function, Node, Op, Paths, Program, Value, Word};
 use proc_macro2::{Ident, TokenStream};

@@ -3,78 +3,13 @@
 //! `i_a, i_b, i_c` travel between stages as one array, so that signatures stay short and say what
 //! they mean. Grouping looks at names and kinds alone; it is the same on both sides of a call.
 
+use super::super::signal::{Shape, Signal};
 use super::names::snake;
-use crate::ir::Word;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// What a signature may hold at most (clippy's `too_many_arguments`).
 pub(super) const ARGUMENTS: usize = 7;
-
-/// What a value is in emitted code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
-    /// `Word`
-    Word,
-    /// `Word`: what the drive is doing, a constant of `hexagen::mode`.
-    Mode,
-    /// `Word`: what tripped the drive, a `Fault` as a word.
-    Fault,
-    /// `bool`
-    Flag,
-    /// `LegState`: a word that does nothing but leave the step as the state of a leg.
-    Leg,
-}
-
-impl Shape {
-    /// The shape of a state word.
-    pub(super) fn of_state(word: &Word) -> Self {
-        match word.name.as_str() {
-            "mode" => Self::Mode,
-            "fault" => Self::Fault,
-            _ => Self::Word,
-        }
-    }
-
-    /// The name of a number that has one in this shape.
-    pub(super) fn constant(self, number: i32) -> Option<TokenStream> {
-        let constant = match (self, number) {
-            (Self::Mode, 0) => quote!(mode::RUN),
-            (Self::Mode, 1) => quote!(mode::CALIBRATE),
-            (Self::Mode, 2) => quote!(mode::PRECHARGE),
-            (Self::Mode, 3) => quote!(mode::TRIPPED),
-            (Self::Fault, 0) => quote!(Fault::None.word()),
-            (Self::Fault, 1) => quote!(Fault::AdcRange.word()),
-            (Self::Fault, 2) => quote!(Fault::OverCurrent.word()),
-            (Self::Fault, 3) => quote!(Fault::Hall.word()),
-            (Self::Fault, 4) => quote!(Fault::Stall.word()),
-            (Self::Fault, 5) => quote!(Fault::Offset.word()),
-            (Self::Leg, 0) => quote!(LegState::Pulsed),
-            (Self::Leg, 1) => quote!(LegState::Low),
-            (Self::Leg, _) => quote!(LegState::Off),
-            _ => return None,
-        };
-        Some(constant)
-    }
-
-    /// Whether a `Word` holds it.
-    pub(super) fn is_word(self) -> bool {
-        matches!(self, Self::Word | Self::Mode | Self::Fault)
-    }
-
-    fn shares_type(self, other: Self) -> bool {
-        self == other || self.is_word() && other.is_word()
-    }
-}
-
-/// A named value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Signal {
-    /// Name.
-    pub name: String,
-    /// Word, flag or leg state.
-    pub shape: Shape,
-}
 
 /// One argument or result: a single signal, or an array of signals of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,7 +54,7 @@ pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
         for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
             if groups.len() > limit {
                 let fits = |group: &Group| {
-                    group.shape.shares_type(shape) && (!singles || group.members.len() == 1)
+                    share_type(group.shape, shape) && (!singles || group.members.len() == 1)
                 };
                 let members: Vec<usize> = groups
                     .iter()
@@ -177,6 +112,11 @@ impl Group {
             }
         }
     }
+}
+
+/// Whether values of both shapes may stand in one array.
+fn share_type(one: Shape, other: Shape) -> bool {
+    one == other || one.is_word() && other.is_word()
 }
 
 /// `Word`, `bool` or `LegState`.

@@ -1,8 +1,7 @@
 //! The Rust emitter: from a verified graph to a module that reads as if written by hand.
 //!
-//! `plan` says what each stage takes and yields, `stage` makes a function of it, `function`
-//! strings the calls together, `expression` writes operators, `interface`, `set_point` and `traits` the
-//! types around them.
+//! `stage` makes a function of each planned stage, `function` strings the calls together, `expression` writes
+//! operators, `interface`, `set_point` and `traits` the types around them.
 //! The same graph gives the same tokens, whoever asks; nothing here can fail.
 
 mod expression;
@@ -12,7 +11,6 @@ mod groups;
 mod imports;
 mod interface;
 mod names;
-mod plan;
 mod set_point;
 mod stage;
 mod traits;

@@ -1,9 +1,11 @@
 //! One stage as one function, and its call.
 
-use super::expression::Scope;
-use super::groups::{ARGUMENTS, Group, Signal, bundle, group, rust_type};
+use super::super::expression::Scope;
+use super::super::plan::{Context, Outcome, StagePlan};
+use super::super::signal::Signal;
+use super::expression::RustScope;
+use super::groups::{ARGUMENTS, Group, bundle, group, rust_type};
 use super::names::{camel, docs, loaded, snake};
-use super::plan::{Context, Outcome, StagePlan};
 use crate::ir::{Function, Op, StateId, Value, Word};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -234,7 +236,7 @@ impl<'a> StageFunction<'a> {
             .filter(|&&value| !self.context.function.node(value).name.is_empty());
         let computed = named.map(|&value| {
             let name = snake(&self.context.function.node(value).name);
-            let definition = scope.definition(value);
+            let definition = scope.bound(value);
             quote!(let #name = #definition;)
         });
         reads.chain(computed).collect()
@@ -308,7 +310,7 @@ impl<'a> StageFunction<'a> {
                     && self.plan.stores.is_empty() =>
             {
                 statements.pop();
-                scope.definition(last)
+                scope.bound(last)
             }
             _ => self.results.built(|member| {
                 scope.shaped(

@@ -4,7 +4,7 @@
 //! stage and are read where they are used. All else is a result of the stage that computes it if
 //! something outside uses it.
 
-use super::groups::{Shape, Signal};
+use super::signal::{Shape, Signal};
 use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,0 +1,364 @@
+//! Values as expressions that a language prints: which form each takes, not how it is spelled.
+//!
+//! A value with a name is that name; a value without one stands where it is used. Constants stand on the right;
+//! products and dividends that provably fit 32 bits take the narrow primitives.
+
+use super::plan::Context;
+use super::signal::{Code, Shape};
+use crate::ir::{Comparison, ConstantId, Interval, Node, Op, StateId, TableId, Value};
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Expression {
+    /// A value under its name.
+    Signal(String),
+    /// A state word, read at its place.
+    State(StateId),
+    /// A named constant.
+    Constant(ConstantId),
+    /// A small number.
+    Number(i32),
+    /// A number with a name of the boundary.
+    Code(Code),
+    /// -a
+    Negated(Box<Self>),
+    /// The flag does not hold.
+    Not(Box<Self>),
+    /// Two operands.
+    Binary(Operator, Box<Self>, Box<Self>),
+    /// a 2^n, n at least 1
+    ShiftedLeft(Box<Self>, u32),
+    /// floor(a / 2^n), n at least 1
+    ShiftedRight(Box<Self>, u32),
+    /// A primitive of its operands; the number is a shift or a count of segments.
+    Call(Primitive, Vec<Self>, Option<u32>),
+    /// table[index mod length]; whether the index is known to lie within the table.
+    Lookup(TableId, Box<Self>, bool),
+    /// 1 where the flag holds, else 0.
+    FlagWord(Box<Self>),
+    /// The state of a leg that a word stands for.
+    LegOf(Box<Self>),
+    /// Condition, value where it holds, value where it does not.
+    Choice(Box<[Self; 3]>),
+}
+
+/// Operators of two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Operator {
+    /// a + b
+    Add,
+    /// a - b
+    Sub,
+    /// (a + b) mod 2^32 as a signed word
+    AngleAdd,
+    /// (a - b) mod 2^32 as a signed word
+    AngleSub,
+    /// a b, in one word
+    Mul,
+    /// a < b
+    Less,
+    /// a <= b
+    LessEqual,
+    /// a > b
+    Greater,
+    /// a >= b
+    GreaterEqual,
+    /// a == b
+    Equal,
+    /// a != b
+    NotEqual,
+    /// Both flags.
+    And,
+    /// Either flag.
+    Or,
+}
+
+/// Functions that every language has a helper for; their meaning is that of the [`Op`] of the same name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Primitive {
+    /// |a|
+    Abs,
+    /// min(a, b)
+    Min,
+    /// max(a, b)
+    Max,
+    /// min(max(x, low), high)
+    Clamp,
+    /// [`Op::MulRound`]
+    MulRound,
+    /// [`Op::MulRound`] whose rounded product fits a word.
+    MulRoundNarrow,
+    /// [`Op::MulFloor`]
+    MulFloor,
+    /// [`Op::MulLimited`]
+    MulLimited,
+    /// [`Op::Divide`]
+    Divide,
+    /// [`Op::Divide`] whose shifted numerator fits 32 unsigned bits.
+    DivideNarrow,
+    /// [`Op::TurnOver`]
+    TurnOver,
+    /// [`Op::AngleIndex`]
+    AngleIndex,
+    /// [`Op::AngleFraction`]
+    AngleFraction,
+}
+
+impl Expression {
+    fn binary(operator: Operator, a: Self, b: Self) -> Self {
+        Self::Binary(operator, Box::new(a), Box::new(b))
+    }
+
+    fn is_number(&self) -> bool {
+        matches!(self, Self::Number(_))
+    }
+
+    fn is_constant(&self) -> bool {
+        matches!(self, Self::Number(_) | Self::Constant(_))
+    }
+}
+
+/// The place from which values are seen.
+#[derive(Clone, Copy)]
+pub(super) struct Scope<'a> {
+    /// The function.
+    pub context: &'a Context<'a>,
+    /// Whether state words are read where they are used (in the function's own body) rather than
+    /// under their names (in a stage, which reads them first).
+    pub reads_state: bool,
+}
+
+impl<'a> Scope<'a> {
+    fn node(&self, value: Value) -> &'a Node {
+        self.context.function.node(value)
+    }
+
+    fn interval(&self, value: Value) -> Interval {
+        self.node(value).interval
+    }
+
+    /// The small number that a value is, if it is one.
+    pub(super) fn literal(&self, value: Value) -> Option<i32> {
+        match self.node(value).op {
+            Op::Literal(literal) => Some(literal),
+            _ => None,
+        }
+    }
+
+    /// A value where it is used: its name, or what it stands for.
+    pub(super) fn value(&self, value: Value) -> Expression {
+        let node = self.node(value);
+        match node.op {
+            Op::Constant(id) => Expression::Constant(id),
+            Op::Literal(literal) => Expression::Number(literal),
+            Op::State(id) if self.reads_state => Expression::State(id),
+            _ if node.name.is_empty() => self.definition(value),
+            _ => Expression::Signal(node.name.clone()),
+        }
+    }
+
+    /// A value as the given shape has it.
+    pub(super) fn in_shape(&self, value: Value, shape: Shape) -> Expression {
+        let code = |literal| shape.code(literal);
+        if let Some(code) = self.literal(value).and_then(code) {
+            return Expression::Code(code);
+        }
+        let is_as_wanted = shape != Shape::Leg || self.context.shape(value) == Shape::Leg;
+        let word = self.value(value);
+        if is_as_wanted {
+            word
+        } else {
+            Expression::LegOf(Box::new(word))
+        }
+    }
+
+    /// What a named value is bound to.
+    pub(super) fn definition(&self, value: Value) -> Expression {
+        use Expression as E;
+        use Operator as O;
+        use Primitive as P;
+        let of = |value: Value| self.value(value);
+        let boxed = |value: Value| Box::new(self.value(value));
+        let call = |primitive, operands: &[Value], number| {
+            E::Call(
+                primitive,
+                operands.iter().copied().map(of).collect(),
+                number,
+            )
+        };
+        match self.node(value).op {
+            Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_) | Op::Literal(_) => {
+                self.value(value)
+            }
+            // A join is bound where its stage is called.
+            Op::Join { taken, .. } => of(taken),
+            Op::Add(a, b) => sum(of(a), of(b)),
+            Op::AngleAdd(a, b) => E::binary(O::AngleAdd, of(a), of(b)),
+            Op::Sub(a, b) => E::binary(O::Sub, of(a), of(b)),
+            Op::AngleSub(a, b) => E::binary(O::AngleSub, of(a), of(b)),
+            Op::Neg(a) => E::Negated(boxed(a)),
+            Op::Abs(a) => call(P::Abs, &[a], None),
+            Op::Product(a, b) | Op::MulFloor { a, b, shift: 0 } => product(of(a), of(b)),
+            Op::MulRound {
+                coefficient,
+                signal,
+                shift,
+            } => {
+                let rounds_narrow = self.rounds_narrow(coefficient, signal, shift);
+                let primitive = if rounds_narrow {
+                    P::MulRoundNarrow
+                } else {
+                    P::MulRound
+                };
+                call(primitive, &[coefficient, signal], Some(shift))
+            }
+            Op::MulFloor { a, b, shift } => {
+                if fits_word(self.products(a, b)) {
+                    E::ShiftedRight(Box::new(product(of(a), of(b))), shift)
+                } else {
+                    call(P::MulFloor, &[a, b], Some(shift))
+                }
+            }
+            Op::MulLimited { a, b, limit } => {
+                if fits_word(self.products(a, b)) {
+                    E::Call(P::Min, vec![product(of(a), of(b)), of(limit)], None)
+                } else {
+                    call(P::MulLimited, &[a, b, limit], None)
+                }
+            }
+            Op::ShiftLeft(a, 0) | Op::ShiftRight(a, 0) => of(a),
+            Op::ShiftLeft(a, bits) => E::ShiftedLeft(boxed(a), bits),
+            Op::ShiftRight(a, bits) => E::ShiftedRight(boxed(a), bits),
+            Op::Min(a, b) => extreme(P::Min, of(a), of(b)),
+            Op::Max(a, b) => extreme(P::Max, of(a), of(b)),
+            Op::Clamp { x, low, high } => call(P::Clamp, &[x, low, high], None),
+            Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            } => {
+                let is_narrow = self.interval(numerator).high << shift <= i64::from(u32::MAX);
+                let primitive = if is_narrow {
+                    P::DivideNarrow
+                } else {
+                    P::Divide
+                };
+                call(primitive, &[numerator, denominator, limit], Some(shift))
+            }
+            Op::TurnOver(a) => call(P::TurnOver, &[a], None),
+            Op::AngleIndex { angle, segments } => call(P::AngleIndex, &[angle], Some(segments)),
+            Op::AngleFraction { angle, segments } => {
+                call(P::AngleFraction, &[angle], Some(segments))
+            }
+            Op::Lookup { table, index } => {
+                let length = self.context.program.tables[table.index()].values.len();
+                let inside = Interval::new(0, length as i64 - 1);
+                E::Lookup(table, boxed(index), inside.contains(self.interval(index)))
+            }
+            Op::Compare(how, a, b) => self.comparison(how, a, b),
+            Op::And(a, b) => E::binary(O::And, of(a), of(b)),
+            Op::Or(a, b) => E::binary(O::Or, of(a), of(b)),
+            Op::Not(a) => self.negation(a),
+            Op::Select {
+                condition,
+                then,
+                otherwise,
+            } => self.select(self.context.shape(value), [condition, then, otherwise]),
+        }
+    }
+
+    /// The signal stands left, what it is compared with right.
+    fn comparison(&self, how: Comparison, a: Value, b: Value) -> Expression {
+        let turned = self.value(a).is_constant() && !self.value(b).is_constant();
+        let (left, right) = if turned { (b, a) } else { (a, b) };
+        let operator = match (how, turned) {
+            (Comparison::Equal, _) => Operator::Equal,
+            (Comparison::NotEqual, _) => Operator::NotEqual,
+            (Comparison::Less, false) => Operator::Less,
+            (Comparison::Less, true) => Operator::Greater,
+            (Comparison::LessEqual, false) => Operator::LessEqual,
+            (Comparison::LessEqual, true) => Operator::GreaterEqual,
+        };
+        let code = |literal| self.context.shape(left).code(literal);
+        let right = match self.literal(right).and_then(code) {
+            Some(code) => Expression::Code(code),
+            None => self.value(right),
+        };
+        Expression::binary(operator, self.value(left), right)
+    }
+
+    /// The opposite comparison rather than a negated one.
+    fn negation(&self, a: Value) -> Expression {
+        let node = self.node(a);
+        match node.op {
+            Op::Compare(how, a, b) if node.name.is_empty() => match how {
+                Comparison::Less => self.comparison(Comparison::LessEqual, b, a),
+                Comparison::LessEqual => self.comparison(Comparison::Less, b, a),
+                Comparison::Equal => self.comparison(Comparison::NotEqual, a, b),
+                Comparison::NotEqual => self.comparison(Comparison::Equal, a, b),
+            },
+            Op::Not(inner) if node.name.is_empty() => self.value(inner),
+            _ => Expression::Not(Box::new(self.value(a))),
+        }
+    }
+
+    fn select(&self, shape: Shape, [condition, then, otherwise]: [Value; 3]) -> Expression {
+        let is_flag = shape == Shape::Word
+            && self.literal(then) == Some(1)
+            && self.literal(otherwise) == Some(0);
+        let condition = self.value(condition);
+        if is_flag {
+            return Expression::FlagWord(Box::new(condition));
+        }
+        let [then, otherwise] = [then, otherwise].map(|arm| self.in_shape(arm, shape));
+        Expression::Choice(Box::new([condition, then, otherwise]))
+    }
+
+    /// Every product of the two.
+    fn products(&self, a: Value, b: Value) -> Interval {
+        let (a, b) = (self.interval(a), self.interval(b));
+        let all = [
+            a.low * b.low,
+            a.low * b.high,
+            a.high * b.low,
+            a.high * b.high,
+        ];
+        Interval::new(
+            all.into_iter().fold(i64::MAX, i64::min),
+            all.into_iter().fold(i64::MIN, i64::max),
+        )
+    }
+
+    fn rounds_narrow(&self, a: Value, b: Value, shift: u32) -> bool {
+        let products = self.products(a, b);
+        shift <= 30
+            && fits_word(products)
+            && fits_word(Interval::point(products.high + (1 << (shift - 1))))
+    }
+}
+
+/// A negative number is subtracted, and a number stands on the right.
+fn sum(a: Expression, b: Expression) -> Expression {
+    match b {
+        Expression::Number(number) if (-i32::MAX..0).contains(&number) => {
+            Expression::binary(Operator::Sub, a, Expression::Number(-number))
+        }
+        _ if a.is_number() => Expression::binary(Operator::Add, b, a),
+        _ => Expression::binary(Operator::Add, a, b),
+    }
+}
+
+fn product(a: Expression, b: Expression) -> Expression {
+    let (a, b) = if a.is_number() { (b, a) } else { (a, b) };
+    Expression::binary(Operator::Mul, a, b)
+}
+
+fn extreme(primitive: Primitive, a: Expression, b: Expression) -> Expression {
+    let (a, b) = if a.is_constant() { (b, a) } else { (a, b) };
+    Expression::Call(primitive, vec![a, b], None)
+}
+
+fn fits_word(interval: Interval) -> bool {
+    Interval::WORD.contains(interval)
+}
