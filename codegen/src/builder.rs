@@ -3,7 +3,8 @@
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::emit::rust::{Surface, emit_rust, format_rust, module_name};
+use crate::emit::module_name;
+use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::{SpecAst, apply_variant, check, parse_toml};
 use std::collections::BTreeMap;

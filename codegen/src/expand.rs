@@ -5,7 +5,8 @@
 //! the compiler reports what is wrong with the specification and nothing that follows from it.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::emit::rust::{Surface, emit_rust, module_name};
+use crate::emit::module_name;
+use crate::emit::rust::{Surface, emit_rust};
 use crate::interface::Interface;
 use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate, warnings};

@@ -6,10 +6,15 @@
 pub mod datasheet;
 mod expression;
 pub mod gappa;
+mod names;
+mod path;
 mod plan;
 pub mod rust;
 mod set_point;
 mod signal;
+mod texts;
+
+pub use names::module_name;
 
 #[cfg(test)]
 mod tests;

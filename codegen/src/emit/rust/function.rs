@@ -1,13 +1,16 @@
 //! The step and the setters: stage calls in order, then what they leave behind.
 
 use super::super::expression::Scope;
-use super::super::plan::Context;
-use super::super::set_point::shared;
+use super::super::path::StageCode as _;
+use super::super::path::{
+    Kept, beside, kept, leaves_behind, names_read, output, params_read, writes,
+};
+use super::super::plan::{Context, StagePlan};
 use super::super::signal::Shape;
 use super::expression::RustScope;
 use super::names::{docs, loaded, number, snake};
-use super::stage::{StageFunction, output};
-use crate::ir::{Function, Node, Op, Paths, Program, Value, Word};
+use super::stage::StageFunction;
+use crate::ir::{Function, Paths, Program, Word};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
@@ -39,7 +42,10 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     let exit = exit
         .as_ref()
         .map(|exit| PathFunctions::new(exit, &path.stages));
-    let read: Vec<usize> = exit.iter().flat_map(PathFunctions::params).collect();
+    let read: Vec<usize> = exit
+        .iter()
+        .flat_map(|exit| params_read(exit.context.function))
+        .collect();
     let words = param_pattern(program, &normal, &read);
     let inputs = normal.inputs.iter().map(|input| {
         let name = snake(&input.name);
@@ -74,22 +80,10 @@ struct PathFunctions<'a> {
 }
 
 impl<'a> PathFunctions<'a> {
-    /// The functions of a path beside those of another: a stage that is the same there is that function, and one
-    /// that is not has a name of its own.
-    fn new(context: &'a Context<'a>, others: &[StageFunction<'_>]) -> Self {
-        let (mut stages, mut shared) = (vec![], vec![]);
-        for plan in context.plan() {
-            let name = plan.stage.name.clone();
-            let stage = StageFunction::new(context, plan.clone(), &name);
-            let other = others.iter().find(|other| other.is_named(&name));
-            let same = other.is_some_and(|other| other.is_same(&stage));
-            shared.push(same);
-            stages.push(if same || other.is_none() {
-                stage
-            } else {
-                StageFunction::new(context, plan, &format!("{name}_at_rest"))
-            });
-        }
+    /// The functions of a path beside those of another.
+    fn new(context: &'a Context<'a>, others: &[StageFunction<'a>]) -> Self {
+        let make = |plan: StagePlan<'a>, name: &str| StageFunction::new(context, plan, name);
+        let (stages, shared) = beside(context, others, make);
         Self {
             context,
             stages,
@@ -97,26 +91,10 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    /// Positions of the set-point words that it reads.
-    fn params(&self) -> Vec<usize> {
-        let nodes = self.context.function.nodes.iter();
-        let read = nodes.filter_map(|node| match node.op {
-            Op::Param(id) => Some(id.index()),
-            _ => None,
-        });
-        read.collect()
-    }
-
     /// Names of the set-point words and inputs that it reads.
     fn arguments(&self) -> Vec<Ident> {
-        let (program, function) = (self.context.program, self.context.function);
-        let words = self.params().into_iter();
-        let words = words.map(|index| snake(&program.params[index].name));
-        let inputs = function.nodes.iter().filter_map(|node| match node.op {
-            Op::Input(n) => Some(snake(&function.inputs[n as usize].name)),
-            _ => None,
-        });
-        words.chain(inputs).collect()
+        let names = names_read(self.context.program, self.context.function);
+        names.into_iter().map(snake).collect()
     }
 
     /// The statement that leaves the step for this path.
@@ -183,8 +161,8 @@ impl<'a> PathFunctions<'a> {
         let (function, scope) = (self.context.function, self.scope());
         let calls = self.stages.iter().map(|stage| {
             let call = stage.call();
-            let flags = function.leave.iter().filter(|flag| stage.computes(**flag));
-            let flags: Vec<TokenStream> = flags.map(|&flag| scope.whole(flag)).collect();
+            let flags = leaves_behind(function, stage.plan()).into_iter();
+            let flags: Vec<TokenStream> = flags.map(|flag| scope.whole(flag)).collect();
             let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
             quote!(#call #leaves)
         });
@@ -201,11 +179,8 @@ impl<'a> PathFunctions<'a> {
 
 /// The set-point words by name; an underscore for one that the function neither reads nor keeps.
 fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> TokenStream {
-    let read = |index: usize| {
-        let mut nodes = function.nodes.iter();
-        kept.contains(&index)
-            || nodes.any(|node| matches!(node.op, Op::Param(id) if id.index() == index))
-    };
+    let read = params_read(function);
+    let read = |index: usize| kept.contains(&index) || read.contains(&index);
     let names = program.params.iter().enumerate().map(|(index, word)| {
         let name = snake(&word.name);
         if read(index) {
@@ -217,46 +192,25 @@ fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> Toke
     quote!([#(#names),*])
 }
 
-/// The new state words, each written once at the end. Old words that go into other words or out of
-/// the step are read before anything is written.
+/// The new state words, each written once at the end.
 fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> TokenStream {
-    let (program, function) = (context.program, context.function);
-    let outside = Scope {
+    let scope = |reads_state| Scope {
         context,
-        reads_state: true,
+        reads_state,
     };
-    let named = Scope {
-        context,
-        reads_state: false,
-    };
-    let kept: Vec<(&Word, Value)> = function
-        .next_state
-        .iter()
-        .filter(|(state, value)| function.node(*value).op != Op::State(*state))
-        .filter(|(state, _)| !stages.iter().any(|stage| stage.stores(*state)))
-        .map(|&(state, value)| (&program.states[state.index()], value))
-        .collect();
-    let is_old = |value: Value| matches!(function.node(value).op, Op::State(_));
-    let mut reads = TokenStream::new();
-    let mut read: Vec<Value> = vec![];
-    let results = kept
-        .iter()
-        .map(|&(_, value)| value)
-        .chain(function.outputs.iter().map(|&(_, value)| value));
-    for value in results {
-        if is_old(value) && !read.contains(&value) {
-            read.push(value);
-            let name = snake(&function.node(value).name);
-            let value = outside.whole(value);
-            reads.extend(quote!(let #name = #value;));
-        }
-    }
-    let writes = kept.iter().map(|&(word, value)| {
+    let (outside, named) = (scope(true), scope(false));
+    let Kept { reads, words } = kept(context, stages);
+    let reads = reads.into_iter().map(|value| {
+        let name = snake(&context.function.node(value).name);
+        let value = outside.whole(value);
+        quote!(let #name = #value;)
+    });
+    let writes = words.into_iter().map(|(word, value)| {
         let field = snake(&word.name);
         let value = named.kept(word, value);
         quote!(state.#field = #value;)
     });
-    quote!(#reads #(#writes)*)
+    quote!(#(#reads)* #(#writes)*)
 }
 
 /// A setter: a method of the set-point. Stages of a setter that has several become functions named
@@ -281,26 +235,22 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         context: &context,
         reads_state: true,
     };
-    let written = |word: usize| {
-        let mut written = function.next_params.iter();
-        written.find(|(param, _)| param.index() == word)
-    };
     let mut kept = vec![];
     let mut stores = TokenStream::new();
-    for shared in shared(program) {
-        let words = shared.words;
-        if words.iter().all(|&(word, _)| written(word).is_none()) {
-            continue;
-        }
-        let values = words.iter().map(|&(word, known)| {
-            if let Some(&(_, value)) = written(word) {
-                return scope.whole(value);
-            }
-            // Of words that are replaced together, what this setter leaves alone stays.
-            kept.push(word);
-            let name = snake(&known.name);
-            quote!(#name)
-        });
+    for (shared, values) in writes(program, function) {
+        let values = shared
+            .words
+            .iter()
+            .zip(values)
+            .map(|(&(word, known), value)| {
+                if let Some(value) = value {
+                    return scope.whole(value);
+                }
+                // Of words that are replaced together, what this setter leaves alone stays.
+                kept.push(word);
+                let name = snake(&known.name);
+                quote!(#name)
+            });
         let values: Vec<TokenStream> = values.collect();
         let name = snake(&shared.name);
         stores.extend(match values.as_slice() {
@@ -308,8 +258,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             many => quote!(self.#name.store([#(#many),*]);),
         });
     }
-    let reads_words = |node: &Node| matches!(node.op, Op::Param(_));
-    let reads = (!kept.is_empty() || function.nodes.iter().any(reads_words)).then(|| {
+    let reads = (!kept.is_empty() || !params_read(function).is_empty()).then(|| {
         let words = param_pattern(program, function, &kept);
         quote!(let #words = self.words();)
     });

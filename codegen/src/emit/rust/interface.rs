@@ -1,6 +1,7 @@
 //! The emitted types: the drive, its control loop and its state.
 
 use super::super::set_point::shared;
+use super::super::texts;
 use super::expression::initial;
 use super::function::{Setter, state_word};
 use super::imports::PLACEHOLDER;
@@ -254,43 +255,25 @@ impl Types<'_> {
         })
     }
 
-    /// What the public `step` takes: name, hardware type, and the step's input of that name. The
-    /// hardware's side follows the specification: a captured time comes in even where this
-    /// controller makes no use of it.
+    /// What the public `step` takes: name, hardware type, and the step's input of that name.
     pub(super) fn measurements(&self) -> Vec<(Ident, TokenStream, Option<&Input>)> {
-        let inputs = &self.program.step.inputs;
-        let input = |name: &str| inputs.iter().find(|input| input.name == name);
-        let mut list = vec![
-            ("adc_a", quote!(u16)),
-            ("adc_b", quote!(u16)),
-            ("hall", quote!(u8)),
-        ];
-        if self.interface.timer_capture {
-            list.push(("hall_ticks", quote!(u16)));
-        }
-        list.into_iter()
-            .map(|(name, kind)| (snake(name), kind, input(name)))
-            .collect()
+        let measurements = texts::measurements(self.program, self.interface);
+        let typed = measurements.into_iter().map(|(name, input)| {
+            let kind = if name == "hall" {
+                quote!(u8)
+            } else {
+                quote!(u16)
+            };
+            (snake(name), kind, input)
+        });
+        typed.collect()
     }
 
     /// What both the drive and its control loop let their owner do, besides stepping. `publish` says what
     /// the drive is doing.
     fn commands(&self, publish: &TokenStream) -> TokenStream {
-        let samples = self.interface.calibration_samples;
-        let charged = match self.interface.precharge_periods {
-            0 => String::new(),
-            periods => format!("then {periods} of pre-charge, "),
-        };
-        let calibrate = format!(
-            "Starts current-offset calibration: {samples} steps with all legs off, the motor at rest; {charged}then control at the set-point that stands. Ignored when tripped."
-        );
-        let precharge = match self.interface.precharge_periods {
-            0 => "Does nothing: the specification has no bootstrap pre-charge.".to_owned(),
-            periods => format!(
-                "Starts bootstrap pre-charge: {periods} steps with all lower switches on, which short-circuits a motor that turns; then control at the set-point that stands. Accepted while running, too: call it at rest only. Ignored when tripped and while calibrating."
-            ),
-        };
-        let (calibrate, precharge) = (doc(&calibrate), doc(&precharge));
+        let calibrate = doc(&texts::calibrate(self.interface));
+        let precharge = doc(&texts::precharge(self.interface));
         quote! {
             /// Clears a trip and all control state; keeps calibrated offsets and the set-point, at which the next step
             /// goes on. Ignored while calibrating and pre-charging.
@@ -332,27 +315,8 @@ impl Types<'_> {
     }
 
     fn step_docs(&self) -> TokenStream {
-        let effect = match self.interface.delay {
-            0 => "The command takes effect at once, in the period that the measurements begin.",
-            _ => {
-                "The command takes effect with the next period, while its own step computes the one after."
-            }
-        };
-        let mut lines = vec![
-            "Runs one control period: takes the measurements of its start, returns the inverter's command.".to_owned(),
-            String::new(),
-            effect.to_owned(),
-            String::new(),
-        ];
-        lines.extend(
-            self.measurements()
-                .iter()
-                .map(|(name, _, input)| match input {
-                    Some(input) => format!("- `{name}`: {}", input.doc),
-                    None => format!("- `{name}`: not used by this controller."),
-                }),
-        );
-        docs(&lines)
+        let measurements = texts::measurements(self.program, self.interface);
+        docs(&texts::step(self.interface, &measurements))
     }
 }
 

@@ -16,10 +16,10 @@ mod stage;
 mod traits;
 
 pub use format::{format_rust, rustfmt};
-pub use names::module_name;
 
+use super::texts;
 use crate::interface::Interface;
-use crate::ir::{PathCost, Program, Table, VerifiedGraph};
+use crate::ir::{Program, Table, VerifiedGraph};
 use function::{emit_setter, emit_step};
 use imports::{imports, settle};
 use interface::Types;
@@ -88,7 +88,7 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     let constants = constants(program, &names);
     let imports = imports(&names, interface, &surface.name);
     let items = settle(quote!(#constants #body), &surface.name);
-    let header = inner_docs(&header(program, interface));
+    let header = inner_docs(&texts::header(program, interface));
     let Surface {
         name,
         visibility,
@@ -107,43 +107,6 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
             #items
         }
     }
-}
-
-/// The module's documentation: the interface's, what a step costs, how far it is from the ideal one at most, and the
-/// specification that all of it was made from.
-fn header(program: &Program, interface: &Interface) -> Vec<String> {
-    let cost = PathCost::of_function(&program.step);
-    let mut lines = interface.header.clone();
-    if cost.worst.total() > 0 {
-        lines.extend([
-            String::new(),
-            format!("Operations of a step, normal path: {}.", cost.normal),
-            format!("Operations of a step, worst case: {}.", cost.worst),
-        ]);
-    }
-    let errors = interface.constants.iter().filter(|constant| {
-        constant.name.ends_with("_ERROR") || constant.name.ends_with("_ERROR_LIMITED")
-    });
-    let errors: Vec<String> = errors
-        .map(|constant| format!("- `{}`: {}", constant.name, constant.doc.join(" ")))
-        .collect();
-    if !errors.is_empty() {
-        lines.extend([
-            String::new(),
-            "Worst-case errors:".to_owned(),
-            String::new(),
-        ]);
-        lines.extend(errors);
-    }
-    lines.extend([
-        String::new(),
-        "Specification, with every default filled in:".to_owned(),
-        String::new(),
-        "```toml".to_owned(),
-    ]);
-    lines.extend(interface.spec_toml.trim_end().lines().map(str::to_owned));
-    lines.push("```".to_owned());
-    lines
 }
 
 /// The constants and tables that the body names.

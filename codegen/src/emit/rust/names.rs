@@ -1,5 +1,6 @@
 //! How names, numbers and documentation look in emitted Rust.
 
+use super::super::names::module_name;
 use crate::ir::Word;
 use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
@@ -64,30 +65,6 @@ pub(super) fn camel(name: &str) -> String {
                 .unwrap_or_default()
         })
         .collect()
-}
-
-/// `hub_drive` of `HubDrive`, `bldc_42_drive` of `BLDC42Drive`: an underscore before each capital
-/// that follows a small letter or begins a word, and before each run of digits.
-pub fn module_name(type_name: &str) -> String {
-    let letters: Vec<char> = type_name.chars().collect();
-    let mut name = String::new();
-    for (index, &letter) in letters.iter().enumerate() {
-        let before = index.checked_sub(1).map(|at| letters[at]);
-        let behind = letters.get(index + 1);
-        let begins = before.is_some_and(|before| {
-            before != '_'
-                && if letter.is_uppercase() {
-                    !before.is_uppercase() || behind.is_some_and(|behind| behind.is_lowercase())
-                } else {
-                    letter.is_ascii_digit() && !before.is_ascii_digit()
-                }
-        });
-        if begins {
-            name.push('_');
-        }
-        name.extend(letter.to_lowercase());
-    }
-    name
 }
 
 /// A number with its thousands apart: `-1_234_567`.
@@ -202,13 +179,10 @@ fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{camel, module_ident, module_name, number, raw_text};
+    use super::{camel, module_ident, number, raw_text};
 
     #[test]
     fn names_convert_between_cases() {
-        assert_eq!(module_name("HubDrive"), "hub_drive");
-        assert_eq!(module_name("BLDC42Drive"), "bldc_42_drive");
-        assert_eq!(module_name("PMDrive"), "pm_drive");
         assert_eq!(module_ident("Loop"), "loop_");
         assert_eq!(camel("track_rotor"), "TrackRotor");
     }

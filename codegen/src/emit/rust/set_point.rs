@@ -1,11 +1,11 @@
 //! The emitted set-point: the half of a drive that the main program writes.
 
 use super::super::set_point::{Shared, shared};
+use super::super::texts;
 use super::function::Setter;
 use super::interface::Types;
 use super::names::{doc, docs, snake};
-use crate::diagnostics::list;
-use crate::ir::{Program, Word};
+use crate::ir::Word;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -14,7 +14,7 @@ impl Types<'_> {
     pub(super) fn set_point(&self, setters: &[Setter]) -> TokenStream {
         let methods = setters.iter().map(|setter| &setter.method);
         let shared = shared(self.program);
-        let docs = docs(&set_point_docs(self.program, &shared));
+        let docs = docs(&texts::set_point(self.program, &shared));
         let fields = shared.iter().map(|shared| {
             let field = snake(&shared.name);
             let meaning = |word: &Word| format!("{} In `{}`.", word.doc, word.interval);
@@ -72,42 +72,4 @@ impl Types<'_> {
             }
         }
     }
-}
-
-/// Who may call which setter from where.
-fn set_point_docs(program: &Program, shared: &[Shared<'_>]) -> Vec<String> {
-    let mut lines = vec![
-        "What other code tells the control loop, which may interrupt it at any place. All on one core.".to_owned(),
-        String::new(),
-    ];
-    let names = |single: bool| {
-        let setters = program.setters.iter().filter(|setter| {
-            if setter.next_params.is_empty() {
-                return false;
-            }
-            let mut written = setter.next_params.iter().map(|(param, _)| param.index());
-            written.all(|param| {
-                let mut groups = shared.iter();
-                groups.any(|shared| {
-                    (shared.words.len() == 1) == single
-                        && shared.words.iter().any(|&(word, _)| word == param)
-                })
-            })
-        });
-        let names: Vec<&str> = setters.map(|setter| setter.name.as_str()).collect();
-        (!names.is_empty()).then(|| list(&names, "and"))
-    };
-    if let Some(names) = names(true) {
-        lines.push(format!(
-            "From anywhere, interrupts included: {names}; the last call wins, and none disturbs another setter."
-        ));
-    }
-    if let Some(names) = names(false) {
-        lines.extend([
-            String::new(),
-            format!("{names} replaces several words as one. A call that interrupts another call of it has no effect. From an"),
-            "interrupt that can interrupt the control loop: at most once per control period.".to_owned(),
-        ]);
-    }
-    lines
 }

@@ -1,12 +1,14 @@
 //! One stage as one function, and its call.
 
 use super::super::expression::Scope;
+use super::super::path::StageCode;
 use super::super::plan::{Context, Outcome, StagePlan};
 use super::super::signal::Signal;
+use super::super::texts;
 use super::expression::RustScope;
 use super::groups::{ARGUMENTS, Group, bundle, group, rust_type};
 use super::names::{camel, docs, loaded, snake};
-use crate::ir::{Function, Op, StateId, Value, Word};
+use crate::ir::{StateId, Word};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
@@ -19,6 +21,7 @@ const COMPLEXITY: usize = 250;
 pub(super) struct StageFunction<'a> {
     context: &'a Context<'a>,
     plan: StagePlan<'a>,
+    own_name: String,
     name: Ident,
     arguments: Vec<Group>,
     argument_signals: Vec<Signal>,
@@ -130,6 +133,7 @@ impl<'a> StageFunction<'a> {
         Self {
             context,
             plan,
+            own_name: name.to_owned(),
             name: snake(name),
             arguments,
             argument_signals,
@@ -146,26 +150,6 @@ impl<'a> StageFunction<'a> {
 
     fn word(&self, state: StateId) -> &'a Word {
         &self.context.program.states[state.index()]
-    }
-
-    /// Whether it is called `name`.
-    pub(super) fn is_named(&self, name: &str) -> bool {
-        self.name == snake(name)
-    }
-
-    /// Whether the other stage is the same function.
-    pub(super) fn is_same(&self, other: &StageFunction<'_>) -> bool {
-        self.definition().to_string() == other.definition().to_string()
-    }
-
-    /// Whether `value` is computed here.
-    pub(super) fn computes(&self, value: Value) -> bool {
-        (self.plan.stage.first..self.plan.stage.end).contains(&value.index())
-    }
-
-    /// Whether the stage itself stores the state word.
-    pub(super) fn stores(&self, state: StateId) -> bool {
-        self.plan.stores.iter().any(|&(stored, _)| stored == state)
     }
 
     /// Whether the stage computes or stores anything; one of leaves alone does not.
@@ -324,41 +308,28 @@ impl<'a> StageFunction<'a> {
 
     /// The stage's documentation, and the proven ranges of its results.
     fn doc(&self) -> TokenStream {
-        let mut lines = self.plan.stage.doc.clone();
-        let mut ranges: Vec<(String, String)> = vec![];
-        for group in &self.results.groups {
-            for &member in &group.members {
-                let outcome = &self.plan.outcomes[member];
-                let node = self.context.function.node(outcome.value);
-                if outcome.signal.shape.is_word() && !matches!(node.op, Op::Literal(_)) {
-                    let name = format!("`{}`", snake(&outcome.signal.name));
-                    let range = node.interval.to_string();
-                    match ranges.iter_mut().find(|(_, known)| *known == range) {
-                        Some((names, _)) => *names = format!("{names}, {name}"),
-                        None => ranges.push((name, range)),
-                    }
-                }
-            }
-        }
-        if !ranges.is_empty() {
-            let ranges: Vec<String> = ranges
-                .into_iter()
-                .map(|(names, range)| format!("{names} in `{range}`"))
-                .collect();
-            if !lines.is_empty() {
-                lines.push(String::new());
-            }
-            lines.push(format!("Proven: {}.", ranges.join("; ")));
-        }
-        docs(&lines)
+        let members = self.results.groups.iter().flat_map(|group| &group.members);
+        let outcomes = members.map(|&member| &self.plan.outcomes[member]);
+        let name = |name: &str| snake(name).to_string();
+        docs(&texts::stage(
+            self.context,
+            &self.plan.stage.doc,
+            outcomes,
+            name,
+        ))
     }
 }
 
-/// The value of an output by name.
-pub(super) fn output(function: &Function, name: &str) -> Option<Value> {
-    function
-        .outputs
-        .iter()
-        .find(|(known, _)| known == name)
-        .map(|&(_, value)| value)
+impl StageCode for StageFunction<'_> {
+    fn name(&self) -> &str {
+        &self.own_name
+    }
+
+    fn plan(&self) -> &StagePlan<'_> {
+        &self.plan
+    }
+
+    fn text(&self) -> String {
+        self.definition().to_string()
+    }
 }
