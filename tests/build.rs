@@ -69,11 +69,13 @@ fn emit(toml: &str, name: &str) -> Option<String> {
 /// The covering arrays of all kinds of controllers.
 fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
     let (mut modules, mut rows, mut refused) = (String::new(), String::new(), String::new());
+    let mut specifications = String::new();
     for kind in kinds() {
         let array = CoveringArray::of(&kind, motors);
         modules.push_str(&array.modules);
         rows.push_str(&array.rows);
         refused.push_str(&array.refused);
+        specifications.push_str(&array.specifications);
     }
     let tail = format!(
         "/// Kind of controller, what the row is, and its comparison with the model over so many steps\n\
@@ -83,6 +85,11 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
          pub const REFUSED: &[(&str, &str)] = &[\n{refused}];\n"
     );
     fs::write(out_dir.join("covering_array.rs"), modules + &tail).expect("OUT_DIR can be written");
+    let list = format!(
+        "/// Kind of controller, what the row is, and its specification.\n\
+         pub const SPECIFICATIONS: &[(&str, &str, &str)] = &[\n{specifications}];\n"
+    );
+    fs::write(out_dir.join("covering_specifications.rs"), list).expect("OUT_DIR can be written");
 }
 
 /// Text of a kind's drives: every pair of option values, and every motor with every option value.
@@ -90,6 +97,7 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
 struct CoveringArray {
     modules: String,
     rows: String,
+    specifications: String,
     refused: String,
 }
 
@@ -121,6 +129,13 @@ impl CoveringArray {
             writeln!(
                 array.rows,
                 "    ({:?}, {what:?}, verify::<{name}>),",
+                kind.name
+            )
+            .expect("a string takes all");
+            let toml = toml(row, Some(&name));
+            writeln!(
+                array.specifications,
+                "    ({:?}, {what:?}, {toml:?}),",
                 kind.name
             )
             .expect("a string takes all");

@@ -1,8 +1,10 @@
-//! The build script's way through the pipeline: motor files in, one Rust file per motor out.
+//! The build script's way through the pipeline: motor files in, one Rust file per motor out, or header and source in
+//! C99 per drive.
 //!
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::emit::c99::emit_c99;
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
@@ -35,10 +37,19 @@ pub struct Builder {
     motors: Vec<Motor>,
     folders: Vec<String>,
     allowed: Vec<String>,
+    language: Language,
     /// Whether the last motor was given by a folder, whose files take their own controllers.
     in_folder: bool,
     /// The first call that belongs to no motor, and its place.
     misplaced: Option<(String, String)>,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Language {
+    #[default]
+    Rust,
+    C99,
 }
 
 #[derive(Clone, Debug)]
@@ -54,14 +65,14 @@ struct Wanted {
     name: Option<String>,
 }
 
-/// One Rust file that was written.
+/// What was written for a motor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The motor file as it was given.
     pub motor: String,
-    /// The Rust file.
-    pub file: PathBuf,
-    /// Names of the types in it, in the order of the controllers.
+    /// The Rust file; of C99, the header and the source of each type in turn.
+    pub files: Vec<PathBuf>,
+    /// Names of the types in them, in the order of the controllers.
     pub types: Vec<String>,
     /// Warnings, but for those that are allowed.
     pub warnings: Vec<String>,
@@ -114,14 +125,14 @@ pub enum BuildError {
         /// Where it stands.
         place: String,
     },
-    /// Two motor files would be written to the same Rust file.
+    /// Two motor files would be written to the same file.
     #[error("{first} and {second} would both be written to {file}; {remedy}")]
     SameFile {
         /// The motor file given first.
         first: String,
         /// The motor file given later.
         second: String,
-        /// Name of the Rust file.
+        /// Its name.
         file: String,
         /// What to change.
         remedy: &'static str,
@@ -236,6 +247,14 @@ impl Builder {
         self
     }
 
+    /// Writes C99 in place of Rust, for parts of a firmware that another compiler builds: the type `HubDrive` becomes
+    /// `hub_drive.h` and `hub_drive.c`, the same step bit for bit.
+    #[must_use]
+    pub fn c99(mut self) -> Self {
+        self.language = Language::C99;
+        self
+    }
+
     /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Tells
     /// cargo which files to watch, and warnings.
     ///
@@ -254,9 +273,11 @@ impl Builder {
         let out_dir = out_dir.ok_or(BuildError::NoOutDir)?;
         let (mut sources, mut errors) = (vec![], vec![]);
         let motors = self.all_motors()?;
-        check_files(&motors)?;
+        if self.language == Language::Rust {
+            check_files(&motors)?;
+        }
         for motor in motors {
-            match source_of(&self.root, &motor, &self.allowed) {
+            match self.source_of(&motor) {
                 Ok(source) => sources.push((motor.path, source)),
                 Err(BuildError::Specification(more)) => errors.extend(more),
                 Err(other) => return Err(other),
@@ -265,6 +286,7 @@ impl Builder {
         if !errors.is_empty() {
             return Err(BuildError::Specification(errors));
         }
+        check_written(&sources)?;
         for warning in sources.iter().flat_map(|(_, source)| &source.warnings) {
             println!("cargo:warning={warning}");
         }
@@ -331,49 +353,68 @@ fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// The Rust file of one motor.
+/// Whether each drive has files of its own, which those in C have by their types' names.
+fn check_written(sources: &[(String, Source)]) -> Result<(), BuildError> {
+    let mut files: BTreeMap<String, &str> = BTreeMap::new();
+    for (motor, source) in sources {
+        for (file, _) in &source.files {
+            let file = file.display().to_string();
+            if let Some(first) = files.insert(file.to_lowercase(), motor) {
+                return Err(BuildError::SameFile {
+                    first: first.to_owned(),
+                    second: motor.clone(),
+                    file,
+                    remedy: "tell their types apart with `.name(…)`",
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The files of one motor.
+#[derive(Default)]
 struct Source {
-    text: String,
+    files: Vec<(PathBuf, String)>,
     types: Vec<String>,
     warnings: Vec<String>,
 }
 
-fn source_of(root: &Path, motor: &Motor, allowed: &[String]) -> Result<Source, BuildError> {
-    println!("cargo:rerun-if-changed={}", motor.path);
-    let text = fs::read_to_string(root.join(&motor.path)).map_err(|error| BuildError::Io {
-        path: motor.path.clone(),
-        error,
-    })?;
-    let ast =
-        parse_toml(&text, &motor.path).map_err(|errors| BuildError::Specification(vec![errors]))?;
-    let own = [Wanted::default()];
-    let drives = if motor.drives.is_empty() {
-        &own[..]
-    } else {
-        &motor.drives
-    };
-    let mut source = Source {
-        text: String::new(),
-        types: vec![],
-        warnings: vec![],
-    };
-    let mut errors = vec![];
-    for wanted in drives {
-        match generate_wanted(&ast, wanted) {
-            Ok((generated, warnings)) => {
-                source.add(&generated, &motor.path)?;
-                let warnings = warnings
-                    .iter()
-                    .filter(|warning| !allowed.contains(&warning.code.to_string()));
-                source.warnings.extend(warnings.map(ToString::to_string));
+impl Builder {
+    fn source_of(&self, motor: &Motor) -> Result<Source, BuildError> {
+        println!("cargo:rerun-if-changed={}", motor.path);
+        let text =
+            fs::read_to_string(self.root.join(&motor.path)).map_err(|error| BuildError::Io {
+                path: motor.path.clone(),
+                error,
+            })?;
+        let ast = parse_toml(&text, &motor.path)
+            .map_err(|errors| BuildError::Specification(vec![errors]))?;
+        let own = [Wanted::default()];
+        let drives = if motor.drives.is_empty() {
+            &own[..]
+        } else {
+            &motor.drives
+        };
+        let mut source = Source::default();
+        let mut errors = vec![];
+        for wanted in drives {
+            match generate_wanted(&ast, wanted) {
+                Ok((generated, warnings)) => {
+                    source.add(&generated, &motor.path, self.language)?;
+                    let warnings = warnings
+                        .iter()
+                        .filter(|warning| !self.allowed.contains(&warning.code.to_string()));
+                    source.warnings.extend(warnings.map(ToString::to_string));
+                }
+                Err(more) => errors.push(more),
             }
-            Err(more) => errors.push(more),
         }
-    }
-    if errors.is_empty() {
-        Ok(source)
-    } else {
-        Err(BuildError::Specification(errors))
+        if errors.is_empty() {
+            Ok(source)
+        } else {
+            Err(BuildError::Specification(errors))
+        }
     }
 }
 
@@ -394,7 +435,12 @@ fn generate_wanted(
 }
 
 impl Source {
-    fn add(&mut self, generated: &Generated, motor: &str) -> Result<(), BuildError> {
+    fn add(
+        &mut self,
+        generated: &Generated,
+        motor: &str,
+        language: Language,
+    ) -> Result<(), BuildError> {
         let name = generated.interface.type_name.clone();
         if syn::parse_str::<syn::Ident>(&name).is_err() {
             return Err(BuildError::BadName {
@@ -417,41 +463,65 @@ impl Source {
                 module,
             });
         }
-        let tokens = emit_rust(
-            &generated.graph,
-            &generated.interface,
-            &Surface::public(&name),
-        );
-        if !self.text.is_empty() {
-            self.text.push('\n');
+        match language {
+            Language::Rust => self.add_rust(generated, motor, &name),
+            Language::C99 => self.add_c99(generated, &name),
         }
-        self.text.push_str(&format_rust(&tokens));
         self.types.push(name);
         Ok(())
     }
 
-    /// Writes beside the file and renames, so that no reader sees half of it. (The program has a writer of its own,
-    /// which makes folders and temporary names by a crate that build scripts do without.)
+    fn add_rust(&mut self, generated: &Generated, motor: &str, name: &str) {
+        let Generated { graph, interface } = generated;
+        let tokens = emit_rust(graph, interface, &Surface::public(name));
+        let text = format_rust(&tokens);
+        match self.files.as_mut_slice() {
+            [] => self.files.push((file_name(motor), text)),
+            [(_, known), ..] => {
+                known.push('\n');
+                known.push_str(&text);
+            }
+        }
+    }
+
+    fn add_c99(&mut self, generated: &Generated, name: &str) {
+        let Generated { graph, interface } = generated;
+        let sources = emit_c99(graph, interface, name);
+        let file = |ending: &str| PathBuf::from(format!("{}.{ending}", sources.name));
+        let (header, source) = (file("h"), file("c"));
+        self.files.push((header, sources.header));
+        self.files.push((source, sources.source));
+    }
+
+    /// Writes all files.
     fn write(self, out_dir: &Path, motor: String) -> Result<Written, BuildError> {
-        let file = out_dir.join(file_name(&motor));
-        let beside = file.with_extension(format!("rs.{}", std::process::id()));
-        let failed = |error| BuildError::Io {
-            path: file.display().to_string(),
-            error,
-        };
-        fs::write(&beside, &self.text)
-            .and_then(|()| fs::rename(&beside, &file))
-            .inspect_err(|_| {
-                let _ = fs::remove_file(&beside);
-            })
-            .map_err(failed)?;
+        let files = self.files.iter();
+        let files = files.map(|(file, text)| write_whole(&out_dir.join(file), text));
         Ok(Written {
             motor,
-            file,
+            files: files.collect::<Result<_, _>>()?,
             types: self.types,
             warnings: self.warnings,
         })
     }
+}
+
+/// Writes beside the file and renames, so that no reader sees half of it. (The program has a writer of its own,
+/// which makes folders and temporary names by a crate that build scripts do without.)
+fn write_whole(file: &Path, text: &str) -> Result<PathBuf, BuildError> {
+    let mut beside = file.as_os_str().to_owned();
+    beside.push(format!(".{}", std::process::id()));
+    let failed = |error| BuildError::Io {
+        path: file.display().to_string(),
+        error,
+    };
+    fs::write(&beside, text)
+        .and_then(|()| fs::rename(&beside, file))
+        .inspect_err(|_| {
+            let _ = fs::remove_file(&beside);
+        })
+        .map_err(failed)?;
+    Ok(file.to_owned())
 }
 
 /// `PdccEmfModelAdvance1p5` of `pdcc:emf=model,advance=1.5`.

@@ -264,7 +264,7 @@ mod tests {
             .name("HubDrive")
             .generate()
             .expect("the example generates");
-        let file = std::fs::read_to_string(&written[0].file).expect("the file is there");
+        let file = std::fs::read_to_string(&written[0].files[0]).expect("the file is there");
         std::fs::remove_dir_all(&folder).expect("the folder is ours");
         assert_eq!(
             file,

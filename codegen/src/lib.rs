@@ -12,7 +12,7 @@
 //!   verify ─> VerifiedGraph                                      (ir::verify: intervals, stages, words)
 //!                             ║ barrier 2: every error of design and scaling at once
 //!   bound  ─> distance of every value from the ideal one         (ir::bounds)
-//!   emit   ─> Rust │ data sheet │ IR text │ Gappa scripts        (emit: cannot fail)
+//!   emit   ─> Rust │ C99 │ data sheet │ IR text │ Gappa scripts        (emit: cannot fail)
 //! ```
 //!
 //! Each stage imports earlier stages and [`diagnostics`] only. Emitters see a

@@ -5,6 +5,7 @@
 //! snapshots` writes all of them anew; a person reads the difference.
 
 use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::emit::c99::{Sources, emit_c99};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::{Generated, generate};
@@ -64,6 +65,9 @@ const VARIANTS: [(&str, &str); 14] = [
     ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),
 ];
 
+/// Those of which C is kept, too, besides the paper's motor with each kind of controller and with a measured bus.
+const VARIANTS_IN_C: [&str; 2] = ["model-advance", "word-16"];
+
 /// The paper's motor with a measured bus and a watch for stalls: fields of its inverter besides.
 const SUPERVISION: &str = r#"[inverter]
 v_bus = "measured"
@@ -115,6 +119,16 @@ fn code_of(name: &str, generated: &Generated) -> [Snapshot; 2] {
     ]
 }
 
+/// Header and source in C.
+fn c99_of(name: &str, generated: &Generated) -> Snapshot {
+    let Generated { graph, interface } = generated;
+    let Sources { header, source, .. } = emit_c99(graph, interface, &interface.type_name);
+    Snapshot {
+        name: format!("{name}.c99"),
+        text: header + "\n" + &source,
+    }
+}
+
 fn snapshots() -> Vec<Snapshot> {
     let mut snapshots = vec![];
     for motor in motors() {
@@ -122,6 +136,9 @@ fn snapshots() -> Vec<Snapshot> {
         snapshots.push(datasheet_of(&motor.name, &generated));
         if motor.name == PAPER_MOTOR || MOTORS.contains(&motor.name.as_str()) {
             snapshots.extend(code_of(&motor.name, &generated));
+        }
+        if motor.name == PAPER_MOTOR {
+            snapshots.push(c99_of(&motor.name, &generated));
         }
     }
     let paper = motor(PAPER_MOTOR);
@@ -136,6 +153,8 @@ fn snapshots() -> Vec<Snapshot> {
             snapshots.push(datasheet_of(&name, &generated));
             snapshots.extend(code_of(&name, &generated));
         }
+        let name = format!("{PAPER_MOTOR}.{}", kind.name);
+        snapshots.push(c99_of(&name, &generated(&paper, kind.name)));
     }
     let code = code_of(
         &format!("{MOTOR_WITH_INERTIA}.speed-loop"),
@@ -145,6 +164,9 @@ fn snapshots() -> Vec<Snapshot> {
     for (name, variant) in VARIANTS {
         let generated = generated(&paper, variant);
         snapshots.extend(code_of(&format!("{PAPER_MOTOR}.{name}"), &generated));
+        if VARIANTS_IN_C.contains(&name) {
+            snapshots.push(c99_of(&format!("{PAPER_MOTOR}.{name}"), &generated));
+        }
     }
     let supervised = Motor {
         text: paper.text.replacen("[inverter]\n", SUPERVISION, 1),
@@ -154,6 +176,7 @@ fn snapshots() -> Vec<Snapshot> {
     let name = format!("{PAPER_MOTOR}.measured-bus");
     snapshots.push(datasheet_of(&name, &generated));
     snapshots.extend(code_of(&name, &generated));
+    snapshots.push(c99_of(&name, &generated));
     snapshots
 }
 

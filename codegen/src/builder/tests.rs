@@ -123,3 +123,30 @@ fn a_warning_is_told_unless_it_is_allowed() {
     assert!(told[0].contains("warning[HX0601]: `table`: "), "{told:?}");
     assert!(allowed.expect("generates").remove(0).warnings.is_empty());
 }
+
+#[test]
+fn c99_is_written_by_type() {
+    let folder = std::env::temp_dir().join(format!("hexagen-c99-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    for name in ["hub.toml", "rear.toml"] {
+        fs::write(folder.join(name), include_str!("../example.toml")).expect("a motor file");
+    }
+    let builder = Builder::new().root(&folder).out_dir(&folder).c99();
+    let builder = builder.motor("hub.toml").name("HubDrive");
+    let written = builder.clone().generate();
+    let same = builder.motor("rear.toml").name("HubDrive").generate();
+    let source = fs::read_to_string(folder.join("hub_drive.c"));
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    let written = written.expect("it generates").remove(0);
+    let files = ["hub_drive.h", "hub_drive.c"].map(|file| folder.join(file));
+    assert_eq!(written.files, files);
+    assert!(
+        source
+            .expect("is written")
+            .contains("\nhub_drive_legs_t hub_drive_step(")
+    );
+    assert_eq!(
+        same.expect_err("one name for two drives").to_string(),
+        "hub.toml and rear.toml would both be written to hub_drive.h; tell their types apart with `.name(…)`"
+    );
+}

@@ -228,6 +228,13 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
             ..step("whole products of options", &interpreter)
         },
         faults(),
+        Step {
+            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
+            ..step(
+                "all emitted C, checked and unchecked",
+                &["test", "--package", "hexagen-tests", "--test", "c99"],
+            )
+        },
         on_target("pil", &["--steps", "1000000"]),
         step("proofs", &prove),
         step("certificates of the library", &certify),

@@ -60,14 +60,12 @@ impl RustScope for Scope<'_> {
     }
 
     fn kept(&self, word: &Word, value: Value) -> TokenStream {
-        match self.literal(value) {
-            Some(literal) => initial(word, literal),
-            None => {
-                let value = self.in_shape(value, Shape::of_state(word));
-                let value = written(self.context.program, &value);
-                stored(word, &value.within(Binding::Atom))
-            }
+        if let Some(literal) = self.literal(value) {
+            return initial(word, literal);
         }
+        let value = self.in_shape(value, Shape::of_state(word));
+        let value = written(self.context.program, &value);
+        stored(word, &value.within(Binding::Atom))
     }
 
     fn bound(&self, value: Value) -> TokenStream {

@@ -58,6 +58,8 @@ pub enum Command {
 pub enum Emit {
     /// The Rust module
     Rust,
+    /// Header and source in C99, into a folder: for toolchains without Rust
+    C99,
     /// The intermediate form, as text
     Ir,
     /// The data sheet, in Markdown
@@ -71,6 +73,7 @@ impl Emit {
     pub fn ending(self) -> &'static str {
         match self {
             Self::Rust => "rs",
+            Self::C99 => "c",
             Self::Ir => "ir",
             Self::Datasheet => "md",
             Self::Gappa => "g",

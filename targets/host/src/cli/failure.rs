@@ -3,7 +3,7 @@
 use crate::checker::Missing;
 use crate::closed_loop::Trip;
 use crate::counted::CountedError;
-use crate::engine::SourceError;
+use crate::engine::{BuildError, SourceError};
 use crate::plant::PlantError;
 use crate::report::ReportError;
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -42,6 +42,9 @@ pub enum Failure {
     /// There is no count of a step.
     #[error("error: {0}")]
     Counted(#[from] CountedError),
+    /// Emitted code cannot be compiled.
+    #[error("error: {0}")]
+    Compiler(#[from] BuildError),
     /// The report's page cannot be made.
     #[error("error: {0}")]
     Report(#[from] ReportError),

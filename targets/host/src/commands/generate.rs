@@ -5,6 +5,7 @@ use crate::cli::{
 };
 use crate::engine::Prepared;
 use clap::Args;
+use hexagen_codegen::emit::c99::{Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ pub struct Options {
     /// What to print
     #[arg(long, value_enum, default_value = "rust")]
     pub emit: Emit,
-    /// Write MOTOR.rs, .ir or .md, or all MOTOR.*.g, into this folder in place of stdout
+    /// Write MOTOR.rs, .ir or .md, all MOTOR.*.g, or the drive's .h and .c into this folder in place of stdout
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -33,6 +34,10 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
         Emit::Rust => {
             let surface = Surface::public(&generated.interface.type_name);
             format_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
+        }
+        Emit::C99 => {
+            let Sources { header, source, .. } = c99_of(drive);
+            header + "\n" + &source
         }
         Emit::Ir => generated.graph.program().to_string(),
         Emit::Datasheet => super::results::data_sheet(drive),
@@ -52,8 +57,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let motor = SelectedMotor::find(&options.motor, &PlantArguments::default())?;
     let drive = motor.prepare(options.controller.as_deref())?;
     tell_warnings(&drive);
-    if options.emit == Emit::Gappa {
-        return write_scripts(&drive, options.out.as_deref());
+    match options.emit {
+        Emit::Gappa => return write_scripts(&drive, options.out.as_deref()),
+        Emit::C99 => return write_c99(&drive, options.out.as_deref()),
+        _ => {}
     }
     let text = text_of(&drive, options.emit);
     let Some(folder) = &options.out else {
@@ -62,6 +69,34 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let path = folder.join(format!("{}.{}", drive.motor, options.emit.ending()));
     write_file(&path, text.as_bytes())?;
     note(&path.display().to_string());
+    Ok(())
+}
+
+/// The drive in C, under the name of its type.
+fn c99_of(drive: &Prepared) -> Sources {
+    let generated = &drive.generated;
+    emit_c99(
+        &generated.graph,
+        &generated.interface,
+        &generated.interface.type_name,
+    )
+}
+
+/// Writes header and source to files of their own: the source includes the header by its name.
+fn write_c99(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
+    let folder = folder.ok_or_else(|| {
+        Failure::Argument("`--emit c99` writes two files: say where, `--out DIR`".to_owned())
+    })?;
+    let Sources {
+        name,
+        header,
+        source,
+    } = c99_of(drive);
+    for (ending, text) in [("h", header), ("c", source)] {
+        let path = folder.join(format!("{name}.{ending}"));
+        write_file(&path, text.as_bytes())?;
+        note(&path.display().to_string());
+    }
     Ok(())
 }
 

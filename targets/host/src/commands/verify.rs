@@ -2,12 +2,13 @@
 
 use crate::cli::{Failure, Selection, TextTable, bar, print_json, print_text, significant, warn};
 use crate::commands::selected::{Refused, select};
-use crate::engine::{EngineKind, Prepared, Verifier};
-use clap::Args;
+use crate::engine::{BuildError, EngineKind, Prepared, Verifier};
+use clap::{Args, ValueEnum};
 use hexagen_reference::verify::Report;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::env;
 use std::time::Instant;
 
 /// Steps of one run from rest; a longer check is many runs with seeds of their own.
@@ -28,9 +29,40 @@ pub struct Options {
     /// Seed of the inputs
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// The emitted code that is compared; C is compiled by `CC`, with `CFLAGS`
+    #[arg(long, value_enum, default_value_t)]
+    pub language: Language,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// A language that drives are emitted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    /// Rust
+    #[default]
+    Rust,
+    /// C99
+    C99,
+}
+
+impl Language {
+    /// What runs each drive's code in this language.
+    ///
+    /// # Errors
+    /// No C compiler, or what it said; without one of Rust, the interpreter runs.
+    fn verifiers(self, drives: &[Prepared]) -> Result<Vec<Verifier<'_>>, Failure> {
+        match self {
+            Self::Rust => Ok(drives.par_iter().map(Prepared::verifier).collect()),
+            Self::C99 => {
+                let flags = env::var("CFLAGS").unwrap_or_default();
+                let drives = drives.par_iter();
+                let compiled = drives.map(|drive| Verifier::of_c99(drive, &flags));
+                Ok(compiled.collect::<Result<_, BuildError>>()?)
+            }
+        }
+    }
 }
 
 /// The check of one drive.
@@ -99,7 +131,18 @@ impl From<&Report> for Coverage {
 /// Compares each drive over `steps` steps; runs of all drives share the cores.
 pub fn collect(drives: &[Prepared], steps: u64, seed: u64, progress: &ProgressBar) -> Vec<Checked> {
     let verifiers: Vec<Verifier> = drives.par_iter().map(Prepared::verifier).collect();
-    for (drive, verifier) in drives.iter().zip(&verifiers) {
+    compare(drives, &verifiers, steps, seed, progress)
+}
+
+/// As [`collect`], with what runs each drive.
+fn compare(
+    drives: &[Prepared],
+    verifiers: &[Verifier<'_>],
+    steps: u64,
+    seed: u64,
+    progress: &ProgressBar,
+) -> Vec<Checked> {
+    for (drive, verifier) in drives.iter().zip(verifiers) {
         if let Some(reason) = verifier.why_interpreted() {
             warn(&format!(
                 "{}, {}: interpreted, {reason}",
@@ -174,8 +217,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     let takes_all = options.controller == Some(Selection::All);
     let (drives, refused) = select(&options.motors, &variants, takes_all)?;
+    let verifiers = options.language.verifiers(&drives)?;
     let progress = bar(options.steps * drives.len() as u64, "comparing");
-    let results = collect(&drives, options.steps, options.seed, &progress);
+    let results = compare(&drives, &verifiers, options.steps, options.seed, &progress);
     progress.finish_and_clear();
     let failed: Vec<&Checked> = results.iter().filter(|checked| !checked.passed).collect();
     let outcome = match failed.first() {

@@ -13,6 +13,7 @@ mod prepared;
 mod verifier;
 
 pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
+pub use external::BuildError;
 pub use interpreter::Interpreted;
 pub use motor::{MotorSource, SourceError};
 pub use plant::{plant_of, run_of};
@@ -43,7 +44,7 @@ pub enum Model {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineKind {
-    /// Emitted Rust, compiled.
+    /// Emitted code, compiled.
     Compiled,
     /// The generator's interpreter.
     Interpreter,

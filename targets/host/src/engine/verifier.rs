@@ -1,7 +1,8 @@
 //! The bit-for-bit test of one drive, with the best there is to run its fixed-point program.
 
-use super::external::{BuildError, External, Terms, compile, verify};
+use super::external::{Binding, BuildError, External, Terms, compile, compile_c99, verify};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
+use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_reference::verify::{Report, verify_subject};
 
@@ -30,6 +31,28 @@ impl<'p> Verifier<'p> {
             Runner::BuiltIn,
         );
         Self { drive, runner }
+    }
+
+    /// Compiles the drive's C, by `CC` with these flags behind strict ones.
+    ///
+    /// # Errors
+    /// No C compiler, or what it said.
+    pub fn of_c99(drive: &'p Prepared, flags: &str) -> Result<Self, BuildError> {
+        let generated = &drive.generated;
+        let (interface, program) = (&generated.interface, generated.graph.program());
+        let sources = emit_c99(&generated.graph, interface, &interface.type_name);
+        let mut setters = program.setters.iter();
+        let binding = Binding {
+            state_words: program.states.len(),
+            has_hall_ticks: interface.timer_capture,
+            has_bus: interface.measured_bus,
+            has_speed: setters.any(|setter| setter.name == "set_speed"),
+        };
+        let external = compile_c99(&sources, &binding, flags)?;
+        Ok(Self {
+            drive,
+            runner: Runner::External(external),
+        })
     }
 
     /// What runs.

@@ -33,6 +33,29 @@ fn the_same_drive_gives_the_same_bytes() {
 }
 
 #[test]
+fn c99_is_a_header_and_a_source_of_the_type() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("a plain path");
+    let arguments = ["generate", PAPER, "--emit", "c99", "--out", out];
+    let read = || {
+        let said = run(arguments);
+        assert_eq!((said.code, said.stdout.as_str()), (0, ""), "{said:?}");
+        ["h", "c"].map(|ending| {
+            let path = folder.path().join(format!("trivedi_keshri_660w.{ending}"));
+            fs::read_to_string(path).expect("was written")
+        })
+    };
+    let [header, source] = read();
+    assert!(header.contains("} trivedi_keshri_660w_t;"), "{header}");
+    assert!(
+        source.contains("#include \"trivedi_keshri_660w.h\""),
+        "{source}"
+    );
+    assert_eq!(read(), [header, source]);
+    assert_eq!(fs::read_dir(folder.path()).expect("is there").count(), 2);
+}
+
+#[test]
 fn a_copy_of_a_file_elsewhere_gives_the_same_code() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("copy.toml");

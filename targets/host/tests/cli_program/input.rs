@@ -86,10 +86,10 @@ fn cli_text() -> String {
 }
 
 #[test]
-fn what_does_not_exist_yet_is_not_offered() {
-    run(["generate", PAPER, "--emit", "c99"]).assert_bad_input(&["c99"]);
-    // One file per script needs a folder.
-    run(["generate", PAPER, "--emit", "gappa"]).assert_bad_input(&["gappa"]);
+fn texts_of_several_files_need_a_folder() {
+    for emit in ["c99", "gappa"] {
+        run(["generate", PAPER, "--emit", emit]).assert_bad_input(&[emit, "--out"]);
+    }
 }
 
 #[test]

@@ -61,6 +61,78 @@ fn other_drives_are_compiled_or_interpreted() {
 }
 
 #[test]
+fn emitted_c_is_compiled_and_compared() {
+    let arguments = [
+        "verify",
+        PAPER,
+        "--language",
+        "c99",
+        "--steps",
+        "5000",
+        "--json",
+    ];
+    let compared = first(&run(arguments));
+    assert_eq!(
+        (&compared["engine"], &compared["passed"]),
+        (&"compiled".into(), &true.into())
+    );
+    // The same inputs, whatever runs.
+    let rust = first(&run(["verify", PAPER, "--steps", "5000", "--json"]));
+    assert_eq!(rust["coverage"], compared["coverage"]);
+
+    let output = hexagen()
+        .args(arguments)
+        .env("CC", "no-such-compiler")
+        .output();
+    let said = Said::from(output.expect("the program starts"));
+    assert_eq!(said.code, 2);
+    assert!(
+        said.stderr.contains("the C compiler cannot run"),
+        "{said:?}"
+    );
+}
+
+/// A compiler that plants a fault into emitted C on its way: the last bit of one constant.
+#[cfg(unix)]
+#[test]
+fn a_fault_planted_in_emitted_c_is_found() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let compiler = folder.path().join("faulty-cc");
+    let script = "#!/bin/sh\n\
+        source=trivedi_keshri_660w.c\n\
+        awk '/^#define K_HOLD INT32_C/ { n = $3; gsub(/[^0-9]/, \"\", n); sub(/^32/, \"\", n);\n\
+        print $1, $2, \"INT32_C(\" n + 1 \")\"; next } { print }' $source > faulty\n\
+        cmp -s $source faulty && exit 3\n\
+        mv faulty $source\n\
+        exec cc \"$@\"\n";
+    std::fs::write(&compiler, script).expect("can be written");
+    std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).expect("is ours");
+    let output = hexagen()
+        .args([
+            "verify",
+            PAPER,
+            "--language",
+            "c99",
+            "--steps",
+            "20000",
+            "--json",
+        ])
+        .env("CC", &compiler)
+        .output();
+    let said = Said::from(output.expect("the program starts"));
+    assert_eq!(said.code, 1, "{said:?}");
+    assert_eq!(said.json_whatever_the_code()["passed"], false);
+    for text in ["differs", "adc_a =", "v_a_cmd", "<--"] {
+        assert!(
+            said.stderr.contains(text),
+            "no `{text}` in\n{}",
+            said.stderr
+        );
+    }
+}
+
+#[test]
 fn all_controllers_are_those_that_there_are() {
     let result = run([
         "verify",

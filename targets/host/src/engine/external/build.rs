@@ -1,5 +1,6 @@
-//! Building emitted code with rustc.
+//! Building emitted code with rustc, or with the C compiler of this machine.
 
+use hexagen_codegen::emit::c99::Sources;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,19 +12,26 @@ use tempfile::TempDir;
 #[derive(Debug)]
 pub struct External {
     folder: TempDir,
-    /// Kept so that programs compiled meanwhile find it built.
-    _runtime: Arc<TempDir>,
+    /// Of Rust, kept so that programs compiled meanwhile find it built.
+    _runtime: Option<Arc<TempDir>>,
 }
 
 /// Why emitted code was not compiled.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum BuildError {
     /// No compiler, or no place to build.
-    #[error("rustc cannot run: {0}")]
-    NoCompiler(String),
+    #[error("{compiler} cannot run: {reason}")]
+    NoCompiler {
+        /// Its name.
+        compiler: &'static str,
+        /// What the system said.
+        reason: String,
+    },
     /// The compiler refused.
-    #[error("rustc refuses the {what}:\n{messages}")]
+    #[error("{compiler} refuses the {what}:\n{messages}")]
     Refused {
+        /// Its name.
+        compiler: &'static str,
         /// What was compiled.
         what: &'static str,
         /// What the compiler said.
@@ -31,9 +39,17 @@ pub enum BuildError {
     },
 }
 
-impl From<io::Error> for BuildError {
-    fn from(error: io::Error) -> Self {
-        Self::NoCompiler(error.to_string())
+/// Names of the compilers in messages.
+const RUSTC: &str = "rustc";
+const CC: &str = "the C compiler";
+
+impl BuildError {
+    /// The compiler, or a place for it, is missing.
+    fn no_compiler(compiler: &'static str) -> impl Fn(io::Error) -> Self {
+        move |error| Self::NoCompiler {
+            compiler,
+            reason: error.to_string(),
+        }
     }
 }
 
@@ -71,6 +87,7 @@ const RUNTIME: [(&str, &str); 8] = [
 ];
 
 const DRIVER: &str = include_str!("driver.rs");
+const DRIVER_C: &str = include_str!("driver.c");
 
 /// The macros that the runtime re-exports; emitted code calls none.
 const MACROS: &str = "#[macro_export] macro_rules! controller { () => {} }\n\
@@ -115,11 +132,13 @@ fn executable() -> String {
 /// No rustc, or what it said.
 pub fn compile(rust: &str, type_name: &str) -> Result<External, BuildError> {
     let runtime = runtime()?;
-    let folder = folder()?;
-    fs::write(folder.path().join("emitted.rs"), rust)?;
-    fs::write(folder.path().join("driver.rs"), DRIVER)?;
     let alias = format!("pub use super::emitted::{type_name} as TheDrive;\n");
-    fs::write(folder.path().join("name.rs"), alias)?;
+    let files = [
+        ("emitted.rs", rust),
+        ("driver.rs", DRIVER),
+        ("name.rs", &alias),
+    ];
+    let folder = folder_of(&files).map_err(BuildError::no_compiler(RUSTC))?;
     let mut rustc = rustc(folder.path());
     rustc
         .args(["--crate-type", "bin", "--crate-name", "drive", "-o"])
@@ -127,10 +146,89 @@ pub fn compile(rust: &str, type_name: &str) -> Result<External, BuildError> {
         .arg("driver.rs")
         .args(libraries(runtime.path(), &["hexagen"]))
         .args(["-A", "dead_code"]);
-    run(&mut rustc, "emitted code")?;
+    run(&mut rustc, RUSTC, "emitted code")?;
     Ok(External {
         folder,
-        _runtime: runtime,
+        _runtime: Some(runtime),
+    })
+}
+
+/// What the flags of users' own projects are at their strictest.
+const C_FLAGS: [&str; 7] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Werror",
+    "-pedantic",
+    "-O2",
+];
+
+/// What the driver must know of a drive in C.
+#[derive(Clone, Copy, Debug)]
+pub struct Binding {
+    /// State words.
+    pub state_words: usize,
+    /// Whether its step takes the ticks since the last Hall edge.
+    pub has_hall_ticks: bool,
+    /// Whether it is told the bus voltage.
+    pub has_bus: bool,
+    /// Whether it regulates the speed.
+    pub has_speed: bool,
+}
+
+impl Binding {
+    /// The text of `binding.h`.
+    fn text(&self, name: &str) -> String {
+        let Self {
+            state_words,
+            has_hall_ticks,
+            has_bus,
+            has_speed,
+        } = *self;
+        let [ticks, bus, speed] = [has_hall_ticks, has_bus, has_speed].map(i32::from);
+        format!(
+            "#include \"{name}.h\"\ntypedef {name}_t drive_t;\ntypedef {name}_legs_t legs_t;\n\
+             #define CALL(function) {name}_##function\n#define STATE_WORDS {state_words}\n\
+             #define HAS_HALL_TICKS {ticks}\n#define HAS_BUS {bus}\n#define HAS_SPEED {speed}\n"
+        )
+    }
+}
+
+/// Compiles an emitted header and source together with the driver, by `CC` with these flags behind the strict ones.
+///
+/// # Errors
+/// No C compiler, or what it said.
+pub fn compile_c99(
+    sources: &Sources,
+    binding: &Binding,
+    flags: &str,
+) -> Result<External, BuildError> {
+    let Sources {
+        name,
+        header,
+        source,
+    } = sources;
+    let [header_file, source_file] = ["h", "c"].map(|ending| format!("{name}.{ending}"));
+    let binding = binding.text(name);
+    let files = [
+        (header_file.as_str(), header.as_str()),
+        (&source_file, source),
+        ("binding.h", &binding),
+        ("driver.c", DRIVER_C),
+    ];
+    let folder = folder_of(&files).map_err(BuildError::no_compiler(CC))?;
+    let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    cc.current_dir(folder.path())
+        .args(C_FLAGS)
+        .args(flags.split_whitespace())
+        .arg(format!("-D{}_VERIFICATION", name.to_uppercase()))
+        .args([&source_file, "driver.c", "-o"])
+        .arg(executable());
+    run(&mut cc, CC, "emitted code")?;
+    Ok(External {
+        folder,
+        _runtime: None,
     })
 }
 
@@ -149,13 +247,11 @@ fn runtime() -> Result<Arc<TempDir>, BuildError> {
 }
 
 fn build_runtime() -> Result<TempDir, BuildError> {
-    let folder = folder()?;
+    let fixed = fixed_types();
+    let own = [("fixed.rs", fixed.as_str()), ("hexagen_macros.rs", MACROS)];
+    let folder = folder_of(&[&own[..], &RUNTIME].concat());
+    let folder = folder.map_err(BuildError::no_compiler(RUSTC))?;
     let at = folder.path();
-    fs::write(at.join("fixed.rs"), fixed_types())?;
-    fs::write(at.join("hexagen_macros.rs"), MACROS)?;
-    for (name, text) in RUNTIME {
-        fs::write(at.join(name), text)?;
-    }
     for (name, file, needs) in [
         ("fixed", "fixed.rs", &[][..]),
         ("hexagen_macros", "hexagen_macros.rs", &[]),
@@ -165,13 +261,18 @@ fn build_runtime() -> Result<TempDir, BuildError> {
         rustc
             .args(["--crate-type", "rlib", "--crate-name", name, file])
             .args(libraries(at, needs));
-        run(&mut rustc, "runtime")?;
+        run(&mut rustc, RUSTC, "runtime")?;
     }
     Ok(folder)
 }
 
-fn folder() -> io::Result<TempDir> {
-    tempfile::Builder::new().prefix("hexagen-").tempdir()
+/// A new folder with these files.
+fn folder_of(files: &[(&str, &str)]) -> io::Result<TempDir> {
+    let folder = tempfile::Builder::new().prefix("hexagen-").tempdir()?;
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text)?;
+    }
+    Ok(folder)
 }
 
 fn rustc(folder: &Path) -> Command {
@@ -199,12 +300,21 @@ fn libraries(folder: &Path, names: &[&str]) -> Vec<String> {
     arguments
 }
 
-fn run(rustc: &mut Command, what: &'static str) -> Result<(), BuildError> {
-    let output = rustc.stdin(Stdio::null()).output()?;
+fn run(
+    command: &mut Command,
+    compiler: &'static str,
+    what: &'static str,
+) -> Result<(), BuildError> {
+    let output = command.stdin(Stdio::null()).output();
+    let output = output.map_err(BuildError::no_compiler(compiler))?;
     if output.status.success() {
         Ok(())
     } else {
         let messages = String::from_utf8_lossy(&output.stderr).into_owned();
-        Err(BuildError::Refused { what, messages })
+        Err(BuildError::Refused {
+            compiler,
+            what,
+            messages,
+        })
     }
 }

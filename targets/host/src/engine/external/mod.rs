@@ -1,13 +1,13 @@
-//! Emitted code that is not built in: compiled with rustc and run as a process of its own.
+//! Emitted code that is not built in, in Rust or C: compiled and run as a process of its own.
 //!
-//! The runtime's sources are part of this program, so rustc is all that is needed. Of the `fixed`
+//! The runtime's sources are part of this program, so the compiler is all that is needed. Of the `fixed`
 //! crate, emitted code and runtime use type names, `from_bits` and `to_bits` only; a stand-in with
 //! just these takes its place, which changes no arithmetic.
 
 mod build;
 mod link;
 
-pub use build::{BuildError, External, compile};
+pub use build::{Binding, BuildError, External, compile, compile_c99};
 
 use hexagen::{Fault, Format, Legs, Sample};
 use hexagen_reference::BitTrue;

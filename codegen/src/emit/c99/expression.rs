@@ -1,0 +1,316 @@
+//! Expressions as C, with the parentheses that grammar, compilers and readers need.
+
+use super::super::expression::{Expression, Operator, Primitive, Scope};
+use super::super::signal::{Code, Shape};
+use super::names::{Names, number};
+use crate::ir::{Program, Table, Value, Word};
+
+/// Values as C, seen from a place.
+#[derive(Clone, Copy)]
+pub(super) struct Printer<'a> {
+    /// The place.
+    pub scope: Scope<'a>,
+    /// How names look.
+    pub names: &'a Names,
+}
+
+impl Printer<'_> {
+    /// A value as a complete expression: what a name is bound to or a function returns.
+    pub(super) fn whole(&self, value: Value) -> String {
+        self.written(&self.scope.value(value)).text
+    }
+
+    /// A value as a complete expression of the given shape.
+    pub(super) fn shaped(&self, value: Value, shape: Shape) -> String {
+        self.written(&self.scope.in_shape(value, shape)).text
+    }
+
+    /// What a named value is bound to.
+    pub(super) fn bound(&self, value: Value) -> String {
+        self.written(&self.scope.definition(value)).text
+    }
+
+    /// A flag before `?`.
+    pub(super) fn condition(&self, value: Value) -> String {
+        self.written(&self.scope.value(value))
+            .within(Binding::Unary)
+    }
+
+    /// A value behind `?` or `:`.
+    pub(super) fn arm(&self, value: Value, shape: Shape) -> String {
+        let value = self.written(&self.scope.in_shape(value, shape));
+        value.within(Binding::Or)
+    }
+
+    /// A flag among others of which one suffices.
+    pub(super) fn alternative(&self, value: Value) -> String {
+        self.written(&self.scope.value(value))
+            .within(Binding::Compare)
+    }
+
+    /// A value cast to a type.
+    pub(super) fn cast(&self, kind: &str, value: Value) -> String {
+        let value = self
+            .written(&self.scope.value(value))
+            .within(Binding::Unary);
+        format!("({kind}){value}")
+    }
+
+    /// A value as the state word keeps it.
+    pub(super) fn kept(&self, word: &Word, value: Value) -> String {
+        let value = self.scope.in_shape(value, Shape::of_state(word));
+        let value = self.written(&value);
+        if word.storage_bits == 16 && !value.is_literal {
+            format!("(int16_t){}", value.within(Binding::Unary))
+        } else {
+            value.text
+        }
+    }
+
+    fn program(&self) -> &Program {
+        self.scope.context.program
+    }
+
+    fn written(&self, expression: &Expression) -> Written {
+        let of = |expression: &Expression| self.written(expression);
+        match expression {
+            Expression::Signal(name) => Written::atom(self.names.local(name)),
+            Expression::State(id) => {
+                let word = &self.program().states[id.index()];
+                Written {
+                    is_narrow: word.storage_bits == 16,
+                    ..Written::atom(format!("state->{}", self.names.local(&word.name)))
+                }
+            }
+            Expression::Constant(id) => {
+                let name = &self.program().constants[id.index()].name;
+                Written::atom(self.names.constant(name))
+            }
+            Expression::Number(raw) => literal(*raw),
+            Expression::Code(code) => Written {
+                is_literal: true,
+                ..Written::atom(coded(*code, self.names))
+            },
+            Expression::Negated(a) => {
+                let a = of(a).operand(Binding::Atom);
+                Written::new(format!("-{a}"), Binding::Unary)
+            }
+            Expression::Not(a) => {
+                let a = of(a).within(Binding::Unary);
+                Written::new(format!("!{a}"), Binding::Unary)
+            }
+            Expression::Binary(operator, a, b) => binary(*operator, of(a), of(b)),
+            Expression::ShiftedLeft(a, bits) => shift("shift_left", of(a).text, *bits),
+            Expression::ShiftedRight(a, bits) => shift("shift_right", of(a).text, *bits),
+            Expression::Call(primitive, operands, parameter) => {
+                let operands = operands.iter().map(|operand| of(operand).text);
+                let parameter = parameter.map(|parameter| parameter.to_string());
+                let arguments: Vec<String> = operands.chain(parameter).collect();
+                Written::atom(format!("{}({})", called(*primitive), arguments.join(", ")))
+            }
+            Expression::Lookup(table, index, is_inside) => {
+                let table = &self.program().tables[table.index()];
+                let name = self.names.constant(&table.name);
+                let index = of(index);
+                let text = if *is_inside {
+                    format!("{name}[{}]", index.text)
+                } else {
+                    let index = index.within(Binding::Unary);
+                    format!("{name}[(uint32_t){index} & {}U]", table.values.len() - 1)
+                };
+                Written {
+                    is_narrow: element(table) == "int16_t",
+                    ..Written::atom(text)
+                }
+            }
+            Expression::FlagWord(flag) => {
+                let flag = of(flag).within(Binding::Unary);
+                Written::new(format!("{flag} ? 1 : 0"), Binding::Choice)
+            }
+            Expression::LegOf(word) => Written::atom(format!("leg_of({})", of(word).text)),
+            Expression::Choice(parts) => {
+                let [condition, then, otherwise] = &**parts;
+                let condition = of(condition).within(Binding::Unary);
+                let then = of(then).within(Binding::Or);
+                let otherwise = of(otherwise).text;
+                Written::new(
+                    format!("{condition} ? {then} : {otherwise}"),
+                    Binding::Choice,
+                )
+            }
+        }
+    }
+}
+
+/// What a table's elements are stored as.
+pub(super) fn element(table: &Table) -> &'static str {
+    match table.interval().bits() {
+        ..=16 => "int16_t",
+        _ => "int32_t",
+    }
+}
+
+/// How tightly an expression binds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Choice,
+    Or,
+    And,
+    Compare,
+    Sum,
+    Product,
+    Unary,
+    Atom,
+}
+
+/// A text and what it takes to embed it.
+struct Written {
+    text: String,
+    binding: Binding,
+    /// Whether its type may be narrower than a word, so that arithmetic on it would be.
+    is_narrow: bool,
+    /// Whether it is a number.
+    is_literal: bool,
+}
+
+impl Written {
+    fn new(text: String, binding: Binding) -> Self {
+        Self {
+            text,
+            binding,
+            is_narrow: false,
+            is_literal: false,
+        }
+    }
+
+    fn atom(text: String) -> Self {
+        Self::new(text, Binding::Atom)
+    }
+
+    /// The text inside an expression that binds its operands as tightly as `least`.
+    fn within(self, least: Binding) -> String {
+        if self.binding < least {
+            format!("({})", self.text)
+        } else {
+            self.text
+        }
+    }
+
+    /// As [`Self::within`], as an operand of arithmetic of words.
+    fn operand(self, least: Binding) -> String {
+        if self.is_narrow {
+            let cast = format!("(int32_t){}", self.within(Binding::Unary));
+            Self::new(cast, Binding::Unary).within(least)
+        } else {
+            self.within(least)
+        }
+    }
+}
+
+fn literal(raw: i32) -> Written {
+    let binding = if raw < 0 && raw > i32::MIN {
+        Binding::Unary
+    } else {
+        Binding::Atom
+    };
+    Written {
+        is_literal: true,
+        ..Written::new(number(raw), binding)
+    }
+}
+
+fn binary(operator: Operator, a: Written, b: Written) -> Written {
+    let sign = match operator {
+        Operator::AngleAdd => return wrapping("angle_add", &a, &b),
+        Operator::AngleSub => return wrapping("angle_sub", &a, &b),
+        Operator::Add => "+",
+        Operator::Sub => "-",
+        Operator::Mul => "*",
+        Operator::Less => "<",
+        Operator::LessEqual => "<=",
+        Operator::Greater => ">",
+        Operator::GreaterEqual => ">=",
+        Operator::Equal => "==",
+        Operator::NotEqual => "!=",
+        Operator::And => "&&",
+        Operator::Or => "||",
+    };
+    let (binding, a, b) = match operator {
+        Operator::Add | Operator::Sub => (
+            Binding::Sum,
+            a.operand(Binding::Sum),
+            b.operand(Binding::Product),
+        ),
+        Operator::Mul => (
+            Binding::Product,
+            a.operand(Binding::Product),
+            b.operand(Binding::Unary),
+        ),
+        Operator::And => (Binding::And, a.within(Binding::And), b.within(Binding::And)),
+        // `&&` under `||` has parentheses, though it binds tighter.
+        Operator::Or => {
+            let under = |flag: Written| match flag.binding {
+                Binding::And => format!("({})", flag.text),
+                _ => flag.within(Binding::Or),
+            };
+            (Binding::Or, under(a), under(b))
+        }
+        _ => (
+            Binding::Compare,
+            a.within(Binding::Sum),
+            b.within(Binding::Sum),
+        ),
+    };
+    Written::new(format!("{a} {sign} {b}"), binding)
+}
+
+fn wrapping(name: &str, a: &Written, b: &Written) -> Written {
+    Written::atom(format!("{name}({}, {})", a.text, b.text))
+}
+
+/// A shift, in two where one would be as wide as the word.
+fn shift(name: &str, text: String, bits: u32) -> Written {
+    let inner = bits.saturating_sub(30);
+    let text = match inner {
+        0 => text,
+        _ => format!("{name}({text}, {inner})"),
+    };
+    Written::atom(format!("{name}({text}, {})", bits - inner))
+}
+
+fn called(primitive: Primitive) -> &'static str {
+    match primitive {
+        Primitive::Abs => "abs_of",
+        Primitive::Min => "min_of",
+        Primitive::Max => "max_of",
+        Primitive::Clamp => "clamp",
+        Primitive::MulRound => "mul_round",
+        Primitive::MulRoundNarrow => "mul_round_narrow",
+        Primitive::MulFloor => "mul_floor",
+        Primitive::MulLimited => "mul_limited",
+        Primitive::Divide => "divide",
+        Primitive::DivideNarrow => "divide_narrow",
+        Primitive::TurnOver => "turn_over",
+        Primitive::AngleIndex => "angle_index",
+        Primitive::AngleFraction => "angle_fraction",
+    }
+}
+
+/// The enumerator of a number that has a name.
+pub(super) fn coded(code: Code, names: &Names) -> String {
+    names.public_upper(match code {
+        Code::Run => "MODE_RUN",
+        Code::Calibrate => "MODE_CALIBRATE",
+        Code::Precharge => "MODE_PRECHARGE",
+        Code::Tripped => "MODE_TRIPPED",
+        Code::NoFault => "FAULT_NONE",
+        Code::AdcRange => "FAULT_ADC_RANGE",
+        Code::OverCurrent => "FAULT_OVER_CURRENT",
+        Code::Hall => "FAULT_HALL",
+        Code::Stall => "FAULT_STALL",
+        Code::Offset => "FAULT_OFFSET",
+        Code::Pulsed => "LEG_PULSED",
+        Code::Low => "LEG_LOW",
+        Code::Off => "LEG_OFF",
+    })
+}

@@ -1,0 +1,231 @@
+//! The primitives of emitted C, each a function that a source has where it uses it.
+//!
+//! C leaves right shifts of negative numbers and conversions to narrower signed types to the compiler, and left shifts
+//! of negative numbers and signed overflow undefined; none of these occurs. Compilers know the forms: on a
+//! Cortex-M4, gcc makes one instruction of each shift, conversion, minimum and maximum from `-O2` on.
+
+use std::collections::BTreeSet;
+
+/// A function of a source.
+#[derive(Debug)]
+pub(super) struct Helper {
+    /// Its name.
+    pub name: &'static str,
+    /// Its documentation and text.
+    text: &'static str,
+}
+
+/// All, each behind those that it calls.
+pub(super) const HELPERS: [Helper; 19] = [
+    Helper {
+        name: "shift_left",
+        text: "\
+/** x 2^shift; shift is 0 to 30. */
+static inline int32_t shift_left(int32_t x, uint16_t shift)
+{
+    return x * (INT32_C(1) << shift);
+}
+",
+    },
+    Helper {
+        name: "shift_right",
+        text: "\
+/** floor(x / 2^shift): an arithmetic shift, written without a right shift of negative numbers. */
+static inline int32_t shift_right(int32_t x, uint16_t shift)
+{
+    return (x >= 0) ? (x >> shift) : ~(~x >> shift);
+}
+",
+    },
+    Helper {
+        name: "shift_right_wide",
+        text: "\
+/** floor(x / 2^shift), as a word: the quotient is known to fit. */
+static inline int32_t shift_right_wide(int64_t x, uint16_t shift)
+{
+    return (int32_t)((x >= 0) ? (x >> shift) : ~(~x >> shift));
+}
+",
+    },
+    Helper {
+        name: "wrap",
+        text: "\
+/** The two's complement word of these bits. */
+static inline int32_t wrap(uint32_t bits)
+{
+    return (bits <= UINT32_C(0x7fffffff)) ? (int32_t)bits : -1 - (int32_t)~bits;
+}
+",
+    },
+    Helper {
+        name: "angle_add",
+        text: "\
+/** Sum of two angles: a turn is 2^32, so that sums wrap. */
+static inline int32_t angle_add(int32_t a, int32_t b)
+{
+    return wrap((uint32_t)a + (uint32_t)b);
+}
+",
+    },
+    Helper {
+        name: "angle_sub",
+        text: "\
+/** Difference of two angles: a turn is 2^32, so that differences wrap. */
+static inline int32_t angle_sub(int32_t a, int32_t b)
+{
+    return wrap((uint32_t)a - (uint32_t)b);
+}
+",
+    },
+    Helper {
+        name: "abs_of",
+        text: "\
+/** |x| */
+static inline int32_t abs_of(int32_t x)
+{
+    return (x < 0) ? -x : x;
+}
+",
+    },
+    Helper {
+        name: "min_of",
+        text: "\
+/** The lesser of the two. */
+static inline int32_t min_of(int32_t a, int32_t b)
+{
+    return (a < b) ? a : b;
+}
+",
+    },
+    Helper {
+        name: "max_of",
+        text: "\
+/** The greater of the two. */
+static inline int32_t max_of(int32_t a, int32_t b)
+{
+    return (a > b) ? a : b;
+}
+",
+    },
+    Helper {
+        name: "clamp",
+        text: "\
+/** `low` below `low`, `high` above `high`. */
+static inline int32_t clamp(int32_t x, int32_t low, int32_t high)
+{
+    return min_of(max_of(x, low), high);
+}
+",
+    },
+    Helper {
+        name: "mul_round",
+        text: "\
+/** floor((coefficient signal + 2^(shift-1)) / 2^shift): rounded half up. */
+static inline int32_t mul_round(int32_t coefficient, int32_t signal, uint16_t shift)
+{
+    const int64_t half = INT64_C(1) << (shift - 1);
+    return shift_right_wide((int64_t)coefficient * signal + half, shift);
+}
+",
+    },
+    Helper {
+        name: "mul_round_narrow",
+        text: "\
+/** As mul_round, for products that fit a word together with their rounding. */
+static inline int32_t mul_round_narrow(int32_t coefficient, int32_t signal, uint16_t shift)
+{
+    return shift_right(coefficient * signal + (INT32_C(1) << (shift - 1)), shift);
+}
+",
+    },
+    Helper {
+        name: "mul_floor",
+        text: "\
+/** floor(a b / 2^shift) */
+static inline int32_t mul_floor(int32_t a, int32_t b, uint16_t shift)
+{
+    return shift_right_wide((int64_t)a * b, shift);
+}
+",
+    },
+    Helper {
+        name: "mul_limited",
+        text: "\
+/** min(a b, limit) for factors that are not negative; the product may exceed the word. */
+static inline int32_t mul_limited(int32_t a, int32_t b, int32_t limit)
+{
+    const int64_t product = (int64_t)a * b;
+    return (product < limit) ? (int32_t)product : limit;
+}
+",
+    },
+    Helper {
+        name: "divide",
+        text: "\
+/**
+ * min(floor(numerator 2^shift / denominator), limit) for a numerator and a limit that are not negative, and a
+ * denominator of at least 1. Divides 64 bits: for paths off the normal one.
+ */
+static inline int32_t divide(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
+{
+    const uint64_t quotient = ((uint64_t)numerator << shift) / (uint64_t)denominator;
+    return (quotient < (uint64_t)limit) ? (int32_t)quotient : limit;
+}
+",
+    },
+    Helper {
+        name: "divide_narrow",
+        text: "\
+/** As divide, where the shifted numerator fits 32 bits. */
+static inline int32_t divide_narrow(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
+{
+    const uint32_t quotient = ((uint32_t)numerator << shift) / (uint32_t)denominator;
+    return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
+}
+",
+    },
+    Helper {
+        name: "turn_over",
+        text: "\
+/** floor((2^32 - 1) / ticks): the angle per tick, where a turn, 2^32, lasts `ticks`, at least 2. */
+static inline int32_t turn_over(int32_t ticks)
+{
+    return (int32_t)(UINT32_C(0xffffffff) / (uint32_t)ticks);
+}
+",
+    },
+    Helper {
+        name: "angle_index",
+        text: "\
+/** Which of `segments` equal parts of a turn the angle lies in, from 0. */
+static inline int32_t angle_index(int32_t angle, uint32_t segments)
+{
+    return (int32_t)(((uint64_t)(uint32_t)angle * segments) >> 32);
+}
+",
+    },
+    Helper {
+        name: "angle_fraction",
+        text: "\
+/** The position within that part, 2^31 being its whole width. */
+static inline int32_t angle_fraction(int32_t angle, uint32_t segments)
+{
+    return (int32_t)((uint32_t)((uint32_t)angle * segments) >> 1);
+}
+",
+    },
+];
+
+/// The functions that a source of these words calls, and those that they call.
+pub(super) fn used(words: &BTreeSet<String>) -> Vec<&'static str> {
+    let mut words = words.clone();
+    let mut used = vec![];
+    for helper in HELPERS.iter().rev() {
+        if words.contains(helper.name) {
+            words.extend(super::layout::words(helper.text));
+            used.push(helper.text);
+        }
+    }
+    used.reverse();
+    used
+}

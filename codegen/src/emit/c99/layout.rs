@@ -1,0 +1,115 @@
+//! Lines of C: statements broken where they are too long, and the words in them.
+
+use std::collections::BTreeSet;
+
+/// Longest line of code.
+const WIDTH: usize = 100;
+
+/// One level of nesting.
+pub(super) const INDENT: &str = "    ";
+
+/// A statement or a function's head in lines of at most [`WIDTH`] letters, where it can be: broken behind commas and
+/// before operators, at the outermost place that fits.
+pub(super) fn wrapped(indent: &str, text: &str) -> String {
+    let mut lines = String::new();
+    let (mut rest, mut lead) = (text, indent.to_owned());
+    while lead.len() + rest.len() > WIDTH {
+        let Some(at) = break_of(rest, WIDTH.saturating_sub(lead.len())) else {
+            break;
+        };
+        let (line, tail) = rest.split_at(at);
+        lines.push_str(&lead);
+        lines.push_str(line.trim_end());
+        lines.push('\n');
+        rest = tail.trim_start();
+        lead = format!("{indent}{INDENT}{INDENT}");
+    }
+    lines.push_str(&lead);
+    lines.push_str(rest);
+    lines.push('\n');
+    lines
+}
+
+/// The last of the outermost places within `width` where a line may end.
+fn break_of(text: &str, width: usize) -> Option<usize> {
+    let (mut depth, mut best) = (0_usize, None);
+    let letters = text.as_bytes();
+    for (at, &letter) in letters.iter().enumerate().take(width + 1) {
+        match letter {
+            b'(' | b'{' | b'[' => depth += 1,
+            b')' | b'}' | b']' => depth = depth.saturating_sub(1),
+            b' ' if at > 0 => {
+                let Some(looseness) = looseness(letters[at - 1], &text[at + 1..], depth) else {
+                    continue;
+                };
+                let cost = 3 * depth + looseness;
+                if best.is_none_or(|(least, _)| cost <= least) {
+                    best = Some((cost, at));
+                }
+            }
+            _ => {}
+        }
+    }
+    best.map(|(_, at)| at)
+}
+
+/// How much worse than behind a comma it is to break a line between a letter and what follows; none where it is not
+/// broken.
+fn looseness(before: u8, behind: &str, depth: usize) -> Option<usize> {
+    let begins = |operators: &[&str]| {
+        operators
+            .iter()
+            .any(|operator| behind.starts_with(operator))
+    };
+    if before == b',' || begins(&["&& ", "|| ", ": ", "+ ", "- ", "* "]) {
+        Some(0)
+    } else if begins(&["? ", "== ", "!= ", "< ", "> ", "<= ", ">= "]) {
+        Some(1)
+    } else {
+        // Behind `=`, before breaking what is nested.
+        (before == b'=' && depth == 0).then_some(2)
+    }
+}
+
+/// The words of code, comments left out.
+pub(super) fn words(code: &str) -> BTreeSet<String> {
+    let mut words = BTreeSet::new();
+    let mut rest = code;
+    while let Some((before, behind)) = rest.split_once("/*") {
+        collect(before, &mut words);
+        rest = behind.split_once("*/").map_or("", |(_, behind)| behind);
+    }
+    collect(rest, &mut words);
+    words
+}
+
+fn collect(code: &str, words: &mut BTreeSet<String>) {
+    let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    let parts = code.split(|letter| !is_part(letter));
+    words.extend(parts.filter(|part| !part.is_empty()).map(str::to_owned));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WIDTH, words, wrapped};
+
+    #[test]
+    fn long_statements_break_at_the_outermost_place() {
+        let part = "mul_round(K_LONG_NAME, signal_of_the_phase, 32)";
+        let text = format!("const int32_t sum = {part} + {part} - {part};");
+        let lines = wrapped("    ", &text);
+        assert_eq!(
+            lines,
+            format!(
+                "    const int32_t sum = {part}\n            + {part}\n            - {part};\n"
+            )
+        );
+        assert!(lines.lines().all(|line| line.len() <= WIDTH));
+    }
+
+    #[test]
+    fn words_of_comments_do_not_count() {
+        let found: Vec<String> = words("a = /* b */ C_1(d); /* e */").into_iter().collect();
+        assert_eq!(found, ["C_1", "a", "d"]);
+    }
+}

@@ -1,0 +1,146 @@
+/* Runs an emitted drive on calls from stdin; `link.rs` of the `hexagen` program is the other end.
+ *
+ * `binding.h` names the drive: `drive_t`, `legs_t`, `CALL(function)`, STATE_WORDS, and what it has. */
+#include "binding.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+static const unsigned char *batch;
+
+static uint32_t bytes(int count)
+{
+    uint32_t number = 0;
+    for (int at = 0; at < count; at++) {
+        number |= (uint32_t)batch[at] << (8 * at);
+    }
+    batch += count;
+    return number;
+}
+
+static int32_t word(void)
+{
+    const uint32_t bits = bytes(4);
+    return (bits <= UINT32_C(0x7fffffff)) ? (int32_t)bits : -1 - (int32_t)~bits;
+}
+
+static void answer(int count, uint32_t number)
+{
+    for (int at = 0; at < count; at++) {
+        if (putchar((int)((number >> (8 * at)) & 255U)) == EOF) {
+            exit(2);
+        }
+    }
+}
+
+static void step(drive_t *drive)
+{
+    const uint16_t adc_a = (uint16_t)bytes(2);
+    const uint16_t adc_b = (uint16_t)bytes(2);
+    const uint16_t hall = (uint16_t)bytes(1);
+    const uint16_t hall_ticks = (uint16_t)bytes(2);
+#if HAS_HALL_TICKS
+    const legs_t legs = CALL(step)(drive, adc_a, adc_b, hall, hall_ticks);
+#else
+    const legs_t legs = CALL(step)(drive, adc_a, adc_b, hall);
+    (void)hall_ticks;
+#endif
+    for (int leg = 0; leg < 3; leg++) {
+        answer(2, legs.compare[leg]);
+    }
+    for (int leg = 0; leg < 3; leg++) {
+        answer(1, (uint32_t)legs.state[leg]);
+    }
+    answer(1, (uint32_t)CALL(fault)(drive));
+    int32_t words[STATE_WORDS];
+    CALL(state_words)(drive, words);
+    for (int at = 0; at < STATE_WORDS; at++) {
+        answer(4, (uint32_t)words[at]);
+    }
+}
+
+static void set_bus(drive_t *drive, uint16_t counts)
+{
+#if HAS_BUS
+    CALL(set_bus)(drive, counts);
+#else
+    (void)drive;
+    (void)counts;
+#endif
+}
+
+static void set_speed(drive_t *drive, int32_t speed)
+{
+#if HAS_SPEED
+    CALL(set_speed)(drive, speed);
+#else
+    (void)drive;
+    (void)speed;
+#endif
+}
+
+static void set_state_words(drive_t *drive)
+{
+    for (uint16_t at = 0; at < STATE_WORDS; at++) {
+        CALL(set_state_word)(drive, at, word());
+    }
+}
+
+static void serve(drive_t *drive)
+{
+    switch (bytes(1)) {
+    case 0:
+        CALL(init)(drive);
+        break;
+    case 1:
+        step(drive);
+        break;
+    case 2:
+        CALL(set_current)(drive, word());
+        break;
+    case 3:
+        CALL(set_torque)(drive, word());
+        break;
+    case 4:
+        set_bus(drive, (uint16_t)bytes(2));
+        break;
+    case 5:
+        CALL(reset)(drive);
+        break;
+    case 6:
+        CALL(calibrate)(drive);
+        break;
+    case 7:
+        CALL(precharge)(drive);
+        break;
+    case 9:
+        set_speed(drive, word());
+        break;
+    default:
+        set_state_words(drive);
+        break;
+    }
+}
+
+int main(void)
+{
+    static drive_t drive;
+    unsigned char length[4];
+    CALL(init)(&drive);
+    while (fread(length, 1, sizeof length, stdin) == sizeof length) {
+        batch = length;
+        const size_t size = bytes(4);
+        unsigned char *const calls = malloc(size + 1);
+        if (calls == NULL || fread(calls, 1, size, stdin) != size) {
+            return 1;
+        }
+        batch = calls;
+        while (batch < calls + size) {
+            serve(&drive);
+        }
+        free(calls);
+        if (fflush(stdout) != 0) {
+            return 2;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,168 @@
+//! Emitted C passes strict flags, computes what the bit-true model computes on every output and state bit, and has
+//! no undefined behaviour on the way, for the covering arrays of all kinds of controllers.
+
+use hexagen_codegen::emit::c99::emit_c99;
+use hexagen_codegen::spec::parse_toml;
+use hexagen_host::engine::{Prepared, Verifier, prepare_ast};
+use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
+use hexagen_tests::options::kinds;
+use rayon::prelude::*;
+use std::env;
+
+mod array {
+    include!(concat!(env!("OUT_DIR"), "/covering_specifications.rs"));
+}
+
+/// Steps per drive.
+const STEPS: u64 = 20_000;
+
+/// Every so many drives are compiled with a check for undefined behaviour, the rest as firmware would be; all of them
+/// both ways where `HEXAGEN_WHOLE_PRODUCTS` is set.
+const CHECKED: usize = 6;
+
+/// What makes the compiled code stop at undefined behaviour.
+const CHECK: &str = "-fsanitize=undefined -fno-sanitize-recover -O1";
+
+fn prepared(toml: &str, what: &str) -> Prepared {
+    let prepared = parse_toml(toml, "drive.toml").and_then(|ast| prepare_ast(ast, what, None));
+    prepared.unwrap_or_else(|errors| panic!("{what}\n{errors}"))
+}
+
+/// Compares a drive's C, compiled with these flags besides; what differs.
+fn difference(drive: &Prepared, flags: &str, seed: u64) -> Option<String> {
+    let verifier = match Verifier::of_c99(drive, flags) {
+        Ok(verifier) => verifier,
+        Err(error) => panic!("{}: {error}", drive.motor),
+    };
+    match verifier.verify(STEPS, seed) {
+        Ok(report) => {
+            assert_eq!(report.steps, STEPS);
+            None
+        }
+        Err(error) => Some(format!("{}\n{error}", drive.motor)),
+    }
+}
+
+#[test]
+fn emitted_c_is_bit_true() {
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    let rows = array::SPECIFICATIONS.par_iter().enumerate();
+    let failures: Vec<String> = rows
+        .flat_map_iter(|(place, (_, what, toml))| {
+            let drive = prepared(toml, what);
+            let is_checked = place % CHECKED == 0;
+            let checked = (is_whole || is_checked).then_some(CHECK);
+            let plain = (is_whole || !is_checked).then_some("");
+            let flags = checked.into_iter().chain(plain);
+            let failures = flags.filter_map(|flags| difference(&drive, flags, place as u64));
+            failures.collect::<Vec<_>>()
+        })
+        .collect();
+    for kind in kinds() {
+        let rows = array::SPECIFICATIONS.iter();
+        let rows = rows.filter(|(known, ..)| *known == kind.name).count();
+        println!("{}: {rows} drives", kind.name);
+        assert!(rows >= 16, "{}", kind.name);
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Every motor of the library, with each kind of controller that it takes.
+fn library() -> impl Iterator<Item = Prepared> {
+    let drives = motors().into_iter().flat_map(|motor| {
+        let kinds = kinds().into_iter().map(|kind| kind.name.to_owned());
+        kinds.map(move |kind| (motor.clone(), kind))
+    });
+    drives.filter_map(|(motor, kind)| {
+        let ast = parse_toml(&motor.text, "motor.toml").ok()?;
+        prepare_ast(ast, &format!("{} {kind}", motor.name), Some(&kind)).ok()
+    })
+}
+
+/// Words of code, without comments.
+fn code(text: &str) -> String {
+    let mut parts = text.split("/*");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let rest = parts.filter_map(|part| part.split_once("*/"));
+    rest.fold(first, |code, (_, behind)| code + behind)
+}
+
+#[test]
+fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
+    let never = [
+        "float",
+        "double",
+        "for",
+        "while",
+        "do",
+        "goto",
+        "char",
+        "int8_t",
+        "uint8_t",
+        "int_least8_t",
+        "malloc",
+        "memcpy",
+    ];
+    let divisions = ["divide", "divide_narrow", "turn_over"];
+    let (mut drives, mut dividing) = (0, 0);
+    for drive in library() {
+        let generated = &drive.generated;
+        let sources = emit_c99(&generated.graph, &generated.interface, "HubDrive");
+        let source = code(&sources.source);
+        for text in [&source, &code(&sources.header)] {
+            let words = text.split(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
+            for word in words {
+                assert!(!never.contains(&word), "{}: {word}", drive.motor);
+            }
+        }
+        assert!(!source.contains('%'), "{}", drive.motor);
+        for function in source.split("\n}\n") {
+            let (head, body) = function.split_once("\n{\n").unwrap_or_default();
+            let name = head
+                .rsplit('\n')
+                .find(|line| line.contains('('))
+                .unwrap_or_default();
+            let is_helper = divisions
+                .iter()
+                .any(|helper| name.contains(&format!(" {helper}(")));
+            assert_eq!(body.contains(" / "), is_helper, "{}: {name}", drive.motor);
+            if divisions
+                .iter()
+                .any(|helper| body.contains(&format!("{helper}(")))
+            {
+                dividing += 1;
+                let is_setter = name.starts_with("static") && name.contains(" set_");
+                assert!(
+                    head.contains("HUB_DRIVE_COLD\n") || is_setter,
+                    "{}: {name}",
+                    drive.motor
+                );
+            }
+        }
+        drives += 1;
+    }
+    assert!(
+        drives > 40 && dividing > 10,
+        "{drives} drives, {dividing} functions"
+    );
+}
+
+/// A type's name that C keeps for itself, one of a header that is included, one that makes a stage's name, and one of a
+/// constant's first letter.
+#[test]
+fn names_that_c_does_not_take_are_changed() {
+    let paper = motor(PAPER_MOTOR);
+    for (name, prefix) in [
+        ("Int", "int"),
+        ("Stdint", "drive_stdint"),
+        ("Latch", "latch"),
+        ("I", "i"),
+    ] {
+        let mut ast = parse_toml(&paper.text, "drive.toml").expect("a motor of the library");
+        name.clone_into(&mut ast.name.text);
+        let drive = prepare_ast(ast, name, None).expect("it generates");
+        let sources = emit_c99(&drive.generated.graph, &drive.generated.interface, name);
+        assert_eq!(sources.name, prefix);
+        assert_eq!(difference(&drive, "", 1), None);
+    }
+}
