@@ -3,6 +3,10 @@
 //! extended by: the interpreter as a subject, and arbitrary states.
 
 pub mod cases;
+/// The drives of the covering arrays, as the build script finds them.
+pub mod covering {
+    include!(concat!(env!("OUT_DIR"), "/covering_specifications.rs"));
+}
 pub mod edges;
 pub mod equality;
 pub mod exactness;

@@ -4,14 +4,11 @@
 use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::spec::parse_toml;
 use hexagen_host::engine::{Prepared, Verifier, prepare_ast};
+use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::kinds;
 use rayon::prelude::*;
 use std::env;
-
-mod array {
-    include!(concat!(env!("OUT_DIR"), "/covering_specifications.rs"));
-}
 
 /// Steps per drive.
 const STEPS: u64 = 20_000;
@@ -46,7 +43,7 @@ fn difference(drive: &Prepared, flags: &str, seed: u64) -> Option<String> {
 #[test]
 fn emitted_c_is_bit_true() {
     let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
-    let rows = array::SPECIFICATIONS.par_iter().enumerate();
+    let rows = SPECIFICATIONS.par_iter().enumerate();
     let failures: Vec<String> = rows
         .flat_map_iter(|(place, (_, what, toml))| {
             let drive = prepared(toml, what);
@@ -59,7 +56,7 @@ fn emitted_c_is_bit_true() {
         })
         .collect();
     for kind in kinds() {
-        let rows = array::SPECIFICATIONS.iter();
+        let rows = SPECIFICATIONS.iter();
         let rows = rows.filter(|(known, ..)| *known == kind.name).count();
         println!("{}: {rows} drives", kind.name);
         assert!(rows >= 16, "{}", kind.name);
