@@ -9,6 +9,7 @@ mod function;
 mod helpers;
 mod interface;
 mod layout;
+mod methods;
 mod names;
 mod stage;
 
