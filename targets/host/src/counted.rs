@@ -55,16 +55,23 @@ impl Counted {
     pub fn parse(text: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(text)
     }
-}
 
-/// The figures of a step function of the firmware for a Cortex-M4.
-///
-/// # Errors
-/// When there are none.
-pub fn on_cortex_m4(symbol: &str) -> Result<Figures, CountedError> {
-    let counted = Counted::parse(include_str!("../../cortex-m4/cost.toml"))?;
-    let figures = counted.steps.get(symbol).copied();
-    figures.ok_or_else(|| CountedError::Step(symbol.to_owned()))
+    /// The figures of the firmware for a Cortex-M4.
+    ///
+    /// # Errors
+    /// When the file beside the target is not one of figures.
+    pub fn on_cortex_m4() -> Result<Self, CountedError> {
+        Ok(Self::parse(include_str!("../../cortex-m4/cost.toml"))?)
+    }
+
+    /// The figures of a step function.
+    ///
+    /// # Errors
+    /// When there are none.
+    pub fn of_step(&self, symbol: &str) -> Result<Figures, CountedError> {
+        let figures = self.steps.get(symbol).copied();
+        figures.ok_or_else(|| CountedError::Step(symbol.to_owned()))
+    }
 }
 
 #[cfg(test)]
@@ -73,8 +80,9 @@ mod tests {
 
     #[test]
     fn unknown_steps_are_named() {
-        assert!(on_cortex_m4("step_trivedi_keshri_660w_pdcc").is_ok());
-        let error = on_cortex_m4("step_x").expect_err("there is none");
+        let counted = Counted::on_cortex_m4().expect("figures");
+        assert!(counted.of_step("step_trivedi_keshri_660w_pdcc").is_ok());
+        let error = counted.of_step("step_x").expect_err("there is none");
         assert!(
             error.to_string().contains("no figures of step_x"),
             "{error}"

@@ -11,13 +11,13 @@ use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_t
 use crate::closed_loop::{
     Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
 };
-use crate::counted::{Figures as StepCost, on_cortex_m4};
+use crate::counted::{Counted, Figures as StepCost};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report;
 use crate::report::reproduction::{
     self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables,
-    TIMES_TEXT, Times, distance_rms,
+    TIMES_TEXT, distance_rms,
 };
 use clap::Args;
 use hexagen_codegen::interface::PublicValue;
@@ -93,8 +93,9 @@ pub fn collect(effort: &Effort, folder: Option<&Path>) -> Result<Reproduction, F
         .collect::<Result<Vec<_>, _>>()?;
     let per_drive = SPEEDS.len() + effort.curve_rpm.len() + 1;
     let progress = bar((per_drive * drives.len()) as u64, "simulating");
+    let counted = Counted::on_cortex_m4()?;
     let costs = counted_readings()
-        .map(|(symbol, _)| on_cortex_m4(&symbol))
+        .map(|(symbol, _)| counted.of_step(&symbol))
         .collect::<Result<Vec<_>, _>>()?;
     let runs = drives
         .par_iter()
@@ -302,14 +303,9 @@ fn table_5(data: &Reproduction) -> String {
     for method in Method::ALL {
         for reading in Reading::ALL {
             let run = data.methods[method.index()].of(reading);
-            let usual = |text: String| {
-                if run.has_tripped() {
-                    "-".to_owned()
-                } else {
-                    text
-                }
-            };
-            let times = Times::of(&run.cost, data.inverter.t_s);
+            let times = run.times(data.inverter.t_s);
+            let microseconds = |time: f64| format!("{:.1}", 1e6 * time);
+            let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
             let switching = run.points.iter().map(|point| match point.trip {
                 None => format!("{:.1}", point.merits.switching_hz / 1e3),
                 Some(_) => "-".to_owned(),
@@ -317,11 +313,11 @@ fn table_5(data: &Reproduction) -> String {
             let cells = [
                 method.name().to_owned(),
                 reading.name().to_owned(),
-                usual(run.cost.normal.to_string()),
+                or_dash(run.usual_instructions().map(|count| count.to_string())),
                 run.cost.worst.to_string(),
-                usual(format!("{:.1}", 1e6 * times.usual)),
-                format!("{:.1}", 1e6 * times.worst),
-                format!("{:.1}", 1e6 * times.free),
+                or_dash(times.usual.map(microseconds)),
+                microseconds(times.worst),
+                microseconds(times.free),
             ];
             table.row(cells.into_iter().chain(switching));
         }

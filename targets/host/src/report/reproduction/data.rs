@@ -1,7 +1,7 @@
 //! What was run, as plain data: four methods, each in two readings of the paper.
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
-use super::timing::CLOCK_HZ;
+use super::timing::{CLOCK_HZ, Times};
 use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace, Trip};
 use crate::counted::Figures as StepCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
@@ -129,9 +129,26 @@ pub struct Run {
 }
 
 impl Run {
-    /// Whether the drive lost its current: most of the steps that were counted for it are no control then.
-    pub fn has_tripped(&self) -> bool {
-        self.points.iter().any(|point| point.trip.is_some())
+    /// What a usual step costs; none of a drive that trips, since most of the steps that were counted for it are no
+    /// control.
+    fn usual(&self) -> Option<StepCost> {
+        let has_tripped = self.points.iter().any(|point| point.trip.is_some());
+        (!has_tripped).then_some(self.cost)
+    }
+
+    /// Instructions of a usual step.
+    pub fn usual_instructions(&self) -> Option<u32> {
+        self.usual().map(|cost| cost.normal)
+    }
+
+    /// Cycles of a usual step.
+    pub fn usual_cycles(&self) -> Option<u32> {
+        self.usual().map(|cost| cost.cycles)
+    }
+
+    /// Times of a step in a control period `t_s`, seconds.
+    pub fn times(&self, t_s: f64) -> Times {
+        Times::of(&self.cost, self.usual_cycles(), t_s)
     }
 }
 
@@ -211,6 +228,6 @@ fn figures(run: &Run) -> Figures {
         },
         speeds: [low, high],
         cycles: run.cost.worst_cycles(),
-        usual_cycles: (!run.has_tripped()).then_some(run.cost.cycles),
+        usual_cycles: run.usual_cycles(),
     }
 }

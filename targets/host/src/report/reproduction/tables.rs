@@ -1,7 +1,7 @@
 //! Tables 1, 2, 3 and 5.
 
 use super::data::{Method, Reading, Reproduction};
-use super::timing::{CLOCK_HZ, TIMES_TEXT, Times};
+use super::timing::{CLOCK_HZ, TIMES_TEXT};
 use crate::closed_loop::Merits;
 use crate::report::sections::{number, quantity};
 use hexagen_codegen::design::vectors::{
@@ -257,13 +257,13 @@ pub fn table_5(data: &Reproduction) -> Markup {
                         @for reading in Reading::ALL {
                             @let run = data.methods[method.index()].of(reading);
                             @let cost = run.cost;
-                            @let times = Times::of(&cost, t_s);
+                            @let times = run.times(t_s);
                             tr {
                                 td { @if reading == Reading::Literal { "(" (method.letter()) ") " (method.name()) } }
                                 td { (reading.name()) }
-                                td.number.edge { @if run.has_tripped() { (number(f64::NAN, 0)) } @else { (cost.normal) } } td.number { (cost.worst) }
+                                td.number.edge { (number(run.usual_instructions().map_or(f64::NAN, f64::from), 0)) } td.number { (cost.worst) }
                                 td.number.edge { (cost.code) } td.number { (cost.stack) }
-                                @for (k, time) in [if run.has_tripped() { f64::NAN } else { times.usual }, times.worst, times.free].into_iter().enumerate() {
+                                @for (k, time) in [times.usual.unwrap_or(f64::NAN), times.worst, times.free].into_iter().enumerate() {
                                     td.number.edge[k == 0] { (number(1e6 * time, 1)) }
                                 }
                                 @for (k, point) in run.points.iter().enumerate() {
