@@ -341,6 +341,11 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// Kind and motor.
+    pub fn name(&self) -> String {
+        format!("{} {}", self.kind, self.motor)
+    }
+
     /// Its motor's file with its options, and another type name if one is given.
     pub fn toml(&self, type_name: Option<&str>) -> String {
         let kind = kind(self.kind);

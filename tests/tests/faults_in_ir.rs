@@ -39,14 +39,13 @@ fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize)
     };
     assert!(
         !noticed(program, ""),
-        "{} {} differs without a fault",
-        drive.kind,
-        drive.motor
+        "{} differs without a fault",
+        drive.name()
     );
     let planted: Vec<Fault> = faults(program).collect();
     let unnoticed = planted
         .par_iter()
-        .map(|fault| (fault, format!("{}: {}", fault.place, fault.what)))
+        .map(|fault| (fault, fault.name()))
         .filter(|(fault, name)| !noticed(&fault.program, name))
         .filter(|(fault, _)| {
             let is_of_setters = fault.place.starts_with("set_") || setters.contains(&fault.place);
@@ -61,7 +60,7 @@ fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize)
 fn every_planted_fault_is_noticed() {
     let mut wrong: Vec<String> = vec![];
     for drive in DRIVES {
-        let name = &format!("{} {}", drive.kind, drive.motor)[..];
+        let name = &drive.name()[..];
         let mut equivalent = listed(EQUIVALENT, name, &mut wrong);
         let mut rare = listed(RARE, name, &mut wrong);
         let (unnoticed, planted) = plant(drive, &equivalent);

@@ -104,7 +104,7 @@ fn every_fault_is_noticed_by_somebody_or_known_to_change_nothing() {
     let mut unnoticed = vec![];
     let mut noticed = [0; 3];
     for drive in DRIVES {
-        let name = &format!("{} {}", drive.kind, drive.motor)[..];
+        let name = &drive.name()[..];
         let sound = Sound::of(drive);
         let mut known = listed(EQUIVALENT, name, &mut unnoticed);
         known.extend(listed(RARE, name, &mut unnoticed));
@@ -114,12 +114,7 @@ fn every_fault_is_noticed_by_somebody_or_known_to_change_nothing() {
         let found: Vec<(String, Noticed)> = chosen
             .collect::<Vec<_>>()
             .into_par_iter()
-            .map(|fault| {
-                (
-                    format!("{}: {}", fault.place, fault.what),
-                    sound.noticed(fault),
-                )
-            })
+            .map(|fault| (fault.name(), sound.noticed(fault)))
             .collect();
         println!("{name}");
         for (fault, by) in found {

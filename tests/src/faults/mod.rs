@@ -28,6 +28,11 @@ pub struct Fault {
 }
 
 impl Fault {
+    /// Place, and what was changed.
+    pub fn name(&self) -> String {
+        format!("{}: {}", self.place, self.what)
+    }
+
     /// The fault in `program`, of which it is one, with the intervals that follow: what a generator would have made of it.
     ///
     /// # Errors
@@ -35,27 +40,21 @@ impl Fault {
     pub fn planted_in(&self, program: &Program) -> Result<Program, String> {
         let mut faulty = program.clone();
         self.change.apply(&mut faulty);
-        for function in 0..=faulty.setters.len() {
-            for index in 0..function_of(program, function).nodes.len() {
-                let held = function_of(&faulty, function);
+        for (number, function) in program.functions().enumerate() {
+            for index in 0..function.nodes.len() {
+                let held = faulty.functions().nth(number);
+                let held = held.ok_or_else(|| format!("function {number}"))?;
                 let derived = derived_interval(&faulty, held, index)
                     .filter(|&interval| Interval::WORD.contains(interval))
                     .ok_or_else(|| place(held, index))?;
-                function_mut(&mut faulty, function).nodes[index].interval = derived;
+                function_mut(&mut faulty, number).nodes[index].interval = derived;
             }
         }
         Ok(faulty)
     }
 }
 
-/// The step, or a setter behind it.
-fn function_of(program: &Program, number: usize) -> &Function {
-    match number {
-        0 => &program.step,
-        setter => &program.setters[setter - 1],
-    }
-}
-
+/// The step, or a setter behind it, in the order of [`Program::functions`].
 fn function_mut(program: &mut Program, number: usize) -> &mut Function {
     match number {
         0 => &mut program.step,

@@ -2,6 +2,13 @@
 
 use crate::support::{PAPER, Said, hexagen, keys, number, run};
 use serde_json::Value;
+use std::ffi::OsStr;
+
+/// Runs the program with a variable of its environment set.
+fn run_with(arguments: &[&str], variable: &str, value: &OsStr) -> Said {
+    let output = hexagen().args(arguments).env(variable, value).output();
+    Said::from(output.expect("the program starts"))
+}
 
 fn first(said: &Said) -> Value {
     said.json()["results"][0].clone()
@@ -48,11 +55,7 @@ fn other_drives_are_compiled_or_interpreted() {
         "{compiled}"
     );
 
-    let output = hexagen()
-        .args(arguments)
-        .env("RUSTC", "no-such-compiler")
-        .output();
-    let said = Said::from(output.expect("the program starts"));
+    let said = run_with(&arguments, "RUSTC", "no-such-compiler".as_ref());
     let interpreted = first(&said);
     assert_eq!(interpreted["engine"], "interpreter");
     assert!(said.stderr.contains("interpreted"), "{}", said.stderr);
@@ -80,11 +83,7 @@ fn emitted_c_is_compiled_and_compared() {
     let rust = first(&run(["verify", PAPER, "--steps", "5000", "--json"]));
     assert_eq!(rust["coverage"], compared["coverage"]);
 
-    let output = hexagen()
-        .args(arguments)
-        .env("CC", "no-such-compiler")
-        .output();
-    let said = Said::from(output.expect("the program starts"));
+    let said = run_with(&arguments, "CC", "no-such-compiler".as_ref());
     assert_eq!(said.code, 2);
     assert!(
         said.stderr.contains("the C compiler cannot run"),
@@ -108,19 +107,16 @@ fn a_fault_planted_in_emitted_c_is_found() {
         exec cc \"$@\"\n";
     std::fs::write(&compiler, script).expect("can be written");
     std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).expect("is ours");
-    let output = hexagen()
-        .args([
-            "verify",
-            PAPER,
-            "--language",
-            "c99",
-            "--steps",
-            "20000",
-            "--json",
-        ])
-        .env("CC", &compiler)
-        .output();
-    let said = Said::from(output.expect("the program starts"));
+    let arguments = [
+        "verify",
+        PAPER,
+        "--language",
+        "c99",
+        "--steps",
+        "20000",
+        "--json",
+    ];
+    let said = run_with(&arguments, "CC", compiler.as_os_str());
     assert_eq!(said.code, 1, "{said:?}");
     assert_eq!(said.json_whatever_the_code()["passed"], false);
     for text in ["differs", "adc_a =", "v_a_cmd", "<--"] {
@@ -181,19 +177,16 @@ fn a_fault_planted_in_the_emitted_text_is_found() {
         exec rustc \"$@\"\n";
     std::fs::write(&compiler, script).expect("can be written");
     std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).expect("is ours");
-    let output = hexagen()
-        .args([
-            "verify",
-            PAPER,
-            "--controller",
-            "pdcc:advance=0.5",
-            "--steps",
-            "20000",
-            "--json",
-        ])
-        .env("RUSTC", &compiler)
-        .output();
-    let said = Said::from(output.expect("the program starts"));
+    let arguments = [
+        "verify",
+        PAPER,
+        "--controller",
+        "pdcc:advance=0.5",
+        "--steps",
+        "20000",
+        "--json",
+    ];
+    let said = run_with(&arguments, "RUSTC", compiler.as_os_str());
     assert_eq!(said.code, 1, "{said:?}");
     let result = said.json_whatever_the_code();
     assert_eq!(result["passed"], false);
