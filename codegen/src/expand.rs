@@ -12,6 +12,7 @@ use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
 use crate::spec::{MacroInput, MotorFile, SpecAst, check, is_absolute, parse_macro, parse_toml};
+use crate::stopwatch::Part;
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, quote};
 use std::path::Path;
@@ -19,7 +20,7 @@ use std::path::Path;
 /// Expands `controller! { pub HubDrive { … } }`; motor files are found under `root`, the folder of
 /// the crate that makes the call.
 pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
-    let input = match parse_macro(tokens) {
+    let input = match Part::Parsing.timed(|| parse_macro(tokens)) {
         Ok(input) => input,
         Err(errors) => return errors.to_compile_errors(&TokenStream::new()),
     };
@@ -27,7 +28,7 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     match generate_input(&input, root) {
         Ok((Generated { graph, interface }, warnings)) => {
             let tracking = input.motor_file.iter().map(track);
-            let code = emit_rust(&graph, &interface, &surface);
+            let code = Part::Emission.timed(|| emit_rust(&graph, &interface, &surface));
             let anchor = input.anchor();
             let warnings = warnings
                 .iter()
@@ -78,8 +79,7 @@ fn generate_input(
     input: &MacroInput,
     root: &Path,
 ) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
-    let ast = input.load(root)?;
-    let (spec, origins) = check(&ast)?;
+    let (spec, origins) = Part::Parsing.timed(|| check(&input.load(root)?))?;
     Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
 }
 

@@ -36,6 +36,7 @@ pub mod lower;
 pub mod pipeline;
 pub mod scaling;
 pub mod spec;
+pub mod stopwatch;
 
 pub use builder::{BuildError, Builder, Written};
 pub use expand::{expand_controller, expand_verify};

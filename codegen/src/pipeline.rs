@@ -9,6 +9,7 @@ use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec, SwitchingTable};
+use crate::stopwatch::Part;
 
 /// What emitters take.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,10 @@ pub struct Generated {
 /// # Errors
 /// Diagnostics of the design (stability) and of scaling (word too narrow), located by `origins`.
 pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
+    Part::Design.timed(|| designed(spec, origins))
+}
+
+fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let common = spec.controller.common();
     let design = LoopDesign::new(spec, common);
     let scaled = choose_scale(&spec.inverter, common.word, |scale| {
@@ -137,7 +142,7 @@ fn check_stability(
     origins: &Origins,
     errors: &mut Collector,
 ) -> StableRange {
-    let radius = linear.spectral_radius(spec, 1.0, 1.0);
+    let radius = linear.spectral_radius(spec);
     let stable = linear.stable_range(spec);
     if radius >= 1.0 {
         let (field, default, remedy) = match &spec.controller {

@@ -8,6 +8,7 @@ use crate::interface::FormatEntry;
 use crate::ir::{Function, Op, Program, VerifiedGraph, Violation, verify};
 use crate::lower::Scale;
 use crate::spec::InverterSpec;
+use crate::stopwatch::Part;
 
 /// A program lowered at a scale, before verification.
 #[derive(Debug)]
@@ -109,16 +110,19 @@ fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
             bits: None,
         });
     }
-    let graph = verify(program).map_err(|violations| {
-        let escape = |violation: &Violation| Some((violation.place.clone(), violation.escaped?));
-        match violations.iter().find_map(escape) {
-            Some((place, interval)) => Unscalable::TooNarrow {
-                signal: format!("`{}`", place.rsplit(": ").next().unwrap_or_default()),
-                bits: Some(interval.bits()),
-            },
-            None => Unscalable::Broken(violations),
-        }
-    })?;
+    let graph = Part::ProofRanges
+        .timed(|| verify(program))
+        .map_err(|violations| {
+            let escape =
+                |violation: &Violation| Some((violation.place.clone(), violation.escaped?));
+            match violations.iter().find_map(escape) {
+                Some((place, interval)) => Unscalable::TooNarrow {
+                    signal: format!("`{}`", place.rsplit(": ").next().unwrap_or_default()),
+                    bits: Some(interval.bits()),
+                },
+                None => Unscalable::Broken(violations),
+            }
+        })?;
     if scale.word == 16
         && let Some(signal) = wide_product(graph.program())
     {

@@ -4,6 +4,7 @@ use super::interface::fraction_bits;
 use crate::diagnostics::significant;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::ir::{Program, StatedError, stated_errors};
+use crate::stopwatch::Part;
 
 /// A number, rounded up.
 fn rounded_up(value: f64) -> PublicValue {
@@ -44,7 +45,7 @@ fn tie_band(stated: &StatedError) -> PublicConstant {
 /// `widest`, in its unit, has no constant.
 pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Vec<PublicConstant> {
     let mut constants = vec![];
-    for stated in stated_errors(program) {
+    for stated in Part::ProofRanges.timed(|| stated_errors(program)) {
         let StatedError {
             name,
             doc,

@@ -100,6 +100,12 @@ impl Function {
     /// Which nodes some result needs; a join needs its stage's guard.
     fn live(&self) -> Vec<bool> {
         let mut live = vec![false; self.nodes.len()];
+        let mut conditions = vec![None; self.nodes.len()];
+        for guard in self.stages.iter().filter_map(|stage| stage.guard.as_ref()) {
+            for join in &guard.joins {
+                conditions[join.index()] = Some(guard.condition);
+            }
+        }
         let results = self.outputs.iter().map(|&(_, value)| value);
         let words = self
             .next_state
@@ -113,12 +119,7 @@ impl Function {
                 continue;
             }
             wanted.extend(self.node(value).op.operands());
-            let guards = self.stages.iter().filter_map(|stage| stage.guard.as_ref());
-            wanted.extend(
-                guards
-                    .filter(|guard| guard.joins.contains(&value))
-                    .map(|guard| guard.condition),
-            );
+            wanted.extend(conditions[value.index()]);
         }
         live
     }

@@ -4,6 +4,7 @@
 //! early. `cargo xtask nightly` adds the long ones. Every step is a plain cargo command that is printed
 //! before it runs, so that it can be repeated by hand.
 
+mod compile_time;
 mod steps;
 
 use clap::{Parser, Subcommand};
@@ -38,6 +39,8 @@ enum Command {
     Cost(Forwarded),
     /// Plants 300 faults and lists who notices each: interval verifier, Gappa, or the comparison with the bit-true model
     Faults,
+    /// What 100 controllers add to `cargo check`, and the share of each part of the generator
+    CompileTime,
     /// Refreshes every recorded expectation (snapshots, compiler messages); read the diff afterwards
     Accept,
 }
@@ -62,6 +65,7 @@ fn main() -> ExitCode {
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
+        Command::CompileTime => compile_time::measure(steps::root()),
         Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),
     };
     match outcome {

@@ -261,15 +261,20 @@ pub fn refresh() -> Vec<Step> {
     ]
 }
 
+/// The repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .unwrap_or(Path::new("."))
+}
+
 /// Runs the steps in order; stops at the first that fails.
 ///
 /// # Errors
 /// The name of the failing step, or what is missing and how to get it.
 pub fn run(steps: &[Step]) -> Result<(), String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .unwrap_or(Path::new("."));
+    let root = root();
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     for step in steps {
         if let Some((subcommand, remedy)) = step.needs {

@@ -2,7 +2,7 @@
 
 use super::LoopDesign;
 use crate::design::DiscretePlant;
-use crate::spec::Spec;
+use crate::spec::{Discretisation, Spec};
 use nalgebra::{DMatrix, DVector};
 
 /// Stable ranges of true over stated inductance and resistance.
@@ -18,19 +18,11 @@ pub struct StableRange {
 pub trait LinearLoop {
     /// Length of the state.
     fn order(&self) -> usize;
-    /// The state a period later.
+    /// The state a period later: affine in the plant's pole and gain, which move nothing but the current.
     fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64>;
 
-    /// Spectral radius on a plant with `resistance_ratio` and `inductance_ratio` times the motor's
-    /// R and L (per axis; EMF as a disturbance).
-    fn spectral_radius(&self, spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> f64 {
-        // The plant is physical whatever the model's discretisation: its own discretisation is exact.
-        let real = DiscretePlant::new(
-            crate::spec::Discretisation::Exact,
-            (spec.motor.resistance * resistance_ratio).max(1e-9),
-            spec.motor.inductance * inductance_ratio,
-            spec.inverter.t_s,
-        );
+    /// One period as a matrix.
+    fn matrix(&self, real: DiscretePlant) -> DMatrix<f64> {
         let order = self.order();
         let columns: Vec<DVector<f64>> = (0..order)
             .map(|axis| {
@@ -38,7 +30,12 @@ pub trait LinearLoop {
                 self.advance(real, &unit)
             })
             .collect();
-        let matrix = DMatrix::from_columns(&columns);
+        DMatrix::from_columns(&columns)
+    }
+
+    /// Spectral radius on the motor as it is stated (per axis; EMF as a disturbance).
+    fn spectral_radius(&self, spec: &Spec) -> f64 {
+        let matrix = self.matrix(real_plant(spec, 1.0, 1.0));
         matrix
             .complex_eigenvalues()
             .iter()
@@ -49,11 +46,84 @@ pub trait LinearLoop {
     /// The ranges of true over stated R and L within which the loop is stable, one off at a time,
     /// searched from 0.1 to 10.
     fn stable_range(&self, spec: &Spec) -> StableRange {
+        let poles = CharacteristicPolynomial::new(self);
+        let is_stable = |resistance_ratio, inductance_ratio| {
+            poles.are_inside_the_unit_circle(real_plant(spec, resistance_ratio, inductance_ratio))
+        };
         StableRange {
-            inductance: stable_interval(|ratio| self.spectral_radius(spec, 1.0, ratio)),
-            resistance: stable_interval(|ratio| self.spectral_radius(spec, ratio, 1.0)),
+            inductance: stable_interval(|ratio| is_stable(1.0, ratio)),
+            resistance: stable_interval(|ratio| is_stable(ratio, 1.0)),
         }
     }
+}
+
+/// The plant with `resistance_ratio` and `inductance_ratio` times the motor's R and L. It is physical whatever the
+/// model's discretisation: its own is exact.
+fn real_plant(spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> DiscretePlant {
+    DiscretePlant::new(
+        Discretisation::Exact,
+        (spec.motor.resistance * resistance_ratio).max(1e-9),
+        spec.motor.inductance * inductance_ratio,
+        spec.inverter.t_s,
+    )
+}
+
+/// The characteristic polynomial of a loop on any plant, from the highest power, whose coefficient is 1, downward.
+///
+/// Pole and gain of the plant stand in one row of the loop's matrix, and a determinant is linear in each row: three
+/// polynomials make all others. The search for a stable range asks for hundreds, where a macro runs unoptimised.
+struct CharacteristicPolynomial {
+    fixed: Vec<f64>,
+    of_pole: Vec<f64>,
+    of_gain: Vec<f64>,
+}
+
+impl CharacteristicPolynomial {
+    fn new(linear: &(impl LinearLoop + ?Sized)) -> Self {
+        let on = |pole, gain| characteristic(&linear.matrix(DiscretePlant { pole, gain }));
+        let fixed = on(0.0, 0.0);
+        let beside_fixed = |coefficients: Vec<f64>| {
+            let pairs = coefficients.iter().zip(&fixed);
+            pairs.map(|(with, without)| with - without).collect()
+        };
+        Self {
+            of_pole: beside_fixed(on(1.0, 0.0)),
+            of_gain: beside_fixed(on(0.0, 1.0)),
+            fixed,
+        }
+    }
+
+    /// Whether all poles of the loop on this plant have a magnitude below 1: the criterion of Schur and Cohn.
+    fn are_inside_the_unit_circle(&self, real: DiscretePlant) -> bool {
+        let mut polynomial = self.fixed.clone();
+        for (power, coefficient) in polynomial.iter_mut().enumerate() {
+            *coefficient += real.pole * self.of_pole[power] + real.gain * self.of_gain[power];
+        }
+        while let [highest, .., lowest] = polynomial[..] {
+            let reflection = lowest / highest;
+            if reflection.is_nan() || reflection.abs() >= 1.0 {
+                return false;
+            }
+            let last = polynomial.len() - 1;
+            polynomial = (0..last)
+                .map(|power| polynomial[power] - reflection * polynomial[last - power])
+                .collect();
+        }
+        true
+    }
+}
+
+/// Coefficients of det(z - A), by the recursion of Faddeev and Le Verrier.
+fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
+    let order = matrix.nrows();
+    let mut coefficients = vec![1.0];
+    let mut product = DMatrix::zeros(order, order);
+    for step in 1..=order {
+        let sum = &product + DMatrix::identity(order, order) * coefficients[step - 1];
+        product = matrix * sum;
+        coefficients.push(-product.trace() / step as f64);
+    }
+    coefficients
 }
 
 /// What an estimate of the EMF that takes over a share of what is seen makes of current and voltage alone: at
@@ -68,23 +138,24 @@ pub fn estimate(share: f64, design: &LoopDesign, i: [f64; 2], v_prev: f64, e_pre
     }
 }
 
-/// The interval around 1 where `radius` stays below 1, between 0.1 and 10, to 1e-4 relative.
-fn stable_interval(radius: impl Fn(f64) -> f64) -> (f64, f64) {
-    if radius(1.0) >= 1.0 {
+/// The interval around 1 where the loop is stable, between 0.1 and 10, to 1e-4 relative.
+fn stable_interval(is_stable: impl Fn(f64) -> bool) -> (f64, f64) {
+    if !is_stable(1.0) {
         return (1.0, 1.0);
     }
     let search = |direction: f64| {
         let (mut inside, mut outside) = (1.0_f64, 1.0_f64);
-        while radius(outside) < 1.0 {
+        let stride = 1.02_f64.powf(direction);
+        while is_stable(outside) {
             inside = outside;
-            outside *= 1.02_f64.powf(direction);
+            outside *= stride;
             if !(0.1..=10.0).contains(&outside) {
                 return outside.clamp(0.1, 10.0);
             }
         }
         while (outside / inside - 1.0).abs() > 1e-4 {
             let middle = (inside * outside).sqrt();
-            if radius(middle) < 1.0 {
+            if is_stable(middle) {
                 inside = middle;
             } else {
                 outside = middle;
@@ -93,4 +164,55 @@ fn stable_interval(radius: impl Fn(f64) -> f64) -> (f64, f64) {
         inside
     };
     (search(-1.0), search(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CharacteristicPolynomial, DiscretePlant, LinearLoop};
+    use nalgebra::{DMatrix, DVector};
+
+    /// A loop of any matrix; the plant stands in its first row.
+    struct Any(DMatrix<f64>);
+
+    impl LinearLoop for Any {
+        fn order(&self) -> usize {
+            self.0.nrows()
+        }
+
+        fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64> {
+            let mut next = &self.0 * x;
+            next[0] = real.pole * x[0] + real.gain * next[0];
+            next
+        }
+    }
+
+    #[test]
+    fn the_polynomial_is_stable_where_the_largest_eigenvalue_is_below_1() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let mut stable = 0;
+        for round in 0..2000 {
+            let order = 2 + round % 5;
+            let linear = Any(DMatrix::from_fn(order, order, |_, _| 0.8 * random()));
+            let plant = DiscretePlant {
+                pole: 0.5 + random() / 2.0,
+                gain: 2.0 * random(),
+            };
+            let poles = linear.matrix(plant).complex_eigenvalues();
+            let radius = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
+            if (radius - 1.0).abs() < 1e-9 {
+                continue;
+            }
+            let is_stable =
+                CharacteristicPolynomial::new(&linear).are_inside_the_unit_circle(plant);
+            assert_eq!(is_stable, radius < 1.0, "radius {radius} of {}", linear.0);
+            stable += usize::from(is_stable);
+        }
+        assert!((500..1500).contains(&stable), "{stable} of 2000 are stable");
+    }
 }

@@ -16,7 +16,7 @@ pub fn is_stable_with_winding_time(spec: &Spec, options: &PiPwmSpec) -> bool {
         design: &LoopDesign::new(spec, &options.common),
         spec,
     };
-    linear.spectral_radius(spec, 1.0, 1.0) < 1.0
+    linear.spectral_radius(spec) < 1.0
 }
 
 /// The PI loop; state i, i_prev, v_now, v_prev, e_prev, integral.

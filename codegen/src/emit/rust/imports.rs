@@ -12,8 +12,8 @@ use quote::{format_ident, quote};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-/// Stands for the user's type until its name is settled against all others.
-pub(super) const PLACEHOLDER: &str = "EmittedDrive";
+/// Stands for the user's type where that has a name of another item, until all names are settled.
+const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
 const SHARED: [&str; 13] = [
@@ -35,39 +35,55 @@ const SHARED: [&str; 13] = [
 /// Types that the module defines beside the user's; besides them the results of large stages.
 const OWN: [&str; 3] = ["ControlLoop", "SetPoint", "State"];
 
+/// The user's type in a body that [`settle`] has not seen yet.
+pub(super) fn unsettled(name: &Ident) -> Ident {
+    if clashes(name) {
+        format_ident!("{PLACEHOLDER}")
+    } else {
+        name.clone()
+    }
+}
+
 /// Gives the user's type its name, and every other type of that name in `body` another one.
 pub(super) fn settle(body: TokenStream, name: &Ident) -> TokenStream {
+    if clashes(name) {
+        replace(body, name, &alias(&name.to_string()))
+    } else {
+        body
+    }
+}
+
+/// Whether another item of the module has this name.
+fn clashes(name: &Ident) -> bool {
     let taken = name.to_string();
-    let clashes = taken == "Word"
+    taken == "Word"
         || taken == "Default"
         || SHARED.contains(&&*taken)
         || OWN.contains(&&*taken)
         || taken.ends_with("Results")
-        || is_fixed(&taken);
-    let alias = clashes.then(|| alias(&taken));
-    replace(body, name, alias.as_ref())
+        || is_fixed(&taken)
 }
 
-fn replace(tokens: TokenStream, name: &Ident, alias: Option<&Ident>) -> TokenStream {
+fn replace(tokens: TokenStream, name: &Ident, alias: &Ident) -> TokenStream {
     tokens
         .into_iter()
-        .map(|token| match (token, alias) {
-            (TokenTree::Ident(ident), _) if ident == PLACEHOLDER => TokenTree::Ident(name.clone()),
-            (TokenTree::Ident(ident), Some(alias)) if ident == *name => alias.clone().into(),
+        .map(|token| match token {
+            TokenTree::Ident(ident) if ident == PLACEHOLDER => name.clone().into(),
+            TokenTree::Ident(ident) if ident == *name => alias.clone().into(),
             // Links of the documentation follow.
-            (TokenTree::Literal(literal), Some(alias)) => {
+            TokenTree::Literal(literal) => {
                 let text = literal.to_string();
                 let link = format!("[`{name}::");
                 let text = text.replace(&link, &format!("[`{alias}::"));
                 TokenTree::Literal(text.parse().unwrap_or(literal))
             }
-            (TokenTree::Group(group), _) => {
+            TokenTree::Group(group) => {
                 let mut replaced =
                     Group::new(group.delimiter(), replace(group.stream(), name, alias));
                 replaced.set_span(group.span());
                 replaced.into()
             }
-            (token, _) => token,
+            token => token,
         })
         .collect()
 }

@@ -4,7 +4,7 @@ use super::super::set_point::shared;
 use super::super::texts;
 use super::expression::initial;
 use super::function::{Setter, state_word};
-use super::imports::PLACEHOLDER;
+use super::imports::unsettled;
 use super::names::{doc, docs, number, screaming, snake, storage_type, stored};
 use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::ir::{Input, Program, Word};
@@ -22,7 +22,7 @@ pub(super) struct Types<'a> {
 impl Types<'_> {
     /// The drive: set-point and state together.
     pub(super) fn drive(&self, attributes: &TokenStream, setters: &[Setter]) -> TokenStream {
-        let name = format_ident!("{PLACEHOLDER}");
+        let name = unsettled(self.name);
         let setters = setters.iter().map(|setter| &setter.delegate);
         let commands = self.commands(&quote!(self.split().1.publish();));
         let docs = docs(&self.interface.doc);

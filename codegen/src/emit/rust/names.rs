@@ -34,9 +34,19 @@ pub(super) fn snake(name: &str) -> Ident {
     }
 }
 
+/// The words that the language keeps for itself, as edition 2024 has them. (A parser knows them, too, but it is asked
+/// for thousands of names, and macros run unoptimised.)
+const KEYWORDS: [&str; 53] = [
+    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
 /// Whether the language keeps the word for itself.
 fn is_keyword(name: &str) -> bool {
-    syn::parse_str::<Ident>(name).is_err()
+    KEYWORDS.binary_search(&name).is_ok()
 }
 
 /// The identifier of a type's module: `loop_` for `Loop`.
@@ -69,17 +79,21 @@ pub(super) fn camel(name: &str) -> String {
 
 /// A number with its thousands apart: `-1_234_567`.
 pub(super) fn number(value: i64) -> TokenStream {
-    let digits = value.unsigned_abs().to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
-            text.push('_');
+    let magnitude = value.unsigned_abs();
+    let literal = if magnitude < 10_000 {
+        Literal::u64_unsuffixed(magnitude)
+    } else {
+        let digits = magnitude.to_string();
+        let mut text = String::new();
+        for (index, digit) in digits.chars().enumerate() {
+            if index > 0 && (digits.len() - index).is_multiple_of(3) {
+                text.push('_');
+            }
+            text.push(digit);
         }
-        text.push(digit);
-    }
-    let literal: Literal = text
-        .parse()
-        .unwrap_or_else(|_| Literal::u64_unsuffixed(value.unsigned_abs()));
+        text.parse()
+            .unwrap_or_else(|_| Literal::u64_unsuffixed(magnitude))
+    };
     if value < 0 {
         quote!(-#literal)
     } else {
@@ -179,12 +193,26 @@ fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{camel, module_ident, number, raw_text};
+    use super::{KEYWORDS, camel, is_keyword, module_ident, number, raw_text};
 
     #[test]
     fn names_convert_between_cases() {
         assert_eq!(module_ident("Loop"), "loop_");
         assert_eq!(camel("track_rotor"), "TrackRotor");
+    }
+
+    #[test]
+    fn keywords_are_the_words_that_are_no_identifiers() {
+        assert!(KEYWORDS.is_sorted());
+        for word in KEYWORDS {
+            assert!(is_keyword(word), "{word}");
+            // `gen` is a keyword since edition 2024, which the parser does not ask for.
+            let is_identifier = syn::parse_str::<syn::Ident>(word).is_ok();
+            assert_eq!(is_identifier, word == "gen", "{word}");
+        }
+        for name in ["hub", "union", "default", "auto", "raw", "safe", "selfish"] {
+            assert!(!is_keyword(name), "{name}");
+        }
     }
 
     #[test]

@@ -1,16 +1,16 @@
 //! The traits that all drives share, for an emitted drive and its halves.
 
-use super::imports::PLACEHOLDER;
+use super::imports::unsettled;
 use super::interface::Types;
 use super::names::{number, raw_text, snake, stored};
 use crate::interface::Rounding;
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 impl Types<'_> {
     /// The trait that all drives share.
     pub(super) fn drive_trait(&self) -> TokenStream {
-        let name = format_ident!("{PLACEHOLDER}");
+        let name = unsettled(self.name);
         let name_text = self.name.to_string();
         let spec = raw_text(&self.interface.spec_toml);
         let formats = self.interface.formats.iter().map(|entry| {

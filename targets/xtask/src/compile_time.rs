@@ -1,0 +1,293 @@
+//! What a hundred controllers add to `cargo check`.
+//!
+//! Two crates in a folder of their own, as a user would write them: one with 25 motors times 4 controllers, one with
+//! none; both in the dev profile, in which macros run unoptimised. What they depend on is built first. A third program
+//! runs the generator as the macro does, in the same profile, and says which part of it takes how long.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// What a hundred controllers may add.
+const GOAL: Duration = Duration::from_secs(6);
+
+/// Motors of the library of which every controller can be made: those whose current no vector moves too far.
+const MOTORS: [&str; 11] = [
+    "anaheim-bly171d",
+    "anaheim-bly172s",
+    "anaheim-bly341s",
+    "estun-emj-04apb22",
+    "hoverboard-hub",
+    "hurst-long",
+    "linix-45zwn24-40",
+    "mit-mini-cheetah",
+    "regal-5sme39dl0756",
+    "teknic-m2310p",
+    "trivedi-keshri-660w",
+];
+
+/// Each motor at its own control period and at others, until there are as many as this.
+const COUNT: usize = 25;
+const PERIODS: [Option<&str>; 3] = [None, Some("32 kHz"), Some("40 kHz")];
+
+const CONTROLLERS: [&str; 4] = ["fcs_mpc", "pdcc", "phcc", "pi_pwm"];
+
+/// Measured so often; the median counts.
+const RUNS: usize = 5;
+
+/// Prints what a hundred controllers add, and the share of each part.
+///
+/// # Errors
+/// What could not be written, run or read.
+pub fn measure(root: &Path) -> Result<(), String> {
+    let folder = Folder::new(root)?;
+    folder.cargo(&["build", "--package", "shares"])?;
+    let shares = folder.shares()?;
+    for name in ["none", "hundred"] {
+        folder.check(name)?;
+    }
+    let (mut none, mut hundred) = (vec![], vec![]);
+    let mut busy = Some(Duration::ZERO);
+    for _ in 0..RUNS {
+        none.push(folder.check("none")?);
+        let begin = processor_time();
+        hundred.push(folder.check("hundred")?);
+        let passed = processor_time()
+            .zip(begin)
+            .map(|(end, begin)| end.saturating_sub(begin));
+        busy = busy
+            .zip(passed)
+            .map(|(sum, passed)| sum + passed / RUNS as u32);
+    }
+    let (none, hundred) = (Spread::of(none), Spread::of(hundred));
+    let added = hundred.median.saturating_sub(none.median);
+    let controllers = COUNT * CONTROLLERS.len();
+    println!(
+        "`cargo check` from nothing, dependencies built, on two cores, median of {RUNS} runs:"
+    );
+    println!("  no controller      {none}");
+    println!("  {controllers} controllers    {hundred}");
+    if let Some(busy) = busy {
+        let busy = busy.as_secs_f64();
+        println!(
+            "  processor time     {busy:.2} s per run of the latter: much less than its time says that the machine is shared"
+        );
+    }
+    let verdict = if added < GOAL { "below" } else { "ABOVE" };
+    println!(
+        "  added              {:.2} s, {verdict} the goal of {} s",
+        added.as_secs_f64(),
+        GOAL.as_secs()
+    );
+    println!("of which the generator, unoptimised as in every dev build:");
+    let all: f64 = shares.iter().map(|(_, seconds)| seconds).sum();
+    for (part, seconds) in &shares {
+        println!("  {part:18} {seconds:.2} s, {:.0} %", 100.0 * seconds / all);
+    }
+    let rest = added.as_secs_f64() - all;
+    println!(
+        "  together           {all:.2} s; the compiler's own work on the emitted code is the rest, {rest:.2} s"
+    );
+    Ok(())
+}
+
+/// Processor time of all programs that this one has run, where the system tells it (Linux).
+fn processor_time() -> Option<Duration> {
+    let text = fs::read_to_string("/proc/self/stat").ok()?;
+    // Behind the program's name, which may hold anything, the fields are those from the third on; the sixteenth and
+    // seventeenth are ticks of 10 ms.
+    let (_, fields) = text.rsplit_once(')')?;
+    let ticks = fields.split_whitespace().skip(13).take(2);
+    let ticks: Option<Vec<u64>> = ticks.map(|ticks| ticks.parse().ok()).collect();
+    Some(Duration::from_millis(10 * ticks?.iter().sum::<u64>()))
+}
+
+/// Times of one crate.
+struct Spread {
+    least: Duration,
+    median: Duration,
+    most: Duration,
+}
+
+impl Spread {
+    fn of(mut times: Vec<Duration>) -> Self {
+        times.sort_unstable();
+        Self {
+            least: times[0],
+            median: times[times.len() / 2],
+            most: times[times.len() - 1],
+        }
+    }
+}
+
+impl std::fmt::Display for Spread {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [least, median, most] =
+            [self.least, self.median, self.most].map(|time| time.as_secs_f64());
+        write!(f, "{median:.2} s ({least:.2} to {most:.2})")
+    }
+}
+
+/// The scratch workspace.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(root: &Path) -> Result<Self, String> {
+        let builds = std::env::var_os("CARGO_TARGET_DIR");
+        let builds = builds.map_or_else(|| root.join("target"), |folder| root.join(folder));
+        let folder = Self(builds.join("compile-time"));
+        folder
+            .fill(root)
+            .map_err(|error| format!("{}: {error}", folder.0.display()))?;
+        Ok(folder)
+    }
+
+    /// Writes the three crates. Their dependencies have the versions of this workspace.
+    fn fill(&self, root: &Path) -> std::io::Result<()> {
+        let write = |file: &str, text: &str| {
+            let file = self.0.join(file);
+            fs::create_dir_all(file.parent().unwrap_or(&self.0))?;
+            fs::write(file, text)
+        };
+        write(
+            "Cargo.toml",
+            "[workspace]\nresolver = \"3\"\nmembers = [\"hundred\", \"none\", \"shares\"]\n",
+        )?;
+        fs::copy(root.join("Cargo.lock"), self.0.join("Cargo.lock"))?;
+        let runtime = toml_text(&root.join("runtime"));
+        let user = format!("hexagen = {{ path = {runtime} }}\n");
+        let codegen = toml_text(&root.join("codegen"));
+        let inside = format!("hexagen-codegen = {{ path = {codegen} }}\nproc-macro2 = \"1\"\n");
+        for (name, dependencies) in [("none", &user), ("hundred", &user), ("shares", &inside)] {
+            let manifest = format!(
+                "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\n{dependencies}"
+            );
+            write(&format!("{name}/Cargo.toml"), &manifest)?;
+        }
+        let mut calls = vec![];
+        for (motor, period) in motors() {
+            let text = fs::read_to_string(root.join(format!("targets/motors/{motor}.toml")))?;
+            let (name, text) = with_period(motor, &text, period);
+            write(&format!("hundred/motors/{name}.toml"), &text)?;
+            for controller in CONTROLLERS {
+                let type_name = camel(&format!("{name}_{controller}"));
+                let file = format!("motors/{name}.toml");
+                calls.push(format!(
+                    "pub {type_name} {{ motor: \"{file}\", controller: {controller} {{}} }}\n"
+                ));
+            }
+        }
+        let calls = calls.concat();
+        let macros = calls
+            .lines()
+            .map(|call| format!("hexagen::controller! {{ {call} }}\n"));
+        let macros: String = macros.collect();
+        write("hundred/src/lib.rs", &format!("#![no_std]\n{macros}"))?;
+        write("none/src/lib.rs", "#![no_std]\n")?;
+        write("shares/src/calls", &calls)?;
+        write("shares/src/main.rs", include_str!("compile_time/shares.rs"))
+    }
+
+    fn cargo(&self, arguments: &[&str]) -> Result<(), String> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new(cargo)
+            .args(arguments)
+            .args(["--quiet", "--jobs", "2", "--target-dir"])
+            .arg(self.0.join("target"))
+            .current_dir(&self.0)
+            .status()
+            .map_err(|error| format!("cannot run cargo: {error}"))?;
+        if status.success() {
+            Ok(())
+        } else {
+            Err(format!("`cargo {}` failed", arguments.join(" ")))
+        }
+    }
+
+    /// Checks a crate of which nothing is known yet.
+    fn check(&self, name: &str) -> Result<Duration, String> {
+        self.forget(name)
+            .map_err(|error| format!("{}: {error}", self.0.display()))?;
+        let begin = Instant::now();
+        self.cargo(&["check", "--package", name])?;
+        Ok(begin.elapsed())
+    }
+
+    /// Removes what the compiler keeps of a crate from one run to the next.
+    fn forget(&self, name: &str) -> std::io::Result<()> {
+        for kept in ["incremental", ".fingerprint"] {
+            let Ok(entries) = fs::read_dir(self.0.join("target/debug").join(kept)) else {
+                continue;
+            };
+            for entry in entries {
+                let entry = entry?;
+                if entry
+                    .file_name()
+                    .to_string_lossy()
+                    .starts_with(&format!("{name}-"))
+                {
+                    fs::remove_dir_all(entry.path())?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The generator's parts with their seconds.
+    fn shares(&self) -> Result<Vec<(String, f64)>, String> {
+        let output = Command::new(self.0.join("target/debug/shares"))
+            .current_dir(self.0.join("hundred"))
+            .output()
+            .map_err(|error| format!("cannot run the generator: {error}"))?;
+        let text = String::from_utf8_lossy(&output.stdout);
+        let read = |line: &str| {
+            let (part, seconds) = line.split_once(':')?;
+            Some((part.to_owned(), seconds.trim().parse().ok()?))
+        };
+        let shares: Option<Vec<_>> = text.lines().map(read).collect();
+        shares
+            .filter(|_| output.status.success())
+            .ok_or_else(|| format!("the generator says: {text}"))
+    }
+}
+
+fn motors() -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
+    let all = PERIODS
+        .into_iter()
+        .flat_map(|period| MOTORS.map(|motor| (motor, period)));
+    all.take(COUNT)
+}
+
+/// A motor's file with another control period, and its name.
+fn with_period(motor: &str, text: &str, period: Option<&str>) -> (String, String) {
+    let Some(period) = period else {
+        return (motor.to_owned(), text.to_owned());
+    };
+    let line = |line: &str| {
+        if line.starts_with("f_pwm") {
+            format!("f_pwm = \"{period}\"\n")
+        } else {
+            format!("{line}\n")
+        }
+    };
+    let digits = period.trim_end_matches(" kHz");
+    (
+        format!("{motor}-{digits}"),
+        text.lines().map(line).collect(),
+    )
+}
+
+/// A path as a text of TOML.
+fn toml_text(path: &Path) -> String {
+    format!("'{}'", path.display())
+}
+
+/// `HurstLongPdcc` of `hurst-long_pdcc`.
+fn camel(name: &str) -> String {
+    let capital = |part: &str| {
+        let (first, rest) = part.split_at(part.len().min(1));
+        first.to_uppercase() + rest
+    };
+    name.split(['-', '_']).map(capital).collect()
+}
