@@ -180,12 +180,14 @@ impl Lowering<'_> {
         timeout: u32,
     ) -> ([Value; 3], Value) {
         let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
-        let phases = self.b.program.table(
+        let phases = self.b.program.column(
+            "sector",
             "off_phase",
             table(OFF_PHASE),
             &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()],
         );
-        let signs = self.b.program.table(
+        let signs = self.b.program.column(
+            "sector",
             "outgoing_sign",
             table(OUTGOING_SIGN),
             &["Sign of the outgoing current on entry of sectors 1 to 6, positive torque, forward.".to_owned()],
@@ -263,7 +265,7 @@ impl Lowering<'_> {
                 "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
                 ["a", "b", "c"][phase]
             );
-            let table = self.b.program.table(name, column, &[doc]);
+            let table = self.b.program.column("sector", name, column, &[doc]);
             let sign = self.b.lookup(table, sector);
             self.b.name(["sign_a", "sign_b", "sign_c"][phase], sign)
         })

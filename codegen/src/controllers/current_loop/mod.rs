@@ -10,7 +10,7 @@ mod stability;
 mod words;
 
 pub use design::LoopDesign;
-pub use held::Held;
+pub use held::{Held, LeftOver};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
@@ -367,7 +367,8 @@ impl CurrentLoop<'_, '_> {
     ) {
         let words = &front.words;
         if let (Some(held), Some(u)) = (&front.held, v_cmd) {
-            remembered.extend(self.fold(held, u));
+            let left_over = self.left_over(held, u);
+            remembered.extend(self.fold(held, left_over));
         }
         if let Some((state, integral)) = front.speed_integral {
             remembered.push((state, "speed_integral_next", integral));

@@ -4,7 +4,7 @@
 //! hysteresis, and of two pair vectors with the same leg off the better one is told exactly. The weight of the torque
 //! couples the legs: its list is enumerated.
 
-use super::choose::{Candidate, OffLegs, PAIRS, first_least, vector_of_gates, zero_of_pair};
+use super::choose::{Candidate, OffLegs, PAIRS, first_least, zero_of_pair};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, vector_legs};
 use crate::diagnostics::engineering;
@@ -257,7 +257,14 @@ fn nearest_by_gains(
     let all = l.b.compare(Comparison::Less, zero, least);
     let gates = l.b.select(all, two, gates);
     l.b.name("gates", gates);
-    let table = vector_of_gates(l);
+    let table = l.b.program.table(
+        "vector_of_gates",
+        vec![0, 3, 5, 4, 1, 2, 6, 0],
+        &[
+            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
+                .to_owned(),
+        ],
+    );
     let active = l.b.lookup(table, gates);
     let four = l.b.shift_left(bus, 2);
     let idle = l.b.compare(Comparison::LessEqual, gained, four);

@@ -118,6 +118,9 @@ impl Printer<'_> {
                     let index = index.within(Binding::Unary);
                     format!("{name}[(uint32_t){index} & {}U]", table.values.len() - 1)
                 };
+                if table.holds_legs {
+                    return Written::atom(format!("leg_of({text})"));
+                }
                 Written {
                     is_narrow: element(table) == "int16_t",
                     ..Written::atom(text)
