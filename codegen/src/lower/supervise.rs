@@ -51,7 +51,7 @@ impl Lowering<'_> {
         let inverter = self.spec.inverter.clone();
         let top = i64::from((1_u32 << inverter.adc_bits) - 1);
         let offset = (i64::from(inverter.adc_offset) << self.scale.current_bits) as i32;
-        let offset_range = Interval::new(0, self.current_span());
+        let offset_range = self.offset_range();
         let sum_range = Interval::new(0, top << inverter.calibration_log2);
         let watches_stall = inverter.stall_periods > 0;
         SupervisorWords {
@@ -69,6 +69,24 @@ impl Lowering<'_> {
         }
     }
 
+    /// Offsets that calibration accepts, words of current.
+    fn offset_range(&self) -> Interval {
+        let inverter = &self.spec.inverter;
+        let (nominal, far) = (
+            i64::from(inverter.adc_offset),
+            i64::from(inverter.offset_tolerance),
+        );
+        let top = i64::from((1_u32 << inverter.adc_bits) - 1);
+        let words = |counts: i64| counts.clamp(0, top) << self.scale.current_bits;
+        Interval::new(words(nominal - far), words(nominal + far))
+    }
+
+    /// Whether a converter at an end of its range shows a current beyond the trip level `trip`, whatever its offset.
+    fn ends_trip(&self, trip: i64) -> bool {
+        let offset = self.offset_range();
+        self.current_span() - offset.high > trip && offset.low > trip
+    }
+
     /// Detects faults and advances the start-up sequence; says whether the drive rests in this period.
     pub fn supervise(
         &mut self,
@@ -81,18 +99,17 @@ impl Lowering<'_> {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
         let mode = self.b.state(words.mode);
         let trip = self.ampere_word(self.spec.inverter.trip_current);
-        let level = self.spec.inverter.trip_current;
-        let doc = |level: f64| {
-            format!(
-                "Trip level of the phase currents: {}, words of current.",
-                engineering(level, "A")
-            )
-        };
-        // Two comparisons, which compilers fold into one of the distance from the lower level.
-        let [a, b, c] = currents.phases.map(|current| {
-            let high = self.number("i_trip", trip, &doc(level));
+        let level = engineering(self.spec.inverter.trip_current, "A");
+        let doc = format!("Trip level of the phase currents: {level}, words of current.");
+        // Phase c is told by its negative.
+        let [i_a, i_b, _] = currents.phases;
+        let sum = self.b.add(i_a, i_b);
+        self.b.name("i_sum", sum);
+        let [a, b, c] = [i_a, i_b, sum].map(|current| {
+            let high = self.number("i_trip", trip, &doc);
             let above = self.b.compare(Comparison::Less, high, current);
-            let low = self.number("i_trip_negative", -trip, &doc(-level));
+            let high = self.number("i_trip", trip, &doc);
+            let low = self.b.neg(high);
             let below = self.b.compare(Comparison::Less, current, low);
             self.b.or(above, below)
         });
@@ -113,7 +130,12 @@ impl Lowering<'_> {
             "find_rest",
             &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
         );
-        let unknown = self.b.or(sample.out_of_range, sample.no_hall);
+        // A count at an end is a current beyond the trip level, too, where that is far enough inside of the range.
+        let unknown = match sample.beyond_range {
+            Some(beyond) if self.ends_trip(trip) => self.b.or(beyond, sample.no_hall),
+            None if self.ends_trip(trip) => sample.no_hall,
+            _ => self.b.or(sample.out_of_range, sample.no_hall),
+        };
         let any = self.b.or(unknown, motor_fault);
         self.b.name("faulty", any);
         let rests = self.b.or(any, sequencing);
@@ -217,6 +239,19 @@ impl Lowering<'_> {
             } else {
                 self.b.shift_right(sum, log2 - bits)
             };
+            // Calibration fails where this limit acts; it is here for the proof.
+            let range = self.offset_range();
+            let low = self.number(
+                "offset_min",
+                range.low,
+                "Least offset that calibration accepts, words of current.",
+            );
+            let high = self.number(
+                "offset_max",
+                range.high,
+                "Greatest offset that calibration accepts, words of current.",
+            );
+            let mean = self.b.clamp(mean, low, high);
             let offset = self.b.select(calibrated, mean, offsets[x]);
             self.b.name(["offset_a_now", "offset_b_now"][x], offset)
         });

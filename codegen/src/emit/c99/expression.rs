@@ -284,6 +284,7 @@ fn shift(name: &str, text: String, bits: u32) -> Written {
 fn called(primitive: Primitive) -> &'static str {
     match primitive {
         Primitive::Abs => "abs_of",
+        Primitive::Exceeds => "exceeds",
         Primitive::Min => "min_of",
         Primitive::Max => "max_of",
         Primitive::Clamp => "clamp",

@@ -257,6 +257,7 @@ fn call(
     };
     let name = match primitive {
         Primitive::Abs => return method(quote!(abs)),
+        Primitive::Exceeds => return method(quote!(exceeds)),
         Primitive::Min => return method(quote!(min)),
         Primitive::Max => return method(quote!(max)),
         Primitive::Clamp => return method(quote!(clamp)),
