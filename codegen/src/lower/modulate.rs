@@ -48,8 +48,8 @@ pub struct OffLeg {
 /// State words and flags of pair modulation.
 #[derive(Clone, Copy, Debug)]
 pub struct PairModulation {
-    /// Sector in force at the last sample.
-    pub sector_prev: StateId,
+    /// Sector in force at the last sample, where that is not the sample's own.
+    pub sector_prev: Option<StateId>,
     /// Whether a commutation was going on.
     pub commutating: StateId,
     /// Periods since it began.
@@ -146,14 +146,16 @@ impl Lowering<'_> {
     }
 
     /// Declares the words of pair modulation.
-    pub fn pair_words(&mut self, timeout: u32) -> PairModulation {
+    pub fn pair_words(&mut self, timeout: u32, advances: bool) -> PairModulation {
         PairModulation {
-            sector_prev: self.state(
-                "sector_eff_prev",
-                0,
-                Interval::new(0, 6),
-                "Sector in force at the last sample; 0 before the first.",
-            ),
+            sector_prev: advances.then(|| {
+                self.state(
+                    "sector_eff_prev",
+                    0,
+                    Interval::new(0, 6),
+                    "Sector in force at the last sample; 0 before the first.",
+                )
+            }),
             commutating: self.state(
                 "commutating",
                 0,
@@ -170,11 +172,11 @@ impl Lowering<'_> {
     }
 
     /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector; and
-    /// the phase that goes off in the sector.
+    /// the phase that goes off in the sector. `edge` tells a change of the sample's own sector.
     pub fn commutation(
         &mut self,
         words: PairModulation,
-        [sector, direction, set_point]: [Value; 3],
+        [sector, edge, direction, set_point]: [Value; 4],
         currents: &Currents,
         threshold: f64,
         timeout: u32,
@@ -199,12 +201,17 @@ impl Lowering<'_> {
                 "current has fallen to the threshold or the time-out has passed.",
             ],
         );
-        let sector_prev = self.b.state(words.sector_prev);
-        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
-        let zero = self.zero();
-        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
-        let changed = self.b.and(different, known);
-        self.b.name("changed", changed);
+        let changed = match words.sector_prev {
+            None => edge,
+            Some(word) => {
+                let sector_prev = self.b.state(word);
+                let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+                let zero = self.zero();
+                let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+                let changed = self.b.and(different, known);
+                self.b.name("changed", changed)
+            }
+        };
         let phase = self.b.lookup(phases, sector);
         self.b.name("outgoing_phase", phase);
         let outgoing = self.of_phase(phase, currents.phases);

@@ -165,9 +165,9 @@ impl CurrentLoop<'_, '_> {
             }
             _ => sector_seen,
         };
-        let (commutation, outgoing) = match (words.pair, direction) {
-            (Some(pair), Some(direction)) => {
-                let inputs = [sector, direction, j];
+        let (commutation, outgoing) = match (words.pair, direction.zip(hall)) {
+            (Some(pair), Some((direction, hall))) => {
+                let inputs = [sector, hall.edge, direction, j];
                 let (words, outgoing) = l.commutation(
                     pair,
                     inputs,
@@ -374,7 +374,9 @@ impl CurrentLoop<'_, '_> {
             remembered.push((state, "speed_integral_next", integral));
         }
         if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
-            self.lowering.b.set_state(pair.sector_prev, front.sector);
+            if let Some(sector_prev) = pair.sector_prev {
+                self.lowering.b.set_state(sector_prev, front.sector);
+            }
             remembered.push((pair.commutating, "commutating_next", word));
             remembered.push((pair.age, "commutation_age_next", age));
         }

@@ -15,6 +15,12 @@ use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 /// Off phase, the phase that is high in the first vector, the phase that is low in it.
 pub(super) const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
 
+const NEAREST_VECTOR: [&str; 3] = [
+    "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
+    "phase exceeds a third of the bus, else the legs are low by the signs of the phase voltages (a zero goes to the vector",
+    "that stands first in V1 to V6).",
+];
+
 /// The chosen vector, and what else is known of the voltage asked for.
 pub(super) struct Choice {
     /// Its number.
@@ -52,14 +58,7 @@ impl CurrentLoop<'_, '_> {
     /// The allowed vector nearest to `u`.
     pub(super) fn choose(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 2]) -> Choice {
         let l = &mut *self.lowering;
-        l.b.stage(
-            "nearest_vector",
-            &[
-                "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
-                "phase exceeds a third of the bus, else the gates are the signs of the phase voltages (a zero goes to the vector",
-                "that stands first in V1 to V6).",
-            ],
-        );
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
         let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
         let phases = [u[0], u[1], u_c];
         let [high, low] = l.extremes(["u_max", "u_min"], phases);
@@ -77,7 +76,10 @@ impl CurrentLoop<'_, '_> {
             (Candidates::Table2, Some([commutating, ..])) => {
                 let pair = match &off_legs {
                     Some(off_legs) => self.nearest_physical(off_legs, front, phases, None, None),
-                    None => nearest_nominal(&mut *self.lowering, front, phases),
+                    None => {
+                        pair_stage(&mut *self.lowering);
+                        nearest_nominal(&mut *self.lowering, front, phases)
+                    }
                 };
                 let l = &mut *self.lowering;
                 l.b.select(commutating, three, pair)
@@ -101,6 +103,39 @@ impl CurrentLoop<'_, '_> {
             largest,
             conducting: off_legs.map(|off_legs| off_legs.conducting),
         }
+    }
+
+    /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
+    /// commutation alone.
+    pub(super) fn choose_of_table2(
+        &mut self,
+        options: &FcsMpcSpec,
+        front: &Front,
+        u: [Value; 2],
+        commutating: Value,
+    ) -> Value {
+        let l = &mut *self.lowering;
+        let doc = "The third phase of the deadbeat voltage.";
+        l.b.stage("complete_voltage", &[doc]);
+        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
+        let phases = [u[0], u[1], u_c];
+        let pair = if options.floating() {
+            let off_legs = self.predict_off_legs(options, front, phases);
+            self.nearest_physical(&off_legs, front, phases, None, None)
+        } else {
+            pair_stage(l);
+            nearest_nominal(l, front, phases)
+        };
+        let l = &mut *self.lowering;
+        l.b.name("vector_pair", pair);
+        l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
+        let (three, _) = nearest_three_phase(l, phases, front.bus.volts);
+        let [nearest] = l.b.join([("vector_nearest", three, pair)]);
+        l.b.stage(
+            "know_sector",
+            &["No vector before the first valid Hall code."],
+        );
+        unless_lost(l, front.sector, nearest)
     }
 
     /// Where each leg would sit if it were off in the target period.
@@ -506,7 +541,6 @@ fn pair_stage(l: &mut Lowering<'_>) {
 }
 
 fn nearest_nominal(l: &mut Lowering<'_>, front: &Front, u: [Value; 3]) -> Value {
-    pair_stage(l);
     let idle = zero_vector(l, front.sector);
     let lines = PAIRS.map(|(_, plus, minus)| l.b.sub(u[plus], u[minus]));
     for (name, line) in ["line_a", "line_c", "line_b"].into_iter().zip(lines) {
