@@ -241,16 +241,16 @@ impl Lowering<'_> {
             };
             // Calibration fails where this limit acts; it is here for the proof.
             let range = self.offset_range();
-            let low = self.number(
-                "offset_min",
-                range.low,
-                "Least offset that calibration accepts, words of current.",
-            );
-            let high = self.number(
-                "offset_max",
-                range.high,
-                "Greatest offset that calibration accepts, words of current.",
-            );
+            let limits = [
+                ("offset_min", "Least", range.low),
+                ("offset_max", "Greatest", range.high),
+            ];
+            let [low, high] = limits.map(|(name, which, raw)| {
+                let ampere = engineering(raw as f64 / self.scale.current(), "A");
+                let doc =
+                    format!("{which} offset that calibration accepts: {ampere}, words of current.");
+                self.number(name, raw, &doc)
+            });
             let mean = self.b.clamp(mean, low, high);
             let offset = self.b.select(calibrated, mean, offsets[x]);
             self.b.name(["offset_a_now", "offset_b_now"][x], offset)
