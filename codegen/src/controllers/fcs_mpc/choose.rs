@@ -7,7 +7,7 @@
 use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
-use crate::ir::{Comparison, TableId, Value};
+use crate::ir::{Comparison, Exact, Real, TableId, Value};
 use crate::lower::Lowering;
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
@@ -20,6 +20,9 @@ const NEAREST_VECTOR: [&str; 3] = [
     "phase exceeds a third of the bus, else the legs are low by the signs of the phase voltages (a zero goes to the vector",
     "that stands first in V1 to V6).",
 ];
+
+/// What the compared scores are.
+pub(super) const SCORE: &str = "Score 6 (|v|^2 - 2 u v) of a vector";
 
 /// The chosen vector, and what else is known of the voltage asked for.
 pub(super) struct Choice {
@@ -71,6 +74,9 @@ impl CurrentLoop<'_, '_> {
         let (three, is_low) = nearest_three_phase(l, phases, front.bus.volts);
         let off_legs = (options.floating() && front.commutation.is_some())
             .then(|| self.predict_off_legs(options, front, phases));
+        if off_legs.is_none() {
+            state_exact_scores(&mut *self.lowering, u_c);
+        }
         let vector = match (options.candidates, front.commutation) {
             (Candidates::ThreePhase, _) | (_, None) => three,
             (Candidates::Table2, Some([commutating, ..])) => {
@@ -123,6 +129,7 @@ impl CurrentLoop<'_, '_> {
             let off_legs = self.predict_off_legs(options, front, phases);
             self.nearest_physical(&off_legs, front, phases, None, None)
         } else {
+            state_exact_scores(l, u_c);
             pair_stage(l);
             nearest_nominal(l, front, phases)
         };
@@ -228,6 +235,7 @@ impl CurrentLoop<'_, '_> {
             &[
                 "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
                 &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
+                "A pair must be better by more than rounding makes of the same voltage.",
             ],
         );
         // Factors first: their intervals give the shift of all products.
@@ -277,14 +285,13 @@ impl CurrentLoop<'_, '_> {
             l.misfits.push("score".to_owned());
         }
         l.product_format("score", shift, "products of two voltages in scores");
+        let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
         let mut best: Option<Candidate> = None;
         for (order, (first, second)) in factors.into_iter().enumerate() {
             let aside = l.b.mul_floor(first.0, first.1, shift);
             let along = l.b.mul_floor(second.0, second.1, shift);
             let score = l.b.add(aside, along);
-            let doc = "Score 6 (|v|^2 - 2 u v) of a pair vector";
-            let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
-            l.b.state_error("score", score, [doc, "V^2"], word);
+            l.b.state_error("score", score, [SCORE, "V^2"], word);
             l.b.name(["score_a", "score_c", "score_b"][order], score);
             let next = Candidate {
                 vector: vectors[order],
@@ -306,11 +313,20 @@ impl CurrentLoop<'_, '_> {
         if three_phase.is_some() && changes.is_none() {
             // V0 scores 0, the best three-phase vector less than that or V0 was taken.
             let zero = l.zero();
-            let score = l.b.min(score, zero);
-            let better = l.b.compare(Comparison::Less, best.score, score);
-            return l.b.select(better, best.vector, rival.0);
+            score = l.b.min(score, zero);
         }
-        let better = l.b.compare(Comparison::Less, best.score, score);
+        // A pair whose off leg lies at a rail can be the very voltage of its rival: their scores are the same then, but
+        // two floors may be one less than one.
+        let margin = l.rounded_number(
+            "score_margin",
+            1,
+            Exact::Number(Real::of(0.0)),
+            "What rounding alone makes of a score of two products against an equal one: a pair vector must be better by more.",
+        );
+        let to_beat = l.b.sub(score, margin);
+        l.b.state_error("score", to_beat, [SCORE, "V^2"], word);
+        l.b.name("score_to_beat", to_beat);
+        let better = l.b.compare(Comparison::Less, best.score, to_beat);
         l.b.select(better, best.vector, rival.0)
     }
 }
@@ -363,6 +379,19 @@ pub(super) fn zero_of_pair(l: &mut Lowering<'_>, sector: Value) -> (Value, [Valu
         l.b.name(name, is_off)
     });
     (vector, is_off)
+}
+
+/// States the error of the scores V (4 V - 12 u) and V (3 V - 6 line): no phase is further off than the third, and no
+/// line than twice that.
+fn state_exact_scores(l: &mut Lowering<'_>, u_c: Value) {
+    state_score_over_bus(l, u_c, 12.0);
+}
+
+/// States the error of a voltage of which `weight` times the greatest bus is a score.
+pub(super) fn state_score_over_bus(l: &mut Lowering<'_>, voltage: Value, weight: f64) {
+    let bus = l.spec.inverter.greatest_bus();
+    let word = weight * bus / l.scale.voltage();
+    l.b.state_error("score", voltage, [SCORE, "V^2"], word);
 }
 
 /// Three-phase vectors by the pattern of low legs.

@@ -13,6 +13,9 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error, Switch};
 
+/// By how much more than its rival's a pair's rounded score must be less: the floors of two products against one.
+pub const MARGIN: f64 = 1.0;
+
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     pub candidates: Candidates,
@@ -63,9 +66,13 @@ impl FcsMpc {
             return choice.apply(now, vector);
         }
         let (mut vector, mut least) = (zero, choice.score(zero, exact));
+        let is_pair =
+            |vector: usize| (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO).contains(&vector);
         for other in others {
+            let is_rounded_twice = !exact && is_pair(other) && !is_pair(vector);
+            let margin = if is_rounded_twice { MARGIN } else { 0.0 };
             let score = choice.score(other, exact);
-            if score < least {
+            if score < least - margin {
                 (vector, least) = (other, score);
             }
         }
