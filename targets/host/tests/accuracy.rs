@@ -72,7 +72,7 @@ fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
         }
         let found = one_step(drive, measured.iter().map(|(_, both)| both)).0;
         assert!(found.is_within_bounds(), "{}: {found:?}", named());
-        assert!(found.decisions_equal_pct > 99.9, "{}: {found:?}", named());
+        assert!(found.decisions_equal_pct > 99.8, "{}: {found:?}", named());
     });
 }
 
