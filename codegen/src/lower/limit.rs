@@ -5,7 +5,7 @@
 
 use super::{Bus, Coefficient, Lowering};
 use crate::interface::Rounding;
-use crate::ir::{Comparison, Value};
+use crate::ir::{Comparison, Interval, Value};
 use crate::spec::LimitRule;
 
 /// A voltage inside the hexagon.
@@ -186,11 +186,15 @@ impl Lowering<'_> {
             "centred_b_limited",
             "centred_c_limited",
         ];
+        let least_top = self.b.interval(top).low;
+        let centred = [0, 1, 2].map(|x| self.b.sub(legs[x], middle));
         [0, 1, 2].map(|x| {
-            let centred = self.b.sub(legs[x], middle);
-            let centred = self.b.max(centred, bottom);
-            let centred = self.b.min(centred, top);
-            self.b.name(names[x], centred)
+            let mut held = centred[x];
+            if !Interval::symmetric(least_top).contains(self.b.interval(held)) {
+                let raised = self.b.max(held, bottom);
+                held = self.b.min(raised, top);
+            }
+            self.b.name(names[x], held)
         })
     }
 
@@ -216,6 +220,10 @@ impl Lowering<'_> {
 
     /// A value that cannot leave the bus, held there for the proof (a third or two of the bus at most).
     fn within_bus(&mut self, value: Value, bus: Value) -> Value {
+        let least_bus = self.b.interval(bus).low;
+        if Interval::symmetric(least_bus).contains(self.b.interval(value)) {
+            return value;
+        }
         let low = self.b.neg(bus);
         let low = self.b.max(value, low);
         self.b.min(low, bus)
