@@ -80,12 +80,11 @@ impl CurrentLoop<'_, '_> {
         let vector = match (options.candidates, front.commutation) {
             (Candidates::ThreePhase, _) | (_, None) => three,
             (Candidates::Table2, Some([commutating, ..])) => {
-                let pair = match &off_legs {
-                    Some(off_legs) => self.nearest_physical(off_legs, front, phases, None, None),
-                    None => {
-                        pair_stage(&mut *self.lowering);
-                        nearest_nominal(&mut *self.lowering, front, phases)
-                    }
+                let pair = if let Some(off_legs) = &off_legs {
+                    self.nearest_physical(off_legs, front, phases, None, None)
+                } else {
+                    pair_stage(&mut *self.lowering);
+                    nearest_nominal(&mut *self.lowering, front, phases)
                 };
                 let l = &mut *self.lowering;
                 l.b.select(commutating, three, pair)
