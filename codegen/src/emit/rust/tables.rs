@@ -4,6 +4,7 @@
 
 use super::expression::coded;
 use super::names::{camel, docs, number, screaming, snake};
+use crate::emit::rows::{columns, padding, row_of, size};
 use crate::emit::signal::Shape;
 use crate::ir::{Program, Table, TableId};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -42,17 +43,6 @@ pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> To
     items
 }
 
-/// The row that a table is a column of, where it has company there.
-fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
-    let row = table.row?;
-    (columns(program, row).count() > 1 || table.holds_legs).then_some(row)
-}
-
-fn columns<'a>(program: &'a Program, row: &'static str) -> impl Iterator<Item = &'a Table> {
-    let tables = program.tables.iter();
-    tables.filter(move |table| table.row == Some(row))
-}
-
 /// The name of all rows together.
 fn rows(row: &str) -> Ident {
     screaming(&format!("{row}_rows"))
@@ -75,10 +65,15 @@ fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
         quote!(#name { #(#fields),* })
     });
     let doc = docs(&[format!("What one {row} tells.")]);
+    let layout = padding(columns(program, row)).map(|bytes| {
+        let bytes = Literal::usize_unsuffixed(bytes);
+        quote!(#[repr(align(#bytes))])
+    });
     let all = docs(&[format!("The rows of every {row}.")]);
     let count = Literal::usize_unsuffixed(count);
     quote! {
         #doc
+        #layout
         struct #name { #(#fields),* }
 
         #all
@@ -96,12 +91,10 @@ fn emit_table(table: &Table) -> TokenStream {
 
 /// The smallest elements that hold a table.
 fn element(table: &Table) -> TokenStream {
-    if table.holds_legs {
-        return quote!(LegState);
-    }
-    match table.interval().bits() {
-        ..=8 => quote!(i8),
-        9..=16 => quote!(i16),
+    match size(table) {
+        1 if table.holds_legs => quote!(LegState),
+        1 => quote!(i8),
+        2 => quote!(i16),
         _ => quote!(i32),
     }
 }
