@@ -38,6 +38,7 @@ pub fn lower_with(
         b,
         formats,
         misfits,
+        long_products,
         ..
     } = lowering;
     let step = b.finish();
@@ -47,6 +48,7 @@ pub fn lower_with(
         program: program.pruned(),
         formats,
         misfits,
+        long_products,
     }
 }
 

@@ -432,25 +432,29 @@ fn is_negative(l: &mut Lowering<'_>, name: &str, value: Value) -> Value {
 
 /// Flag: any of the voltages is farther from zero than the bus over `parts`.
 fn any_beyond(l: &mut Lowering<'_>, volts: [Value; 3], parts: i32, bus: Value) -> Value {
-    let (name, doc) = match parts {
-        2 => ("half_bus", "Half the bus"),
-        _ => ("third_of_bus", "A third of the bus"),
+    let (name, doc, multiples) = match parts {
+        2 => (
+            "half_bus",
+            "Half the bus",
+            ["line_a_twice", "line_c_twice", "line_b_twice"],
+        ),
+        _ => (
+            "third_of_bus",
+            "A third of the bus",
+            ["u_a_triple", "u_b_triple", "u_c_triple"],
+        ),
     };
     let [a, b, c] = [0, 1, 2].map(|x| {
-        let volts = volts[x];
         // A whole voltage is beyond the share exactly where it is beyond its whole part.
         let (volts, limits) = match l.spec.inverter.bus {
             BusSource::Fixed => {
                 let whole = l.nominal_bus() / i64::from(parts);
-                (volts, [0, 1].map(|_| l.voltage(name, whole, doc)))
+                (volts[x], [0, 1].map(|_| l.voltage(name, whole, doc)))
             }
             BusSource::Measured { .. } => {
-                let volts = l.b.mul_by(parts, volts);
-                let name = match parts {
-                    2 => ["line_twice_a", "line_twice_b", "line_twice_c"][x],
-                    _ => ["u_thrice_a", "u_thrice_b", "u_thrice_c"][x],
-                };
-                (l.b.name(name, volts), [bus, bus])
+                let multiple = l.b.mul_by(parts, volts[x]);
+                l.b.name(multiples[x], multiple);
+                (multiple, [bus, bus])
             }
         };
         let above = l.b.compare(Comparison::Less, limits[0], volts);
