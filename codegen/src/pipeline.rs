@@ -388,7 +388,16 @@ kind = "pdcc"
         assert_eq!(narrow.graph, given.graph);
         assert_eq!(narrow.interface.spec_toml, given.interface.spec_toml);
         let doc = narrow.interface.doc.join("\n");
-        assert!(doc.contains("`DUTY_ERROR` is 4.9"), "{doc}");
+        let (_, cost) = doc.split_once("`DUTY_ERROR` is ").expect("the cost");
+        let (narrow_bound, rest) = cost.split_once(" in place of ").expect("two bounds");
+        let (wide_bound, _) = rest.split_once([',', '\n']).unwrap_or((rest, ""));
+        let [narrow_bound, wide_bound] = [narrow_bound, wide_bound].map(|bound| {
+            bound
+                .trim_end_matches('.')
+                .parse::<f64>()
+                .expect("a number")
+        });
+        assert!(narrow_bound > 1000.0 * wide_bound, "{doc}");
         assert_eq!(of("pdcc:target=cortex_m0,word=32"), of("pdcc"));
         for target in ["cortex_m4", "portable"] {
             assert_eq!(of(&format!("pdcc:target={target}")), of("pdcc"));
