@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 /// Modules of the generator, each with those that it may import besides itself.
-const IMPORTS: [(&str, &[&str]); 13] = [
+const IMPORTS: [(&str, &[&str]); 14] = [
+    ("stopwatch", &[]),
     ("diagnostics", &[]),
     ("interface", &[]),
     ("ir", &[]),
@@ -15,7 +16,10 @@ const IMPORTS: [(&str, &[&str]); 13] = [
         "lower",
         &["design", "diagnostics", "interface", "ir", "spec"],
     ),
-    ("scaling", &["interface", "ir", "lower", "spec"]),
+    (
+        "scaling",
+        &["interface", "ir", "lower", "spec", "stopwatch"],
+    ),
     (
         "controllers",
         &[
@@ -26,6 +30,7 @@ const IMPORTS: [(&str, &[&str]); 13] = [
             "lower",
             "scaling",
             "spec",
+            "stopwatch",
         ],
     ),
     (
@@ -37,6 +42,7 @@ const IMPORTS: [(&str, &[&str]); 13] = [
             "ir",
             "scaling",
             "spec",
+            "stopwatch",
         ],
     ),
     ("interpreted", &["interface", "ir", "lower"]),
@@ -44,7 +50,15 @@ const IMPORTS: [(&str, &[&str]); 13] = [
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
     (
         "expand",
-        &["diagnostics", "emit", "interface", "ir", "pipeline", "spec"],
+        &[
+            "diagnostics",
+            "emit",
+            "interface",
+            "ir",
+            "pipeline",
+            "spec",
+            "stopwatch",
+        ],
     ),
 ];
 

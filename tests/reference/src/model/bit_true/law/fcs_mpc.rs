@@ -69,10 +69,14 @@ impl FcsMpc {
         let is_pair =
             |vector: usize| (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO).contains(&vector);
         for other in others {
-            let is_rounded_twice = !exact && is_pair(other) && !is_pair(vector);
-            let margin = if is_rounded_twice { MARGIN } else { 0.0 };
             let score = choice.score(other, exact);
-            if score < least - margin {
+            let is_less = match (exact, is_pair(other), is_pair(vector)) {
+                // Three-phase vectors are told apart by their exact scores, whatever the products lose.
+                (false, false, false) => choice.score(other, true) < choice.score(vector, true),
+                (false, true, false) => score < least - MARGIN,
+                _ => score < least,
+            };
+            if is_less {
                 (vector, least) = (other, score);
             }
         }
