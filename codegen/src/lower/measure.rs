@@ -12,9 +12,7 @@ pub struct Sample {
     pub hall: Value,
     /// Sector that it names, 0 for an invalid code.
     pub sector: Value,
-    /// Flag: a count is more than the converter can give; where the word can hold such a one.
-    pub beyond_range: Option<Value>,
-    /// Flag: a converter is at an end of its range, or beyond it.
+    /// Flag: a converter is at an end of its range.
     pub out_of_range: Value,
     /// Flag: the Hall code is invalid.
     pub no_hall: Value,
@@ -68,14 +66,6 @@ impl Lowering<'_> {
         });
         let out_of_range = self.b.or(ends[0], ends[1]);
         self.b.name("out_of_range", out_of_range);
-        let beyond_range = (self.spec.inverter.adc_bits < 16).then(|| {
-            let beyond = adc.map(|count| {
-                let limit = self.adc_max();
-                self.b.compare(Comparison::Less, limit, count)
-            });
-            let either = self.b.or(beyond[0], beyond[1]);
-            self.b.name("beyond_range", either)
-        });
         let hall = self.b.input(
             "hall",
             Interval::new(0, 255),
@@ -100,7 +90,6 @@ impl Lowering<'_> {
             adc,
             hall,
             sector,
-            beyond_range,
             out_of_range,
             no_hall,
         }

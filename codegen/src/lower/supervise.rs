@@ -51,7 +51,7 @@ impl Lowering<'_> {
         let inverter = self.spec.inverter.clone();
         let top = i64::from((1_u32 << inverter.adc_bits) - 1);
         let offset = (i64::from(inverter.adc_offset) << self.scale.current_bits) as i32;
-        let offset_range = self.offset_range();
+        let offset_range = Interval::new(0, self.current_span());
         let sum_range = Interval::new(0, top << inverter.calibration_log2);
         let watches_stall = inverter.stall_periods > 0;
         SupervisorWords {
@@ -67,24 +67,6 @@ impl Lowering<'_> {
                 self.state("stall_count", 0, Interval::new(0, i64::from(inverter.stall_periods)), "Periods without a Hall edge under current demand.")
             }),
         }
-    }
-
-    /// Offsets that calibration accepts, words of current.
-    fn offset_range(&self) -> Interval {
-        let inverter = &self.spec.inverter;
-        let (nominal, far) = (
-            i64::from(inverter.adc_offset),
-            i64::from(inverter.offset_tolerance),
-        );
-        let top = i64::from((1_u32 << inverter.adc_bits) - 1);
-        let words = |counts: i64| counts.clamp(0, top) << self.scale.current_bits;
-        Interval::new(words(nominal - far), words(nominal + far))
-    }
-
-    /// Whether a converter at an end of its range shows a current beyond the trip level `trip`, whatever its offset.
-    fn ends_trip(&self, trip: i64) -> bool {
-        let offset = self.offset_range();
-        self.current_span() - offset.high > trip && offset.low > trip
     }
 
     /// Detects faults and advances the start-up sequence; says whether the drive rests in this period.
@@ -130,12 +112,7 @@ impl Lowering<'_> {
             "find_rest",
             &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
         );
-        // A count at an end is a current beyond the trip level, too, where that is far enough inside of the range.
-        let unknown = match sample.beyond_range {
-            Some(beyond) if self.ends_trip(trip) => self.b.or(beyond, sample.no_hall),
-            None if self.ends_trip(trip) => sample.no_hall,
-            _ => self.b.or(sample.out_of_range, sample.no_hall),
-        };
+        let unknown = self.b.or(sample.out_of_range, sample.no_hall);
         let any = self.b.or(unknown, motor_fault);
         self.b.name("faulty", any);
         let rests = self.b.or(any, sequencing);
@@ -239,19 +216,6 @@ impl Lowering<'_> {
             } else {
                 self.b.shift_right(sum, log2 - bits)
             };
-            // Calibration fails where this limit acts; it is here for the proof.
-            let range = self.offset_range();
-            let limits = [
-                ("offset_min", "Least", range.low),
-                ("offset_max", "Greatest", range.high),
-            ];
-            let [low, high] = limits.map(|(name, which, raw)| {
-                let ampere = engineering(raw as f64 / self.scale.current(), "A");
-                let doc =
-                    format!("{which} offset that calibration accepts: {ampere}, words of current.");
-                self.number(name, raw, &doc)
-            });
-            let mean = self.b.clamp(mean, low, high);
             let offset = self.b.select(calibrated, mean, offsets[x]);
             self.b.name(["offset_a_now", "offset_b_now"][x], offset)
         });
