@@ -75,8 +75,7 @@ impl Lowering<'_> {
         for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
             sectors[usize::from(code & 7)] = sector;
         }
-        let decode = self.b.program.column(
-            "hall",
+        let decode = self.b.program.table(
             "hall_sector",
             sectors,
             &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],

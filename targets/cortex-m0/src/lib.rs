@@ -5,11 +5,5 @@ pub mod board;
 // What is the same on every target.
 #[path = "../../firmware/on_target/control.rs"]
 pub mod control;
-#[macro_use]
 #[path = "../../firmware/on_target/drives.rs"]
-mod listed;
-
-pub mod drives {
-    //! All drives of this firmware.
-    drives_for!(cortex_m0);
-}
+pub mod drives;
