@@ -44,52 +44,60 @@ pub fn measure(root: &Path) -> Result<(), String> {
     let folder = Folder::new(root)?;
     folder.cargo(&["build", "--package", "shares"])?;
     let shares = folder.shares()?;
-    for name in ["none", "hundred"] {
-        folder.check(name)?;
-    }
-    let (mut none, mut hundred) = (vec![], vec![]);
-    let mut busy = Some(Duration::ZERO);
-    for _ in 0..RUNS {
-        none.push(folder.check("none")?);
-        let begin = processor_time();
-        hundred.push(folder.check("hundred")?);
-        let passed = processor_time()
-            .zip(begin)
-            .map(|(end, begin)| end.saturating_sub(begin));
-        busy = busy
-            .zip(passed)
-            .map(|(sum, passed)| sum + passed / RUNS as u32);
-    }
-    let (none, hundred) = (Spread::of(none), Spread::of(hundred));
-    let added = hundred.median.saturating_sub(none.median);
-    let controllers = COUNT * CONTROLLERS.len();
-    println!(
-        "`cargo check` from nothing, dependencies built, on two cores, median of {RUNS} runs:"
-    );
-    println!("  no controller      {none}");
-    println!("  {controllers} controllers    {hundred}");
-    if let Some(busy) = busy {
-        let busy = busy.as_secs_f64();
-        println!(
-            "  processor time     {busy:.2} s per run of the latter: much less than its time says that the machine is shared"
-        );
-    }
-    let verdict = if added < GOAL { "below" } else { "ABOVE" };
-    println!(
-        "  added              {:.2} s, {verdict} the goal of {} s",
-        added.as_secs_f64(),
-        GOAL.as_secs()
-    );
+    let times = folder.times()?;
+    times.print();
+    print_shares(&shares, times.added());
+    Ok(())
+}
+
+/// The generator's parts, and what is left for the compiler of all that controllers add.
+fn print_shares(shares: &[(String, f64)], added: Duration) {
     println!("of which the generator, unoptimised as in every dev build:");
     let all: f64 = shares.iter().map(|(_, seconds)| seconds).sum();
-    for (part, seconds) in &shares {
+    for (part, seconds) in shares {
         println!("  {part:18} {seconds:.2} s, {:.0} %", 100.0 * seconds / all);
     }
     let rest = added.as_secs_f64() - all;
     println!(
         "  together           {all:.2} s; the compiler's own work on the emitted code is the rest, {rest:.2} s"
     );
-    Ok(())
+}
+
+/// Times of both crates.
+struct Times {
+    none: Spread,
+    hundred: Spread,
+    /// Mean processor time of the latter, where the system tells it.
+    busy: Option<Duration>,
+}
+
+impl Times {
+    /// What a hundred controllers add.
+    fn added(&self) -> Duration {
+        self.hundred.median.saturating_sub(self.none.median)
+    }
+
+    fn print(&self) {
+        let controllers = COUNT * CONTROLLERS.len();
+        println!(
+            "`cargo check` from nothing, dependencies built, on two cores, median of {RUNS} runs:"
+        );
+        println!("  no controller      {}", self.none);
+        println!("  {controllers} controllers    {}", self.hundred);
+        if let Some(busy) = self.busy {
+            let busy = busy.as_secs_f64();
+            println!(
+                "  processor time     {busy:.2} s per run of the latter: much less than its time says that the machine is shared"
+            );
+        }
+        let added = self.added();
+        let verdict = if added < GOAL { "below" } else { "ABOVE" };
+        println!(
+            "  added              {:.2} s, {verdict} the goal of {} s",
+            added.as_secs_f64(),
+            GOAL.as_secs()
+        );
+    }
 }
 
 /// Processor time of all programs that this one has run, where the system tells it (Linux).
@@ -171,10 +179,9 @@ impl Folder {
             let (name, text) = with_period(motor, &text, period);
             write(&format!("hundred/motors/{name}.toml"), &text)?;
             for controller in CONTROLLERS {
-                let type_name = camel(&format!("{name}_{controller}"));
-                let file = format!("motors/{name}.toml");
+                let number = calls.len();
                 calls.push(format!(
-                    "pub {type_name} {{ motor: \"{file}\", controller: {controller} {{}} }}\n"
+                    "pub Drive{number} {{ motor: \"motors/{name}.toml\", controller: {controller} {{}} }}\n"
                 ));
             }
         }
@@ -203,6 +210,31 @@ impl Folder {
         } else {
             Err(format!("`cargo {}` failed", arguments.join(" ")))
         }
+    }
+
+    /// Checks both crates in turn.
+    fn times(&self) -> Result<Times, String> {
+        for name in ["none", "hundred"] {
+            self.check(name)?;
+        }
+        let (mut none, mut hundred) = (vec![], vec![]);
+        let mut busy = Some(Duration::ZERO);
+        for _ in 0..RUNS {
+            none.push(self.check("none")?);
+            let begin = processor_time();
+            hundred.push(self.check("hundred")?);
+            let passed = processor_time()
+                .zip(begin)
+                .map(|(end, begin)| end.saturating_sub(begin));
+            busy = busy
+                .zip(passed)
+                .map(|(sum, passed)| sum + passed / RUNS as u32);
+        }
+        Ok(Times {
+            none: Spread::of(none),
+            hundred: Spread::of(hundred),
+            busy,
+        })
     }
 
     /// Checks a crate of which nothing is known yet.
@@ -281,13 +313,4 @@ fn with_period(motor: &str, text: &str, period: Option<&str>) -> (String, String
 /// A path as a text of TOML.
 fn toml_text(path: &Path) -> String {
     format!("'{}'", path.display())
-}
-
-/// `HurstLongPdcc` of `hurst-long_pdcc`.
-fn camel(name: &str) -> String {
-    let capital = |part: &str| {
-        let (first, rest) = part.split_at(part.len().min(1));
-        first.to_uppercase() + rest
-    };
-    name.split(['-', '_']).map(capital).collect()
 }

@@ -63,17 +63,22 @@ fn other_drives_are_compiled_or_interpreted() {
     assert_eq!(interpreted["coverage"], compiled["coverage"]);
 }
 
-#[test]
-fn emitted_c_is_compiled_and_compared() {
-    let arguments = [
+/// Arguments that verify the paper motor's drive as C, over so many steps.
+fn in_c99(steps: &str) -> [&str; 7] {
+    [
         "verify",
         PAPER,
         "--language",
         "c99",
         "--steps",
-        "5000",
+        steps,
         "--json",
-    ];
+    ]
+}
+
+#[test]
+fn emitted_c_is_compiled_and_compared() {
+    let arguments = in_c99("5000");
     let compared = first(&run(arguments));
     assert_eq!(
         (&compared["engine"], &compared["passed"]),
@@ -107,15 +112,7 @@ fn a_fault_planted_in_emitted_c_is_found() {
         exec cc \"$@\"\n";
     std::fs::write(&compiler, script).expect("can be written");
     std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).expect("is ours");
-    let arguments = [
-        "verify",
-        PAPER,
-        "--language",
-        "c99",
-        "--steps",
-        "20000",
-        "--json",
-    ];
+    let arguments = in_c99("20000");
     let said = run_with(&arguments, "CC", compiler.as_os_str());
     assert_eq!(said.code, 1, "{said:?}");
     assert_eq!(said.json_whatever_the_code()["passed"], false);
