@@ -1,7 +1,9 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
-use crate::controllers::{StableRange, fcs_mpc, interface, pdcc, phcc, pi_pwm};
+use crate::controllers::{
+    StableRange, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm, wide_words,
+};
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
 };
@@ -25,7 +27,41 @@ pub struct Generated {
 /// # Errors
 /// Diagnostics of the design (stability) and of scaling (word too narrow), located by `origins`.
 pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
-    Part::Design.timed(|| designed(spec, origins))
+    Part::Design.timed(|| {
+        if spec.controller.common().word_by_target {
+            by_target(spec, origins)
+        } else {
+            designed(spec, origins)
+        }
+    })
+}
+
+/// Words as the target prefers them where they suffice, else of 32 bits; the type's documentation says what the choice
+/// costs.
+fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
+    let wide = Spec {
+        controller: spec.controller.clone().with_word(32),
+        ..spec.clone()
+    };
+    let mut wide = designed(&wide, origins)?;
+    match designed(spec, origins) {
+        Ok(mut narrow) => {
+            narrow
+                .interface
+                .doc
+                .extend(narrow_words(&narrow.interface, &wide.interface));
+            Ok(narrow)
+        }
+        Err(reasons) => {
+            let reasons = reasons
+                .as_slice()
+                .iter()
+                .map(|reason| reason.message.as_str());
+            let reasons: Vec<&str> = reasons.collect();
+            wide.interface.doc.extend(wide_words(&reasons.join("; ")));
+            Ok(wide)
+        }
+    }
 }
 
 fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
@@ -336,5 +372,59 @@ kind = "pdcc"
             }
         }
         assert!(generated > 200, "{generated}");
+    }
+
+    fn of(variant: &str) -> super::Generated {
+        let mut ast = parse_toml(MOTOR, "motor.toml").expect("the motor parses");
+        apply_variant(&mut ast, variant).expect("the variant parses");
+        let (spec, origins) = check(&ast).expect("it passes the checks");
+        generate(&spec, &origins).unwrap_or_else(|errors| panic!("{variant}: {errors}"))
+    }
+
+    #[test]
+    fn a_target_chooses_words_that_suffice_and_says_what_they_cost() {
+        let narrow = of("pdcc:target=cortex_m0");
+        let given = of("pdcc:word=16");
+        assert_eq!(narrow.graph, given.graph);
+        assert_eq!(narrow.interface.spec_toml, given.interface.spec_toml);
+        let doc = narrow.interface.doc.join("\n");
+        let (_, cost) = doc.split_once("`DUTY_ERROR` is ").expect("the cost");
+        let (narrow_bound, rest) = cost.split_once(" in place of ").expect("two bounds");
+        let (wide_bound, _) = rest.split_once([',', '\n']).unwrap_or((rest, ""));
+        let [narrow_bound, wide_bound] = [narrow_bound, wide_bound].map(|bound| {
+            bound
+                .trim_end_matches('.')
+                .parse::<f64>()
+                .expect("a number")
+        });
+        assert!(narrow_bound > 1000.0 * wide_bound, "{doc}");
+        assert_eq!(of("pdcc:target=cortex_m0,word=32"), of("pdcc"));
+        for target in ["cortex_m4", "portable"] {
+            assert_eq!(of(&format!("pdcc:target={target}")), of("pdcc"));
+        }
+    }
+
+    #[test]
+    fn where_narrow_words_do_not_suffice_wide_ones_stand_with_the_reason() {
+        let motor = parse_toml(
+            &MOTOR.replace("adc_bits = 12", "adc_bits = 16"),
+            "motor.toml",
+        )
+        .expect("the motor parses");
+        let checked = |variant: &str| {
+            let mut ast = motor.clone();
+            apply_variant(&mut ast, variant).expect("the variant parses");
+            check(&ast).expect("it passes the checks")
+        };
+        let (spec, origins) = checked("pdcc:word=16");
+        generate(&spec, &origins).expect_err("16 bits hold no current of 16 bits");
+        let (spec, origins) = checked("pdcc:target=cortex_m0");
+        let wide = generate(&spec, &origins).expect("32 bits do");
+        assert!(wide.interface.spec_toml.contains("word = 32"));
+        let doc = wide.interface.doc.join("\n");
+        assert!(
+            doc.contains("do not suffice (") && doc.contains("phase currents"),
+            "{doc}"
+        );
     }
 }

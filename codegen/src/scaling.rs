@@ -2,7 +2,8 @@
 //!
 //! Lowering computes the interval of every value, so the search is plain: take the largest number of
 //! fraction bits for currents (their intervals follow from the ADC alone), then the largest for voltages
-//! whose program passes verification and keeps its coefficients and products within the word.
+//! whose program passes verification and keeps its coefficients and products within the word. Of 32-bit products that is the
+//! upper word, unless no scale at all allows that.
 
 use crate::interface::FormatEntry;
 use crate::ir::{Function, Op, Program, VerifiedGraph, Violation, verify};
@@ -19,6 +20,8 @@ pub struct Lowered {
     pub formats: Vec<FormatEntry>,
     /// Coefficients and constants too large for their word at this scale.
     pub misfits: Vec<String>,
+    /// Coefficients of 32 bits whose products need more than their upper word, which is one instruction of most cores.
+    pub long_products: Vec<&'static str>,
 }
 
 /// A verified program with its formats.
@@ -67,21 +70,38 @@ pub fn choose_scale(
             bits: Some(inverter.adc_bits + 1),
         });
     };
-    let (mut low, mut high) = (1, if word == 16 { 12 } else { FINEST_VOLTAGE });
+    let of_voltages = |voltage_bits| Scale {
+        word,
+        current_bits,
+        voltage_bits,
+        ampere_per_count: inverter.adc_gain.abs(),
+        volt_per_count: inverter.v_bus / f64::from(inverter.timer_period),
+    };
+    let finest = if word == 16 { 12 } else { FINEST_VOLTAGE };
+    let short = finest_of(finest, |bits| {
+        fit(of_voltages(bits), lower(of_voltages(bits)), true)
+    });
+    match short {
+        Err(Unscalable::TooNarrow { .. }) => finest_of(finest, |bits| {
+            fit(of_voltages(bits), lower(of_voltages(bits)), false)
+        }),
+        found => found,
+    }
+}
+
+/// The finest of 1 to `high` voltage bits that fits.
+fn finest_of(
+    mut high: u32,
+    fit: impl Fn(u32) -> Result<Scaled, Unscalable>,
+) -> Result<Scaled, Unscalable> {
+    let mut low = 1;
     let mut finest = Err(Unscalable::TooNarrow {
         signal: "voltages".to_owned(),
         bits: None,
     });
     while low <= high {
         let voltage_bits = low.midpoint(high);
-        let scale = Scale {
-            word,
-            current_bits,
-            voltage_bits,
-            ampere_per_count: inverter.adc_gain.abs(),
-            volt_per_count: inverter.v_bus / f64::from(inverter.timer_period),
-        };
-        match fit(scale, lower(scale)) {
+        match fit(voltage_bits) {
             Ok(scaled) => {
                 finest = Ok(scaled);
                 low = voltage_bits + 1;
@@ -97,13 +117,21 @@ pub fn choose_scale(
     finest
 }
 
-/// Whether the program lowered at a scale fits its words.
-fn fit(scale: Scale, lowered: Lowered) -> Result<Scaled, Unscalable> {
+/// Whether the program lowered at a scale fits its words; with `short`, its products their upper words, too.
+fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable> {
     let Lowered {
         program,
         formats,
         misfits,
+        long_products,
     } = lowered;
+    let long = long_products.first().filter(|_| short);
+    if let Some(name) = long {
+        return Err(Unscalable::TooNarrow {
+            signal: format!("the upper word of the product with `{name}`"),
+            bits: None,
+        });
+    }
     if let Some(signal) = misfits.into_iter().next() {
         return Err(Unscalable::TooNarrow {
             signal: format!("coefficient `{signal}`"),

@@ -98,6 +98,14 @@ pub fn lookup<T: Copy + Into<Word>, const N: usize>(table: &[T; N], index: Word)
     table[index.0 as usize & (N - 1)].into()
 }
 
+/// `rows[index mod N]`; `N` is a power of two, so no index is out of bounds.
+#[inline(always)]
+#[must_use]
+pub fn row<T, const N: usize>(rows: &[T; N], index: Word) -> &T {
+    const { assert!(N.is_power_of_two()) };
+    &rows[index.0 as usize & (N - 1)]
+}
+
 /// `then` where the condition holds, else `otherwise`; both are evaluated.
 #[inline(always)]
 #[must_use]

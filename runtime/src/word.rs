@@ -57,6 +57,14 @@ impl Word {
         Self(self.0.wrapping_abs())
     }
 
+    /// Whether the magnitude is more than `limit`, which is not negative: one comparison, of the distance from `-limit`.
+    #[inline(always)]
+    #[must_use]
+    pub fn exceeds(self, limit: impl Into<Self>) -> bool {
+        let limit = limit.into().0;
+        self.0.wrapping_add(limit) as u32 > (limit as u32).wrapping_mul(2)
+    }
+
     /// The lower half, for words that are known to fit 16 signed bits.
     #[inline(always)]
     #[must_use]

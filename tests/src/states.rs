@@ -303,13 +303,19 @@ impl<'a> States<'a> {
             } else {
                 currents[phase]
             };
-            // offset = count 2^bits - current has to lie within the span.
+            // offset = count 2^bits - current has to lie within what calibration accepts.
+            let place = self.place(&format!("offset_{name}"));
+            let (low, high) = place.map_or((0, span), |place| {
+                let (low, high) = self.ranges[place];
+                (i64::from(low), i64::from(high))
+            });
             let unit = 1 << self.count_bits;
-            let least = (current.max(0) + unit - 1).div_euclid(unit);
-            let most = (span + current.min(0)).div_euclid(unit).max(least);
-            let count = self.random.i64(least..=most).min(self.adc_max);
-            let offset = ((count << self.count_bits) - current).clamp(0, span);
-            if let Some(place) = self.place(&format!("offset_{name}")) {
+            let least = (low + current + unit - 1).div_euclid(unit);
+            let least = least.clamp(0, self.adc_max);
+            let most = (high + current).div_euclid(unit);
+            let count = self.random.i64(least..=most.clamp(least, self.adc_max));
+            let offset = ((count << self.count_bits) - current).clamp(low, high);
+            if let Some(place) = place {
                 words[place] = offset as i32;
             }
             let count = match self.random.u8(..64) {

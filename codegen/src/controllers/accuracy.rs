@@ -26,23 +26,41 @@ fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> Publi
     }
 }
 
-/// Twice the error of a score: of two candidates, both are off.
-fn tie_band(stated: &StatedError) -> PublicConstant {
+/// Within what a decision may be another than the ideal controller's: twice the error of a score, of two candidates both
+/// are off; the error of a current beside a band, and of the band's own word.
+fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
     let error = stated.rare_bound().unwrap_or(0.0);
-    let value = 2.0 * error.max(stated.normal_bound());
-    PublicConstant {
+    let error = error.max(stated.normal_bound());
+    let (value, doc) = match stated.name.as_str() {
+        "score" => {
+            let value = 2.0 * error;
+            let doc = format!(
+                "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {} {}, twice the error of a score.",
+                significant(value),
+                stated.unit
+            );
+            (value, doc)
+        }
+        "current" => {
+            let value = error + stated.word.value();
+            let doc = format!(
+                "How near to an edge of its band a current may be taken to lie on the other side than it does for the ideal controller: at most {} {}, the error of the current and of the band's word.",
+                significant(value),
+                stated.unit
+            );
+            (value, doc)
+        }
+        _ => return None,
+    };
+    Some(PublicConstant {
         name: "TIE_BAND".to_owned(),
         value: rounded_up(value),
-        doc: vec![format!(
-            "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {} {}, twice the error of a score.",
-            significant(value),
-            stated.unit
-        )],
-    }
+        doc: vec![doc],
+    })
 }
 
-/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`; `TIE_BAND` of scores. What is not bounded more closely than
-/// `widest`, in its unit, has no constant.
+/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`; `TIE_BAND` of scores and of what bands compare.
+/// What is not bounded more closely than `widest`, in its unit, has no constant.
 pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Vec<PublicConstant> {
     let mut constants = vec![];
     for stated in Part::ProofRanges.timed(|| stated_errors(program)) {
@@ -74,9 +92,7 @@ pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Ve
             let meaning = format!("{doc}, where a limit acts");
             constants.push(bound(&name, value, rare.magnitude(), unit, &meaning));
         }
-        if stated.name == "score" {
-            constants.push(tie_band(&stated));
-        }
+        constants.extend(tie_band(&stated));
     }
     constants
 }

@@ -353,6 +353,7 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
     let widest = |unit: &str| match unit {
         "V" => inverter.greatest_bus(),
         "V^2" => inverter.greatest_bus().powi(2),
+        "A" => inverter.max_current,
         _ => period,
     };
     list.extend(accuracy_constants(scaled.graph.program(), widest));

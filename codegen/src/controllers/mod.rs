@@ -13,9 +13,11 @@ pub mod phcc;
 pub mod pi_pwm;
 mod start;
 mod whole_vectors;
+mod word_choice;
 
 pub use current_loop::StableRange;
 pub use interface::{Law, interface};
+pub use word_choice::{narrow_words, wide_words};
 
 use crate::spec::{ControllerSpec, Spec};
 use current_loop::{LinearLoop, LoopDesign};

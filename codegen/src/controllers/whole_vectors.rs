@@ -3,10 +3,10 @@
 //! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
 //! leg a, b or c off.
 
-use super::current_loop::{CurrentLoop, Front, Remembered};
+use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
-use crate::ir::{Comparison, TableId, Value};
-use crate::lower::{Applied, Command, Lowering};
+use crate::ir::{Comparison, Exact, TableId, Value};
+use crate::lower::{Applied, Coefficient, Command, Lowering};
 use crate::spec::BusSource;
 
 /// Legs of vectors 0 to 15: high (1), low (-1) or off (0).
@@ -47,13 +47,25 @@ pub(super) fn unless_lost(l: &mut Lowering<'_>, sector: Value, vector: Value) ->
 
 impl CurrentLoop<'_, '_> {
     /// Drives the legs of the chosen vector and closes the step.
-    pub(super) fn apply_vector(&mut self, front: &Front, vector: Value, remembered: Remembered) {
+    pub(super) fn apply_vector(
+        &mut self,
+        front: &Front,
+        vector: Value,
+        mut remembered: Remembered,
+    ) {
         let l = &mut *self.lowering;
         l.b.stage(
             "drive_legs",
             &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
         );
         let command = command(l, vector, self.needs.commutation);
+        let is_fixed = matches!(l.spec.inverter.bus, BusSource::Fixed);
+        if let (Some(held), true) = (&front.held, is_fixed) {
+            let left = tabled_left_over(l, self.options.word, held, vector);
+            remembered.extend(self.fold(held, left));
+            self.remember(front, &command, None, None, remembered);
+            return;
+        }
         let v_cmd = (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, vector));
         let applied = self.needs.off_leg.then(|| terminals(l, front, vector));
         self.remember(front, &command, v_cmd, applied, remembered);
@@ -68,7 +80,79 @@ fn over_vectors(
     entry: impl Fn(LegSigns) -> i32,
 ) -> TableId {
     let values = vector_legs().into_iter().map(entry).collect();
-    l.b.program.table(name, values, &[doc.to_owned()])
+    l.b.program
+        .column("vector", name, values, &[doc.to_owned()])
+}
+
+/// Entries of a table over the vectors, phases a, b, c.
+type Volts = [[i64; 3]; 16];
+
+/// The voltages that the vectors stand for, where a sixth of the bus is `unit` words.
+fn fixed_volts(unit: i64) -> Volts {
+    vector_legs().map(|legs| sixths(legs).map(|share| i64::from(share) * unit))
+}
+
+/// Looks up phases a and b of a voltage of the chosen vector, in words, at most so many from the exact one; `doc` says
+/// what it is.
+fn look_up_volts(
+    l: &mut Lowering<'_>,
+    [name, meaning]: [&str; 2],
+    volts: &Volts,
+    within: u32,
+    vector: Value,
+) -> [Value; 2] {
+    ["a", "b"].map(|phase| {
+        let x = usize::from(phase == "b");
+        let values = volts.map(|volts| volts[x] as i32).to_vec();
+        let doc = format!("{meaning}, by vector, words of voltage.");
+        let exact = (Exact::Within(within), None);
+        let table = format!("vector_{name}_{phase}");
+        let table = l.b.program.rounded_table(&table, values, exact, &[doc]);
+        l.b.program.put_in_row(table, "vector");
+        l.b.lookup(table, vector)
+    })
+}
+
+/// A sixth of the bus, the unit of vector voltages, as a coefficient of the bus.
+fn sixth(l: &mut Lowering<'_>, word: u32) -> Coefficient {
+    l.coefficient(
+        "k_sixth",
+        1.0 / 6.0,
+        word,
+        "The unit of vector voltages: a sixth of the bus.",
+        "1/6",
+    )
+}
+
+/// What the voltage of the chosen vector leaves to later steps, from tables: with a fixed bus it is known beforehand.
+fn tabled_left_over(l: &mut Lowering<'_>, word: u32, held: &Held, vector: Value) -> LeftOver {
+    let k_sixth = sixth(l, word);
+    let unit = l.rounded_product(k_sixth, l.nominal_bus());
+    let Some(k_decay) = held.decay() else {
+        return LeftOver::of(fixed_voltage(l, unit, vector));
+    };
+    let volts = fixed_volts(unit);
+    let left = volts.map(|volts| volts.map(|volts| volts - l.rounded_product(k_decay, volts)));
+    let both: Volts =
+        std::array::from_fn(|vector| std::array::from_fn(|x| volts[vector][x] + left[vector][x]));
+    let texts = [
+        "left",
+        "What is left of the vector's voltage one period later, a v",
+    ];
+    let left = look_up_volts(l, texts, &left, 3, vector);
+    let texts = [
+        "both",
+        "The vector's voltage and what is left of it one period later, (1 + a) v",
+    ];
+    let both = look_up_volts(l, texts, &both, 5, vector);
+    for x in 0..2 {
+        l.b.name(["left_a", "left_b"][x], left[x]);
+        l.b.name(["both_a", "both_b"][x], both[x]);
+    }
+    LeftOver {
+        left,
+        both: Some(both),
+    }
 }
 
 /// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
@@ -91,6 +175,7 @@ fn command(l: &mut Lowering<'_>, vector: Value, turns_off: bool) -> Command {
             -1 => 1,
             _ => 2,
         });
+        l.b.program.hold_legs(table);
         l.b.lookup(table, vector)
     });
     for x in 0..3 {
@@ -107,31 +192,31 @@ fn command(l: &mut Lowering<'_>, vector: Value, turns_off: bool) -> Command {
 
 /// The zero-sum voltage that the chosen vector stands for, phases a and b.
 fn voltage(l: &mut Lowering<'_>, word: u32, front: &Front, vector: Value) -> [Value; 2] {
-    let k_sixth = l.coefficient(
-        "k_sixth",
-        1.0 / 6.0,
-        word,
-        "The unit of vector voltages: a sixth of the bus.",
-        "1/6",
-    );
-    let sixth = match l.spec.inverter.bus {
-        BusSource::Fixed => {
-            let product = l.rounded_product(k_sixth, l.nominal_bus());
-            l.voltage("sixth_of_bus", product, "A sixth of the bus")
-        }
-        BusSource::Measured { .. } => {
-            let product = l.times(k_sixth, front.bus.volts);
-            l.b.name("sixth_of_bus", product)
-        }
-    };
+    let k_sixth = sixth(l, word);
+    if let BusSource::Fixed = l.spec.inverter.bus {
+        let unit = l.rounded_product(k_sixth, l.nominal_bus());
+        return fixed_voltage(l, unit, vector);
+    }
+    let product = l.times(k_sixth, front.bus.volts);
+    let unit = l.b.name("sixth_of_bus", product);
     [0, 1].map(|x| {
         let name = ["vector_sixths_a", "vector_sixths_b"][x];
         let doc = "Phase voltage of the vector, sixths of the bus.";
         let table = over_vectors(l, name, doc, |legs| sixths(legs)[x]);
         let share = l.b.lookup(table, vector);
-        let volts = l.b.mul(share, sixth, 0);
+        let volts = l.b.mul(share, unit, 0);
         l.b.name(["v_a_chosen", "v_b_chosen"][x], volts)
     })
+}
+
+/// The same from tables, where a sixth of the bus is `unit` words.
+fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: Value) -> [Value; 2] {
+    let texts = ["volts", "Phase voltage of the vector"];
+    let volts = look_up_volts(l, texts, &fixed_volts(unit), 2, vector);
+    for x in 0..2 {
+        l.b.name(["v_a_chosen", "v_b_chosen"][x], volts[x]);
+    }
+    volts
 }
 
 /// The terminals that the chosen vector drives, and which leg it turns off.

@@ -211,18 +211,7 @@ fn memory(sheet: &mut Sheet, program: &Program) {
     let state = bytes()
         .sum::<u32>()
         .next_multiple_of(bytes().max().unwrap_or(1));
-    let tables: u32 = program
-        .tables
-        .iter()
-        .map(|table| {
-            let element = match table.interval().bits() {
-                ..=8 => 1,
-                9..=16 => 2,
-                _ => 4,
-            };
-            element * table.values.len() as u32
-        })
-        .sum();
+    let tables = super::rows::bytes(program);
     sheet.heading(2, "Memory");
     sheet.line(&format!(
         "State: {} words in {state} bytes, padding included.",

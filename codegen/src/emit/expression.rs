@@ -78,6 +78,8 @@ pub(super) enum Operator {
 pub(super) enum Primitive {
     /// |a|
     Abs,
+    /// Flag: |a| > b, b not negative
+    Exceeds,
     /// min(a, b)
     Min,
     /// max(a, b)
@@ -258,7 +260,10 @@ impl<'a> Scope<'a> {
             }
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),
-            Op::Or(a, b) => E::binary(O::Or, of(a), of(b)),
+            Op::Or(a, b) => match self.range_test(a, b) {
+                Some([x, limit]) => call(P::Exceeds, &[x, limit], None),
+                None => E::binary(O::Or, of(a), of(b)),
+            },
             Op::Not(a) => self.negation(a),
             Op::Select {
                 condition,
@@ -266,6 +271,26 @@ impl<'a> Scope<'a> {
                 otherwise,
             } => self.select(self.context.shape(value), [condition, then, otherwise]),
         }
+    }
+
+    /// The word and the limit whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
+    fn range_test(&self, above: Value, below: Value) -> Option<[Value; 2]> {
+        let unnamed = |value: Value| {
+            let node = self.node(value);
+            node.name.is_empty().then_some(node.op)
+        };
+        let (Op::Compare(Comparison::Less, limit, x), Op::Compare(Comparison::Less, again, low)) =
+            (unnamed(above)?, unnamed(below)?)
+        else {
+            return None;
+        };
+        let Op::Neg(other) = unnamed(low)? else {
+            return None;
+        };
+        let is_limit = other == limit
+            || matches!(self.node(limit).op, Op::Constant(_))
+                && self.node(other).op == self.node(limit).op;
+        (x == again && is_limit && self.interval(limit).low >= 0).then_some([x, limit])
     }
 
     /// The signal stands left, what it is compared with right.

@@ -10,6 +10,7 @@ pub mod gappa;
 mod names;
 mod path;
 mod plan;
+mod rows;
 pub mod rust;
 mod set_point;
 mod signal;

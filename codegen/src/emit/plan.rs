@@ -74,7 +74,7 @@ impl<'a> Context<'a> {
     /// Looks at all values of `function`.
     pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
         let users = users(function);
-        let legs = legs(function, &users);
+        let legs = legs(program, function, &users);
         let codes = codes(program, function);
         Self {
             program,
@@ -224,12 +224,16 @@ fn users(function: &Function) -> Vec<Vec<User>> {
     users
 }
 
-/// The choices that end in leg states and nowhere else: they are made among `LegState`s.
-fn legs(function: &Function, users: &[Vec<User>]) -> BTreeSet<Value> {
+/// The choices that end in leg states and nowhere else: they are made among `LegState`s, or looked up as such.
+fn legs(program: &Program, function: &Function, users: &[Vec<User>]) -> BTreeSet<Value> {
     let mut legs = BTreeSet::new();
     for (index, node) in function.nodes.iter().enumerate().rev() {
         let value = Value(index as u32);
-        let is_choice = matches!(node.op, Op::Select { .. } | Op::Join { .. });
+        let is_choice = match node.op {
+            Op::Select { .. } | Op::Join { .. } => true,
+            Op::Lookup { table, .. } => program.tables[table.index()].holds_legs,
+            _ => false,
+        };
         let is_arm = |user: usize| match function.nodes[user].op {
             Op::Select { condition, .. } => condition != value,
             _ => true,

@@ -63,6 +63,29 @@ impl Program {
         self.rounded_table(name, values, (Exact::Itself, None), doc)
     }
 
+    /// Adds a table that is read by one index together with others of the same `row`.
+    pub fn column(
+        &mut self,
+        row: &'static str,
+        name: &str,
+        values: Vec<i32>,
+        doc: &[String],
+    ) -> TableId {
+        let table = self.table(name, values, doc);
+        self.put_in_row(table, row);
+        table
+    }
+
+    /// Says that a table is read by one index together with others of the same `row`.
+    pub fn put_in_row(&mut self, table: TableId, row: &'static str) {
+        self.tables[table.index()].row = Some(row);
+    }
+
+    /// Says that the entries of a table are states of legs, and are read as such alone.
+    pub fn hold_legs(&mut self, table: TableId) {
+        self.tables[table.index()].holds_legs = true;
+    }
+
     /// Adds a table of rounded entries, which may belong to a function of the angle; padded as [`Self::table`].
     pub fn rounded_table(
         &mut self,
@@ -77,6 +100,8 @@ impl Program {
             values,
             exact,
             periodic,
+            row: None,
+            holds_legs: false,
             doc: doc.to_vec(),
         });
         TableId(self.tables.len() as u32 - 1)

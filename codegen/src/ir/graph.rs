@@ -41,6 +41,10 @@ pub struct Table {
     pub exact: Exact,
     /// The function of the angle whose first coefficients these are.
     pub periodic: Option<Periodic>,
+    /// What the tables have in common that one index reads: emitters may lay them out as columns of rows.
+    pub row: Option<&'static str>,
+    /// Whether the entries are states of legs and nothing else.
+    pub holds_legs: bool,
     /// Meaning of the entries.
     pub doc: Vec<String>,
 }

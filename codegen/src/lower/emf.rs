@@ -69,7 +69,9 @@ impl Lowering<'_> {
                 slope: Real::of(fit.steepest() * f64::from(segments) * scale),
             });
             let exact = (Exact::Within(1), periodic);
-            self.b.program.rounded_table(&format!("{name}_c{power}"), words, exact, &lines)
+            let table = self.b.program.rounded_table(&format!("{name}_c{power}"), words, exact, &lines);
+            self.b.program.put_in_row(table, name);
+            table
         });
         self.formats.push(FormatEntry {
             name: name.to_owned(),
@@ -266,9 +268,10 @@ impl Lowering<'_> {
 
     /// Reference at the sector's corner, as voltage words of phases a and b.
     pub fn quasi_square_reference(&mut self, at: Corner, set_point: Value) -> [Value; 2] {
-        let (index, places, by) = match at {
-            Corner::Sector(sector) => (sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
+        let (row, index, places, by) = match at {
+            Corner::Sector(sector) => ("sector", sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
             Corner::HallCode(code) => (
+                "hall",
                 code,
                 self.spec.motor.hall_codes.map(|code| usize::from(code & 7)),
                 "by Hall code",
@@ -287,7 +290,7 @@ impl Lowering<'_> {
             let doc = format!(
                 "Sign of the phase-{letter} reference {by}: the conducting pair carries (+I, -I)."
             );
-            self.b.program.table(name, signs, &[doc])
+            self.b.program.column(row, name, signs, &[doc])
         });
         self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there."]);
         [0, 1].map(|x| {

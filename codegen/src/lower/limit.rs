@@ -5,7 +5,7 @@
 
 use super::{Bus, Coefficient, Lowering};
 use crate::interface::Rounding;
-use crate::ir::{Comparison, Value};
+use crate::ir::{Comparison, Interval, Value};
 use crate::spec::LimitRule;
 
 /// A voltage inside the hexagon.
@@ -15,6 +15,15 @@ pub struct Limited {
     pub u: [Value; 2],
     /// Phase voltages less (max + min) / 2 of the three, rounded down: what centred pulses stand for.
     pub centred: [Value; 3],
+}
+
+/// Voltages of the three legs.
+#[derive(Clone, Copy, Debug)]
+enum Legs {
+    /// Phase voltages.
+    ZeroSum([Value; 3]),
+    /// Against any common point.
+    Any([Value; 3]),
 }
 
 /// A voltage that may lie outside.
@@ -28,6 +37,10 @@ struct Free {
 
 /// Fraction bits of the ratio in keep_angle.
 const SCALE_BITS: u32 = 30;
+/// Torque priority needs an EMF of at least the bus over 2 to this power.
+const LEAST_EMF_BITS: u32 = 5;
+/// Names of the limited phase voltages.
+const LIMITED: [&str; 2] = ["u_a_limited", "u_b_limited"];
 /// Fraction bits of the blend towards the nearest point.
 const BLEND_BITS: u32 = 15;
 
@@ -64,7 +77,7 @@ impl Lowering<'_> {
         });
         let saturated = self.b.compare(Comparison::Less, bus.volts, spread);
         self.b.name("saturated", saturated);
-        let limited = match rule {
+        let (legs, middle) = match rule {
             LimitRule::KeepAngle => {
                 self.b.guarded_stage(
                     "limit_keep_angle",
@@ -83,10 +96,13 @@ impl Lowering<'_> {
                 let divisor = self.at_least_one(spread);
                 let scale = self.b.divide(bus.volts, SCALE_BITS, divisor, one);
                 self.b.name("scale", scale);
-                [0, 1].map(|x| {
+                let scaled = [0, 1].map(|x| {
                     let scaled = self.b.mul(scale, u[x], SCALE_BITS);
-                    self.within_bus(scaled, bus.volts)
-                })
+                    let held = self.within_bus(scaled, bus.volts);
+                    self.b.name(LIMITED[x], held)
+                });
+                let scaled_c = self.third_phase("u_c_limited", scaled[0], scaled[1]);
+                (Legs::ZeroSum([scaled[0], scaled[1], scaled_c]), None)
             }
             LimitRule::Nearest => {
                 self.b.guarded_stage(
@@ -95,7 +111,10 @@ impl Lowering<'_> {
                     true,
                     &["Nearest point of the hexagon: with the offset that centres the pulses, each leg is clamped for itself."],
                 );
-                self.nearest(free, bus, third)
+                // The greatest is the bus and the least zero.
+                let half = self.b.shift_right(bus.volts, 1);
+                self.b.name("terminal_middle", half);
+                (Legs::Any(self.nearest(free, bus)), Some(half))
             }
             LimitRule::TorquePriority => {
                 self.b.guarded_stage(
@@ -111,36 +130,15 @@ impl Lowering<'_> {
                     ],
                 );
                 let e = e(self);
-                self.torque_priority(free, e, bus, third)
+                (Legs::Any(self.torque_priority(free, e, bus)), None)
             }
         };
-        let names = ["u_a_limited", "u_b_limited"];
-        let inside = [0, 1].map(|x| self.b.name(names[x], limited[x]));
-        let inside_c = self.third_phase("u_c_limited", inside[0], inside[1]);
-        let [high, low] = self.extremes(
-            ["limited_max", "limited_min"],
-            [inside[0], inside[1], inside_c],
-        );
-        let sum = self.b.add(high, low);
-        let middle = self.b.shift_right(sum, 1);
-        self.b.name("limited_middle", middle);
-        let up = self.b.literal(1);
-        let up = self.b.add(bus.volts, up);
-        let top = self.b.shift_right(up, 1);
-        self.b.name("centred_max", top);
-        let bottom = self.b.neg(top);
-        self.b.name("centred_min", bottom);
-        let names = [
-            "centred_a_limited",
-            "centred_b_limited",
-            "centred_c_limited",
-        ];
-        let inside_centred = [0, 1, 2].map(|x| {
-            let centred = self.b.sub([inside[0], inside[1], inside_c][x], middle);
-            let centred = self.b.max(centred, bottom);
-            let centred = self.b.min(centred, top);
-            self.b.name(names[x], centred)
-        });
+        let (legs, inside) = match legs {
+            Legs::ZeroSum(legs) => (legs, [legs[0], legs[1]]),
+            Legs::Any(legs) => (legs, self.without_mean(legs, bus, third)),
+        };
+        let middle = middle.unwrap_or_else(|| self.middle(legs));
+        let inside_centred = self.centred(legs, middle, bus);
         let [u_a, u_b, centred_a, centred_b, centred_c] = self.b.join([
             ("u_a", inside[0], u[0]),
             ("u_b", inside[1], u[1]),
@@ -154,48 +152,86 @@ impl Lowering<'_> {
         }
     }
 
+    /// The phase voltages a and b of legs against any common point, added to the open stage.
+    fn without_mean(&mut self, legs: [Value; 3], bus: Bus, third: Coefficient) -> [Value; 2] {
+        let sum = self.b.add(legs[0], legs[1]);
+        let sum = self.b.add(sum, legs[2]);
+        let mean = self.times(third, sum);
+        self.b.name("legs_mean", mean);
+        [0, 1].map(|x| {
+            let voltage = self.b.sub(legs[x], mean);
+            let held = self.within_bus(voltage, bus.volts);
+            self.b.name(LIMITED[x], held)
+        })
+    }
+
+    /// (max + min) / 2 of three legs, rounded down; added to the open stage.
+    fn middle(&mut self, legs: [Value; 3]) -> Value {
+        let [high, low] = self.extremes(["limited_max", "limited_min"], legs);
+        let sum = self.b.add(high, low);
+        let middle = self.b.shift_right(sum, 1);
+        self.b.name("limited_middle", middle)
+    }
+
+    /// Legs about their middle, within half the bus; added to the open stage.
+    fn centred(&mut self, legs: [Value; 3], middle: Value, bus: Bus) -> [Value; 3] {
+        let up = self.b.literal(1);
+        let up = self.b.add(bus.volts, up);
+        let top = self.b.shift_right(up, 1);
+        self.b.name("centred_max", top);
+        let bottom = self.b.neg(top);
+        self.b.name("centred_min", bottom);
+        let names = [
+            "centred_a_limited",
+            "centred_b_limited",
+            "centred_c_limited",
+        ];
+        let least_top = self.b.interval(top).low;
+        let centred = [0, 1, 2].map(|x| self.b.sub(legs[x], middle));
+        [0, 1, 2].map(|x| {
+            let mut held = centred[x];
+            if !Interval::symmetric(least_top).contains(self.b.interval(held)) {
+                let raised = self.b.max(held, bottom);
+                held = self.b.min(raised, top);
+            }
+            self.b.name(names[x], held)
+        })
+    }
+
     fn at_least_one(&mut self, value: Value) -> Value {
         let one = self.b.literal(1);
         self.b.max(value, one)
     }
 
-    /// The nearest point's phase voltages a and b, added to the open stage.
-    fn nearest(&mut self, free: Free, bus: Bus, third: Coefficient) -> [Value; 2] {
+    /// The nearest point's terminal voltages, added to the open stage.
+    fn nearest(&mut self, free: Free, bus: Bus) -> [Value; 3] {
         let half = self.b.shift_right(bus.volts, 1);
         let lift = self.b.sub(half, free.middle);
         self.b.name("lift", lift);
         let names = ["terminal_a", "terminal_b", "terminal_c"];
-        let terminals = [0, 1, 2].map(|x| {
+        [0, 1, 2].map(|x| {
             let phase = free.u[x];
             let lifted = self.b.add(phase, lift);
             let zero = self.zero();
             let terminal = self.b.clamp(lifted, zero, bus.volts);
             self.b.name(names[x], terminal)
-        });
-        let sum = self.b.add(terminals[0], terminals[1]);
-        let sum = self.b.add(sum, terminals[2]);
-        let mean = self.times(third, sum);
-        self.b.name("terminal_mean", mean);
-        [0, 1].map(|x| self.b.sub(terminals[x], mean))
+        })
     }
 
     /// A value that cannot leave the bus, held there for the proof (a third or two of the bus at most).
     fn within_bus(&mut self, value: Value, bus: Value) -> Value {
+        let least_bus = self.b.interval(bus).low;
+        if Interval::symmetric(least_bus).contains(self.b.interval(value)) {
+            return value;
+        }
         let low = self.b.neg(bus);
         let low = self.b.max(value, low);
         self.b.min(low, bus)
     }
 
-    fn torque_priority(
-        &mut self,
-        free: Free,
-        e: [Value; 2],
-        bus: Bus,
-        third: Coefficient,
-    ) -> [Value; 2] {
-        let near = self.nearest(free, bus, third);
-        let near = [0, 1].map(|x| self.b.name(["u_a_near", "u_b_near"][x], near[x]));
-        let near_c = self.third_phase("u_c_near", near[0], near[1]);
+    /// The legs' voltages against the phase of the largest EMF, or where that is small the nearest point's terminals.
+    fn torque_priority(&mut self, free: Free, e: [Value; 2], bus: Bus) -> [Value; 3] {
+        let near = self.nearest(free, bus);
 
         // d, x, y: the phase of the largest EMF and the next two.
         let e_c = self.third_phase("e_c", e[0], e[1]);
@@ -219,7 +255,7 @@ impl Lowering<'_> {
         }
         let [u_d, u_x, u_y] = rotate(self, free.u);
         self.b.name("u_d", u_d);
-        let [n_d, n_x, n_y] = rotate(self, [near[0], near[1], near_c]);
+        let [n_d, n_x, n_y] = rotate(self, near);
         self.b.name("near_d", n_d);
 
         // Signs such that F and the component are not negative.
@@ -278,24 +314,22 @@ impl Lowering<'_> {
         });
 
         // The point of the hexagon with that component (or the greatest one) nearest to (x, y).
-        let reach = [0, 1].map(|k| {
-            let q = self.b.mul_floor([f_x, f_y][k], bus.volts, shift);
-            self.b.name(["reach_x", "reach_y"][k], q)
-        });
-        let reachable = self.b.add(reach[0], reach[1]);
+        let f_size = self.b.abs(f_d);
+        self.b.name("f_size", f_size);
+        let reachable = self.b.mul_floor(f_size, bus.volts, shift);
         self.b.name("reachable", reachable);
         let kept = self.b.min(component, reachable);
         let x_heavy = self.b.compare(Comparison::LessEqual, y, x);
         self.b.name("x_heavy", x_heavy);
-        let full = self.b.select(x_heavy, reach[0], reach[1]);
+        let heavy_force = self.b.select(x_heavy, f_x, f_y);
+        let full = self.b.mul_floor(heavy_force, bus.volts, shift);
+        self.b.name("at_corner", full);
         let rest = self.b.sub(kept, full);
         self.b.name("past_corner", rest);
         let zero = self.zero();
         let beyond = self.b.compare(Comparison::LessEqual, zero, rest);
         self.b.name("beyond_corner", beyond);
         let light_force = self.b.select(x_heavy, f_y, f_x);
-        let f_size = self.b.abs(f_d);
-        self.b.name("f_size", f_size);
         // A quarter of the EMF at least: where the light force vanishes in mid-sector the exact quotient
         // would jump along a whole edge for an error of one ulp. What that gives away the nearest point,
         // whose component is never the larger, returns.
@@ -332,25 +366,22 @@ impl Lowering<'_> {
             let part = self.b.mul(blend, way, BLEND_BITS);
             let blended = self.b.add(kept[k], part);
             let back = flip_named(self, pushing, blended, ["blended_x", "blended_y"][k]);
-            flip_named(self, positive, back, ["turned_x", "turned_y"][k])
+            self.b.name(["turned_x", "turned_y"][k], back);
+            let turned = self.b.neg(back);
+            let below = self.b.select(positive, turned, back);
+            self.b.name(["leg_x", "leg_y"][k], below)
         });
-        let chosen = [0, 1].map(|k| self.b.name(["chosen_x", "chosen_y"][k], chosen[k]));
-        let sum = self.b.add(chosen[0], chosen[1]);
-        let new_d = self.times(third, sum);
-        self.b.name("new_d", new_d);
-        let new_x = self.b.sub(new_d, chosen[0]);
-        self.b.name("new_x", new_x);
-        let new_y = self.b.sub(new_d, chosen[1]);
-        self.b.name("new_y", new_y);
-        // Back from (d, x, y) to (a, b).
-        let u_a = self.pick(d_is_a, d_is_b, [new_d, new_y, new_x]);
-        let u_b = self.pick(d_is_a, d_is_b, [new_x, new_d, new_y]);
-        let least = self.b.shift_right(bus.volts, 8);
+        let least = self.b.shift_right(bus.volts, LEAST_EMF_BITS);
         let directed = self.b.compare(Comparison::LessEqual, least, f_size);
         self.b.name("directed", directed);
-        [(u_a, near[0]), (u_b, near[1])].map(|(kept, near)| {
-            let chosen = self.b.select(directed, kept, near);
-            self.within_bus(chosen, bus.volts)
+        // Back from (d, x, y) to (a, b, c).
+        let (zero, [x, y]) = (self.zero(), chosen);
+        let legs = [[zero, y, x], [x, zero, y], [y, x, zero]];
+        [0, 1, 2].map(|phase| {
+            let kept = self.pick(d_is_a, d_is_b, legs[phase]);
+            let leg = self.b.select(directed, kept, near[phase]);
+            self.b
+                .name(["leg_a_kept", "leg_b_kept", "leg_c_kept"][phase], leg)
         })
     }
 

@@ -75,7 +75,8 @@ impl Lowering<'_> {
         for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
             sectors[usize::from(code & 7)] = sector;
         }
-        let decode = self.b.program.table(
+        let decode = self.b.program.column(
+            "hall",
             "hall_sector",
             sectors,
             &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],

@@ -78,6 +78,8 @@ pub struct Lowering<'p> {
     pub formats: Vec<FormatEntry>,
     /// Names of coefficients too large for their word.
     pub misfits: Vec<String>,
+    /// Names of impedances of 32 bits whose products need more than their upper word.
+    pub long_products: Vec<&'static str>,
 }
 
 impl<'p> Lowering<'p> {
@@ -90,6 +92,7 @@ impl<'p> Lowering<'p> {
             scale,
             formats: vec![],
             misfits: vec![],
+            long_products: vec![],
         };
         let ampere = engineering(scale.ampere_per_count, "A");
         let volt = engineering(scale.volt_per_count, "V");

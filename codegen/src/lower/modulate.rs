@@ -48,8 +48,8 @@ pub struct OffLeg {
 /// State words and flags of pair modulation.
 #[derive(Clone, Copy, Debug)]
 pub struct PairModulation {
-    /// Sector in force at the last sample.
-    pub sector_prev: StateId,
+    /// Sector in force at the last sample, where that is not the sample's own.
+    pub sector_prev: Option<StateId>,
     /// Whether a commutation was going on.
     pub commutating: StateId,
     /// Periods since it began.
@@ -146,14 +146,16 @@ impl Lowering<'_> {
     }
 
     /// Declares the words of pair modulation.
-    pub fn pair_words(&mut self, timeout: u32) -> PairModulation {
+    pub fn pair_words(&mut self, timeout: u32, advances: bool) -> PairModulation {
         PairModulation {
-            sector_prev: self.state(
-                "sector_eff_prev",
-                0,
-                Interval::new(0, 6),
-                "Sector in force at the last sample; 0 before the first.",
-            ),
+            sector_prev: advances.then(|| {
+                self.state(
+                    "sector_eff_prev",
+                    0,
+                    Interval::new(0, 6),
+                    "Sector in force at the last sample; 0 before the first.",
+                )
+            }),
             commutating: self.state(
                 "commutating",
                 0,
@@ -170,22 +172,24 @@ impl Lowering<'_> {
     }
 
     /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector; and
-    /// the phase that goes off in the sector.
+    /// the phase that goes off in the sector. `edge` tells a change of the sample's own sector.
     pub fn commutation(
         &mut self,
         words: PairModulation,
-        [sector, direction, set_point]: [Value; 3],
+        [sector, edge, direction, set_point]: [Value; 4],
         currents: &Currents,
         threshold: f64,
         timeout: u32,
     ) -> ([Value; 3], Value) {
         let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
-        let phases = self.b.program.table(
+        let phases = self.b.program.column(
+            "sector",
             "off_phase",
             table(OFF_PHASE),
             &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()],
         );
-        let signs = self.b.program.table(
+        let signs = self.b.program.column(
+            "sector",
             "outgoing_sign",
             table(OUTGOING_SIGN),
             &["Sign of the outgoing current on entry of sectors 1 to 6, positive torque, forward.".to_owned()],
@@ -197,12 +201,17 @@ impl Lowering<'_> {
                 "current has fallen to the threshold or the time-out has passed.",
             ],
         );
-        let sector_prev = self.b.state(words.sector_prev);
-        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
-        let zero = self.zero();
-        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
-        let changed = self.b.and(different, known);
-        self.b.name("changed", changed);
+        let changed = match words.sector_prev {
+            None => edge,
+            Some(word) => {
+                let sector_prev = self.b.state(word);
+                let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+                let zero = self.zero();
+                let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+                let changed = self.b.and(different, known);
+                self.b.name("changed", changed)
+            }
+        };
         let phase = self.b.lookup(phases, sector);
         self.b.name("outgoing_phase", phase);
         let outgoing = self.of_phase(phase, currents.phases);
@@ -263,7 +272,7 @@ impl Lowering<'_> {
                 "Leg {} in sectors 1 to 6: 1 plus, -1 minus, 0 off.",
                 ["a", "b", "c"][phase]
             );
-            let table = self.b.program.table(name, column, &[doc]);
+            let table = self.b.program.column("sector", name, column, &[doc]);
             let sign = self.b.lookup(table, sector);
             self.b.name(["sign_a", "sign_b", "sign_c"][phase], sign)
         })

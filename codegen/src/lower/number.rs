@@ -93,7 +93,7 @@ impl Lowering<'_> {
         doc: &str,
         [symbol, unit]: [&str; 2],
     ) -> Coefficient {
-        self.scaled_coefficient(
+        let coefficient = self.scaled_coefficient(
             name,
             ohm * (self.scale.voltage() / self.scale.current()),
             word,
@@ -102,7 +102,11 @@ impl Lowering<'_> {
                 &format!("{symbol} g/w 2^(f_v - f_i)"),
                 "words of voltage per word of current",
             ],
-        )
+        );
+        if word == 32 && coefficient.shift < 32 {
+            self.long_products.push(name);
+        }
+        coefficient
     }
 
     fn rounded(

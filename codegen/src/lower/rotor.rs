@@ -114,7 +114,8 @@ impl Lowering<'_> {
 
     /// Adds the comparison of two sectors to the open stage.
     fn turned(&mut self, hall: &Hall, old: Value) -> Turned {
-        let next = self.b.program.table(
+        let next = self.b.program.column(
+            "sector",
             "next_sector",
             vec![0, 2, 3, 4, 5, 6, 1],
             &["Sector that follows in forward rotation.".to_owned()],

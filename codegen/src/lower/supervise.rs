@@ -81,18 +81,17 @@ impl Lowering<'_> {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
         let mode = self.b.state(words.mode);
         let trip = self.ampere_word(self.spec.inverter.trip_current);
-        let level = self.spec.inverter.trip_current;
-        let doc = |level: f64| {
-            format!(
-                "Trip level of the phase currents: {}, words of current.",
-                engineering(level, "A")
-            )
-        };
-        // Two comparisons, which compilers fold into one of the distance from the lower level.
-        let [a, b, c] = currents.phases.map(|current| {
-            let high = self.number("i_trip", trip, &doc(level));
+        let level = engineering(self.spec.inverter.trip_current, "A");
+        let doc = format!("Trip level of the phase currents: {level}, words of current.");
+        // Phase c is told by its negative.
+        let [i_a, i_b, _] = currents.phases;
+        let sum = self.b.add(i_a, i_b);
+        self.b.name("i_sum", sum);
+        let [a, b, c] = [i_a, i_b, sum].map(|current| {
+            let high = self.number("i_trip", trip, &doc);
             let above = self.b.compare(Comparison::Less, high, current);
-            let low = self.number("i_trip_negative", -trip, &doc(-level));
+            let high = self.number("i_trip", trip, &doc);
+            let low = self.b.neg(high);
             let below = self.b.compare(Comparison::Less, current, low);
             self.b.or(above, below)
         });

@@ -292,6 +292,7 @@ mod tests {
                     delay: 1,
                     discretisation: Discretisation::Exact,
                     word: 32,
+                    word_by_target: false,
                     commutation_threshold: 0.5,
                     commutation_timeout: 8,
                     speed: None,

@@ -11,6 +11,9 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+/// The programs of every firmware that hold drives: those in Rust, and those that are emitted as C.
+pub const PROGRAMS: [&str; 2] = ["bench", "c99"];
+
 /// Longest run of the emulator.
 const PATIENCE: Duration = Duration::from_secs(15 * 60);
 

@@ -1,7 +1,7 @@
 //! Processor in the loop: the host's closed-loop vectors on the emulated core, every output and state word compared.
 
 use crate::BenchError;
-use crate::firmware::Firmware;
+use crate::firmware::{Firmware, PROGRAMS};
 use crate::listing::Listed;
 use crate::targets::Target;
 use crate::vectors::{Answer, Vectors, drive_of, record};
@@ -32,16 +32,25 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let firmware = Firmware::build(target)?;
         prove_that_it_can_fail(&firmware)?;
         let begin = Instant::now();
-        let mut drives = firmware.drives("bench")?;
+        let mut drives = vec![];
+        for program in PROGRAMS {
+            let core = Emulated(&firmware, program);
+            drives.extend(
+                firmware
+                    .drives(program)?
+                    .into_iter()
+                    .map(|drive| (core, drive)),
+            );
+        }
         if let Some(part) = &options.only {
-            drives.retain(|drive| drive.symbol.contains(part));
+            drives.retain(|(_, drive)| drive.symbol.contains(part));
         }
         let outcomes: Vec<_> = drives
             .par_iter()
-            .map(|listed| compare(&firmware, listed, options.steps))
+            .map(|(core, listed)| compare(core, listed, options.steps))
             .collect::<Result<_, BenchError>>()?;
         let mut steps = 0;
-        for (listed, outcome) in drives.iter().zip(outcomes) {
+        for ((_, listed), outcome) in drives.iter().zip(outcomes) {
             steps += outcome.steps;
             if let Some(report) = outcome.difference {
                 differing += 1;
@@ -85,9 +94,14 @@ trait Core {
     fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
 }
 
-impl Core for Firmware {
+/// A program of the firmware.
+#[derive(Clone, Copy)]
+struct Emulated<'f>(&'f Firmware, &'static str);
+
+impl Core for Emulated<'_> {
     fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
-        self.run_program("bench", task, records)
+        let Self(firmware, program) = self;
+        firmware.run_program(program, task, records)
     }
 }
 
@@ -123,7 +137,8 @@ fn difference(
 /// Lets the core read one ADC count of one step wrong by one: the comparison must name that step.
 fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
     const STEP: usize = 2500;
-    let drives = firmware.drives("bench")?;
+    let [program, ..] = PROGRAMS;
+    let drives = firmware.drives(program)?;
     let listed = drives.first().ok_or(BenchError::Listing)?;
     let drive = drive_of(listed)?;
     let honest = record(&drive, 2 * STEP, None)?;
@@ -135,7 +150,7 @@ fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
     if let Some(record) = steps.nth(STEP) {
         record[4] ^= 1;
     }
-    match difference(firmware, listed, &drive, &planted)? {
+    match difference(&Emulated(firmware, program), listed, &drive, &planted)? {
         Some(report) if report.contains(&format!("step {STEP},")) => Ok(()),
         found => Err(BenchError::Failed(format!(
             "a bit planted in step {STEP} of {} was not found there: {found:?}",

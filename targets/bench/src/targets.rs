@@ -47,6 +47,14 @@ impl Target {
         }
     }
 
+    /// The C compiler's program; C drives are built by it.
+    pub fn c_compiler(self) -> &'static str {
+        match self {
+            Self::CortexM4 | Self::CortexM0 => "arm-none-eabi-gcc",
+            Self::Riscv32 => "riscv64-unknown-elf-gcc",
+        }
+    }
+
     /// The emulator's program.
     pub fn emulator(self) -> &'static str {
         match self {

@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Debian's packages of all targets.
-const PACKAGES: [&str; 5] = [
+const PACKAGES: [&str; 7] = [
     "rustc-web",
     "cargo-web",
     "rust-web-src",
     "qemu-system-arm",
     "qemu-system-misc",
+    "gcc-arm-none-eabi",
+    "gcc-riscv64-unknown-elf",
 ];
 
 /// Debian's compiler and package tool; those on the path may be others.
@@ -39,33 +41,28 @@ pub enum Toolchain {
 /// Nothing compiles or runs firmware of a target.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "firmware for {target} cannot be {what} here: {reason}\n\
-     install: rustup target add {triple}, and {emulator}\n\
-     or, on Debian: apt-get install --no-install-recommends {packages}"
+    "firmware for {} cannot be {what} here: {reason}\n\
+     install: rustup target add {}, {} and {}\n\
+     or, on Debian: apt-get install --no-install-recommends {}",
+    .target.name(), .target.triple(), .target.c_compiler(), .target.emulator(), PACKAGES.join(" ")
 )]
 pub struct Missing {
-    target: &'static str,
-    triple: &'static str,
-    emulator: &'static str,
+    target: Target,
     what: &'static str,
     reason: String,
-    packages: String,
 }
 
 impl Missing {
     fn new(target: Target, what: &'static str, reason: impl Into<String>) -> Self {
         Self {
-            target: target.name(),
-            triple: target.triple(),
-            emulator: target.emulator(),
+            target,
             what,
             reason: reason.into(),
-            packages: PACKAGES.join(" "),
         }
     }
 }
 
-/// The toolchain of a target, whose emulator is there, too. Where one is missing and this is a continuous
+/// The toolchain of a target, whose emulator and C compiler are there, too. Where one is missing and this is a continuous
 /// integration run of root's, Debian's packages are installed first.
 ///
 /// # Errors
@@ -83,6 +80,11 @@ fn look(target: Target) -> Result<Toolchain, Missing> {
     if output(Command::new(emulator).arg("--version")).is_none() {
         let reason = format!("`{emulator}` is not on the path");
         return Err(Missing::new(target, "run", reason));
+    }
+    let c_compiler = target.c_compiler();
+    if output(Command::new(c_compiler).arg("--version")).is_none() {
+        let reason = format!("`{c_compiler}`, for drives in C, is not on the path");
+        return Err(Missing::new(target, "compiled", reason));
     }
     compiler(target)
 }

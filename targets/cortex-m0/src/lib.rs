@@ -5,5 +5,11 @@ pub mod board;
 // What is the same on every target.
 #[path = "../../firmware/on_target/control.rs"]
 pub mod control;
+#[macro_use]
 #[path = "../../firmware/on_target/drives.rs"]
-pub mod drives;
+mod listed;
+
+pub mod drives {
+    //! All drives of this firmware.
+    drives_for!(cortex_m0);
+}

@@ -1,35 +1,40 @@
 //! The drives of this firmware. Every step function stands in the ELF under its own name.
 
-hexagen_firmware::drives! {
-    TrivediPdcc, step_trivedi_keshri_660w_pdcc:
-        "../motors/trivedi-keshri-660w.toml", pdcc {};
-    TrivediFcsMpc, step_trivedi_keshri_660w_fcs_mpc:
-        "../motors/trivedi-keshri-660w.toml", fcs_mpc {};
-    TrivediPhcc, step_trivedi_keshri_660w_phcc:
-        "../motors/trivedi-keshri-660w.toml", phcc {};
-    TrivediPiPwm, step_trivedi_keshri_660w_pi_pwm:
-        "../motors/trivedi-keshri-660w.toml", pi_pwm {};
+/// The drives, those that the goals are about with the word length of this core.
+macro_rules! drives_for {
+    ($target:ident) => {
+        hexagen_firmware::drives! {
+            TrivediPdcc, step_trivedi_keshri_660w_pdcc:
+                "../motors/trivedi-keshri-660w.toml", pdcc {};
+            TrivediFcsMpc, step_trivedi_keshri_660w_fcs_mpc:
+                "../motors/trivedi-keshri-660w.toml", fcs_mpc {};
+            TrivediPhcc, step_trivedi_keshri_660w_phcc:
+                "../motors/trivedi-keshri-660w.toml", phcc {};
+            TrivediPiPwm, step_trivedi_keshri_660w_pi_pwm:
+                "../motors/trivedi-keshri-660w.toml", pi_pwm {};
 
-    TeknicPdcc, step_teknic_m2310p_pdcc: "../motors/teknic-m2310p.toml", pdcc {};
-    TeknicFcsMpc, step_teknic_m2310p_fcs_mpc: "../motors/teknic-m2310p.toml", fcs_mpc {};
-    TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
-    TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
+            TeknicPdcc, step_teknic_m2310p_pdcc: "../motors/teknic-m2310p.toml", pdcc {};
+            TeknicFcsMpc, step_teknic_m2310p_fcs_mpc: "../motors/teknic-m2310p.toml", fcs_mpc {};
+            TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
+            TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
 
-    HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
+            HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
 
-    // The variants that the goals of the cost table are about.
-    TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
-        "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held };
-    TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:
-        "../motors/trivedi-keshri-660w.toml",
-        fcs_mpc { candidates: three_phase, emf: held };
-    TrivediFcsMpcTable2, step_trivedi_keshri_660w_fcs_mpc_table2:
-        "../motors/trivedi-keshri-660w.toml",
-        fcs_mpc { candidates: table2, off_leg: nominal, emf: held };
-    TrivediFcsMpcPhysical, step_trivedi_keshri_660w_fcs_mpc_physical:
-        "../motors/trivedi-keshri-660w.toml", fcs_mpc { emf_filter: 1 };
-    TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:
-        "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf_filter: 1 };
-    TrivediPiPwmKeepAngle, step_trivedi_keshri_660w_pi_pwm_keep_angle:
-        "../motors/trivedi-keshri-660w.toml", pi_pwm { saturation: keep_angle, feed_forward: off };
+            // The variants that the goals of the cost table are about, each with the words that suit the core.
+            TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
+                "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held, target: $target };
+            TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:
+                "../motors/trivedi-keshri-660w.toml",
+                fcs_mpc { candidates: three_phase, emf: held, target: $target };
+            TrivediFcsMpcTable2, step_trivedi_keshri_660w_fcs_mpc_table2:
+                "../motors/trivedi-keshri-660w.toml",
+                fcs_mpc { candidates: table2, off_leg: nominal, emf: held, target: $target };
+            TrivediFcsMpcPhysical, step_trivedi_keshri_660w_fcs_mpc_physical:
+                "../motors/trivedi-keshri-660w.toml", fcs_mpc { emf_filter: 1, target: $target };
+            TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:
+                "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf_filter: 1, target: $target };
+            TrivediPiPwmKeepAngle, step_trivedi_keshri_660w_pi_pwm_keep_angle:
+                "../motors/trivedi-keshri-660w.toml", pi_pwm { saturation: keep_angle, feed_forward: off, target: $target };
+        }
+    };
 }

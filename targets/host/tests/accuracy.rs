@@ -4,7 +4,7 @@
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::ir::{StatedError, stated_errors};
 use hexagen_host::cli::PlantArguments;
-use hexagen_host::commands::accuracy::{OneStep, one_step};
+use hexagen_host::commands::accuracy::{OneStep, differences, one_step};
 use hexagen_host::commands::compare::at_speeds;
 use hexagen_host::engine::{MotorSource, Prepared, library, prepare};
 use rayon::prelude::*;
@@ -35,13 +35,44 @@ fn steps_keep_within_the_proven_bounds_and_compare_values_within_a_count() {
         let found = accuracy(drive);
         let named = || format!("{}, {}: {found:?}", drive.motor, drive.variant);
         assert!(found.steps > 4000, "{}", named());
-        assert!(found.seen_to_bound <= 1.0, "{}", named());
+        assert!(found.is_within_bounds(), "{}", named());
         assert!(found.decisions_equal_pct > 99.98, "{}", named());
         if *word == 32 {
             assert!(found.compares_apart_counts <= 1, "{}", named());
             // Compare values differ where the exact duty is half a count from a whole one.
             assert!(found.equal_steps_pct >= 99.5, "{}", named());
         }
+    });
+}
+
+#[test]
+fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
+    let variants = [
+        "pdcc",
+        "pi-pwm",
+        "fcs-mpc",
+        "fcs-mpc:candidates=all",
+        "phcc",
+    ];
+    let motors = library().iter().map(MotorSource::from);
+    let pairs = motors.flat_map(|motor| variants.map(|variant| (motor.clone(), variant)));
+    // Whole vectors are too strong for some motors.
+    let drives: Vec<Prepared> = pairs
+        .filter_map(|(motor, variant)| prepare(&motor, Some(variant)).ok())
+        .collect();
+    assert!(drives.len() >= 2 * 16 + 3, "{}", drives.len());
+    drives.par_iter().for_each(|drive| {
+        let named = || format!("{}, {}", drive.motor, drive.variant);
+        let measured = at_speeds(drive, &PlantArguments::default()).expect("runs");
+        for (rpm, both) in &measured {
+            let [fixed, ideal] = [&both.fixed.merits, &both.ideal.merits];
+            for merit in differences(fixed, ideal, ideal) {
+                assert!(merit.close, "{}, {rpm} rpm: {merit:?}", named());
+            }
+        }
+        let found = one_step(drive, measured.iter().map(|(_, both)| both)).0;
+        assert!(found.is_within_bounds(), "{}: {found:?}", named());
+        assert!(found.decisions_equal_pct > 99.8, "{}: {found:?}", named());
     });
 }
 

@@ -37,6 +37,7 @@ pub fn checks() -> Vec<Step> {
         firmware_format("targets/cortex-m4/Cargo.toml"),
         firmware_format("targets/cortex-m0/Cargo.toml"),
         firmware_format("targets/riscv32/Cargo.toml"),
+        firmware_format("targets/firmware-c/Cargo.toml"),
         firmware_format("targets/frameworks/Cargo.toml"),
         Step {
             needs: Some(("clippy", "rustup component add clippy")),

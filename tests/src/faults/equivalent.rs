@@ -53,11 +53,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "only the magnitude of this current is used",
-        drives: &[PAPER, ESTUN, PI_TEKNIC, PI_ANAHEIM],
-        faults: &[(&["measure_currents: i_c"], &["sign lost"])],
-    },
-    Unnoticed {
-        because: "only the magnitude of this current is used",
         drives: &[HOVERBOARD, TEKNIC, FCS_PAPER, PHCC_PAPER],
         faults: &[(&["meet_emf: i_c_prev"], &["sign lost"])],
     },
@@ -207,17 +202,20 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         drives: &[FCS_PAPER, FCS_TEKNIC],
         faults: &[
             (&["zero_vector[0]"], &["one more"]),
-            (&["nearest_pair: in vector"], &["-1 for 0", "1 for 0 (2)"]),
+            (
+                &["know_sector: in vector"],
+                &["-1 for 0", "1 for 0 (2)", "-1 for 0 (2)"],
+            ),
         ],
     },
     Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: FCS,
+        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
         faults: &[(&["nearest_pair: in vector"], &["-1 for 0 (2)"])],
     },
     Unnoticed {
         because: "there is no sector 0 but before the first valid Hall code, and that trips",
-        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
+        drives: &[FCS_ESTUN],
         faults: &[(
             &["nearest_pair: in vector"],
             &["1 for 0 (3)", "-1 for 0 (3)"],
@@ -302,16 +300,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
-        because: "steps from or to sector 0, and of none, tell no direction",
-        drives: &[
-            TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER, PHCC_ESTUN,
-        ],
-        faults: &[
-            (&["find_sector: in edge"], &["-1 for 0"]),
-            (&["find_sector: edge"], &["or for and", "second left out"]),
-        ],
-    },
-    Unnoticed {
         because: "the age before an edge is at least two ticks, that after it one",
         drives: &[HOVERBOARD],
         faults: &[
@@ -388,30 +376,25 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     Unnoticed {
         because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
         drives: &[TEKNIC],
+        faults: &[
+            (&["di_min"], &["one more", "one less"]),
+            (&["di_max"], &["one less", "one more"]),
+            (&["di_min", "di_max"], &["bit 4"]),
+            (
+                &["estimate_emf: di_a", "estimate_emf: di_b"],
+                &["lower limit left out", "upper limit left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "the product at the limit rounds to the same",
+        drives: &[PAPER, HOVERBOARD, FCS_PAPER, PHCC_PAPER],
         faults: &[(&["di_min"], &["one more"]), (&["di_max"], &["one less"])],
-    },
-    Unnoticed {
-        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC],
-        faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
-    },
-    Unnoticed {
-        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC],
-        faults: &[(&["di_min", "di_max"], &["bit 4"])],
-    },
-    Unnoticed {
-        because: "what changes by more than the bus can cause leaves an EMF beyond the bus, which is not believed",
-        drives: &[TEKNIC],
-        faults: &[(
-            &["estimate_emf: di_a", "estimate_emf: di_b"],
-            &["lower limit left out", "upper limit left out"],
-        )],
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
         drives: &[PAPER, HOVERBOARD, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER],
-        faults: &[(&["di_min", "di_max"], &["one more", "one less"])],
+        faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
@@ -510,12 +493,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "the terminals sum to a multiple of three or one less: with one more their mean rounds to the same",
-        drives: &[PAPER],
-        faults: &[(&["limit_torque_priority: in terminal_c"], &["1 for 0"])],
-    },
-    Unnoticed {
-        because: "the terminals sum to a multiple of three or one less: with one more their mean rounds to the same",
-        drives: &[HOVERBOARD, PI_TEKNIC],
+        drives: &[PI_TEKNIC],
         faults: &[(&["limit_nearest: in terminal_c"], &["1 for 0"])],
     },
     Unnoticed {
@@ -661,7 +639,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         faults: &[
             (
                 &["limit_torque_priority: in centred_max"],
-                &["2 for 1", "0 for 1", "second term left out"],
+                &["2 for 1", "0 for 1", "second term left out", "- for +"],
             ),
             (&["limit_torque_priority: centred_max"], &["shift one less"]),
             (
@@ -679,12 +657,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
-        drives: &[PAPER],
-        faults: &[(&["limit_torque_priority: in centred_max"], &["- for +"])],
-    },
-    Unnoticed {
-        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
-        drives: &[HOVERBOARD, PI_TEKNIC],
+        drives: &[HOVERBOARD],
         faults: &[
             (
                 &["limit_nearest: in centred_max"],
@@ -703,11 +676,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
                 &["limit left out"],
             ),
         ],
-    },
-    Unnoticed {
-        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
-        drives: &[PI_TEKNIC],
-        faults: &[(&["limit_nearest: in centred_max"], &["- for +"])],
     },
     Unnoticed {
         because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
@@ -771,26 +739,8 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
-        because: "where the third phase is at zero and the second next to it, V0 is nearest",
-        drives: FCS,
-        faults: &[(
-            &["nearest_vector: in gates"],
-            &["1 for 0", "-1 for 0", "another comparison"],
-        )],
-    },
-    Unnoticed {
-        because: "four less and four more are the same entry of eight",
-        drives: FCS,
-        faults: &[(&["nearest_vector: gates"], &["- for +"])],
-    },
-    Unnoticed {
-        because: "three phases that sum to zero are neither all high nor all low, but at zero",
-        drives: FCS,
-        faults: &[(&["vector_of_gates[0]", "vector_of_gates[7]"], &["one more"])],
-    },
-    Unnoticed {
         because: "two vectors have different numbers",
-        drives: FCS,
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN],
         faults: &[(
             &["nearest_pair: in take_c", "nearest_pair: in take_b"],
             &["another comparison (3)"],
@@ -798,7 +748,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "a line voltage next to zero is not the longest, or V0 is nearest",
-        drives: &[FCS_ESTUN, FCS_TEKNIC],
+        drives: &[FCS_ESTUN],
         faults: &[(
             &[
                 "nearest_pair: in pair_a",
@@ -807,40 +757,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             ],
             &["1 for 0", "-1 for 0", "another comparison"],
         )],
-    },
-    Unnoticed {
-        because: "where two three-phase vectors tie, the pair vector between them is nearer",
-        drives: &[FCS_ESTUN],
-        faults: &[
-            (&["nearest_vector: in b_is_high"], &["1 for 0", "-1 for 0"]),
-            (&["nearest_vector: b_is_high"], &["another comparison"]),
-            (
-                &["nearest_vector: in gates"],
-                &[
-                    "operands swapped",
-                    "2 for 1",
-                    "0 for 1",
-                    "1 for 0 (2)",
-                    "-1 for 0 (2)",
-                    "branches swapped",
-                    "- for +",
-                    "second term left out",
-                    "1 for 0 (3)",
-                    "-1 for 0 (3)",
-                    "another comparison (2)",
-                    "2 for 1 (3)",
-                    "0 for 1 (3)",
-                    "1 for 0 (5)",
-                    "-1 for 0 (5)",
-                    "branches swapped (3)",
-                    "- for + (2)",
-                    "second term left out (2)",
-                    "1 for 0 (6)",
-                    "-1 for 0 (6)",
-                    "another comparison (3)",
-                ],
-            ),
-        ],
     },
     Unnoticed {
         because: "where two pair vectors tie, V0 or the three-phase vector between them is as near and comes first",
@@ -871,22 +787,9 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
-        because: "where the second pair's number is the lesser, the third line is the longest",
-        drives: &[FCS_TEKNIC],
-        faults: &[
-            (&["nearest_pair: in take_c"], &["another comparison (2)"]),
-            (&["nearest_pair: take_c"], &["second left out"]),
-        ],
-    },
-    Unnoticed {
         because: "scores are multiples of three",
         drives: &[FCS_ESTUN],
         faults: &[(&["nearest_pair: in vector"], &["-1 for 0"])],
-    },
-    Unnoticed {
-        because: "two and three times a voltage are multiples of what the bus is a multiple of",
-        drives: &[FCS_TEKNIC],
-        faults: &[(&["v_bus"], &["one more"])],
     },
     Unnoticed {
         because: "without an EMF the integral is a mean of itself and the limited voltage",
@@ -901,5 +804,119 @@ pub const EQUIVALENT: &[Unnoticed] = &[
                 &["lower limit left out", "upper limit left out"],
             ),
         ],
+    },
+    Unnoticed {
+        because: "a terminal is limited once more where it becomes a compare value",
+        drives: &[HOVERBOARD],
+        faults: &[
+            (
+                &["find_saturation: spread"],
+                &["+ for -", "operands swapped"],
+            ),
+            (&["find_saturation: saturated"], &["operands swapped"]),
+            (
+                &[
+                    "limit_nearest: in terminal_a",
+                    "limit_nearest: in terminal_b",
+                    "limit_nearest: in terminal_c",
+                ],
+                &["-1 for 0"],
+            ),
+            (
+                &[
+                    "limit_nearest: terminal_a",
+                    "limit_nearest: terminal_b",
+                    "limit_nearest: terminal_c",
+                ],
+                &["lower limit left out", "upper limit left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "three phases that sum to zero are neither all high nor all low, but at zero",
+        drives: FCS,
+        faults: &[(
+            &["vector_of_low_legs[0]", "vector_of_low_legs[7]"],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
+        because: "where the third phase is at zero and the second next to it, V0 is nearest",
+        drives: FCS,
+        faults: &[(
+            &["nearest_vector: in c_is_low"],
+            &["1 for 0", "-1 for 0", "another comparison"],
+        )],
+    },
+    Unnoticed {
+        because: "four less and four more are the same entry of eight",
+        drives: FCS,
+        faults: &[(&["nearest_vector: low_legs"], &["- for +"])],
+    },
+    Unnoticed {
+        because: "there is no sector 0 but before the first valid Hall code, and that trips",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[(&["nearest_pair: in vector"], &["-1 for 0", "1 for 0 (2)"])],
+    },
+    Unnoticed {
+        because: "where V0 and a three-phase vector tie, a pair vector is at least as near",
+        drives: &[FCS_ESTUN],
+        faults: &[(&["third_of_bus"], &["one more", "one less"])],
+    },
+    Unnoticed {
+        because: "where two three-phase vectors tie, the pair vector between them is nearer",
+        drives: &[FCS_ESTUN],
+        faults: &[
+            (
+                &["nearest_vector: in b_is_low"],
+                &["2 for 1", "0 for 1", "+ for -", "1 for 0", "-1 for 0"],
+            ),
+            (
+                &[
+                    "nearest_vector: b_is_low",
+                    "nearest_vector: a_is_low",
+                    "nearest_vector: c_is_low",
+                ],
+                &["another comparison"],
+            ),
+            (
+                &["nearest_vector: in a_is_low"],
+                &[
+                    "2 for 1",
+                    "0 for 1",
+                    "1 for 0",
+                    "-1 for 0",
+                    "branches swapped",
+                    "+ for -",
+                    "1 for 0 (2)",
+                    "-1 for 0 (2)",
+                ],
+            ),
+            (
+                &["nearest_vector: in c_is_low"],
+                &[
+                    "operands swapped",
+                    "not left out",
+                    "2 for 1",
+                    "0 for 1",
+                    "1 for 0 (2)",
+                    "-1 for 0 (2)",
+                    "branches swapped",
+                    "+ for -",
+                    "1 for 0 (3)",
+                    "-1 for 0 (3)",
+                ],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "two of the eight patterns are no order",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["pair_of_order[1]", "pair_of_order[6]"], &["one more"])],
+    },
+    Unnoticed {
+        because: "four less and four more are the same entry of eight",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["nearest_pair: order"], &["- for +"])],
     },
 ];

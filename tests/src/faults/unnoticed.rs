@@ -109,14 +109,6 @@ pub const RARE: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
-        because: "differs only where the voltage of a phase is zero to the last bit",
-        drives: &[FCS_HOVERBOARD],
-        faults: &[(
-            &["nearest_vector: in gates"],
-            &["-1 for 0 (2)", "-1 for 0 (5)"],
-        )],
-    },
-    Unnoticed {
         because: "moves the score of the pair's zero vector by no more than its last digits",
         drives: &[FCS_PAPER],
         faults: &[(
@@ -157,6 +149,116 @@ pub const RARE: &[Unnoticed] = &[
                 &["another comparison"],
             ),
         ],
+    },
+    Unnoticed {
+        because: "differs only where the blend ends to the last bit",
+        drives: &[PAPER],
+        faults: &[(&["limit_torque_priority: in blend"], &["1 for 0"])],
+    },
+    Unnoticed {
+        because: "differs only where a compare value is half a count from a whole one to the last bit",
+        drives: &[HOVERBOARD],
+        faults: &[(
+            &[
+                "modulate_three: in compare_b_three",
+                "modulate_three: in compare_c_three",
+            ],
+            &["rounded down"],
+        )],
+    },
+    Unnoticed {
+        because: "differs only where a pair's score is less by the margin to the last digit",
+        drives: &[FCS_PAPER],
+        faults: &[(&["score_margin"], &["one more"])],
+    },
+    Unnoticed {
+        because: "differs only where a phase is at a third of the bus to the last bit",
+        drives: &[FCS_PAPER, FCS_ESTUN, FCS_TEKNIC],
+        faults: &[(
+            &["nearest_vector: in vector_three"],
+            &["another comparison (2)"],
+        )],
+    },
+    Unnoticed {
+        because: "differs only where a phase is at a third of the bus to the last bit",
+        drives: &[FCS_PAPER, FCS_ESTUN],
+        faults: &[(
+            &["nearest_vector: in vector_three"],
+            &["another comparison (3)", "another comparison (6)"],
+        )],
+    },
+    Unnoticed {
+        because: "moves a voltage or a score by its last digits, which changes the choice next to a tie only",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[
+            (&["sector_last"], &["one less"]),
+            (
+                &[
+                    "third_turn",
+                    "sector_start[1]",
+                    "sector_start[3]",
+                    "sector_start[4]",
+                    "flux_c0[1]",
+                    "flux_c0[2]",
+                    "flux_c0[3]",
+                    "flux_c0[9]",
+                    "flux_c1[1]",
+                    "flux_c1[2]",
+                    "flux_c1[3]",
+                    "flux_c1[5]",
+                    "flux_c1[7]",
+                    "flux_c1[9]",
+                    "flux_c1[11]",
+                    "flux_c2[1]",
+                    "flux_c2[2]",
+                    "flux_c2[3]",
+                    "flux_c2[5]",
+                    "flux_c2[7]",
+                    "flux_c2[9]",
+                    "flux_c2[11]",
+                ],
+                &["one more"],
+            ),
+            (&["k_decay"], &["one more", "one less"]),
+            (
+                &["model_emf: in flux_start_b", "model_emf: in flux_end_b"],
+                &["rounded down"],
+            ),
+            (
+                &["model_emf: in flux_now_b"],
+                &["rounded down", "rounded down (2)"],
+            ),
+            (&["applied_voltage: in terminal_off"], &["-1 for 0"]),
+            (&["predict_off_legs: h_c"], &["sign lost"]),
+            (
+                &["predict_off_legs: in d_b", "predict_off_legs: in d_c"],
+                &["1 for 0"],
+            ),
+            (
+                &["nearest_pair: in score_a", "nearest_pair: in score_b"],
+                &["rounded half up"],
+            ),
+            (
+                &["nearest_pair: in take_c", "nearest_pair: in take_b"],
+                &[
+                    "another comparison",
+                    "operands swapped (2)",
+                    "second left out",
+                ],
+            ),
+            (
+                &["nearest_pair: take_c", "nearest_pair: take_b"],
+                &["second left out"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "differs only where a phase is at a third of the bus to the last bit",
+        drives: &[FCS_ESTUN],
+        faults: &[(
+            &["nearest_vector: in vector_three"],
+            &["another comparison (4)", "another comparison (5)"],
+        )],
     },
 ];
 

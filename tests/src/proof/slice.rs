@@ -89,10 +89,25 @@ impl<'p> Slice<'p> {
         let value = match self.given.get(node.name.as_str()) {
             Some(Symbol::Sign(form)) => Symbol::Flag(path.is_negative(form)?),
             Some(given) if !node.name.is_empty() => given.clone(),
-            _ => self.compute(node.op, path)?,
+            _ => match node.op {
+                Op::Join { taken, otherwise } => {
+                    let taken_here = self.flag(self.guard(index), path)?;
+                    let chosen = if taken_here { taken } else { otherwise };
+                    self.node(chosen.index(), path)?
+                }
+                op => self.compute(op, path)?,
+            },
         };
         self.known.insert(index, value.clone());
         Ok(value)
+    }
+
+    /// The condition of the stage whose result is this join.
+    fn guard(&self, join: usize) -> Value {
+        let guards = self.step().stages.iter();
+        let mut guards = guards.filter_map(|stage| stage.guard.as_ref());
+        let guard = guards.find(|guard| guard.joins.iter().any(|value| value.index() == join));
+        guard.expect("the guard of a join").condition
     }
 
     fn word(&mut self, value: Value, path: &mut Path) -> Result<Linear, Contradiction> {

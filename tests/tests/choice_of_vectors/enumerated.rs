@@ -67,7 +67,11 @@ impl Situation {
         };
         let mut least = (list[0], self.score(list[0], rounded, path)?);
         for &vector in &list[1..] {
-            let score = self.score(vector, rounded, path)?;
+            let mut score = self.score(vector, rounded, path)?;
+            if rounded && (7..13).contains(&vector) {
+                // Two floors against one: a pair must be better by more than a unit.
+                score = &score + &Linear::number(1);
+            }
             if path.is_negative(&(&score - &least.1))? {
                 least = (vector, score);
             }

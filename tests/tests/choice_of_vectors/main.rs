@@ -61,12 +61,21 @@ impl Subject {
         nodes.any(|node| node.name == name)
     }
 
-    /// Bus and threshold, a number each or any number.
-    fn slice(&self, bus: &Linear, threshold: &Linear) -> Slice<'_> {
+    /// Bus and threshold, a number each or any number; and the whole parts of the bus that a fixed one is given by.
+    fn slice(
+        &self,
+        bus: &Linear,
+        threshold: &Linear,
+        path: &mut Path,
+    ) -> Result<Slice<'_>, Contradiction> {
         let mut slice = Slice::new(&self.program);
         slice.give("v_bus", Symbol::Word(bus.clone()));
         slice.give("i_comm_volts", Symbol::Word(threshold.clone()));
-        slice
+        for (name, parts) in [("half_bus", 2), ("third_of_bus", 3)] {
+            let share = whole_share(name, bus, parts, path)?;
+            slice.give(name, Symbol::Word(share));
+        }
+        Ok(slice)
     }
 
     /// Part one: where off legs sit.
@@ -74,7 +83,7 @@ impl Subject {
         let bus = positive("v_bus", path)?;
         let threshold = path.variable("threshold");
         path.assume(&threshold)?;
-        let mut slice = self.slice(&bus, &threshold);
+        let mut slice = self.slice(&bus, &threshold, path)?;
         let mut pair = |names: [&'static str; 2]| {
             let [a, b] = names.map(|name| {
                 let word = path.variable(name);
@@ -192,7 +201,7 @@ impl Subject {
             }
             Some([bus, a, b]) => (Linear::number(bus), [a, b].map(Linear::number)),
         };
-        let mut slice = self.slice(&bus, &Linear::default());
+        let mut slice = self.slice(&bus, &Linear::default(), path)?;
         slice.give("u_a_unsat", Symbol::Word(u[0].clone()));
         slice.give("u_b_unsat", Symbol::Word(u[1].clone()));
         let [u_a, u_b] = u;
@@ -238,7 +247,7 @@ impl Subject {
     /// Part four: what the best second vector adds behind a first one.
     fn ahead(&self, first: usize, path: &mut Path) -> Verdict {
         let bus = positive("v_bus", path)?;
-        let mut slice = self.slice(&bus, &Linear::default());
+        let mut slice = self.slice(&bus, &Linear::default(), path)?;
         let [y_a, y_b, sixth] = ["y_a", "y_b", "v_sixth"].map(|name| {
             let word = path.variable(name);
             slice.give(name, Symbol::Word(word.clone()));
@@ -271,7 +280,7 @@ impl Subject {
     /// Part five: the vector `number` against the best of those before it, whatever second ones add.
     fn next_of_sequence(&self, number: usize, path: &mut Path) -> Verdict {
         let bus = positive("v_bus", path)?;
-        let mut slice = self.slice(&bus, &Linear::default());
+        let mut slice = self.slice(&bus, &Linear::default(), path)?;
         let [z_a, z_b, first] = ["z_a", "z_b", "v_first"].map(|name| {
             let word = path.variable(name);
             slice.give(name, Symbol::Word(word.clone()));
@@ -323,7 +332,7 @@ impl Subject {
 
     /// Part six: the best of all, unless the sector is lost.
     fn end_of_sequence(&self, path: &mut Path) -> Verdict {
-        let mut slice = self.slice(&Linear::number(1), &Linear::default());
+        let mut slice = self.slice(&Linear::number(1), &Linear::default(), path)?;
         let name = SEQUENCES[self.first_vectors() - 1].best;
         let best = path.variable(name);
         slice.give(name, Symbol::Word(best.clone()));
@@ -493,6 +502,23 @@ fn positive(name: &str, path: &mut Path) -> Result<Linear, Contradiction> {
     Ok(word)
 }
 
+/// floor(bus / parts) of a bus that is not negative.
+fn whole_share(
+    name: &str,
+    bus: &Linear,
+    parts: i64,
+    path: &mut Path,
+) -> Result<Linear, Contradiction> {
+    if let Some(bus) = bus.as_number() {
+        return Ok(Linear::number(bus / parts));
+    }
+    let share = path.variable(name);
+    let rest = bus - &share.times(parts);
+    path.assume(&rest)?;
+    path.assume(&(&Linear::number(parts - 1) - &rest))?;
+    Ok(share)
+}
+
 /// Any off leg.
 fn off_leg(names: [&'static str; 4], slice: &mut Slice, path: &mut Path) -> OffLeg {
     let [inward, outward, lift, offset] = names.map(|name| path.variable(name));
@@ -622,12 +648,12 @@ const WRONG_RULES_OF: Settings = &[("off_leg", "nominal")];
 /// Wrong rules that a few random inputs would hardly show: the order of ties, the edge of the zero vector, a vector
 /// left out, and the sign that tells two of them apart.
 const WRONG_RULES: [(&str, &str); 6] = [
-    ("nearest_vector: b_is_high", "another comparison"),
-    ("nearest_vector: in gates", "0 for 1"),
+    ("nearest_vector: b_is_low", "another comparison"),
+    ("nearest_vector: in low_legs", "0 for 1"),
     ("nearest_vector: in vector_three", "another comparison"),
-    ("vector_of_gates[5]", "one more"),
-    ("nearest_pair: take_c", "and for or"),
-    ("nearest_pair: in pair_a", "operands swapped"),
+    ("vector_of_low_legs[5]", "one more"),
+    ("nearest_pair: a_below_b", "another comparison"),
+    ("pair_of_order[4]", "one more"),
 ];
 
 #[test]
@@ -651,7 +677,10 @@ fn a_wrong_rule_is_refuted() {
                         | "divide_pair"
                         | "share_period"
                         | "best_sequence"
+                        | "complete_voltage"
                         | "vector_of_gates"
+                        | "vector_of_low_legs"
+                        | "pair_of_order"
                         | "zero_vector"
                 )
             })

@@ -122,8 +122,33 @@ impl CurrentLoop<'_, '_> {
         })
     }
 
-    /// Step 12 with a held EMF: what this step's currents and the voltage `u` that it commands leave to the next two.
-    pub(super) fn fold(&mut self, held: &Held, u: [Value; 2]) -> Remembered {
+    /// Step 12 with a held EMF: what the voltage `u` that this step commands leaves to the next two.
+    pub(super) fn left_over(&mut self, held: &Held, u: [Value; 2]) -> LeftOver {
+        let l = &mut *self.lowering;
+        let Some(decay) = held.folded.decay else {
+            return LeftOver::of(u);
+        };
+        l.b.stage(
+            "decay",
+            &["What is left of this step's voltage one period later, a v, and both together."],
+        );
+        let left = [0, 1].map(|x| {
+            let lost = l.times(decay, u[x]);
+            let left = l.b.sub(u[x], lost);
+            l.b.name(["left_a", "left_b"][x], left)
+        });
+        let both = [0, 1].map(|x| {
+            let both = l.b.add(u[x], left[x]);
+            l.b.name(["both_a", "both_b"][x], both)
+        });
+        LeftOver {
+            left,
+            both: Some(both),
+        }
+    }
+
+    /// Step 12 with a held EMF: what this step's currents and its command leave to the next two.
+    pub fn fold(&mut self, held: &Held, left_over: LeftOver) -> Remembered {
         let l = &mut *self.lowering;
         l.b.stage(
             "fold",
@@ -132,28 +157,49 @@ impl CurrentLoop<'_, '_> {
         let mut remembered = vec![];
         for x in 0..2 {
             let sampled = l.times(held.folded.past, held.currents[x]);
-            let (due_next, later_next) = match (held.folded.decay, held.later_words) {
-                (Some(decay), Some(later)) => {
-                    let lost = l.times(decay, u[x]);
-                    let left = l.b.sub(u[x], lost);
-                    l.b.name(["left_a", "left_b"][x], left);
+            let left = left_over.left[x];
+            let due_next = match held.later_words {
+                Some(later) => {
                     let rest = l.b.sub(later[x], left);
-                    (l.b.add(rest, sampled), Some(l.b.add(u[x], left)))
+                    l.b.add(rest, sampled)
                 }
-                _ => (l.b.add(u[x], sampled), None),
+                None => l.b.add(left, sampled),
             };
             l.b.name(["due_a_now", "due_b_now"][x], due_next);
             remembered.push((held.due[x], ["due_a_next", "due_b_next"][x], due_next));
-            if let (Some(words), Some(value)) = (held.later, later_next) {
-                l.b.name(["later_a_now", "later_b_now"][x], value);
-                remembered.push((words[x], ["later_a_next", "later_b_next"][x], value));
+            if let (Some(words), Some(both)) = (held.later, left_over.both) {
+                remembered.push((words[x], ["later_a_next", "later_b_next"][x], both[x]));
             }
         }
         remembered
     }
 }
 
+/// What a command leaves to later steps, phases a and b.
+#[derive(Clone, Copy, Debug)]
+pub struct LeftOver {
+    /// What is left of the voltage when the next step's takes effect: a v with delay 1, v without.
+    pub left: [Value; 2],
+    /// With delay 1, that and the voltage itself.
+    pub both: Option<[Value; 2]>,
+}
+
+impl LeftOver {
+    /// Without delay: of voltages that take effect at once.
+    pub fn of(volts: [Value; 2]) -> Self {
+        Self {
+            left: volts,
+            both: None,
+        }
+    }
+}
+
 impl Held {
+    /// 1 - a, with delay 1.
+    pub fn decay(&self) -> Option<Coefficient> {
+        self.folded.decay
+    }
+
     /// The EMF of the last period out of the folded words, added to the open stage.
     pub fn seen_emf(&self, l: &mut Lowering<'_>, design: &LoopDesign, word: u32) -> [Value; 2] {
         let a = design.plant.pole;

@@ -10,7 +10,7 @@ mod stability;
 mod words;
 
 pub use design::LoopDesign;
-pub use held::Held;
+pub use held::{Held, LeftOver};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
@@ -38,6 +38,7 @@ pub fn lower_with(
         b,
         formats,
         misfits,
+        long_products,
         ..
     } = lowering;
     let step = b.finish();
@@ -47,6 +48,7 @@ pub fn lower_with(
         program: program.pruned(),
         formats,
         misfits,
+        long_products,
     }
 }
 
@@ -165,9 +167,9 @@ impl CurrentLoop<'_, '_> {
             }
             _ => sector_seen,
         };
-        let (commutation, outgoing) = match (words.pair, direction) {
-            (Some(pair), Some(direction)) => {
-                let inputs = [sector, direction, j];
+        let (commutation, outgoing) = match (words.pair, direction.zip(hall)) {
+            (Some(pair), Some((direction, hall))) => {
+                let inputs = [sector, hall.edge, direction, j];
                 let (words, outgoing) = l.commutation(
                     pair,
                     inputs,
@@ -367,13 +369,16 @@ impl CurrentLoop<'_, '_> {
     ) {
         let words = &front.words;
         if let (Some(held), Some(u)) = (&front.held, v_cmd) {
-            remembered.extend(self.fold(held, u));
+            let left_over = self.left_over(held, u);
+            remembered.extend(self.fold(held, left_over));
         }
         if let Some((state, integral)) = front.speed_integral {
             remembered.push((state, "speed_integral_next", integral));
         }
         if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
-            self.lowering.b.set_state(pair.sector_prev, front.sector);
+            if let Some(sector_prev) = pair.sector_prev {
+                self.lowering.b.set_state(sector_prev, front.sector);
+            }
             remembered.push((pair.commutating, "commutating_next", word));
             remembered.push((pair.age, "commutation_age_next", age));
         }

@@ -127,7 +127,7 @@ impl CurrentLoop<'_, '_> {
             let doc = format!(
                 "Weight of the phase-{phase} EMF in the line EMF of the pair that conducts in sectors 1 to 6."
             );
-            let table = b.program.table(name, weights(index), &[doc]);
+            let table = b.program.column("sector", name, weights(index), &[doc]);
             let weight = b.lookup(table, sector);
             b.name(["line_weight_a", "line_weight_b"][index], weight)
         })

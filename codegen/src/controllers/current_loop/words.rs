@@ -80,7 +80,7 @@ impl CurrentLoop<'_, '_> {
         let speed = set_point.speed.map(|words| l.speed_state(words.top));
         let pair_words = needs
             .commutation
-            .then(|| l.pair_words(options.commutation_timeout));
+            .then(|| l.pair_words(options.commutation_timeout, options.advance > 0.0));
         let i_prev = sees.then(|| {
             ["i_a_prev", "i_b_prev"].map(|name| {
                 l.state(

@@ -7,13 +7,22 @@
 use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
-use crate::ir::{Comparison, TableId, Value};
+use crate::ir::{Comparison, Exact, Real, TableId, Value};
 use crate::lower::Lowering;
-use crate::spec::{Candidates, FcsMpcSpec};
+use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
 /// Pairs by the leg that is off, in the order of their vectors: V12 | V45 leave a off, V23 | V56 c, V34 | V61 b.
 /// Off phase, the phase that is high in the first vector, the phase that is low in it.
 pub(super) const PAIRS: [(usize, usize, usize); 3] = [(0, 2, 1), (2, 0, 1), (1, 0, 2)];
+
+const NEAREST_VECTOR: [&str; 3] = [
+    "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
+    "phase exceeds a third of the bus, else the legs are low by the signs of the phase voltages (a zero goes to the vector",
+    "that stands first in V1 to V6).",
+];
+
+/// What the compared scores are.
+pub(super) const SCORE: &str = "Score 6 (|v|^2 - 2 u v) of a vector";
 
 /// The chosen vector, and what else is known of the voltage asked for.
 pub(super) struct Choice {
@@ -21,8 +30,8 @@ pub(super) struct Choice {
     pub vector: Value,
     /// Phase voltages.
     pub u: [Value; 3],
-    /// Flags: the legs that are high in the nearest of V1 to V6.
-    pub is_high: [Value; 3],
+    /// Flags: the legs that are low in the nearest of V1 to V6.
+    pub is_low: [Value; 3],
     /// The greatest phase voltage, and that of the other sign.
     pub heights: [Value; 2],
     /// The greatest magnitude of a phase voltage.
@@ -52,38 +61,30 @@ impl CurrentLoop<'_, '_> {
     /// The allowed vector nearest to `u`.
     pub(super) fn choose(&mut self, options: &FcsMpcSpec, front: &Front, u: [Value; 2]) -> Choice {
         let l = &mut *self.lowering;
-        l.b.stage(
-            "nearest_vector",
-            &[
-                "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
-                "phase exceeds a third of the bus, else the gates are the signs of the phase voltages (a zero goes to the vector",
-                "that stands first in V1 to V6).",
-            ],
-        );
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
         let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
         let phases = [u[0], u[1], u_c];
         let [high, low] = l.extremes(["u_max", "u_min"], phases);
         let depth = l.b.neg(low);
         let largest = l.b.max(high, depth);
         l.b.name("u_largest", largest);
-        let (three, is_high) = nearest_three_phase(l, phases, largest, front.bus.volts);
         if options.modulated {
             l.b.name("u_depth", depth);
-            for (name, flag) in ["a_is_high", "b_is_high", "c_is_high"]
-                .into_iter()
-                .zip(is_high)
-            {
-                l.b.name(name, flag);
-            }
         }
+        let (three, is_low) = nearest_three_phase(l, phases, front.bus.volts);
         let off_legs = (options.floating() && front.commutation.is_some())
             .then(|| self.predict_off_legs(options, front, phases));
+        if off_legs.is_none() {
+            state_exact_scores(&mut *self.lowering, u_c);
+        }
         let vector = match (options.candidates, front.commutation) {
             (Candidates::ThreePhase, _) | (_, None) => three,
             (Candidates::Table2, Some([commutating, ..])) => {
-                let pair = match &off_legs {
-                    Some(off_legs) => self.nearest_physical(off_legs, front, phases, None, None),
-                    None => nearest_nominal(&mut *self.lowering, front, phases),
+                let pair = if let Some(off_legs) = &off_legs {
+                    self.nearest_physical(off_legs, front, phases, None, None)
+                } else {
+                    pair_stage(&mut *self.lowering);
+                    nearest_nominal(&mut *self.lowering, front, phases)
                 };
                 let l = &mut *self.lowering;
                 l.b.select(commutating, three, pair)
@@ -102,11 +103,45 @@ impl CurrentLoop<'_, '_> {
         Choice {
             vector: unless_lost(&mut *self.lowering, front.sector, vector),
             u: phases,
-            is_high,
+            is_low,
             heights: [high, depth],
             largest,
             conducting: off_legs.map(|off_legs| off_legs.conducting),
         }
+    }
+
+    /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
+    /// commutation alone.
+    pub(super) fn choose_of_table2(
+        &mut self,
+        options: &FcsMpcSpec,
+        front: &Front,
+        u: [Value; 2],
+        commutating: Value,
+    ) -> Value {
+        let l = &mut *self.lowering;
+        let doc = "The third phase of the deadbeat voltage.";
+        l.b.stage("complete_voltage", &[doc]);
+        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
+        let phases = [u[0], u[1], u_c];
+        let pair = if options.floating() {
+            let off_legs = self.predict_off_legs(options, front, phases);
+            self.nearest_physical(&off_legs, front, phases, None, None)
+        } else {
+            state_exact_scores(l, u_c);
+            pair_stage(l);
+            nearest_nominal(l, front, phases)
+        };
+        let l = &mut *self.lowering;
+        l.b.name("vector_pair", pair);
+        l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
+        let (three, _) = nearest_three_phase(l, phases, front.bus.volts);
+        let [nearest] = l.b.join([("vector_nearest", three, pair)]);
+        l.b.stage(
+            "know_sector",
+            &["No vector before the first valid Hall code."],
+        );
+        unless_lost(l, front.sector, nearest)
     }
 
     /// Where each leg would sit if it were off in the target period.
@@ -199,6 +234,7 @@ impl CurrentLoop<'_, '_> {
             &[
                 "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
                 &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
+                "A pair must be better by more than rounding makes of the same voltage.",
             ],
         );
         // Factors first: their intervals give the shift of all products.
@@ -248,14 +284,13 @@ impl CurrentLoop<'_, '_> {
             l.misfits.push("score".to_owned());
         }
         l.product_format("score", shift, "products of two voltages in scores");
+        let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
         let mut best: Option<Candidate> = None;
         for (order, (first, second)) in factors.into_iter().enumerate() {
             let aside = l.b.mul_floor(first.0, first.1, shift);
             let along = l.b.mul_floor(second.0, second.1, shift);
             let score = l.b.add(aside, along);
-            let doc = "Score 6 (|v|^2 - 2 u v) of a pair vector";
-            let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
-            l.b.state_error("score", score, [doc, "V^2"], word);
+            l.b.state_error("score", score, [SCORE, "V^2"], word);
             l.b.name(["score_a", "score_c", "score_b"][order], score);
             let next = Candidate {
                 vector: vectors[order],
@@ -277,11 +312,20 @@ impl CurrentLoop<'_, '_> {
         if three_phase.is_some() && changes.is_none() {
             // V0 scores 0, the best three-phase vector less than that or V0 was taken.
             let zero = l.zero();
-            let score = l.b.min(score, zero);
-            let better = l.b.compare(Comparison::Less, best.score, score);
-            return l.b.select(better, best.vector, rival.0);
+            score = l.b.min(score, zero);
         }
-        let better = l.b.compare(Comparison::Less, best.score, score);
+        // A pair whose off leg lies at a rail can be the very voltage of its rival: their scores are the same then, but
+        // two floors may be one less than one.
+        let margin = l.rounded_number(
+            "score_margin",
+            1,
+            Exact::Number(Real::of(0.0)),
+            "What rounding alone makes of a score of two products against an equal one: a pair vector must be better by more.",
+        );
+        let to_beat = l.b.sub(score, margin);
+        l.b.state_error("score", to_beat, [SCORE, "V^2"], word);
+        l.b.name("score_to_beat", to_beat);
+        let better = l.b.compare(Comparison::Less, best.score, to_beat);
         l.b.select(better, best.vector, rival.0)
     }
 }
@@ -315,7 +359,8 @@ impl OffLegs {
 }
 
 pub(super) fn zero_vector(l: &mut Lowering<'_>, sector: Value) -> Value {
-    let table = l.b.program.table(
+    let table = l.b.program.column(
+        "sector",
         "zero_vector",
         zero_vectors(),
         &["Zero vector of the pair of sectors 1 to 6: its legs low, the third off.".to_owned()],
@@ -335,53 +380,115 @@ pub(super) fn zero_of_pair(l: &mut Lowering<'_>, sector: Value) -> (Value, [Valu
     (vector, is_off)
 }
 
-/// Three-phase vectors by gate pattern.
-pub(super) fn vector_of_gates(l: &mut Lowering<'_>) -> TableId {
+/// States the error of the scores V (4 V - 12 u) and V (3 V - 6 line): no phase is further off than the third, and no
+/// line than twice that.
+fn state_exact_scores(l: &mut Lowering<'_>, u_c: Value) {
+    state_score_over_bus(l, u_c, 12.0);
+}
+
+/// States the error of a voltage of which `weight` times the greatest bus is a score.
+pub(super) fn state_score_over_bus(l: &mut Lowering<'_>, voltage: Value, weight: f64) {
+    let bus = l.spec.inverter.greatest_bus();
+    let word = weight * bus / l.scale.voltage();
+    l.b.state_error("score", voltage, [SCORE, "V^2"], word);
+}
+
+/// Three-phase vectors by the pattern of low legs.
+pub(super) fn vector_of_low_legs(l: &mut Lowering<'_>) -> TableId {
     l.b.program.table(
-        "vector_of_gates",
-        vec![0, 3, 5, 4, 1, 2, 6, 0],
+        "vector_of_low_legs",
+        vec![0, 6, 2, 1, 4, 5, 3, 0],
         &[
-            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
+            "Three-phase vector of a pattern of low legs: bit 0 leg a low, bit 1 leg b, bit 2 leg c."
                 .to_owned(),
         ],
     )
 }
 
-/// V0 to V6: the nearest to `u`, and the legs that are high in the nearest of V1 to V6.
-fn nearest_three_phase(
-    l: &mut Lowering<'_>,
-    u: [Value; 3],
-    largest: Value,
-    bus: Value,
-) -> (Value, [Value; 3]) {
-    let table = vector_of_gates(l);
-    let zero = l.zero();
-    let b_high = l.b.compare(Comparison::Less, zero, u[1]);
-    l.b.name("b_is_high", b_high);
-    let zero = l.zero();
-    let b_low = l.b.compare(Comparison::Less, u[1], zero);
-    let bits = [(0, b_high, 1), (2, b_low, 4)].map(|(x, on_zero, bit)| {
-        // u_x > 0, or u_x = 0 and the first of the two tied vectors has the leg high.
-        let (one, zero) = (l.b.literal(1), l.zero());
-        let tie = l.b.select(on_zero, one, zero);
-        let lifted = l.b.add(u[x], tie);
-        let zero = l.zero();
-        let is_high = l.b.compare(Comparison::Less, zero, lifted);
-        let (on, off) = (l.b.literal(bit), l.zero());
-        (is_high, l.b.select(is_high, on, off))
+/// The index of three flags: the sum of 1, 2 and 4.
+fn index_of_flags(l: &mut Lowering<'_>, name: &str, flags: [Value; 3]) -> Value {
+    let [first, second, third] = [0, 1, 2].map(|bit| {
+        let (set, clear) = (l.b.literal(1 << bit), l.zero());
+        l.b.select(flags[bit], set, clear)
     });
-    let (on, off) = (l.b.literal(2), l.zero());
-    let bit_b = l.b.select(b_high, on, off);
-    let gates = l.b.add(bits[0].1, bit_b);
-    let gates = l.b.add(gates, bits[1].1);
-    l.b.name("gates", gates);
-    let active = l.b.lookup(table, gates);
-    let triple = l.b.mul_by(3, largest);
-    let idle = l.b.compare(Comparison::LessEqual, triple, bus);
+    let pair = l.b.add(first, second);
+    let index = l.b.add(pair, third);
+    l.b.name(name, index)
+}
+
+/// `value - 1` where the flag holds, else `value`: negative, too, for a zero that the flag tells to lie low.
+fn lowered_by(l: &mut Lowering<'_>, value: Value, flag: Value) -> Value {
+    let (one, zero) = (l.b.literal(1), l.zero());
+    let step = l.b.select(flag, one, zero);
+    l.b.sub(value, step)
+}
+
+/// Flag: the value is negative, told by its sign bit alone.
+fn is_negative(l: &mut Lowering<'_>, name: &str, value: Value) -> Value {
     let zero = l.zero();
-    let vector = l.b.select(idle, zero, active);
+    let flag = l.b.compare(Comparison::Less, value, zero);
+    l.b.name(name, flag)
+}
+
+/// Flag: any of the voltages is farther from zero than the bus over `parts`.
+fn any_beyond(l: &mut Lowering<'_>, volts: [Value; 3], parts: i32, bus: Value) -> Value {
+    let (name, doc, multiples) = match parts {
+        2 => (
+            "half_bus",
+            "Half the bus",
+            ["line_a_twice", "line_c_twice", "line_b_twice"],
+        ),
+        _ => (
+            "third_of_bus",
+            "A third of the bus",
+            ["u_a_triple", "u_b_triple", "u_c_triple"],
+        ),
+    };
+    let [a, b, c] = [0, 1, 2].map(|x| {
+        // A whole voltage is beyond the share exactly where it is beyond its whole part.
+        let (volts, limits) = match l.spec.inverter.bus {
+            BusSource::Fixed => {
+                let whole = l.nominal_bus() / i64::from(parts);
+                (volts[x], [0, 1].map(|_| l.voltage(name, whole, doc)))
+            }
+            BusSource::Measured { .. } => {
+                let multiple = l.b.mul_by(parts, volts[x]);
+                l.b.name(multiples[x], multiple);
+                (multiple, [bus, bus])
+            }
+        };
+        let above = l.b.compare(Comparison::Less, limits[0], volts);
+        let negative = l.b.neg(limits[1]);
+        let below = l.b.compare(Comparison::Less, volts, negative);
+        l.b.or(above, below)
+    });
+    let pair = l.b.or(a, b);
+    l.b.or(pair, c)
+}
+
+/// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
+fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], bus: Value) -> (Value, [Value; 3]) {
+    // A zero lies as the leg does in the first of the two tied vectors: b low, a as b, c unlike b. The words tell
+    // by their signs once a one is taken from those that lie low.
+    let one = l.b.literal(1);
+    let b_under = l.b.sub(u[1], one);
+    let b_is_low = is_negative(l, "b_is_low", b_under);
+    let a_under = lowered_by(l, u[0], b_is_low);
+    let a_is_low = is_negative(l, "a_is_low", a_under);
+    let zero = l.zero();
+    let b_is_negative = l.b.compare(Comparison::Less, u[1], zero);
+    let b_is_not = l.b.not(b_is_negative);
+    let c_under = lowered_by(l, u[2], b_is_not);
+    let c_is_low = is_negative(l, "c_is_low", c_under);
+    let is_low = [a_is_low, b_is_low, c_is_low];
+    let low_legs = index_of_flags(l, "low_legs", is_low);
+    let table = vector_of_low_legs(l);
+    let active = l.b.lookup(table, low_legs);
+    let beyond = any_beyond(l, u, 3, bus);
+    let zero = l.zero();
+    let vector = l.b.select(beyond, active, zero);
     l.b.name("vector_three", vector);
-    (vector, [bits[0].0, b_high, bits[1].0])
+    (vector, is_low)
 }
 
 /// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.
@@ -474,12 +581,29 @@ fn pair_stage(l: &mut Lowering<'_>) {
 }
 
 fn nearest_nominal(l: &mut Lowering<'_>, front: &Front, u: [Value; 3]) -> Value {
-    pair_stage(l);
-    let zero = zero_vector(l, front.sector);
-    let (vector, line) = greatest_line(l, u);
-    let twice = l.b.shift_left(line, 1);
-    let idle = l.b.compare(Comparison::LessEqual, twice, front.bus.volts);
-    l.b.select(idle, zero, vector)
+    let idle = zero_vector(l, front.sector);
+    let lines = PAIRS.map(|(_, plus, minus)| l.b.sub(u[plus], u[minus]));
+    for (name, line) in ["line_a", "line_c", "line_b"].into_iter().zip(lines) {
+        l.b.name(name, line);
+    }
+    // The order of the phase voltages is that of the vector's legs. Equal phases are in the order that the first of
+    // the tied vectors has: a above b, c above b unless a is below both, and a above c where b is above both.
+    let [line_a, line_c, line_b] = lines;
+    let a_below_b = is_negative(l, "a_below_b", line_c);
+    let c_over_b = lowered_by(l, line_a, a_below_b);
+    let c_below_b = is_negative(l, "c_below_b", c_over_b);
+    let b_not_above = l.b.not(a_below_b);
+    let a_over_c = lowered_by(l, line_b, b_not_above);
+    let a_below_c = is_negative(l, "a_below_c", a_over_c);
+    let order = index_of_flags(l, "order", [a_below_b, c_below_b, a_below_c]);
+    let table = l.b.program.table(
+        "pair_of_order",
+        vec![8, 0, 9, 10, 7, 12, 0, 11],
+        &["Pair vector of an order of the phase voltages, from the highest to the lowest: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns are none).".to_owned()],
+    );
+    let active = l.b.lookup(table, order);
+    let beyond = any_beyond(l, lines, 2, front.bus.volts);
+    l.b.select(beyond, active, idle)
 }
 
 fn nearest_of_all(

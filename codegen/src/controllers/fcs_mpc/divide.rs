@@ -102,7 +102,7 @@ fn nearest_edge(l: &mut Lowering<'_>, front: &Front, choice: &Choice) -> Termina
     l.b.name("t_beside_zero", height);
     [0, 1, 2].map(|x| {
         let zero = l.zero();
-        let lone = l.b.select(choice.is_high[x], height, zero);
+        let lone = l.b.select(choice.is_low[x], zero, height);
         let triple = l.b.mul_by(3, choice.u[x]);
         let twice = l.b.add(bus, triple);
         let edge = l.b.shift_right(twice, 1);

@@ -4,7 +4,7 @@ use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, l
 use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
-use crate::spec::{FcsMpcSpec, Spec};
+use crate::spec::{Candidates, FcsMpcSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -35,6 +35,12 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             let vector = step.choose_weighted(options, &front, u, memory);
             let remembered = memory.map(|memory| (memory, "vector_prev_next", vector));
             step.apply_vector(&front, vector, remembered.into_iter().collect());
+            return;
+        }
+        let of_table2 = options.candidates == Candidates::Table2 && !options.modulated;
+        if let (true, Some([commutating, ..])) = (of_table2, front.commutation) {
+            let vector = step.choose_of_table2(options, &front, u, commutating);
+            step.apply_vector(&front, vector, vec![]);
             return;
         }
         let choice = step.choose(options, &front, u);

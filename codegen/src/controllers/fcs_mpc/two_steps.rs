@@ -3,7 +3,7 @@
 //! Of all sequences of two vectors that begin with the same one, the best is told by geometry: what is left for the
 //! second period is the nearest vector to a known voltage. So a score per first vector remains, in place of their square.
 
-use super::choose::Candidate;
+use super::choose::{Candidate, state_score_over_bus};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{sixths, unless_lost, vector_legs};
 use crate::ir::{Comparison, Value};
@@ -93,6 +93,7 @@ impl CurrentLoop<'_, '_> {
                 Some(own) => l.b.add(own, ahead),
                 None => ahead,
             };
+            state_score_over_bus(l, score, 1.0);
             let name = format!("score_{number}");
             let next = Candidate {
                 vector: l.b.literal(number as i32),

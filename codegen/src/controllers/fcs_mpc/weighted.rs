@@ -4,7 +4,9 @@
 //! hysteresis, and of two pair vectors with the same leg off the better one is told exactly. The weight of the torque
 //! couples the legs: its list is enumerated.
 
-use super::choose::{Candidate, OffLegs, PAIRS, first_least, vector_of_gates, zero_of_pair};
+use super::choose::{
+    Candidate, OffLegs, PAIRS, SCORE, first_least, state_score_over_bus, zero_of_pair,
+};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, vector_legs};
 use crate::diagnostics::engineering;
@@ -74,6 +76,9 @@ impl CurrentLoop<'_, '_> {
         changes: &Changes,
     ) -> Value {
         let three = nearest_by_gains(&mut *self.lowering, u, front.bus.volts, changes);
+        if off_legs.is_none() {
+            state_score_over_bus(&mut *self.lowering, three.score, 1.0);
+        }
         let rival = (options.candidates == Candidates::All).then_some(three);
         let pair = front.commutation.map(|[commutating, ..]| {
             let vector = match off_legs {
@@ -257,7 +262,14 @@ fn nearest_by_gains(
     let all = l.b.compare(Comparison::Less, zero, least);
     let gates = l.b.select(all, two, gates);
     l.b.name("gates", gates);
-    let table = vector_of_gates(l);
+    let table = l.b.program.table(
+        "vector_of_gates",
+        vec![0, 3, 5, 4, 1, 2, 6, 0],
+        &[
+            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c."
+                .to_owned(),
+        ],
+    );
     let active = l.b.lookup(table, gates);
     let four = l.b.shift_left(bus, 2);
     let idle = l.b.compare(Comparison::LessEqual, gained, four);
@@ -352,6 +364,7 @@ fn nearest_exact(
     let Some(best) = best else {
         return rival.vector;
     };
+    state_score_over_bus(l, best.score, 1.0);
     let better = l.b.compare(Comparison::Less, best.score, rival.score);
     l.b.select(better, best.vector, rival.vector)
 }
@@ -553,7 +566,11 @@ fn least(
         }
         let number = one.number;
         let score = match score {
-            Some(score) => l.b.name(&format!("score_{number}"), score),
+            Some(score) => {
+                let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
+                l.b.state_error("score", score, [SCORE, "V^2"], word);
+                l.b.name(&format!("score_{number}"), score)
+            }
             None => l.zero(),
         };
         let next = Candidate {

@@ -106,6 +106,10 @@ fn compare_with_bands(
     let twice = l.b.shift_left(q[1], 1);
     let beta = l.b.add(twice, q[0]);
     l.b.name("q_beta", beta);
+    // Alpha, phase a itself, is less far off.
+    let doc = "Predicted error of the current on alpha and beta, which is compared with the band";
+    let word = 1.0 / (l.scale.voltage() * design.k_di * 3.0_f64.sqrt());
+    l.b.state_error("current", beta, [doc, "A"], word);
     let band = design.k_di * options.band;
     [0, 1].map(|x| {
         let volts = if x == 0 { band } else { 3.0_f64.sqrt() * band };

@@ -16,7 +16,17 @@ pub(super) struct Helper {
 }
 
 /// All, each behind those that it calls.
-pub(super) const HELPERS: [Helper; 19] = [
+pub(super) const HELPERS: [Helper; 20] = [
+    Helper {
+        name: "exceeds",
+        text: "\
+/** Whether |x| > limit, which is not negative. */
+static inline bool exceeds(int32_t x, int32_t limit)
+{
+    return (uint32_t)x + (uint32_t)limit > UINT32_C(2) * (uint32_t)limit;
+}
+",
+    },
     Helper {
         name: "shift_left",
         text: "\

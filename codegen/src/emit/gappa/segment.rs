@@ -56,6 +56,8 @@ struct Segment<'a> {
     declared: BTreeSet<String>,
     /// Names of the values that are defined.
     defined: BTreeMap<Value, Pair>,
+    /// The values by their definition: a checker knows the same expression by one name only.
+    definers: BTreeMap<[String; 2], Value>,
 }
 
 /// Whether the operator is defined in scripts; all others cut.
@@ -90,6 +92,7 @@ impl<'a> Segment<'a> {
             goals: vec![],
             declared: BTreeSet::new(),
             defined: BTreeMap::new(),
+            definers: BTreeMap::new(),
         }
     }
 
@@ -137,12 +140,10 @@ impl<'a> Segment<'a> {
             if is_arithmetic(op) {
                 self.define(value, op);
                 let pair = self.defined[&value].clone();
-                self.goals
-                    .push(Goal::value(&pair.code, self.bounds.interval(value)));
+                self.claim(Goal::value(&pair.code, self.bounds.interval(value)));
                 let error = self.bounds.error(value);
                 if leaving.contains(&value) && !error.is_zero() && !error.is_unbounded() {
-                    self.goals
-                        .push(Goal::error(pair.error(), Subject::Error, error));
+                    self.claim(Goal::error(pair.error(), Subject::Error, error));
                 }
             }
             if let (Op::Compare(_, a, b), Some(band)) = (op, self.bounds.band(value)) {
@@ -160,6 +161,13 @@ impl<'a> Segment<'a> {
             hints: vec![],
             goals: self.goals,
         })
+    }
+
+    /// Adds a goal, once.
+    fn claim(&mut self, goal: Goal) {
+        if !self.goals.contains(&goal) {
+            self.goals.push(goal);
+        }
     }
 
     /// Values of the stage whose error something needs that the stage's definitions do not say.
@@ -219,6 +227,16 @@ impl<'a> Segment<'a> {
             }
             _ => return,
         };
+        let definition = [code, ideal];
+        if let Some(&same) = self.definers.get(&definition)
+            && self.bounds.interval(same) == self.bounds.interval(value)
+            && self.bounds.error(same) == self.bounds.error(value)
+        {
+            self.defined.insert(value, self.defined[&same].clone());
+            return;
+        }
+        self.definers.insert(definition.clone(), value);
+        let [code, ideal] = definition;
         let name = self.name(value);
         let pair = if self.bounds.error(value).is_zero() {
             Pair {
@@ -354,6 +372,7 @@ impl<'a> Segment<'a> {
                     goals: vec![],
                     declared: BTreeSet::new(),
                     defined: BTreeMap::new(),
+                    definers: BTreeMap::new(),
                     ..*self
                 };
                 let [n, d] = [numerator, denominator].map(|operand| part.operand(value, operand));

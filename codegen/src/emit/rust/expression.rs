@@ -3,6 +3,7 @@
 use super::super::expression::{Expression, Operator, Primitive, Scope};
 use super::super::signal::{Code, Shape};
 use super::names::{loaded, number, screaming, snake, stored};
+use super::tables::look_up;
 use crate::ir::{Program, Value, Word};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -18,7 +19,7 @@ pub(super) fn initial(word: &Word, raw: i32) -> TokenStream {
 }
 
 /// The name of a number that has one.
-fn coded(code: Code) -> TokenStream {
+pub(super) fn coded(code: Code) -> TokenStream {
     match code {
         Code::Run => quote!(mode::RUN),
         Code::Calibrate => quote!(mode::CALIBRATE),
@@ -193,9 +194,8 @@ fn written(program: &Program, expression: &Expression) -> Written {
             call(program, *primitive, operands, *parameter)
         }
         Expression::Lookup(table, index, _) => {
-            let table = screaming(&program.tables[table.index()].name);
             let index = of(index).within(Binding::Branch);
-            Written::atom(quote!(lookup(&#table, #index)))
+            Written::atom(look_up(program, *table, &index))
         }
         Expression::FlagWord(flag) => {
             let flag = of(flag).within(Binding::Branch);
@@ -257,6 +257,7 @@ fn call(
     };
     let name = match primitive {
         Primitive::Abs => return method(quote!(abs)),
+        Primitive::Exceeds => return method(quote!(exceeds)),
         Primitive::Min => return method(quote!(min)),
         Primitive::Max => return method(quote!(max)),
         Primitive::Clamp => return method(quote!(clamp)),

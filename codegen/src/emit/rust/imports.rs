@@ -32,7 +32,7 @@ const SHARED: [&str; 13] = [
     "mode",
 ];
 
-/// Types that the module defines beside the user's; besides them the results of large stages.
+/// Types that the module defines beside the user's; besides them the results of large stages and the rows of tables.
 const OWN: [&str; 3] = ["ControlLoop", "SetPoint", "State"];
 
 /// The user's type in a body that [`settle`] has not seen yet.
@@ -61,6 +61,7 @@ fn clashes(name: &Ident) -> bool {
         || SHARED.contains(&&*taken)
         || OWN.contains(&&*taken)
         || taken.ends_with("Results")
+        || taken.ends_with("Row")
         || is_fixed(&taken)
 }
 

@@ -13,20 +13,22 @@ mod interface;
 mod names;
 mod set_point;
 mod stage;
+mod tables;
 mod traits;
 
 pub use format::{format_rust, rustfmt};
 
 use super::texts;
 use crate::interface::Interface;
-use crate::ir::{Program, Table, VerifiedGraph};
+use crate::ir::{Program, VerifiedGraph};
 use function::{emit_setter, emit_step};
 use imports::{imports, settle};
 use interface::Types;
 use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
+use tables::emit_tables;
 
 /// How the emitted type appears to the code around it.
 #[derive(Clone, Debug)]
@@ -121,23 +123,6 @@ fn constants(program: &Program, names: &BTreeSet<String>) -> TokenStream {
             let raw = number(i64::from(constant.raw));
             quote!(#doc const #name: Word = Word(#raw);)
         });
-    let tables = program
-        .tables
-        .iter()
-        .filter(|table| named(&table.name))
-        .map(emit_table);
-    quote!(#(#constants)* #(#tables)*)
-}
-
-/// A table in the smallest elements that hold it.
-fn emit_table(table: &Table) -> TokenStream {
-    let (name, doc) = (screaming(&table.name), docs(&table.doc));
-    let element = match table.interval().bits() {
-        ..=8 => quote!(i8),
-        9..=16 => quote!(i16),
-        _ => quote!(i32),
-    };
-    let count = Literal::usize_unsuffixed(table.values.len());
-    let values = table.values.iter().map(|&value| number(i64::from(value)));
-    quote!(#doc static #name: [#element; #count] = [#(#values),*];)
+    let tables = emit_tables(program, named);
+    quote!(#(#constants)* #tables)
 }

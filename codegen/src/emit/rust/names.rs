@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
-pub(super) const HELPERS: [&str; 11] = [
+pub(super) const HELPERS: [&str; 12] = [
     "angle_fraction",
     "angle_index",
     "divide",
@@ -17,6 +17,7 @@ pub(super) const HELPERS: [&str; 11] = [
     "mul_limited",
     "mul_round",
     "mul_round_narrow",
+    "row",
     "select",
     "turn_over",
 ];

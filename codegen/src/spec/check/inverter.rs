@@ -371,6 +371,15 @@ fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut
     count
 }
 
+/// The greatest level of at most eight significant bits, in ADC counts, that is not above `current`: cores compare with
+/// such a number without loading it first.
+fn short_level(current: f64, gain: f64) -> f64 {
+    // A level that is as short as that but for its rounding to a floating-point number is that level.
+    let counts = current / gain * (1.0 + 1e-12);
+    let unit = (counts.log2().floor() - 7.0).exp2();
+    (counts / unit).floor() * unit * gain
+}
+
 /// Trip current and largest set-point: by default 95 % of the converters' range and the rated
 /// current.
 fn finish_currents(
@@ -394,6 +403,7 @@ fn finish_currents(
         ));
         return None;
     }
+    let trip = short_level(trip, adc.gain);
     let rated = motor.rated_current.as_ref()?;
     if adc.reach < rated.si {
         errors.push(catalogue::adc_range_too_small(

@@ -72,6 +72,8 @@ pub struct LoopOptions {
     pub discretisation: Discretisation,
     /// Word length of the control arithmetic, 16 or 32 bits.
     pub word: u32,
+    /// Whether words of 16 bits are the target's choice, in place of which 32 bits stand where 16 do not suffice.
+    pub word_by_target: bool,
     /// Outgoing current below which a commutation ends, ampere.
     pub commutation_threshold: f64,
     /// Periods after which a commutation is taken as ended, 1 to 255.
@@ -90,6 +92,7 @@ pub(crate) const OPTIONS: &[Rule] = &[
     schema::integer("delay", 0, 1, "1"),
     schema::word("discretisation", "exact"),
     schema::integer("word", 1, 64, "32"),
+    schema::word("target", "cortex_m0"),
     schema::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A"),
     schema::quantity(
         "commutation_timeout",
@@ -200,7 +203,7 @@ pub(crate) fn read_common(
             ("euler", Discretisation::Euler),
         ],
     );
-    let word = read_word_length(reader, errors);
+    let (word, word_by_target) = read_word_length(reader, errors);
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
     let speed = read_speed_loop(reader, surroundings, errors);
@@ -254,6 +257,7 @@ pub(crate) fn read_common(
         delay: delay.unwrap_or(1),
         discretisation: discretisation.unwrap_or(Discretisation::Exact),
         word,
+        word_by_target,
         commutation_threshold: commutation_threshold?,
         commutation_timeout: commutation_timeout?,
         speed,
@@ -342,7 +346,18 @@ pub(crate) fn refuse_commutation(
     }
 }
 
-fn read_word_length(reader: &Reader, errors: &mut Collector) -> u32 {
+/// The word length as it is given, else as the target prefers it; whether it is the target's choice. A core without long
+/// products takes words of 16 bits.
+fn read_word_length(reader: &Reader, errors: &mut Collector) -> (u32, bool) {
+    let targets = [
+        ("portable", None),
+        ("cortex_m4", None),
+        ("cortex_m0", Some(16)),
+    ];
+    let preferred = reader.word(errors, "target", &targets).flatten();
+    if reader.field("word").is_none() {
+        return (preferred.unwrap_or(32), preferred.is_some());
+    }
     let word = reader.integer(errors, "word").unwrap_or(32);
     if word != 16 && word != 32 {
         let part = reader.part("word", String::new);
@@ -353,7 +368,7 @@ fn read_word_length(reader: &Reader, errors: &mut Collector) -> u32 {
             &["16", "32"],
         ));
     }
-    word
+    (word, false)
 }
 
 /// 0.5 A by default; a quarter of the rated current where that is less.

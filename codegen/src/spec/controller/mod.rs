@@ -77,6 +77,19 @@ impl ControllerSpec {
         }
     }
 
+    /// The same with words of so many bits.
+    #[must_use]
+    pub fn with_word(mut self, word: u32) -> Self {
+        let common = match &mut self {
+            Self::FcsMpc(options) => &mut options.common,
+            Self::Pdcc(options) => &mut options.common,
+            Self::Phcc(options) => &mut options.common,
+            Self::PiPwm(options) => &mut options.common,
+        };
+        common.word = word;
+        self
+    }
+
     /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
     pub fn modulates(&self) -> bool {
         match self {

@@ -88,7 +88,7 @@ fn the_paper_motor_is_the_paper_motor() {
     );
     assert_eq!(
         (spec.inverter.trip_current, spec.inverter.max_current),
-        (38.0, 22.0)
+        (37.968_75, 22.0)
     );
     assert_eq!(spec.inverter.adc_gain, 0.019_531_25);
     let options = spec.controller.common();

@@ -8,7 +8,7 @@ mod goals;
 mod peers;
 
 use crate::BenchError;
-use crate::firmware::Firmware;
+use crate::firmware::{Firmware, PROGRAMS};
 use crate::listing::Listed;
 use crate::targets::Target;
 use crate::vectors::drive_of;
@@ -39,7 +39,7 @@ pub struct Options {
     /// Only steps whose symbol contains this; nothing is compared with the expected figures then
     #[arg(long)]
     pub only: Option<String>,
-    /// Writes the figures down as expected
+    /// Writes the figures down as expected, those that were counted
     #[arg(long)]
     pub accept: bool,
 }
@@ -75,7 +75,16 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let figures = figures(&rows);
         if options.accept {
             let compiler = compiler.to_owned();
-            let steps = figures;
+            let mut steps = figures;
+            if options.only.is_some() {
+                // What was not counted stays as it was.
+                let known = Expected::read(target)?.0.steps;
+                steps.extend(
+                    known
+                        .into_iter()
+                        .filter(|(symbol, _)| !options.wants(symbol)),
+                );
+            }
             Expected(Counted { compiler, steps }).write(target)?;
         } else if options.only.is_none() {
             let found = Expected::read(target)?.rises(compiler, &figures, |symbol, figures| {
@@ -110,7 +119,9 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
         let drive = drive_of(listed)?;
         Ok((Inputs::record(&drive)?, Some(tables(&drive))))
     };
-    rows.extend(rows_of(firmware, "bench", options, of_drive)?);
+    for program in PROGRAMS {
+        rows.extend(rows_of(firmware, program, options, of_drive)?);
+    }
     if firmware.target == Target::CortexM4 {
         check_experiment(&firmware.drives(EXPERIMENT)?)?;
         rows.extend(rows_of(firmware, EXPERIMENT, options, of_drive)?);

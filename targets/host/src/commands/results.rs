@@ -199,17 +199,16 @@ impl Line<'_> {
 
 /// Distances of single steps along the measured runs.
 fn signal_errors(drive: &Prepared, measured: &[SideBySide]) -> Vec<SignalError> {
-    let (
-        OneStep {
-            largest_v,
-            bound_v,
-            rms_v,
-            duty_largest_counts,
-            duty_rms_counts,
-            ..
-        },
-        _,
-    ) = one_step(drive, measured);
+    let (found, _) = one_step(drive, measured);
+    let OneStep {
+        largest_v,
+        bound_v,
+        rms_v,
+        duty_rms_counts,
+        ..
+    } = found;
+    let largest_counts = found.duty_largest_counts.max(found.duty_limited_counts);
+    let bound_counts = found.duty_bound_counts.max(found.duty_limited_bound_counts);
     let error = |signal: &str, unit: &str, [largest, rms]: [f64; 2], bound| SignalError {
         signal: signal.to_owned(),
         unit: unit.to_owned(),
@@ -222,8 +221,8 @@ fn signal_errors(drive: &Prepared, measured: &[SideBySide]) -> Vec<SignalError> 
         error(
             "compare",
             "counts",
-            [duty_largest_counts, duty_rms_counts],
-            None,
+            [largest_counts, duty_rms_counts],
+            bound_counts.is_finite().then_some(bound_counts),
         ),
     ]
 }

@@ -107,7 +107,9 @@ impl Ideal {
         let phase = DiscretePhase::new(spec);
         let bus_sense = inverter.bus_sense()?;
         let gain = inverter.adc_gain;
-        let limits = Limits::new(inverter, inverter.trip_current)?;
+        // A current of exactly the trip level is none above it, whatever these floating-point numbers lose.
+        let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.abs();
+        let limits = Limits::new(inverter, trip_current)?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
             variant: Variant::new(spec),

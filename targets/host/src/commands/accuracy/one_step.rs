@@ -4,7 +4,7 @@
 use crate::engine::Prepared;
 use hexagen::Legs;
 use hexagen_codegen::ir::stated_errors;
-use hexagen_reference::{BitTrue, Duties, Ideal, PhysicalState, Trace};
+use hexagen_reference::{BitTrue, Duties, Ideal, PhysicalState, Reach, Trace};
 use serde::Serialize;
 
 /// Equal parts of the range between both ends of a proven bound, in which errors are counted. An odd number: zero
@@ -18,6 +18,9 @@ pub struct Compared {
     pub quantity: String,
     /// Its proven bound for phases a and b, volt; infinite where nothing is proven.
     pub bound: f64,
+    /// How far a compare value may be from the exact duty, timer counts: while no limit acts, and where one does. Infinite
+    /// where nothing is proven.
+    duty: [f64; 2],
     /// One current word, and the current at which an off leg's diode is taken to conduct, ampere; of drives that may
     /// turn a leg off.
     threshold: Option<[f64; 2]>,
@@ -27,14 +30,19 @@ impl Compared {
     /// The signal of a drive's step.
     pub fn of(drive: &Prepared) -> Self {
         let stated = stated_errors(drive.generated.graph.program());
-        let voltage = |name: &str| stated.iter().find(|stated| stated.name == name);
-        let (quantity, bound) = match voltage("voltage").or_else(|| voltage("deviation")) {
+        let named = |name: &str| stated.iter().find(|stated| stated.name == name);
+        let (quantity, bound) = match named("voltage").or_else(|| named("deviation")) {
             Some(stated) => {
                 let rare = stated.rare_bound().unwrap_or(0.0);
                 (stated.doc.clone(), stated.normal_bound().max(rare))
             }
             None => ("nothing that is bounded".to_owned(), f64::INFINITY),
         };
+        let duty = named("duty").map_or([f64::INFINITY; 2], |duty| {
+            let limited = duty.rare_bound().unwrap_or(duty.normal_bound());
+            // The duty's own rounding makes half a count.
+            [duty.normal_bound(), limited].map(|bound| bound + 0.5)
+        });
         let formats = drive.generated.interface.formats.iter();
         let current = formats.clone().find(|format| format.name == "current");
         let word = current.map_or(0.0, |format| {
@@ -44,6 +52,7 @@ impl Compared {
         Self {
             quantity,
             bound,
+            duty,
             threshold: end.map(|end| [word, end.threshold]),
         }
     }
@@ -83,9 +92,15 @@ pub struct OneStep {
     pub seen_to_bound: f64,
     /// Root mean square of the distance, all three phases, volt.
     pub rms_v: f64,
-    /// Largest distance of a compare value from the exact duty, timer counts; its own rounding
+    /// Largest distance of a compare value from the exact duty while no limit acts, timer counts; its own rounding
     /// makes up to half a count.
     pub duty_largest_counts: f64,
+    /// The proven bound of the same, timer counts; infinite where no duty is computed.
+    pub duty_bound_counts: f64,
+    /// Largest distance where a limit acts, timer counts.
+    pub duty_limited_counts: f64,
+    /// The proven bound of the same, timer counts.
+    pub duty_limited_bound_counts: f64,
     /// Root mean square of the same, timer counts.
     pub duty_rms_counts: f64,
     /// Share of compare values equal to the ideal ones after rounding, percent.
@@ -96,6 +111,15 @@ pub struct OneStep {
     /// Largest distance of a compare value from the ideal one after rounding, timer counts; over all steps in control
     /// with the same leg states and vector.
     pub compares_apart_counts: u16,
+}
+
+impl OneStep {
+    /// Whether no error was larger than what is proven of it.
+    pub fn is_within_bounds(&self) -> bool {
+        self.seen_to_bound <= 1.0
+            && self.duty_largest_counts <= self.duty_bound_counts
+            && self.duty_limited_counts <= self.duty_limited_bound_counts
+    }
 }
 
 /// A step of both models from the same state.
@@ -133,7 +157,8 @@ pub(super) struct Sums {
     largest: f64,
     error: f64,
     signal: f64,
-    duty_largest: f64,
+    /// While no limit acts, and where one does.
+    duty_largest: [f64; 2],
     duty_error: f64,
     equal_compares: u64,
     equal_steps: u64,
@@ -150,7 +175,7 @@ impl Sums {
             largest: 0.0,
             error: 0.0,
             signal: 0.0,
-            duty_largest: 0.0,
+            duty_largest: [0.0; 2],
             duty_error: 0.0,
             equal_compares: 0,
             equal_steps: 0,
@@ -189,6 +214,7 @@ impl Sums {
             return;
         }
         self.steps += 1;
+        let limited = usize::from(exact.reach != Reach::Inside);
         let phases = |u: [f64; 2]| [u[0], u[1], -u[0] - u[1]];
         let (found, exact) = (phases(found.u_unsat), phases(exact.u_unsat));
         for phase in 0..3 {
@@ -203,7 +229,8 @@ impl Sums {
         for phase in 0..3 {
             let exact = duties.duty[phase] * f64::from(period);
             let error = (f64::from(legs.compare[phase]) - exact).abs();
-            self.duty_largest = self.duty_largest.max(error);
+            let largest = &mut self.duty_largest[limited];
+            *largest = largest.max(error);
             self.duty_error += error * error;
             self.equal_compares += u64::from(legs.compare[phase] == rounded.compare[phase]);
         }
@@ -216,7 +243,9 @@ impl Sums {
         self.largest = self.largest.max(other.largest);
         self.error += other.error;
         self.signal += other.signal;
-        self.duty_largest = self.duty_largest.max(other.duty_largest);
+        for (largest, more) in self.duty_largest.iter_mut().zip(other.duty_largest) {
+            *largest = largest.max(more);
+        }
         self.duty_error += other.duty_error;
         self.equal_compares += other.equal_compares;
         self.equal_steps += other.equal_steps;
@@ -246,7 +275,10 @@ impl Sums {
             bound_v: self.compared.bound,
             seen_to_bound: self.largest / self.compared.bound,
             rms_v: (self.error / values).sqrt(),
-            duty_largest_counts: self.duty_largest,
+            duty_largest_counts: self.duty_largest[0],
+            duty_bound_counts: self.compared.duty[0],
+            duty_limited_counts: self.duty_largest[1],
+            duty_limited_bound_counts: self.compared.duty[1],
             duty_rms_counts: (self.duty_error / values).sqrt(),
             equal_compares_pct: 100.0 * self.equal_compares as f64 / values,
             equal_steps_pct: 100.0 * self.equal_steps as f64 / run,

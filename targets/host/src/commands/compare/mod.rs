@@ -221,11 +221,16 @@ fn within_bounds(rows: &[Row]) -> Result<(), Failure> {
     let beyond = rows.iter().filter_map(|row| {
         let one_step = &row.accuracy.as_ref()?.one_step;
         // Also where there is no number at all.
-        let is_within = one_step.seen_to_bound <= 1.0;
-        (!is_within).then(|| {
+        (!one_step.is_within_bounds()).then(|| {
             format!(
-                "{}: an error of {:e} V was seen, beyond the proven bound of {:e} V",
-                row.controller, one_step.largest_v, one_step.bound_v
+                "{}: errors of {:e} V, of {} and (limited) {} timer counts were seen, and proven are at most {:e} V, {} and {}",
+                row.controller,
+                one_step.largest_v,
+                one_step.duty_largest_counts,
+                one_step.duty_limited_counts,
+                one_step.bound_v,
+                one_step.duty_bound_counts,
+                one_step.duty_limited_bound_counts,
             )
         })
     });
@@ -236,6 +241,7 @@ fn within_bounds(rows: &[Row]) -> Result<(), Failure> {
         Err(Failure::Check(beyond.join("\n")))
     }
 }
+
 /// The robustness sheet instead.
 fn run_robustness(options: &Options, motor: &str, selection: &Selection) -> Result<(), Failure> {
     #[derive(Serialize)]

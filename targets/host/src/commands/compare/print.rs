@@ -18,7 +18,9 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
          one step from the same state, phases a and b.\n\
          Decisions: sector, commutation, limit, vector. Where they differ (a tie that rounding broke) no errors are compared.\n\
          Closed loop: the merit that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
-         A controller of whole vectors takes another course from a broken tie on.\n",
+         A controller of whole vectors takes another course from a broken tie on.\n\
+         Duty: compare value less exact duty, timer counts, while no limit acts and where one does, each with its proven bound and \
+         half a count for the compare value's own rounding.\n",
     )?;
     print_text(&step_table(rows))?;
     if !with_merits {
@@ -94,6 +96,9 @@ fn step_table(rows: &[Row]) -> String {
         "steps",
         "rms V",
         "duty max",
+        "bound",
+        "limited",
+        "bound",
         "duty rms",
         "equal %",
         "equal steps %",
@@ -101,10 +106,20 @@ fn step_table(rows: &[Row]) -> String {
     ];
     table(rows, header, |accuracy| {
         let one_step = &accuracy.one_step;
+        let bound = |counts: f64| {
+            if counts.is_finite() {
+                significant(counts, 3)
+            } else {
+                "-".to_owned()
+            }
+        };
         vec![
             one_step.steps.to_string(),
             significant(one_step.rms_v, 3),
             significant(one_step.duty_largest_counts, 3),
+            bound(one_step.duty_bound_counts),
+            significant(one_step.duty_limited_counts, 3),
+            bound(one_step.duty_limited_bound_counts),
             significant(one_step.duty_rms_counts, 3),
             format!("{:.2}", one_step.equal_compares_pct),
             format!("{:.2}", one_step.equal_steps_pct),

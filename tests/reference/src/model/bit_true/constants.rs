@@ -278,6 +278,7 @@ impl Constants {
                 (Part::Rotor, rotor),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Commutation, commutation.is_some()),
+                (Part::SectorInForce, commutation.is_some() && advanced),
                 (Part::Sight, variant.sees()),
                 (Part::VoltageCommand, variant.applied_now && !floating),
                 (Part::TerminalCommand, variant.applied_now && floating),

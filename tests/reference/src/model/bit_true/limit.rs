@@ -14,25 +14,43 @@ const BLEND_BITS: u32 = 15;
 const BLEND_SHARE: u32 = 1;
 /// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
 const LIGHT_SHARE: u32 = 2;
+/// Torque priority needs an EMF of at least the bus `>> LEAST_EMF`.
+const LEAST_EMF: u32 = 5;
 const BLEND_ONE: f64 = 32_768.0;
 /// The phase behind each.
 const NEXT: [usize; 3] = [1, 2, 0];
 
+/// A voltage within reach.
+pub struct Limited {
+    /// Of phases a, b.
+    pub u: [Word; 2],
+    /// Of the legs, against any common point.
+    pub legs: [Word; 3],
+    pub reach: Reach,
+}
+
+impl Limited {
+    fn of_phases(u: [Word; 2], reach: Reach) -> Self {
+        let legs = [u[0], u[1], -(u[0] + u[1])];
+        Self { u, legs, reach }
+    }
+
+    fn of_legs(k: &Constants, legs: [Word; 3], reach: Reach) -> Self {
+        let mean = k.k_third.mul(legs[0] + legs[1] + legs[2]);
+        let u = [legs[0] - mean, legs[1] - mean];
+        Self { u, legs, reach }
+    }
+}
+
 /// Limits phase voltages a, b; `e` is the EMF of phases a, b.
 #[inline]
-pub fn limit(
-    rule: Saturation,
-    k: &Constants,
-    v_bus: Word,
-    u: [Word; 2],
-    e: [Word; 2],
-) -> ([Word; 2], Reach) {
+pub fn limit(rule: Saturation, k: &Constants, v_bus: Word, u: [Word; 2], e: [Word; 2]) -> Limited {
     let u_c = -(u[0] + u[1]);
     let max = greater(greater(u[0], u[1]), u_c);
     let min = lesser(lesser(u[0], u[1]), u_c);
     let spread = max - min;
     if spread <= v_bus {
-        return (u, Reach::Inside);
+        return Limited::of_phases(u, Reach::Inside);
     }
     match rule {
         Saturation::KeepAngle => {
@@ -42,44 +60,38 @@ pub fn limit(
                 divide(v_bus, k.scale_bits, spread, pow2(k.scale_bits as i32)),
                 k.scale_bits,
             );
-            (both(|x| scale.mul(u[x])), Reach::Outside)
+            Limited::of_phases(both(|x| scale.mul(u[x])), Reach::Outside)
         }
-        Saturation::Nearest => (
-            nearest(k, v_bus, [u[0], u[1], u_c], max, min),
-            Reach::Outside,
-        ),
+        Saturation::Nearest => {
+            let near = nearest(v_bus, [u[0], u[1], u_c], max, min);
+            Limited::of_legs(k, near, Reach::Outside)
+        }
         Saturation::TorquePriority => {
-            let near = nearest(k, v_bus, [u[0], u[1], u_c], max, min);
-            torque_priority(
-                k,
-                v_bus,
-                [u[0], u[1], u_c],
-                [e[0], e[1], -(e[0] + e[1])],
-                near,
-            )
+            let near = nearest(v_bus, [u[0], u[1], u_c], max, min);
+            let f = [e[0], e[1], -(e[0] + e[1])];
+            let (legs, reach) = torque_priority(k, v_bus, [u[0], u[1], u_c], f, near);
+            Limited::of_legs(k, legs, reach)
         }
     }
 }
 
-/// The nearest point of the hexagon.
+/// The terminal voltages of the nearest point of the hexagon.
 #[inline]
-fn nearest(k: &Constants, v_bus: Word, u: [Word; 3], max: Word, min: Word) -> [Word; 2] {
+fn nearest(v_bus: Word, u: [Word; 3], max: Word, min: Word) -> [Word; 3] {
     let middle = halve(max + min);
     let half_bus = halve(v_bus);
-    let t = all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus));
-    let mean = k.k_third.mul(t[0] + t[1] + t[2]);
-    [t[0] - mean, t[1] - mean]
+    all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus))
 }
 
-/// The point of the hexagon that keeps the component of `u` along the EMF `f`; `near` is the
-/// nearest point.
+/// The legs of the point of the hexagon that keeps the component of `u` along the EMF `f`; `near` are the
+/// terminals of the nearest point.
 fn torque_priority(
     k: &Constants,
     v_bus: Word,
     u: [Word; 3],
     f: [Word; 3],
-    near: [Word; 2],
-) -> ([Word; 2], Reach) {
+    near: [Word; 3],
+) -> ([Word; 3], Reach) {
     let product = |x, y| k.emf_product.floor_product(x, y);
     let strong = [f[0].abs(), f[1].abs(), f[2].abs()];
     let mut d = usize::from(strong[1] > strong[0]);
@@ -88,7 +100,7 @@ fn torque_priority(
     }
     let (x, y) = (NEXT[d], NEXT[NEXT[d]]);
     let f_max = strong[d];
-    if f_max < floor_shift(v_bus, 8) {
+    if f_max < floor_shift(v_bus, LEAST_EMF) {
         return (near, Reach::Outside);
     }
     let s1 = sign_of(f[d]);
@@ -97,13 +109,11 @@ fn torque_priority(
     let along = product(f_x, along_x) + product(f_y, along_y);
     let flip = sign_of(along);
     let (along_x, along_y, p, sign) = (flip * along_x, flip * along_y, along.abs(), flip * s1);
-    let (q_x, q_y) = (product(f_x, v_bus), product(f_y, v_bus));
-    let p_max = q_x + q_y;
+    let p_max = product(f_max, v_bus);
     let p_in = lesser(p, p_max);
     let x_is_heavy = along_x >= along_y;
-    let near = [near[0], near[1], -(near[0] + near[1])];
     let (near_x, near_y) = (sign * (near[d] - near[x]), sign * (near[d] - near[y]));
-    let q_heavy = either(x_is_heavy, q_x, q_y);
+    let q_heavy = product(either(x_is_heavy, f_x, f_y), v_bus);
     let f_light = either(x_is_heavy, f_y, f_x);
     let light_near = either(x_is_heavy, near_y, near_x);
     let n = p_in - q_heavy;
@@ -129,9 +139,8 @@ fn torque_priority(
         to_x += mul15.round_product(blend, near_x - to_x);
         to_y += mul15.round_product(blend, near_y - to_y);
     }
-    let mut limited = [word(0.0); 3];
-    limited[d] = k.k_third.mul(sign * (to_x + to_y));
-    limited[x] = limited[d] - sign * to_x;
-    limited[y] = limited[d] - sign * to_y;
-    ([limited[0], limited[1]], reach)
+    let mut legs = [word(0.0); 3];
+    legs[x] = -sign * to_x;
+    legs[y] = -sign * to_y;
+    (legs, reach)
 }

@@ -47,6 +47,7 @@ pub enum Part {
     Rotor,
     Speed,
     Commutation,
+    SectorInForce,
     Sight,
     VoltageCommand,
     TerminalCommand,
@@ -210,7 +211,9 @@ macro_rules! for_each_word {
             $show!("speed_integral", $state.speed_integral);
         }
         if $parts.has(Part::Commutation) {
-            $show!("sector_eff_prev", $state.sector_eff_prev);
+            if $parts.has(Part::SectorInForce) {
+                $show!("sector_eff_prev", $state.sector_eff_prev);
+            }
             $show!("commutating", $state.commutating);
             $show!("commutation_age", $state.commutation_age);
         }
@@ -335,6 +338,14 @@ impl State {
             };
         }
         for_each_word!(self, parts, take);
+        self.settle_sector(parts);
+    }
+
+    /// Without an advance the sector in force is that of the sample, and has no word of its own.
+    fn settle_sector(&mut self, parts: Parts) {
+        if !parts.has(Part::SectorInForce) {
+            self.sector_eff_prev = self.sector_prev;
+        }
     }
 
     /// Makes the words any of these intervals, in order.
@@ -349,5 +360,6 @@ impl State {
             };
         }
         for_each_word!(self, parts, widen);
+        self.settle_sector(parts);
     }
 }

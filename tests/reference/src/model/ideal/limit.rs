@@ -27,7 +27,7 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
     let u = match rule {
         Saturation::KeepAngle => u * (v_bus / spread),
         Saturation::Nearest => nearest(u, v_bus),
-        Saturation::TorquePriority if f.amax() < v_bus / 256.0 => nearest(u, v_bus),
+        Saturation::TorquePriority if f.amax() < v_bus * LEAST_EMF => nearest(u, v_bus),
         Saturation::TorquePriority => {
             let p = u.dot(f);
             let p_max = v_bus * f.amax();
@@ -45,6 +45,8 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
 
 /// Share of the reach over which torque priority passes into the nearest point.
 const BLEND_SHARE: f64 = 1.0 / 2.0;
+/// EMF below which torque has no direction to be kept in, as a share of the bus.
+const LEAST_EMF: f64 = 1.0 / 32.0;
 /// Least weight of a line-to-line voltage, as a share of the largest EMF.
 const LIGHT_SHARE: f64 = 1.0 / 4.0;
 

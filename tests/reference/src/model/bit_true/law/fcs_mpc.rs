@@ -13,6 +13,9 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error, Switch};
 
+/// By how much more than its rival's a pair's rounded score must be less: the floors of two products against one.
+pub const MARGIN: f64 = 1.0;
+
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     pub candidates: Candidates,
@@ -63,9 +66,17 @@ impl FcsMpc {
             return choice.apply(now, vector);
         }
         let (mut vector, mut least) = (zero, choice.score(zero, exact));
+        let is_pair =
+            |vector: usize| (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO).contains(&vector);
         for other in others {
             let score = choice.score(other, exact);
-            if score < least {
+            let is_less = match (exact, is_pair(other), is_pair(vector)) {
+                // Three-phase vectors are told apart by their exact scores, whatever the products lose.
+                (false, false, false) => choice.score(other, true) < choice.score(vector, true),
+                (false, true, false) => score < least - MARGIN,
+                _ => score < least,
+            };
+            if is_less {
                 (vector, least) = (other, score);
             }
         }

@@ -4,7 +4,7 @@ use super::dead_time::DeadTime;
 use super::deadbeat::Form;
 use super::{Decision, Inputs, pulses};
 use crate::model::bit_true::constants::Scale;
-use crate::model::bit_true::limit;
+use crate::model::bit_true::limit::{self, Limited};
 use crate::{Error, Modulation, Saturation, Spec};
 
 #[derive(Clone, Debug)]
@@ -29,12 +29,13 @@ impl Pdcc {
     pub fn decide(&self, now: &Inputs) -> Decision {
         let u_unsat = self.form.voltage(now);
         let e = self.form.emf(now);
-        let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, e);
+        let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, e);
+        let Limited { u, legs, reach } = limited;
         let shifts = self.dead_time.shifts(now, self.form.kept(now));
         let command = if self.pair && !now.commutating {
             pulses::pair(now, u_unsat, shifts)
         } else {
-            pulses::three(now, u, shifts, self.pair)
+            pulses::three(now, legs, shifts, self.pair)
         };
         Decision {
             u_unsat,

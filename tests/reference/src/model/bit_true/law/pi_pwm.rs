@@ -4,7 +4,7 @@ use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
 use crate::model::bit_true::constants::Scale;
-use crate::model::bit_true::limit;
+use crate::model::bit_true::limit::{self, Limited};
 use crate::model::variant::reference_gain;
 use crate::model::{Reach, sector};
 use crate::{Error, Saturation, Spec, Switch};
@@ -42,7 +42,8 @@ impl PiPwm {
         let p = both(|x| now.j[x] - held[x]);
         let u_unsat = both(|x| p[x] + now.integral[x] + now.e[x]);
         // 10, 11
-        let (u, reach) = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
+        let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
+        let Limited { u, legs, reach } = limited;
         // 12
         let integral = both(|x| {
             let moved = now.integral[x] + self.k_i.mul(p[x] + u[x] - u_unsat[x]);
@@ -53,7 +54,7 @@ impl PiPwm {
             u,
             reach,
             vector: 0,
-            command: pulses::three(now, u, self.dead_time.shifts(now, held), false),
+            command: pulses::three(now, legs, self.dead_time.shifts(now, held), false),
             integral,
             rises: now.rises,
             past: now.past,

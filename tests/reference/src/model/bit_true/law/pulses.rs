@@ -33,11 +33,10 @@ pub fn compare_of(now: &Inputs, t: Word, shift: Word) -> u16 {
     compare(now, nominal(now, t) + shift)
 }
 
-/// Three pulsed legs, their common mode in the middle of the bus; with terminal voltages where the
-/// variant keeps them. `shifts` are against the dead time.
+/// Three pulsed legs of voltages `u` against any common point, their common mode in the middle of the bus; with
+/// terminal voltages where the variant keeps them. `shifts` are against the dead time.
 #[inline]
-pub fn three(now: &Inputs, u: [Word; 2], shifts: [Word; 3], terminals: bool) -> Command {
-    let u = [u[0], u[1], -(u[0] + u[1])];
+pub fn three(now: &Inputs, u: [Word; 3], shifts: [Word; 3], terminals: bool) -> Command {
     let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
     let half = halve(now.v_bus + 1.0);
     let centred = all_three(|x| within(u[x] - middle, -half, half));

@@ -1,7 +1,7 @@
 //! The choice of FCS-MPC where its cost has weights (section 10w).
 
 use super::Inputs;
-use super::fcs_mpc::Choice;
+use super::fcs_mpc::{Choice, MARGIN};
 use crate::exact::{Coefficient, Word, halve, round_half_up, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -64,7 +64,11 @@ impl Weights {
         }
         // Pairs by their numbers, behind what is no pair.
         kept.sort_by_key(|vector| if kind(*vector) < 3 { *vector } else { 0 });
-        first_least(kept.into_iter(), |vector| self.rounded(choice, now, vector))
+        // A pair of the same voltage is not better for having been rounded twice.
+        first_least(kept.into_iter(), |vector| {
+            let margin = if kind(vector) < 3 { MARGIN } else { 0.0 };
+            self.rounded(choice, now, vector) + margin
+        })
     }
 
     /// S n.

@@ -1,0 +1,105 @@
+//! Tables: alone, or side by side as the columns of rows that one index reads.
+//!
+//! One address then leads to all entries of a row, where tables of their own would each need theirs.
+
+use super::expression::coded;
+use super::names::{camel, docs, number, screaming, snake};
+use crate::emit::rows::{columns, padding, row_of, size};
+use crate::emit::signal::Shape;
+use crate::ir::{Program, Table, TableId};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// The entry of a table at an index: a word, or the state of a leg.
+pub(super) fn look_up(program: &Program, id: TableId, index: &TokenStream) -> TokenStream {
+    let table = &program.tables[id.index()];
+    let name = screaming(&table.name);
+    let Some(row) = row_of(program, table) else {
+        return quote!(lookup(&#name, #index));
+    };
+    let (rows, field) = (rows(row), snake(&table.name));
+    let entry = quote!(row(&#rows, #index).#field);
+    if table.holds_legs {
+        entry
+    } else {
+        quote!(Word::from(#entry))
+    }
+}
+
+/// All tables of a program that its code names: those alone by `named`, those in rows all together.
+pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> TokenStream {
+    let mut items = TokenStream::new();
+    let mut known = vec![];
+    for table in &program.tables {
+        match row_of(program, table) {
+            None if named(&table.name) => items.extend(emit_table(table)),
+            Some(row) if !known.contains(&row) && named(&rows(row).to_string()) => {
+                known.push(row);
+                items.extend(emit_rows(program, row));
+            }
+            _ => {}
+        }
+    }
+    items
+}
+
+/// The name of all rows together.
+fn rows(row: &str) -> Ident {
+    screaming(&format!("{row}_rows"))
+}
+
+fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
+    let (name, rows) = (format_ident!("{}Row", camel(row)), rows(row));
+    let fields = columns(program, row).map(|table| {
+        let (field, doc, element) = (snake(&table.name), docs(&table.doc), element(table));
+        quote!(#doc #field: #element)
+    });
+    let count = columns(program, row).map(|table| table.values.len()).max();
+    let count = count.unwrap_or(0);
+    let entries = (0..count).map(|index| {
+        let fields = columns(program, row).map(|table| {
+            let value = table.values.get(index).copied().unwrap_or(0);
+            let (field, entry) = (snake(&table.name), entry(table, value));
+            quote!(#field: #entry)
+        });
+        quote!(#name { #(#fields),* })
+    });
+    let doc = docs(&[format!("What one {row} tells.")]);
+    let layout = padding(columns(program, row)).map(|bytes| {
+        let bytes = Literal::usize_unsuffixed(bytes);
+        quote!(#[repr(align(#bytes))])
+    });
+    let all = docs(&[format!("The rows of every {row}.")]);
+    let count = Literal::usize_unsuffixed(count);
+    quote! {
+        #doc
+        #layout
+        struct #name { #(#fields),* }
+
+        #all
+        static #rows: [#name; #count] = [#(#entries),*];
+    }
+}
+
+/// A table by itself.
+fn emit_table(table: &Table) -> TokenStream {
+    let (name, doc, element) = (screaming(&table.name), docs(&table.doc), element(table));
+    let count = Literal::usize_unsuffixed(table.values.len());
+    let values = table.values.iter().map(|&value| entry(table, value));
+    quote!(#doc static #name: [#element; #count] = [#(#values),*];)
+}
+
+/// The smallest elements that hold a table.
+fn element(table: &Table) -> TokenStream {
+    match size(table) {
+        1 if table.holds_legs => quote!(LegState),
+        1 => quote!(i8),
+        2 => quote!(i16),
+        _ => quote!(i32),
+    }
+}
+
+fn entry(table: &Table, value: i32) -> TokenStream {
+    let code = table.holds_legs.then(|| Shape::Leg.code(value)).flatten();
+    code.map_or_else(|| number(i64::from(value)), coded)
+}

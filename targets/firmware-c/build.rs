@@ -1,0 +1,133 @@
+//! Emits the drives of `src/list.rs` as C99, compiles them for the target, and writes what Rust must know of each:
+//! `drives.rs`, a list of calls of the macro in `src/drive.rs`.
+
+use hexagen_codegen::emit::c99::emit_c99;
+use hexagen_codegen::ir::Program;
+use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+#[path = "src/list.rs"]
+mod list;
+
+/// What emitted C is documented to pass.
+const STRICT: [&str; 6] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Werror",
+    "-pedantic",
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=src/list.rs");
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let drives = list::DRIVES.iter().map(|drive| compile(drive, &out));
+    let drives: Result<String, _> = drives.collect();
+    fs::write(
+        out.join("drives.rs"),
+        format!("drives! {{\n{}}}\n", drives?),
+    )?;
+    Ok(())
+}
+
+/// Emits and compiles one drive; its line of `drives.rs`.
+fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
+    let file = format!("../motors/{}.toml", drive.motor);
+    println!("cargo:rerun-if-changed={file}");
+    let options = [drive.options, word_choice()]
+        .into_iter()
+        .filter(|part| !part.is_empty());
+    let options = options.collect::<Vec<_>>().join(", ");
+    let given = options.replace(": ", "=").replace(", ", ",");
+    let variant = format!("{}:{given}", drive.kind.replace('_', "-"));
+    let mut ast = parse_toml(&fs::read_to_string(&file)?, &file).map_err(|why| why.to_string())?;
+    apply_variant(&mut ast, variant.trim_end_matches(':')).map_err(|why| why.to_string())?;
+    drive.name.clone_into(&mut ast.name.text);
+    let (spec, origins) = check(&ast).map_err(|why| why.to_string())?;
+    let Generated { graph, interface } =
+        generate(&spec, &origins).map_err(|why| why.to_string())?;
+    let program = graph.program();
+    let sources = emit_c99(&graph, &interface, drive.name);
+    let prefix = &sources.name;
+    let size = size(program);
+
+    let write = |ending: &str, text: &str| {
+        let path = out.join(format!("{prefix}{ending}"));
+        fs::write(&path, text).map(|()| path)
+    };
+    write(".h", &sources.header)?;
+    let source = write(".c", &sources.source)?;
+    // The room that Rust gives it is what it needs.
+    let check = format!(
+        "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}_t) == {size}) ? 1 : -1];\n"
+    );
+    let check = write("_size.c", &check)?;
+    let mut build = cc::Build::new();
+    build
+        .files([source, check])
+        .include(out)
+        .opt_level(2)
+        .define(&format!("{}_VERIFICATION", prefix.to_uppercase()), None)
+        // The public function itself is what the firmware calls and the bench counts.
+        .define(&format!("{prefix}_step"), drive.symbol)
+        // Enumerations as small as Rust has them, no start-up code or library of the compiler.
+        .flags(["-fshort-enums", "-ffreestanding", "-fno-jump-tables"])
+        .flags(STRICT);
+    build.try_compile(&format!("{prefix}_c"))?;
+
+    let names: Vec<&str> = program
+        .states
+        .iter()
+        .map(|word| word.name.as_str())
+        .collect();
+    let list::InC {
+        name,
+        symbol,
+        motor,
+        kind,
+        ..
+    } = drive;
+    let spec = &interface.spec_toml;
+    let words = size / 4;
+    let functions = [
+        "init",
+        "set_current",
+        "set_torque",
+        "reset",
+        "calibrate",
+        "precharge",
+        "status",
+        "state_words",
+        "set_state_word",
+    ];
+    let functions = functions.map(|function| format!("{function}: {prefix}_{function}"));
+    Ok(format!(
+        "    {name}: [u32; {words}], {symbol}, {{ {} }}, \"../motors/{motor}.toml\", {kind:?}, {options:?}, {names:?}, {spec:?};\n",
+        functions.join(", ")
+    ))
+}
+
+/// What chooses the words that suit the core.
+fn word_choice() -> &'static str {
+    let target = env::var("TARGET").unwrap_or_default();
+    if target.starts_with("thumbv6m") {
+        "target: cortex_m0"
+    } else {
+        ""
+    }
+}
+
+/// Bytes of a drive: its set-point words, each replaced alone, the status, and its state.
+fn size(program: &Program) -> usize {
+    let set_point = 4 * (program.params.len() + 1);
+    let end = program.states.iter().fold(set_point, |end, word| {
+        let bytes = if word.storage_bits == 16 { 2 } else { 4 };
+        end.next_multiple_of(bytes) + bytes
+    });
+    end.next_multiple_of(4)
+}
