@@ -34,6 +34,15 @@ pub fn mul_floor(a: Word, b: Word, shift: u32) -> Word {
     Word((i64::from(a.0).wrapping_mul(i64::from(b.0)) >> shift) as i32)
 }
 
+/// `floor((a b + c d) / 2^shift)` of a sum that fits 64 bits: equal sums give equal words, however they part into products.
+#[inline(always)]
+#[must_use]
+pub fn mul_add_floor(a: Word, b: Word, c: Word, d: Word, shift: u32) -> Word {
+    let first = i64::from(a.0).wrapping_mul(i64::from(b.0));
+    let second = i64::from(c.0).wrapping_mul(i64::from(d.0));
+    Word((first.wrapping_add(second) >> shift) as i32)
+}
+
 /// `min(a b, limit)` for factors that are not negative; the product may exceed the word.
 #[inline(always)]
 #[must_use]

@@ -259,10 +259,16 @@ fn calls(text: &str, code: &[Range<usize>], name: &str) -> Vec<Vec<Range<usize>>
 }
 
 fn shifts(text: &str, code: &[Range<usize>], change: i64) -> Vec<Edit> {
-    let arguments = ["mul_round(", "mul_round_narrow(", "mul_floor(", "divide("]
-        .iter()
-        .flat_map(|name| calls(text, code, name))
-        .filter_map(|arguments| arguments.last().cloned());
+    let arguments = [
+        "mul_round(",
+        "mul_round_narrow(",
+        "mul_floor(",
+        "mul_add_floor(",
+        "divide(",
+    ]
+    .iter()
+    .flat_map(|name| calls(text, code, name))
+    .filter_map(|arguments| arguments.last().cloned());
     let mut edits: Vec<Edit> = arguments
         .filter_map(|range| {
             let (shift, _) = literal(text[range.clone()].trim())?;

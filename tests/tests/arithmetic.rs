@@ -1,8 +1,8 @@
 //! The integer primitives of emitted code against the meaning of the IR's operators.
 
 use hexagen::arith::{
-    Word, angle_fraction, angle_index, divide, divide_narrow, lookup, mul_floor, mul_limited,
-    mul_round, mul_round_narrow, select, turn_over,
+    Word, angle_fraction, angle_index, divide, divide_narrow, lookup, mul_add_floor, mul_floor,
+    mul_limited, mul_round, mul_round_narrow, select, turn_over,
 };
 use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ fn interpreted(
     let table = program.table("table", table.to_vec(), &[]);
     let mut b = FunctionBuilder::new(&mut program, "step", &[]);
     b.stage("apply", &[]);
-    let names = ["x", "y", "z"];
+    let names = ["x", "y", "z", "w"];
     let inputs: Vec<Value> = names
         .iter()
         .zip(intervals)
@@ -69,6 +69,14 @@ proptest! {
     fn floored_products(a in word(24), c in word(24), shift in 16_u32..=40) {
         let expected = interpreted(&[symmetric(24); 2], &[a, c], &[0], |b, x, _| b.mul_floor(x[0], x[1], shift));
         prop_assert_eq!(mul_floor(Word(a), Word(c), shift).0, expected);
+    }
+
+    #[test]
+    fn floored_sums_of_products(words in [word(26), word(26), word(26), word(26)], shift in 22_u32..=40) {
+        let sum = |b: &mut FunctionBuilder<'_>, x: &[Value], _| b.mul_add_floor([x[0], x[1]], [x[2], x[3]], shift);
+        let expected = interpreted(&[symmetric(26); 4], &words, &[0], sum);
+        let [a, b, c, d] = words.map(Word);
+        prop_assert_eq!(mul_add_floor(a, b, c, d, shift).0, expected);
     }
 
     #[test]

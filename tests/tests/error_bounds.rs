@@ -59,6 +59,7 @@ fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
         Op::Abs(_) => x[0].1.abs(),
         Op::Product(..) => x[0].1 * x[1].1,
         Op::MulRound { shift, .. } | Op::MulFloor { shift, .. } => x[0].1 * x[1].1 * scale(shift),
+        Op::MulAddFloor { shift, .. } => (x[0].1 * x[1].1 + x[2].1 * x[3].1) * scale(shift),
         Op::MulLimited { .. } => (x[0].1 * x[1].1).min(x[2].1),
         Op::ShiftLeft(_, n) => x[0].1 / scale(n),
         Op::ShiftRight(_, n) => x[0].1 * scale(n),

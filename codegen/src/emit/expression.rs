@@ -92,6 +92,8 @@ pub(super) enum Primitive {
     MulRoundNarrow,
     /// [`Op::MulFloor`]
     MulFloor,
+    /// [`Op::MulAddFloor`]
+    MulAddFloor,
     /// [`Op::MulLimited`]
     MulLimited,
     /// [`Op::Divide`]
@@ -219,6 +221,23 @@ impl<'a> Scope<'a> {
                     E::ShiftedRight(Box::new(product(of(a), of(b))), shift)
                 } else {
                     call(P::MulFloor, &[a, b], Some(shift))
+                }
+            }
+            Op::MulAddFloor {
+                first: [a, b],
+                second: [c, d],
+                shift,
+            } => {
+                let (first, second) = (self.products(a, b), self.products(c, d));
+                let all = Interval::new(first.low + second.low, first.high + second.high);
+                if [first, second, all].into_iter().all(fits_word) {
+                    let whole = sum(product(of(a), of(b)), product(of(c), of(d)));
+                    match shift {
+                        0 => whole,
+                        _ => E::ShiftedRight(Box::new(whole), shift),
+                    }
+                } else {
+                    call(P::MulAddFloor, &[a, b, c, d], Some(shift))
                 }
             }
             Op::MulLimited { a, b, limit } => {

@@ -365,6 +365,18 @@ impl<'p> Bounds<'p> {
                     exact.plus(ErrorInterval::floor())
                 }
             }
+            Op::MulAddFloor {
+                first: [a, b],
+                second: [c, d],
+                shift,
+            } => {
+                let exact = product(a, b).plus(product(c, d)).shifted_right(shift);
+                if shift == 0 {
+                    exact
+                } else {
+                    exact.plus(ErrorInterval::floor())
+                }
+            }
             Op::MulLimited { a, b, limit } => product(a, b).union(of(limit)),
             Op::ShiftLeft(a, n) => of(a).shifted_left(n),
             Op::ShiftRight(a, 0) => of(a),

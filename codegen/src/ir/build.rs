@@ -400,6 +400,18 @@ impl<'p> FunctionBuilder<'p> {
         self.push("", Op::MulFloor { a, b, shift })
     }
 
+    /// floor((a b + c d) / 2^shift) of factors a, b and c, d
+    pub fn mul_add_floor(&mut self, first: [Value; 2], second: [Value; 2], shift: u32) -> Value {
+        self.push(
+            "",
+            Op::MulAddFloor {
+                first,
+                second,
+                shift,
+            },
+        )
+    }
+
     /// min(a b, limit), a and b not negative
     pub fn mul_limited(&mut self, a: Value, b: Value, limit: Value) -> Value {
         self.push("", Op::MulLimited { a, b, limit })

@@ -70,6 +70,10 @@ impl Cost {
             | Op::MulLimited { .. }
             | Op::AngleIndex { .. }
             | Op::AngleFraction { .. } => cost.multiplications = 1,
+            Op::MulAddFloor { .. } => {
+                cost.additions = 1;
+                cost.multiplications = 2;
+            }
             Op::Min(..)
             | Op::Max(..)
             | Op::Compare(..)

@@ -27,13 +27,13 @@ pub struct Machine<'g> {
     pub params: Vec<i32>,
     values: Vec<i64>,
     /// Places of every node's operands: of the step, then of the setters.
-    operands: Vec<Vec<[usize; 3]>>,
+    operands: Vec<Vec<[usize; 4]>>,
 }
 
 /// Places of the operands of every node; unused ones are 0.
-fn operand_places(function: &Function) -> Vec<[usize; 3]> {
+fn operand_places(function: &Function) -> Vec<[usize; 4]> {
     let places = |op: &Op| {
-        let mut places = [0; 3];
+        let mut places = [0; 4];
         for (place, operand) in places.iter_mut().zip(op.operands()) {
             *place = operand.index();
         }

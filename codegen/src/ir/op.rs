@@ -120,6 +120,15 @@ pub enum Op {
         /// 0 to 62.
         shift: u32,
     },
+    /// floor((a b + c d) / 2^shift)
+    MulAddFloor {
+        /// Factors of the first product.
+        first: [Value; 2],
+        /// Factors of the second product.
+        second: [Value; 2],
+        /// 0 to 62.
+        shift: u32,
+    },
     /// min(a b, limit) for a, b >= 0
     MulLimited {
         /// Factor, not negative.
@@ -263,6 +272,9 @@ impl Op {
                 visit(a);
                 visit(b);
             }
+            Self::MulAddFloor { first, second, .. } => {
+                first.iter_mut().chain(second).for_each(visit);
+            }
             Self::MulLimited { a, b, limit: c }
             | Self::Divide {
                 numerator: a,
@@ -330,6 +342,10 @@ impl Op {
                 ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64
             }
             Self::MulFloor { shift, .. } => ((i128::from(x[0]) * i128::from(x[1])) >> shift) as i64,
+            Self::MulAddFloor { shift, .. } => {
+                let [a, b, c, d] = [0, 1, 2, 3].map(|place| i128::from(x[place]));
+                ((a * b + c * d) >> shift) as i64
+            }
             Self::MulLimited { .. } => {
                 if x[0] < 0 || x[1] < 0 {
                     return None;
@@ -395,6 +411,15 @@ impl Op {
                     x[0].low.abs().min(x[0].high.abs())
                 };
                 Interval::new(least, x[0].magnitude())
+            }
+            Self::MulAddFloor { shift, .. } => {
+                let [first, second] =
+                    [[x[0], x[1]], [x[2], x[3]]].map(|[a, b]| a.corners(b, |a, b| a * b));
+                // A sum beyond 64 bits has no interval.
+                Interval::new(
+                    first.low.checked_add(second.low)? >> shift,
+                    first.high.checked_add(second.high)? >> shift,
+                )
             }
             Self::MulLimited { .. } => {
                 if x[0].low < 0 || x[1].low < 0 {

@@ -143,6 +143,14 @@ impl Program {
                 format!("round({} * {} >> {shift})", of(coefficient), of(signal))
             }
             Op::MulFloor { a, b, shift } => format!("floor({} * {} >> {shift})", of(a), of(b)),
+            Op::MulAddFloor {
+                first: [a, b],
+                second: [c, d],
+                shift,
+            } => {
+                let [a, b, c, d] = [a, b, c, d].map(of);
+                format!("floor({a} * {b} + {c} * {d} >> {shift})")
+            }
             Op::MulLimited { a, b, limit } => format!("min({} * {}, {})", of(a), of(b), of(limit)),
             Op::ShiftLeft(a, n) => format!("{} << {n}", of(a)),
             Op::ShiftRight(a, n) => format!("{} >> {n}", of(a)),

@@ -489,7 +489,7 @@ pub fn derived_interval(program: &Program, function: &Function, index: usize) ->
 fn in_domain(op: &Op, x: &[Interval]) -> bool {
     let formed = match *op {
         Op::MulRound { shift, .. } => (1..=62).contains(&shift),
-        Op::MulFloor { shift, .. } => shift <= 62,
+        Op::MulFloor { shift, .. } | Op::MulAddFloor { shift, .. } => shift <= 62,
         Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
         Op::Divide { shift, .. } => shift <= 31 && x[2].low >= 0,
         Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => {

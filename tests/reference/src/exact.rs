@@ -254,6 +254,25 @@ impl Shift {
         self.product(x.into(), y.into(), |weight| 0.5 * weight - 0.5)
     }
 
+    /// floor((x1 y1 + x2 y2)/2^s) for words whose products' sum fits 64 bits. For shifts beyond 16 the upper and lower
+    /// halves of the first factors are multiplied apart, and the lower products lose the 16 bits together.
+    #[inline]
+    #[cfg_attr(bounded, track_caller)]
+    pub fn floor_sum_of_products(&self, [x1, y1]: [Word; 2], [x2, y2]: [Word; 2]) -> Word {
+        let _site = here();
+        if self.bits <= 16 {
+            // As short as its shifted result plus 16 bits.
+            return floor_weighted(x1 * y1 + x2 * y2, self.weight);
+        }
+        let halves = |x: Word| {
+            let high = floor_weighted(x, 1.0 / TWO_16);
+            (high, known(x - high * TWO_16, 0.0, TWO_16 - 1.0))
+        };
+        let ((high1, low1), (high2, low2)) = (halves(x1), halves(x2));
+        let lost = floor_weighted(low1 * y1 + low2 * y2, 1.0 / TWO_16);
+        floor_weighted(high1 * y1 + high2 * y2 + lost, self.cut_weight)
+    }
+
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
     #[inline]
     #[cfg_attr(bounded, track_caller)]

@@ -334,6 +334,21 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
                 },
             ),
         ],
+        Op::MulAddFloor {
+            first: [a, b],
+            second,
+            shift,
+        } => vec![
+            (
+                "shift one more",
+                Op::MulAddFloor {
+                    first: [a, b],
+                    second,
+                    shift: shift + 1,
+                },
+            ),
+            ("term missing", Op::MulFloor { a, b, shift }),
+        ],
         Op::MulLimited { a, b, limit } => vec![
             ("limit alone", same(limit)),
             ("factors added", Op::Add(a, b)),

@@ -167,11 +167,6 @@ pub const RARE: &[Unnoticed] = &[
         )],
     },
     Unnoticed {
-        because: "differs only where a pair's score is less by the margin to the last digit",
-        drives: &[FCS_PAPER],
-        faults: &[(&["score_margin"], &["one more"])],
-    },
-    Unnoticed {
         because: "differs only where a phase is at a third of the bus to the last bit",
         drives: &[FCS_PAPER, FCS_ESTUN, FCS_TEKNIC],
         faults: &[(

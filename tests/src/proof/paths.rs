@@ -228,6 +228,23 @@ impl Path {
         product
     }
 
+    /// floor((x y + z w) / 2^bits), of which no more is known than that it is the same for the same products.
+    pub fn sum_of_products(&mut self, factors: [[&Linear; 2]; 2], bits: u32) -> Linear {
+        /// Beyond the shifts of single products.
+        const OF_SUMS: u32 = 128;
+        let [first, second] = factors.map(|[x, y]| self.product(x, y, 0));
+        let key = (&first + &second, Linear::default(), OF_SUMS + bits);
+        if let Some(number) = key.0.as_number() {
+            return Linear::number(number >> bits);
+        }
+        if let Some(known) = self.defined.get(&key) {
+            return known.clone();
+        }
+        let sum = self.variable("sum");
+        self.defined.insert(key, sum.clone());
+        sum
+    }
+
     /// Whether products of factors that are equal here can be equal, too: on the way they counted as any numbers.
     fn is_consistent(&mut self) -> bool {
         let mut products: Vec<(Defined, Linear)> = self.defined.drain().collect();

@@ -147,6 +147,14 @@ impl<'p> Slice<'p> {
                 let (a, b) = (self.word(a, path)?, self.word(b, path)?);
                 path.product(&a, &b, shift)
             }
+            Op::MulAddFloor {
+                first: [a, b],
+                second: [c, d],
+                shift,
+            } => {
+                let [a, b, c, d] = [a, b, c, d].map(|factor| self.word(factor, path));
+                path.sum_of_products([[&a?, &b?], [&c?, &d?]], shift)
+            }
             // Another function of the same factors.
             Op::MulRound {
                 coefficient,

@@ -67,11 +67,7 @@ impl Situation {
         };
         let mut least = (list[0], self.score(list[0], rounded, path)?);
         for &vector in &list[1..] {
-            let mut score = self.score(vector, rounded, path)?;
-            if rounded && (7..13).contains(&vector) {
-                // Two floors against one: a pair must be better by more than a unit.
-                score = &score + &Linear::number(1);
-            }
+            let score = self.score(vector, rounded, path)?;
             if path.is_negative(&(&score - &least.1))? {
                 least = (vector, score);
             }
@@ -252,15 +248,14 @@ impl Situation {
         };
         if vector < 13 {
             let aside = &off_leg.offset - &self.u[off].times(6);
-            let aside = path.product(&off_leg.offset, &aside, self.shift);
-            return Ok(&aside + &path.product(&self.bus, &by_bus, self.shift));
+            let factors = [[&off_leg.offset, &aside], [&self.bus, &by_bus]];
+            return Ok(path.sum_of_products(factors, self.shift));
         }
         let tau = off_leg.terminal(&self.bus, &Linear::default(), path)?;
         let aside = &tau.times(4) - &self.u[off].times(12);
-        let aside = path.product(&tau, &aside, self.shift);
         Ok(match &self.changes {
-            None => aside,
-            Some(_) => &aside + &path.product(&self.bus, &by_bus, self.shift),
+            None => path.product(&tau, &aside, self.shift),
+            Some(_) => path.sum_of_products([[&tau, &aside], [&self.bus, &by_bus]], self.shift),
         })
     }
 }

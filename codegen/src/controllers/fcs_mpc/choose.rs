@@ -7,7 +7,7 @@
 use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
 use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
-use crate::ir::{Comparison, Exact, Real, TableId, Value};
+use crate::ir::{Comparison, TableId, Value};
 use crate::lower::Lowering;
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
@@ -234,7 +234,7 @@ impl CurrentLoop<'_, '_> {
             &[
                 "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
                 &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
-                "A pair must be better by more than rounding makes of the same voltage.",
+                "Both products of a score are rounded as one: pairs whose off leg lies at a rail tie exactly with what has their voltage.",
             ],
         );
         // Factors first: their intervals give the shift of all products.
@@ -249,7 +249,7 @@ impl CurrentLoop<'_, '_> {
             let six = l.b.mul_by(6, u[off]);
             let aside = l.b.sub(offsets[off], six);
             l.b.name(["aside_a", "aside_c", "aside_b"][order], aside);
-            factors.push(((offsets[off], aside), (bus, better.score)));
+            factors.push([[offsets[off], aside], [bus, better.score]]);
         }
         let mut change = None;
         let rival = match three_phase {
@@ -267,16 +267,17 @@ impl CurrentLoop<'_, '_> {
             None => {
                 let (vector, is_off) = zero_of_pair(l, front.sector);
                 let factors = off_legs.zero(l, front, u, is_off);
-                change = changes.map(|changes| (bus, zero_with_changes(l, is_off, changes)));
+                change = changes.map(|changes| [bus, zero_with_changes(l, is_off, changes)]);
                 (vector, factors)
             }
         };
         let widths: Vec<u32> = factors
             .iter()
-            .flat_map(|&(first, second)| [first, second])
-            .chain([(rival.1[0], rival.1[1])])
+            .copied()
+            .flatten()
+            .chain([rival.1])
             .chain(change)
-            .map(|(x, y)| l.b.interval(x).bits() + l.b.interval(y).bits())
+            .map(|[x, y]| l.b.interval(x).bits() + l.b.interval(y).bits())
             .collect();
         // A product of n + m bits fits n + m - 1; the sum of two and one bit to spare make 31 at most.
         let shift = widths.into_iter().max().unwrap_or(62).saturating_sub(31);
@@ -286,10 +287,8 @@ impl CurrentLoop<'_, '_> {
         l.product_format("score", shift, "products of two voltages in scores");
         let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
         let mut best: Option<Candidate> = None;
-        for (order, (first, second)) in factors.into_iter().enumerate() {
-            let aside = l.b.mul_floor(first.0, first.1, shift);
-            let along = l.b.mul_floor(second.0, second.1, shift);
-            let score = l.b.add(aside, along);
+        for (order, [first, second]) in factors.into_iter().enumerate() {
+            let score = l.b.mul_add_floor(first, second, shift);
             l.b.state_error("score", score, [SCORE, "V^2"], word);
             l.b.name(["score_a", "score_c", "score_b"][order], score);
             let next = Candidate {
@@ -304,28 +303,19 @@ impl CurrentLoop<'_, '_> {
         let Some(best) = best else {
             return rival.0;
         };
-        let mut score = l.b.mul_floor(rival.1[0], rival.1[1], shift);
-        if let Some((bus, change)) = change {
-            let change = l.b.mul_floor(bus, change, shift);
-            score = l.b.add(score, change);
-        }
+        let [first, second] = rival.1;
+        let mut score = match change {
+            None => l.b.mul_floor(first, second, shift),
+            Some(change) => l.b.mul_add_floor(rival.1, change, shift),
+        };
         if three_phase.is_some() && changes.is_none() {
             // V0 scores 0, the best three-phase vector less than that or V0 was taken.
             let zero = l.zero();
             score = l.b.min(score, zero);
         }
-        // A pair whose off leg lies at a rail can be the very voltage of its rival: their scores are the same then, but
-        // two floors may be one less than one.
-        let margin = l.rounded_number(
-            "score_margin",
-            1,
-            Exact::Number(Real::of(0.0)),
-            "What rounding alone makes of a score of two products against an equal one: a pair vector must be better by more.",
-        );
-        let to_beat = l.b.sub(score, margin);
-        l.b.state_error("score", to_beat, [SCORE, "V^2"], word);
-        l.b.name("score_to_beat", to_beat);
-        let better = l.b.compare(Comparison::Less, best.score, to_beat);
+        l.b.state_error("score", score, [SCORE, "V^2"], word);
+        l.b.name("score_to_beat", score);
+        let better = l.b.compare(Comparison::Less, best.score, score);
         l.b.select(better, best.vector, rival.0)
     }
 }

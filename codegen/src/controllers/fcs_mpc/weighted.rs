@@ -25,9 +25,29 @@ struct Weighed {
     vector: Value,
     /// Number, for names.
     number: usize,
+    /// At most two, rounded as one.
     products: Vec<[Value; 2]>,
-    /// Torque terms of a three-phase vector by the phase that is out: 1 the pair's line has the bus, -1 the bus reversed, 0 none.
-    lines: Option<[i32; 3]>,
+    torque: Torque,
+}
+
+/// What the torque's error adds to a score.
+enum Torque {
+    /// The line of the pair has no voltage.
+    Nothing,
+    /// The product of these.
+    Factors([Value; 2]),
+    /// By the phase that is out: 1 the pair's line has the bus, -1 the bus reversed, 0 none.
+    Lines([i32; 3]),
+}
+
+impl Weighed {
+    fn all_products(&self) -> impl Iterator<Item = &[Value; 2]> {
+        let of_torque = match &self.torque {
+            Torque::Factors(factors) => Some(factors),
+            Torque::Nothing | Torque::Lines(_) => None,
+        };
+        self.products.iter().chain(of_torque)
+    }
 }
 
 /// The line of the conducting pair.
@@ -127,7 +147,7 @@ impl CurrentLoop<'_, '_> {
                     vector: pair_zero,
                     number: 13,
                     products,
-                    lines: None,
+                    torque: Torque::Nothing,
                 });
             }
             let beside = beside_pairs(l, bus, off_legs);
@@ -136,7 +156,7 @@ impl CurrentLoop<'_, '_> {
             }
         }
         three.extend(BY_GATES.map(|number| three_phase_vector(l, number, bus, u, changes)));
-        let widths = three.iter().chain(&pairs).flat_map(|one| &one.products);
+        let widths = three.iter().chain(&pairs).flat_map(Weighed::all_products);
         let widest = widths
             .chain([&forward, &backward])
             .map(|[x, y]| l.b.interval(*x).bits() + l.b.interval(*y).bits())
@@ -418,7 +438,7 @@ fn zero_of_three(l: &mut Lowering<'_>, bus: Value, changes: Option<&Changes>) ->
         vector: l.zero(),
         number: 0,
         products: products.into_iter().collect(),
-        lines: None,
+        torque: Torque::Nothing,
     }
 }
 
@@ -444,7 +464,7 @@ fn three_phase_vector(
         vector: l.b.literal(number as i32),
         number,
         products: vec![[bus, along]],
-        lines: Some([(1, 2), (2, 0), (0, 1)].map(|(x, y)| (legs[x] - legs[y]) / 2)),
+        torque: Torque::Lines([(1, 2), (2, 0), (0, 1)].map(|(x, y)| (legs[x] - legs[y]) / 2)),
     }
 }
 
@@ -507,12 +527,12 @@ fn pair_vector(
     let [is_a, is_b] = torque.is_out;
     let line = l.pick(is_a, is_b, lines);
     l.b.name(&format!("line_{number}"), line);
-    products.push(torque_factors(l, line, torque));
+    let torque = Torque::Factors(torque_factors(l, line, torque));
     Weighed {
         vector: l.b.literal(number as i32),
         number,
         products,
-        lines: None,
+        torque,
     }
 }
 
@@ -543,22 +563,25 @@ fn least(
 ) -> Value {
     let mut best: Option<Candidate> = None;
     for one in list {
-        let mut score = None;
-        for [x, y] in one.products {
-            let product = l.b.mul_floor(x, y, shift);
-            score = Some(match score {
-                None => product,
-                Some(score) => l.b.add(score, product),
-            });
-        }
-        if let Some(lines) = one.lines {
-            let [is_a, is_b] = torque.is_out;
-            let terms = lines.map(|line| match line {
-                1 => forward,
-                -1 => backward,
-                _ => l.zero(),
-            });
-            let term = l.pick(is_a, is_b, terms);
+        let mut score = match one.products[..] {
+            [] => None,
+            [[x, y]] => Some(l.b.mul_floor(x, y, shift)),
+            [first, second, ..] => Some(l.b.mul_add_floor(first, second, shift)),
+        };
+        let term = match one.torque {
+            Torque::Nothing => None,
+            Torque::Factors([x, y]) => Some(l.b.mul_floor(x, y, shift)),
+            Torque::Lines(lines) => {
+                let [is_a, is_b] = torque.is_out;
+                let terms = lines.map(|line| match line {
+                    1 => forward,
+                    -1 => backward,
+                    _ => l.zero(),
+                });
+                Some(l.pick(is_a, is_b, terms))
+            }
+        };
+        if let Some(term) = term {
             score = Some(match score {
                 None => term,
                 Some(score) => l.b.add(score, term),

@@ -291,6 +291,7 @@ fn called(primitive: Primitive) -> &'static str {
         Primitive::MulRound => "mul_round",
         Primitive::MulRoundNarrow => "mul_round_narrow",
         Primitive::MulFloor => "mul_floor",
+        Primitive::MulAddFloor => "mul_add_floor",
         Primitive::MulLimited => "mul_limited",
         Primitive::Divide => "divide",
         Primitive::DivideNarrow => "divide_narrow",

@@ -16,7 +16,7 @@ pub(super) struct Helper {
 }
 
 /// All, each behind those that it calls.
-pub(super) const HELPERS: [Helper; 20] = [
+pub(super) const HELPERS: [Helper; 21] = [
     Helper {
         name: "exceeds",
         text: "\
@@ -155,6 +155,16 @@ static inline int32_t mul_round_narrow(int32_t coefficient, int32_t signal, uint
 static inline int32_t mul_floor(int32_t a, int32_t b, uint16_t shift)
 {
     return shift_right_wide((int64_t)a * b, shift);
+}
+",
+    },
+    Helper {
+        name: "mul_add_floor",
+        text: "\
+/** floor((a b + c d) / 2^shift) of a sum that fits 64 bits */
+static inline int32_t mul_add_floor(int32_t a, int32_t b, int32_t c, int32_t d, uint16_t shift)
+{
+    return shift_right_wide((int64_t)a * b + (int64_t)c * d, shift);
 }
 ",
     },

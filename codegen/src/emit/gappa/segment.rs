@@ -70,6 +70,7 @@ fn is_arithmetic(op: Op) -> bool {
             | Op::Product(..)
             | Op::MulRound { .. }
             | Op::MulFloor { .. }
+            | Op::MulAddFloor { .. }
             | Op::ShiftLeft(..)
             | Op::ShiftRight(..)
     )
@@ -220,6 +221,17 @@ impl<'a> Segment<'a> {
             Op::MulFloor { shift, .. } => {
                 let [code, ideal] = scaled(shift);
                 [format!("floor({code})"), ideal]
+            }
+            Op::MulAddFloor { shift, .. } => {
+                let side = |of: fn(&Pair) -> &String| {
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|place| of(&pairs[place]));
+                    format!("({a} * {b} + {c} * {d}) * 1b-{shift}")
+                };
+                let [code, ideal] = [side(|pair| &pair.code), side(|pair| &pair.ideal)];
+                match shift {
+                    0 => [code, ideal],
+                    _ => [format!("floor({code})"), ideal],
+                }
             }
             Op::MulRound { shift, .. } => {
                 let [code, ideal] = scaled(shift);

@@ -264,6 +264,7 @@ fn call(
         Primitive::MulRound => quote!(mul_round),
         Primitive::MulRoundNarrow => quote!(mul_round_narrow),
         Primitive::MulFloor => quote!(mul_floor),
+        Primitive::MulAddFloor => quote!(mul_add_floor),
         Primitive::MulLimited => quote!(mul_limited),
         Primitive::Divide => quote!(divide),
         Primitive::DivideNarrow => quote!(divide_narrow),

@@ -7,12 +7,13 @@ use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
-pub(super) const HELPERS: [&str; 12] = [
+pub(super) const HELPERS: [&str; 13] = [
     "angle_fraction",
     "angle_index",
     "divide",
     "divide_narrow",
     "lookup",
+    "mul_add_floor",
     "mul_floor",
     "mul_limited",
     "mul_round",

@@ -13,9 +13,6 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error, Switch};
 
-/// By how much more than its rival's a pair's rounded score must be less: the floors of two products against one.
-pub const MARGIN: f64 = 1.0;
-
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     pub candidates: Candidates,
@@ -66,15 +63,14 @@ impl FcsMpc {
             return choice.apply(now, vector);
         }
         let (mut vector, mut least) = (zero, choice.score(zero, exact));
-        let is_pair =
-            |vector: usize| (vectors::FIRST_PAIR..vectors::FIRST_PAIR_ZERO).contains(&vector);
+        let has_off_leg = |vector: usize| vectors::off_leg(vector).is_some();
         for other in others {
             let score = choice.score(other, exact);
-            let is_less = match (exact, is_pair(other), is_pair(vector)) {
+            let is_less = if exact || has_off_leg(other) || has_off_leg(vector) {
+                score < least
+            } else {
                 // Three-phase vectors are told apart by their exact scores, whatever the products lose.
-                (false, false, false) => choice.score(other, true) < choice.score(vector, true),
-                (false, true, false) => score < least - MARGIN,
-                _ => score < least,
+                choice.score(other, true) < choice.score(vector, true)
             };
             if is_less {
                 (vector, least) = (other, score);
@@ -147,7 +143,17 @@ impl<'a> Choice<'a> {
         if exact {
             along
         } else {
-            self.aside(vector) + self.law.score.floor_product(self.v_bus, along)
+            self.rounded(vector, along)
+        }
+    }
+
+    /// The score whose multiple of the bus is `along`, one floor of both its products: vectors of the same voltage have
+    /// the same score, whatever products it is made of.
+    pub fn rounded(&self, vector: usize, along: Word) -> Word {
+        let score = &self.law.score;
+        match self.aside(vector) {
+            None => score.floor_product(self.v_bus, along),
+            Some([x, y]) => score.floor_sum_of_products([x, y], [self.v_bus, along]),
         }
     }
 
@@ -156,20 +162,16 @@ impl<'a> Choice<'a> {
         score_by_bus(self.v_bus, &self.u, vector)
     }
 
-    /// What an off leg that does not lie midway adds.
-    pub fn aside(&self, vector: usize) -> Word {
-        let product = |x, y| self.law.score.floor_product(x, y);
-        match vectors::off_leg(vector).filter(|_| self.law.floating) {
-            None => word(0.0),
-            Some(off) if vector < vectors::FIRST_PAIR_ZERO => {
-                let d = 2.0 * self.off_terminal(off, halve(self.v_bus)) - self.v_bus;
-                product(d, d - 6.0 * self.u[off])
-            }
-            Some(off) => {
-                let tau = self.off_terminal(off, word(0.0));
-                product(tau, 4.0 * tau - 12.0 * self.u[off])
-            }
-        }
+    /// Factors of what an off leg that does not lie midway adds.
+    fn aside(&self, vector: usize) -> Option<[Word; 2]> {
+        let off = vectors::off_leg(vector).filter(|_| self.law.floating)?;
+        Some(if vector < vectors::FIRST_PAIR_ZERO {
+            let d = 2.0 * self.off_terminal(off, halve(self.v_bus)) - self.v_bus;
+            [d, d - 6.0 * self.u[off]]
+        } else {
+            let tau = self.off_terminal(off, word(0.0));
+            [tau, 4.0 * tau - 12.0 * self.u[off]]
+        })
     }
 
     /// The decision with a second vector (10a).

@@ -1,7 +1,7 @@
 //! The choice of FCS-MPC where its cost has weights (section 10w).
 
 use super::Inputs;
-use super::fcs_mpc::{Choice, MARGIN};
+use super::fcs_mpc::Choice;
 use crate::exact::{Coefficient, Word, halve, round_half_up, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -64,11 +64,7 @@ impl Weights {
         }
         // Pairs by their numbers, behind what is no pair.
         kept.sort_by_key(|vector| if kind(*vector) < 3 { *vector } else { 0 });
-        // A pair of the same voltage is not better for having been rounded twice.
-        first_least(kept.into_iter(), |vector| {
-            let margin = if kind(vector) < 3 { MARGIN } else { 0.0 };
-            self.rounded(choice, now, vector) + margin
-        })
+        first_least(kept.into_iter(), |vector| self.rounded(choice, now, vector))
     }
 
     /// S n.
@@ -84,7 +80,7 @@ impl Weights {
     /// The score with rounded products.
     fn rounded(&self, choice: &Choice, now: &Inputs, vector: usize) -> Word {
         let along = self.by_bus(choice, now, vector);
-        choice.aside(vector) + choice.law.score.floor_product(choice.v_bus, along)
+        choice.rounded(vector, along)
     }
 }
 
