@@ -189,7 +189,7 @@ fn constants(text: &str, code: &[Range<usize>], wrong: impl Fn(i64) -> i64) -> V
     sites.collect()
 }
 
-/// Name and index of the table entry at this place, if there is a table.
+/// Name and index of the table entry at this place, in tables of rows its field, too, if there is a table.
 fn table_entry(text: &str, at: usize) -> Option<String> {
     let declaration = text[..at].rfind("static ")?;
     let (head, entries) = text[declaration..at].split_once("] = [")?;
@@ -197,7 +197,11 @@ fn table_entry(text: &str, at: usize) -> Option<String> {
         return None;
     }
     let name = head.strip_prefix("static ")?.split(':').next()?;
-    Some(format!("{name}[{}]", entries.matches(',').count()))
+    let Some((rows, row)) = entries.rsplit_once('{') else {
+        return Some(format!("{name}[{}]", entries.matches(',').count()));
+    };
+    let field = row.rsplit([',', '\n']).next()?.trim().strip_suffix(':')?;
+    Some(format!("{name}[{}].{field}", rows.matches('{').count()))
 }
 
 fn table_entries(text: &str, code: &[Range<usize>]) -> Vec<Edit> {
@@ -211,12 +215,15 @@ fn table_entries(text: &str, code: &[Range<usize>]) -> Vec<Edit> {
             continue;
         };
         let entries = &text[start..start + length];
+        // A row's entries stand behind the names of their fields.
         let mut at = start;
-        let pieces: Vec<&str> = entries.split_inclusive(',').collect();
-        for piece in pieces {
-            let lead = piece.len() - piece.trim_start().len();
-            if let Some((value, size)) = literal(piece.trim_start()) {
-                let place = at + lead;
+        for piece in entries.split_inclusive(',') {
+            let begin = match piece.rfind(": ") {
+                Some(colon) => colon + ": ".len(),
+                None => piece.len() - piece.trim_start().len(),
+            };
+            if let Some((value, size)) = literal(&piece[begin..]) {
+                let place = at + begin;
                 edits.push(Edit {
                     range: place..place + size,
                     new: (value + 1).to_string(),
@@ -314,7 +321,8 @@ mod tests {
     use super::mutants;
 
     const TEXT: &str = "pub mod drive {\n    /// K - 1 is < 2.\n    const K: Word = Word(1_000);\n    \
-        static TABLE: [i8; 2] = [0, -1];\n    fn step(a: Word) -> Word {\n        \
+        static TABLE: [i8; 2] = [0, -1];\n    static ROWS: [Row; 2] = [\n        Row {\n            first: 1,\n        },\n        Row {\n            \
+        first: 2,\n        },\n    ];\n    fn step(a: Word) -> Word {\n        \
         let b = mul_round(K, a - 1, 14) + (a >> 2);\n        select(a < b, a.max(b), b)\n    }\n    \
         pub struct Drive {\n        x: i32,\n    }\n    impl Drive {\n        fn new() -> Self { 1 + 1 }\n    }\n}\n";
 
@@ -338,12 +346,16 @@ mod tests {
     fn table_entries_are_told_by_name() {
         let all = mutants(TEXT, 9);
         let told = all.iter().map(|mutant| mutant.what.as_str());
-        let entries: Vec<&str> = told.filter(|what| what.contains("TABLE")).collect();
+        let entries: Vec<&str> = told
+            .filter(|what| what.contains("TABLE") || what.contains("ROWS"))
+            .collect();
         assert_eq!(
             entries,
             [
                 "table entry one more: TABLE[0]",
-                "table entry one more: TABLE[1]"
+                "table entry one more: TABLE[1]",
+                "table entry one more: ROWS[0].first",
+                "table entry one more: ROWS[1].first"
             ]
         );
     }
@@ -359,7 +371,9 @@ mod tests {
             changed("table"),
             [
                 "static TABLE: [i8; 2] = [1, -1];",
-                "static TABLE: [i8; 2] = [0, 0];"
+                "static TABLE: [i8; 2] = [0, 0];",
+                "first: 2,",
+                "first: 3,"
             ]
         );
         assert_eq!(

@@ -31,43 +31,11 @@ mod planted {
 const STEPS: u64 = 200_000;
 
 /// Drive (place in the list), fault, and why it changes no output and no state.
-const EQUIVALENT: &[(usize, &str, &str)] = &[
-    (
-        1,
-        "table entry one more: CORNER_B[0]",
-        "there is no sector 0 but before the first valid Hall code, and that trips",
-    ),
-    (
-        2,
-        "table entry one more: SHAPE_C2[116]",
-        "the table has 96 entries, padded to a power of two",
-    ),
-    (
-        3,
-        "<= for <: `let pair_c = if line_c < 0 { Word(11) } else { Word(8) };`",
-        "a line voltage next to zero is not the longest, or V0 is nearest",
-    ),
-    (
-        3,
-        "|| for &&: `let edge = sector != sector_prev && sector_prev != 0;`",
-        "steps from or to sector 0, and of none, tell no direction",
-    ),
-    (
-        4,
-        "constant one more: `const K_THIRD: Word = Word(1_431_655_765);`",
-        "a third is a sixth away from its ties",
-    ),
-    (
-        4,
-        "constant one less: `const K_THIRD: Word = Word(1_431_655_765);`",
-        "a third is a sixth away from its ties",
-    ),
-    (
-        4,
-        "|| for &&: `let edge = sector != sector_prev && sector_prev != 0;`",
-        "steps from or to sector 0, and of none, tell no direction",
-    ),
-];
+const EQUIVALENT: &[(usize, &str, &str)] = &[(
+    2,
+    "table entry one more: SHAPE_ROWS[124].shape_c0",
+    "the table has 96 entries, padded to a power of two",
+)];
 
 fn is_noticed<D: Drive>(record: &Record) -> bool {
     replay(record, D::STATE_NAMES, Compiled(D::new())).is_err() || verify::<D>(STEPS, 1).is_err()
