@@ -787,6 +787,11 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
+        because: "a pair vector with its leg at either rail is a three-phase vector, which stands before it in the list",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[(&["predict_off_legs: h_c"], &["sign lost"])],
+    },
+    Unnoticed {
         because: "scores are multiples of three",
         drives: &[FCS_ESTUN],
         faults: &[(&["nearest_pair: in vector"], &["-1 for 0"])],

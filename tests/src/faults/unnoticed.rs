@@ -102,7 +102,7 @@ pub const RARE: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "differs only at six voltages, where V0, a three-phase and a pair vector tie",
-        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
+        drives: &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN],
         faults: &[(
             &["nearest_vector: in vector_three"],
             &["another comparison"],
@@ -179,7 +179,11 @@ pub const RARE: &[Unnoticed] = &[
         drives: &[FCS_PAPER, FCS_ESTUN],
         faults: &[(
             &["nearest_vector: in vector_three"],
-            &["another comparison (3)", "another comparison (6)"],
+            &[
+                "another comparison (3)",
+                "another comparison (4)",
+                "another comparison (6)",
+            ],
         )],
     },
     Unnoticed {
@@ -193,9 +197,12 @@ pub const RARE: &[Unnoticed] = &[
                     "sector_start[1]",
                     "sector_start[3]",
                     "sector_start[4]",
+                    "sector_start[5]",
                     "flux_c0[1]",
                     "flux_c0[2]",
                     "flux_c0[3]",
+                    "flux_c0[6]",
+                    "flux_c0[7]",
                     "flux_c0[9]",
                     "flux_c1[1]",
                     "flux_c1[2]",
@@ -224,7 +231,6 @@ pub const RARE: &[Unnoticed] = &[
                 &["rounded down", "rounded down (2)"],
             ),
             (&["applied_voltage: in terminal_off"], &["-1 for 0"]),
-            (&["predict_off_legs: h_c"], &["sign lost"]),
             (
                 &["predict_off_legs: in d_b", "predict_off_legs: in d_c"],
                 &["1 for 0"],
@@ -252,7 +258,7 @@ pub const RARE: &[Unnoticed] = &[
         drives: &[FCS_ESTUN],
         faults: &[(
             &["nearest_vector: in vector_three"],
-            &["another comparison (4)", "another comparison (5)"],
+            &["another comparison (5)"],
         )],
     },
 ];

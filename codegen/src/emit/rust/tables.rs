@@ -17,7 +17,7 @@ pub(super) fn look_up(program: &Program, id: TableId, index: &TokenStream) -> To
     let Some(row) = row_of(program, table) else {
         return quote!(lookup(&#name, #index));
     };
-    let (rows, field) = (rows(row), snake(&table.name));
+    let (rows, field) = (rows(row), field(row, table));
     let entry = quote!(row(&#rows, #index).#field);
     if table.holds_legs {
         entry
@@ -48,10 +48,27 @@ fn rows(row: &str) -> Ident {
     screaming(&format!("{row}_rows"))
 }
 
+/// The name of a column, without the row's own.
+fn field(row: &str, table: &Table) -> Ident {
+    let name = table.name.strip_prefix(row);
+    let name = name.and_then(|name| name.strip_prefix('_'));
+    snake(name.unwrap_or(&table.name))
+}
+
+/// Whether the names of three fields or more all begin or all end with the same word.
+fn shares_a_word(program: &Program, row: &'static str) -> bool {
+    let names = columns(program, row).map(|table| field(row, table).to_string());
+    let names: Vec<String> = names.collect();
+    let alike =
+        |word: fn(&str) -> Option<&str>| names.iter().all(|name| word(name) == word(&names[0]));
+    names.len() >= 3
+        && (alike(|name| name.split('_').next()) || alike(|name| name.rsplit('_').next()))
+}
+
 fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
     let (name, rows) = (format_ident!("{}Row", camel(row)), rows(row));
     let fields = columns(program, row).map(|table| {
-        let (field, doc, element) = (snake(&table.name), docs(&table.doc), element(table));
+        let (field, doc, element) = (field(row, table), docs(&table.doc), element(table));
         quote!(#doc #field: #element)
     });
     let count = columns(program, row).map(|table| table.values.len()).max();
@@ -59,7 +76,7 @@ fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
     let entries = (0..count).map(|index| {
         let fields = columns(program, row).map(|table| {
             let value = table.values.get(index).copied().unwrap_or(0);
-            let (field, entry) = (snake(&table.name), entry(table, value));
+            let (field, entry) = (field(row, table), entry(table, value));
             quote!(#field: #entry)
         });
         quote!(#name { #(#fields),* })
@@ -69,11 +86,14 @@ fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
         let bytes = Literal::usize_unsuffixed(bytes);
         quote!(#[repr(align(#bytes))])
     });
+    let alike = shares_a_word(program, row)
+        .then(|| quote!(#[expect(clippy::struct_field_names, reason = "signals of three phases")]));
     let all = docs(&[format!("The rows of every {row}.")]);
     let count = Literal::usize_unsuffixed(count);
     quote! {
         #doc
         #layout
+        #alike
         struct #name { #(#fields),* }
 
         #all
