@@ -1,18 +1,43 @@
 //! Registers of a motor's peripherals. No emulated board has them, so words of RAM stand in their place: an interrupt
-//! reads and writes them as it would those of a chip, one load or store each.
+//! reads and writes them as it would those of a chip, one load or store each that no compiler leaves out.
+#![expect(
+    unsafe_code,
+    reason = "what is written to a register counts as read; only a volatile access says so"
+)]
 
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use core::sync::atomic::AtomicU32;
 use hexagen::{LegState, Legs, Sample};
+
+/// One register.
+#[derive(Debug)]
+struct Register(AtomicU32);
+
+impl Register {
+    const fn new(word: u32) -> Self {
+        Self(AtomicU32::new(word))
+    }
+
+    #[inline]
+    fn read(&self) -> u32 {
+        // SAFETY: the word is valid for as long as the borrow of it, and aligned; one core alone accesses it.
+        unsafe { self.0.as_ptr().read_volatile() }
+    }
+
+    #[inline]
+    fn write(&self, word: u32) {
+        // SAFETY: as above.
+        unsafe { self.0.as_ptr().write_volatile(word) }
+    }
+}
 
 /// Two ADCs, the Hall port, and a timer with three channels.
 #[derive(Debug)]
 pub struct Registers {
-    adc_a: AtomicU32,
-    adc_b: AtomicU32,
-    hall: AtomicU32,
-    hall_ticks: AtomicU32,
-    compare: [AtomicU32; 3],
-    legs: AtomicU32,
+    adc_a: Register,
+    adc_b: Register,
+    hall: Register,
+    compare: [Register; 3],
+    legs: Register,
 }
 
 impl Registers {
@@ -21,24 +46,23 @@ impl Registers {
     #[expect(clippy::new_without_default, reason = "stands in a static")]
     pub const fn new() -> Self {
         Self {
-            adc_a: AtomicU32::new(0),
-            adc_b: AtomicU32::new(0),
-            hall: AtomicU32::new(0),
-            hall_ticks: AtomicU32::new(0),
-            compare: [const { AtomicU32::new(0) }; 3],
-            legs: AtomicU32::new(0x02_02_02),
+            adc_a: Register::new(0),
+            adc_b: Register::new(0),
+            hall: Register::new(0),
+            compare: [const { Register::new(0) }; 3],
+            legs: Register::new(0x02_02_02),
         }
     }
 
-    /// What the converters and the Hall port hold.
+    /// What the converters and the Hall port hold. The drives of the interrupts see edges at samples: no timer captures them.
     #[inline]
     #[must_use]
     pub fn sample(&self) -> Sample {
         Sample {
-            adc_a: self.adc_a.load(Relaxed) as u16,
-            adc_b: self.adc_b.load(Relaxed) as u16,
-            hall: self.hall.load(Relaxed) as u8,
-            hall_ticks: self.hall_ticks.load(Relaxed) as u16,
+            adc_a: self.adc_a.read() as u16,
+            adc_b: self.adc_b.read() as u16,
+            hall: self.hall.read() as u8,
+            hall_ticks: 0,
         }
     }
 
@@ -46,31 +70,30 @@ impl Registers {
     #[inline]
     pub fn apply(&self, legs: &Legs) {
         for (register, value) in self.compare.iter().zip(legs.compare) {
-            register.store(u32::from(value), Relaxed);
+            register.write(u32::from(value));
         }
         let [a, b, c] = legs.state.map(|state| state as u8);
-        self.legs.store(u32::from_le_bytes([a, b, c, 0]), Relaxed);
+        self.legs.write(u32::from_le_bytes([a, b, c, 0]));
     }
 
     /// What the inverter is told.
     #[must_use]
     pub fn legs(&self) -> Legs {
-        let [a, b, c, _] = self.legs.load(Relaxed).to_le_bytes();
+        let [a, b, c, _] = self.legs.read().to_le_bytes();
         let state = |byte: u8| LegState::from_word(byte.into());
         Legs {
             compare: self
                 .compare
                 .each_ref()
-                .map(|register| register.load(Relaxed) as u16),
+                .map(|register| register.read() as u16),
             state: [a, b, c].map(state),
         }
     }
 
     /// Plays the converters and the Hall sensors.
     pub fn feed(&self, sample: &Sample) {
-        self.adc_a.store(sample.adc_a.into(), Relaxed);
-        self.adc_b.store(sample.adc_b.into(), Relaxed);
-        self.hall.store(sample.hall.into(), Relaxed);
-        self.hall_ticks.store(sample.hall_ticks.into(), Relaxed);
+        self.adc_a.write(sample.adc_a.into());
+        self.adc_b.write(sample.adc_b.into());
+        self.hall.write(sample.hall.into());
     }
 }
