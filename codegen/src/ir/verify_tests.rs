@@ -161,6 +161,25 @@ fn operators_stay_in_their_domain() {
 }
 
 #[test]
+fn sums_of_products_fit_64_bits() {
+    let sum = Op::MulAddFloor {
+        first: [Value(0); 2],
+        second: [Value(0); 2],
+        shift: 32,
+    };
+    let interval = |factor: Interval| sum.interval(&[factor; 4], |_| Interval::FLAG);
+    let word = Interval::new(1 - (1 << 31), (1 << 31) - 1);
+    assert_eq!(
+        interval(word).map(|sum| sum.high),
+        Some((1 << 31) - 2),
+        "the largest sum of words"
+    );
+    // Twice 2^62, and what a scale that is tried first may make of words.
+    assert_eq!(interval(Interval::WORD), None);
+    assert_eq!(interval(Interval::symmetric(1 << 40)), None);
+}
+
+#[test]
 fn names_are_unique() {
     refused("gain: named twice", |program| {
         program.tables[0].name = "gain".to_owned();
