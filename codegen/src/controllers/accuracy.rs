@@ -31,22 +31,28 @@ fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> Publi
 fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
     let error = stated.rare_bound().unwrap_or(0.0);
     let error = error.max(stated.normal_bound());
+    let limit = |value: f64| {
+        let words = significant(value / stated.word.value());
+        format!(
+            "{} {}, {words} units of the last place",
+            significant(value),
+            stated.unit
+        )
+    };
     let (value, doc) = match stated.name.as_str() {
         "score" => {
             let value = 2.0 * error;
             let doc = format!(
-                "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {} {}, twice the error of a score.",
-                significant(value),
-                stated.unit
+                "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {}, twice the error of a score.",
+                limit(value)
             );
             (value, doc)
         }
         "current" => {
             let value = error + stated.word.value();
             let doc = format!(
-                "How near to an edge of its band a current may be taken to lie on the other side than it does for the ideal controller: at most {} {}, the error of the current and of the band's word.",
-                significant(value),
-                stated.unit
+                "How near to an edge of its band a current may be taken to lie on the other side than it does for the ideal controller: at most {}, the error of the current and of the band's word.",
+                limit(value)
             );
             (value, doc)
         }

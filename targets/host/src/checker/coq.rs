@@ -4,6 +4,7 @@
 //! axioms of Coq's real numbers is let through, so neither an admitted lemma nor an axiom of its own passes.
 
 use super::program::{Ended, run_within};
+use super::run::gappa;
 use super::{Missing, TIME_LIMIT};
 use hexagen_codegen::emit::gappa::Script;
 use std::process::Command;
@@ -59,8 +60,7 @@ pub fn coq_version() -> Result<String, MissingCoq> {
 /// # Errors
 /// What Gappa says where it does not prove the script, or that there is no Gappa.
 pub fn certificate(script: &Script) -> Result<String, String> {
-    let mut gappa = Command::new("gappa");
-    let ended = run_within(gappa.arg("-Bcoq"), &script.to_string(), TIME_LIMIT)
+    let ended = run_within(gappa().arg("-Bcoq"), &script.to_string(), TIME_LIMIT)
         .map_err(|error| Missing::of(&error).to_string())?;
     match ended.status {
         None => {
