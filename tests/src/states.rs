@@ -303,7 +303,7 @@ impl<'a> States<'a> {
             } else {
                 currents[phase]
             };
-            // offset = count 2^bits - current has to lie within what calibration accepts.
+            // offset = count 2^bits - current has to lie within its range.
             let place = self.place(&format!("offset_{name}"));
             let (low, high) = place.map_or((0, span), |place| {
                 let (low, high) = self.ranges[place];

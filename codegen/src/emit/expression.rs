@@ -361,17 +361,7 @@ impl<'a> Scope<'a> {
 
     /// Every product of the two.
     fn products(&self, a: Value, b: Value) -> Interval {
-        let (a, b) = (self.interval(a), self.interval(b));
-        let all = [
-            a.low * b.low,
-            a.low * b.high,
-            a.high * b.low,
-            a.high * b.high,
-        ];
-        Interval::new(
-            all.into_iter().fold(i64::MAX, i64::min),
-            all.into_iter().fold(i64::MIN, i64::max),
-        )
+        self.interval(a).corners(self.interval(b), |a, b| a * b)
     }
 
     fn rounds_narrow(&self, a: Value, b: Value, shift: u32) -> bool {

@@ -336,6 +336,10 @@ impl<'p> Bounds<'p> {
         let product = |a: Value, b: Value| {
             ErrorInterval::product(self.operand(user, a), of(a), self.operand(user, b), of(b))
         };
+        let shifted = |exact: ErrorInterval, shift: u32| match shift {
+            0 => exact,
+            _ => exact.shifted_right(shift).plus(ErrorInterval::floor()),
+        };
         match node.op {
             Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Literal(_) | Op::AngleIndex { .. } => {
                 ErrorInterval::ZERO
@@ -357,26 +361,12 @@ impl<'p> Bounds<'p> {
                 let exact = product(coefficient, signal).shifted_right(shift);
                 exact.plus(ErrorInterval::nearest())
             }
-            Op::MulFloor { a, b, shift } => {
-                let exact = product(a, b).shifted_right(shift);
-                if shift == 0 {
-                    exact
-                } else {
-                    exact.plus(ErrorInterval::floor())
-                }
-            }
+            Op::MulFloor { a, b, shift } => shifted(product(a, b), shift),
             Op::MulAddFloor {
                 first: [a, b],
                 second: [c, d],
                 shift,
-            } => {
-                let exact = product(a, b).plus(product(c, d)).shifted_right(shift);
-                if shift == 0 {
-                    exact
-                } else {
-                    exact.plus(ErrorInterval::floor())
-                }
-            }
+            } => shifted(product(a, b).plus(product(c, d)), shift),
             Op::MulLimited { a, b, limit } => product(a, b).union(of(limit)),
             Op::ShiftLeft(a, n) => of(a).shifted_left(n),
             Op::ShiftRight(a, 0) => of(a),
@@ -385,7 +375,7 @@ impl<'p> Bounds<'p> {
                 let lost = -(lost as f64) / f64::from(n).exp2();
                 of(a).shifted_right(n).plus(ErrorInterval::new(lost, lost))
             }
-            Op::ShiftRight(a, n) => of(a).shifted_right(n).plus(ErrorInterval::floor()),
+            Op::ShiftRight(a, n) => shifted(of(a), n),
             Op::Min(x, high) => {
                 let error = of(x).union(of(high));
                 match self.function.node(x).op {

@@ -72,7 +72,8 @@ impl Interval {
         of(self.low).max(of(self.high))
     }
 
-    pub(super) fn corners(self, other: Self, f: impl Fn(i64, i64) -> i64) -> Self {
+    /// What `f` makes of two values where it is monotonic in each: its values at the ends.
+    pub(crate) fn corners(self, other: Self, f: impl Fn(i64, i64) -> i64) -> Self {
         let all = [
             f(self.low, other.low),
             f(self.low, other.high),

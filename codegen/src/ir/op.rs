@@ -413,20 +413,14 @@ impl Op {
                 Interval::new(least, x[0].magnitude())
             }
             Self::MulAddFloor { shift, .. } => {
-                let products = |a: Interval, b: Interval| {
-                    [
-                        (a.low, b.low),
-                        (a.low, b.high),
-                        (a.high, b.low),
-                        (a.high, b.high),
-                    ]
-                    .map(|(a, b)| i128::from(a) * i128::from(b))
-                };
-                let [first, second] = [products(x[0], x[1]), products(x[2], x[3])];
-                let least = first.iter().min()? + second.iter().min()?;
-                let most = first.iter().max()? + second.iter().max()?;
-                // The sum itself must fit 64 bits.
-                let [least, most] = [i64::try_from(least).ok()?, i64::try_from(most).ok()?];
+                // Words make products of 63 bits; the sum itself must fit 64.
+                if !x.iter().all(|&factor| Interval::WORD.contains(factor)) {
+                    return None;
+                }
+                let [first, second] =
+                    [(x[0], x[1]), (x[2], x[3])].map(|(a, b)| a.corners(b, |a, b| a * b));
+                let least = first.low.checked_add(second.low)?;
+                let most = first.high.checked_add(second.high)?;
                 Interval::new(least >> shift, most >> shift)
             }
             Self::MulLimited { .. } => {

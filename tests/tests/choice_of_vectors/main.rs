@@ -71,10 +71,8 @@ impl Subject {
         let mut slice = Slice::new(&self.program);
         slice.give("v_bus", Symbol::Word(bus.clone()));
         slice.give("i_comm_volts", Symbol::Word(threshold.clone()));
-        for (name, parts) in [("half_bus", 2), ("third_of_bus", 3)] {
-            let share = whole_share(name, bus, parts, path)?;
-            slice.give(name, Symbol::Word(share));
-        }
+        slice.give("half_bus", Symbol::Word(path.floored(bus, 1)?));
+        slice.give("third_of_bus", Symbol::Word(whole_third(bus, path)?));
         Ok(slice)
     }
 
@@ -502,21 +500,16 @@ fn positive(name: &str, path: &mut Path) -> Result<Linear, Contradiction> {
     Ok(word)
 }
 
-/// floor(bus / parts) of a bus that is not negative.
-fn whole_share(
-    name: &str,
-    bus: &Linear,
-    parts: i64,
-    path: &mut Path,
-) -> Result<Linear, Contradiction> {
+/// floor(bus / 3) of a bus that is not negative.
+fn whole_third(bus: &Linear, path: &mut Path) -> Result<Linear, Contradiction> {
     if let Some(bus) = bus.as_number() {
-        return Ok(Linear::number(bus / parts));
+        return Ok(Linear::number(bus / 3));
     }
-    let share = path.variable(name);
-    let rest = bus - &share.times(parts);
+    let third = path.variable("third_of_bus");
+    let rest = bus - &third.times(3);
     path.assume(&rest)?;
-    path.assume(&(&Linear::number(parts - 1) - &rest))?;
-    Ok(share)
+    path.assume(&(&Linear::number(2) - &rest))?;
+    Ok(third)
 }
 
 /// Any off leg.
