@@ -23,7 +23,7 @@ pub struct States<'a> {
     /// Constants of the program.
     constants: Vec<i32>,
     comparisons: Comparisons,
-    /// Sum of calibration samples at the nominal offset, and how far from it a sum may be.
+    /// Least and greatest sum of calibration samples that is good enough.
     calibration: [i64; 2],
     count_bits: u32,
     adc_max: i64,
@@ -60,7 +60,7 @@ impl<'a> States<'a> {
                 .collect(),
             constants: constants.map(|constant| constant.raw).collect(),
             comparisons: Comparisons::of(program),
-            calibration: ["calibration_sum_nominal", "calibration_sum_tolerance"].map(|name| {
+            calibration: ["calibration_sum_least", "calibration_sum_most"].map(|name| {
                 let mut constants = program.constants.iter();
                 let found = constants.find(|constant| constant.name == name);
                 found.map_or(0, |constant| constant.raw.into())
@@ -398,18 +398,13 @@ impl<'a> States<'a> {
             return;
         }
         words[countdown] = self.random.i32(0..3);
-        let [nominal, tolerance] = self.calibration;
+        let [least, most] = self.calibration;
         for (place, count) in [(sum_a, sample.adc_a), (sum_b, sample.adc_b)] {
-            let distance = match self.random.u8(..4) {
-                0 => tolerance + self.random.i64(-1..=1),
-                _ => self.random.i64(0..=tolerance),
+            let sum = match self.random.u8(..8) {
+                0 => least + self.random.i64(-1..=1),
+                1 => most + self.random.i64(-1..=1),
+                _ => self.random.i64(least..=most),
             };
-            let sum = nominal
-                + if self.random.bool() {
-                    distance
-                } else {
-                    -distance
-                };
             if let Some(place) = place {
                 let (low, high) = self.ranges[place];
                 let before = sum - i64::from(count);

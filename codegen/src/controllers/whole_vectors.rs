@@ -128,11 +128,11 @@ fn sixth(l: &mut Lowering<'_>, word: u32) -> Coefficient {
 fn tabled_left_over(l: &mut Lowering<'_>, word: u32, held: &Held, vector: Value) -> LeftOver {
     let k_sixth = sixth(l, word);
     let unit = l.rounded_product(k_sixth, l.nominal_bus());
-    let Some(k_decay) = held.decay() else {
+    let Some(k_fade) = held.fade() else {
         return LeftOver::of(fixed_voltage(l, unit, vector));
     };
     let volts = fixed_volts(unit);
-    let left = volts.map(|volts| volts.map(|volts| volts - l.rounded_product(k_decay, volts)));
+    let left = volts.map(|volts| volts.map(|volts| volts + l.rounded_product(k_fade, volts)));
     let both: Volts =
         std::array::from_fn(|vector| std::array::from_fn(|x| volts[vector][x] + left[vector][x]));
     let texts = [

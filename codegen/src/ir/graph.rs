@@ -192,27 +192,40 @@ impl Function {
     /// to zero, `c = -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of
     /// them by 2/3 limit (it and its counterweight lie at most `limit` apart, and two of three share a sign),
     /// max + min, which is minus the middle one, by 1/3 limit, and each less floor((max + min)/2) by 1/2 limit:
-    /// the largest is ceil(spread/2) above it and the smallest floor(spread/2) below.
+    /// the largest is ceil(spread/2) above it and the smallest floor(spread/2) below; lifted by a number or not.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {
             return own;
         };
         let limit = self.node(limit).interval.high.max(0);
-        let is_centred = match self.node(value).op {
-            Op::Sub(leg, middle) => legs.contains(&leg) && self.is_half_sum(middle, high, low),
-            _ => false,
-        };
-        let bound = if legs.contains(&value) {
-            limit * 2 / 3
+        let (centre, bound) = if legs.contains(&value) {
+            (0, limit * 2 / 3)
         } else if self.is_half_sum(value, high, low) {
-            limit / 6 + 1
-        } else if is_centred {
-            (limit + 1) / 2
+            (0, limit / 6 + 1)
+        } else if let Some(centre) = self.centre_of(value, legs, [high, low]) {
+            (centre, (limit + 1) / 2)
         } else {
             return own;
         };
-        Interval::new(own.low.max(-bound), own.high.min(bound))
+        Interval::new(own.low.max(centre - bound), own.high.min(centre + bound))
+    }
+
+    /// What the leg that `value` is has been centred about: 0 for `leg - middle`, the number for `leg + (number - middle)`.
+    fn centre_of(&self, value: Value, legs: [Value; 3], [high, low]: [Value; 2]) -> Option<i64> {
+        match self.node(value).op {
+            Op::Sub(leg, middle) => {
+                (legs.contains(&leg) && self.is_half_sum(middle, high, low)).then_some(0)
+            }
+            Op::Add(leg, lift) if legs.contains(&leg) => match self.node(lift).op {
+                Op::Sub(number, middle) if self.is_half_sum(middle, high, low) => {
+                    let Interval { low, high } = self.node(number).interval;
+                    (low == high).then_some(low)
+                }
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     /// Matches `limit < max(a, b, c) - min(a, b, c)` with c = -(a + b): limit, legs, max, min.

@@ -13,7 +13,8 @@ use crate::spec::LimitRule;
 pub struct Limited {
     /// Phase voltages a, b.
     pub u: [Value; 2],
-    /// Phase voltages less (max + min) / 2 of the three, rounded down: what centred pulses stand for.
+    /// Phase voltages less (max + min) / 2 of the three, rounded down: what centred pulses stand for. Lifted by half the
+    /// period where that was asked for.
     pub centred: [Value; 3],
 }
 
@@ -46,14 +47,14 @@ const BLEND_BITS: u32 = 15;
 
 impl Lowering<'_> {
     /// Limits the voltage `u` (phases a, b) to the hexagon; `e` says the EMF (phases a, b), off the normal path and
-    /// where the rule asks for it.
+    /// where the rule asks for it. `lifts`: centres the voltages at half the period rather than at 0.
     pub fn limit_voltage(
         &mut self,
         rule: LimitRule,
         u: [Value; 2],
         e: impl FnOnce(&mut Self) -> [Value; 2],
-        bus: Bus,
-        third: Coefficient,
+        (bus, third): (Bus, Coefficient),
+        lifts: bool,
     ) -> Limited {
         self.b.stage(
             "find_saturation",
@@ -71,8 +72,16 @@ impl Lowering<'_> {
             middle,
         };
         let names = ["centred_a_unsat", "centred_b_unsat", "centred_c_unsat"];
+        let lift = lifts.then(|| {
+            let half = self.half_period();
+            let lift = self.b.sub(half, middle);
+            self.b.name("lift_unsat", lift)
+        });
         let centred = [0, 1, 2].map(|x| {
-            let centred = self.b.sub(free.u[x], middle);
+            let centred = match lift {
+                Some(lift) => self.b.add(free.u[x], lift),
+                None => self.b.sub(free.u[x], middle),
+            };
             self.b.name(names[x], centred)
         });
         let saturated = self.b.compare(Comparison::Less, bus.volts, spread);
@@ -138,7 +147,7 @@ impl Lowering<'_> {
             Legs::Any(legs) => (legs, self.without_mean(legs, bus, third)),
         };
         let middle = middle.unwrap_or_else(|| self.middle(legs));
-        let inside_centred = self.centred(legs, middle, bus);
+        let inside_centred = self.centred(legs, middle, bus, lifts);
         let [u_a, u_b, centred_a, centred_b, centred_c] = self.b.join([
             ("u_a", inside[0], u[0]),
             ("u_b", inside[1], u[1]),
@@ -173,8 +182,8 @@ impl Lowering<'_> {
         self.b.name("limited_middle", middle)
     }
 
-    /// Legs about their middle, within half the bus; added to the open stage.
-    fn centred(&mut self, legs: [Value; 3], middle: Value, bus: Bus) -> [Value; 3] {
+    /// Legs about their middle, within half the bus, and lifted; added to the open stage.
+    fn centred(&mut self, legs: [Value; 3], middle: Value, bus: Bus, lifts: bool) -> [Value; 3] {
         let up = self.b.literal(1);
         let up = self.b.add(bus.volts, up);
         let top = self.b.shift_right(up, 1);
@@ -193,6 +202,10 @@ impl Lowering<'_> {
             if !Interval::symmetric(least_top).contains(self.b.interval(held)) {
                 let raised = self.b.max(held, bottom);
                 held = self.b.min(raised, top);
+            }
+            if lifts {
+                let half = self.half_period();
+                held = self.b.add(held, half);
             }
             self.b.name(names[x], held)
         })

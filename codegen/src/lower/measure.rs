@@ -7,13 +7,14 @@ use crate::ir::{Comparison, Interval, StateId, Value};
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// ADC counts of phases a and b as they came.
-    adc: [Value; 2],
+    pub adc: [Value; 2],
     /// The Hall code as it came.
     pub hall: Value,
     /// Sector that it names, 0 for an invalid code.
     pub sector: Value,
-    /// Flag: a converter is at an end of its range.
-    pub out_of_range: Value,
+    /// Flag: a converter is at an end of its range, as far as the trip level does not tell: count 0 or the largest, or
+    /// only more than that. None where no count can be.
+    pub out_of_range: Option<Value>,
     /// Flag: the Hall code is invalid.
     pub no_hall: Value,
 }
@@ -46,8 +47,8 @@ impl Lowering<'_> {
         self.b.stage(
             "read_sample",
             &[
-                "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more)",
-                "and an invalid Hall code (000, 111) trip the drive.",
+                "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more; what lies",
+                "above the trip level is told by that) and an invalid Hall code (000, 111) trip the drive.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));
@@ -57,15 +58,19 @@ impl Lowering<'_> {
             self.b
                 .input("adc_b", word, "Phase-b current into the motor, ADC count."),
         ];
-        let ends = adc.map(|count| {
-            let zero = self.zero();
-            let bottom = self.b.compare(Comparison::Equal, count, zero);
-            let limit = self.adc_max();
-            let ceiling = self.b.compare(Comparison::LessEqual, limit, count);
-            self.b.or(bottom, ceiling)
-        });
-        let out_of_range = self.b.or(ends[0], ends[1]);
-        self.b.name("out_of_range", out_of_range);
+        let out_of_range = if !self.trip_tells_ends() {
+            let at_end = self.at_end(adc);
+            Some(self.b.name("out_of_range", at_end))
+        } else if self.spec.inverter.adc_bits < 16 {
+            let beyond = adc.map(|count| {
+                let limit = self.adc_max();
+                self.b.compare(Comparison::Less, limit, count)
+            });
+            let beyond = self.b.or(beyond[0], beyond[1]);
+            Some(self.b.name("out_of_range", beyond))
+        } else {
+            None
+        };
         let hall = self.b.input(
             "hall",
             Interval::new(0, 255),
@@ -93,6 +98,23 @@ impl Lowering<'_> {
             out_of_range,
             no_hall,
         }
+    }
+
+    /// Whether a converter at an end of its range says a current above the trip level, whatever its offset.
+    fn trip_tells_ends(&self) -> bool {
+        self.ampere_word(self.spec.inverter.trip_current) < self.current_at_ends()
+    }
+
+    /// Flag: a count is 0, the largest, or more.
+    pub fn at_end(&mut self, adc: [Value; 2]) -> Value {
+        let ends = adc.map(|count| {
+            let zero = self.zero();
+            let bottom = self.b.compare(Comparison::Equal, count, zero);
+            let limit = self.adc_max();
+            let ceiling = self.b.compare(Comparison::LessEqual, limit, count);
+            self.b.or(bottom, ceiling)
+        });
+        self.b.or(ends[0], ends[1])
     }
 
     fn adc_max(&mut self) -> Value {

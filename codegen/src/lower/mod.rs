@@ -148,8 +148,35 @@ impl<'p> Lowering<'p> {
         self.b.program.state(name, initial, interval, doc)
     }
 
-    /// Currents of any ADC word against any offset, in words: the ADC's span to both sides.
+    /// Offsets of the current converters that calibration accepts, words of current.
+    pub fn offset_range(&self) -> Interval {
+        let inverter = &self.spec.inverter;
+        let top = i64::from((1_u32 << inverter.adc_bits) - 1);
+        let (nominal, tolerance) = (
+            i64::from(inverter.adc_offset),
+            i64::from(inverter.offset_tolerance),
+        );
+        let bits = self.scale.current_bits;
+        Interval::new(
+            (nominal - tolerance).max(0) << bits,
+            (nominal + tolerance).min(top) << bits,
+        )
+    }
+
+    /// Magnitudes of the currents at the ADC's two ends, count 0 and the largest one, whatever the offset: the least.
+    pub fn current_at_ends(&self) -> i64 {
+        let (offset, top) = (self.offset_range(), self.largest_count());
+        offset.low.min(top - offset.high)
+    }
+
+    /// Greatest magnitude of a phase current in words of current.
     pub fn current_span(&self) -> i64 {
+        let (offset, top) = (self.offset_range(), self.largest_count());
+        offset.high.max(top - offset.low)
+    }
+
+    /// The ADC's largest count in words of current.
+    fn largest_count(&self) -> i64 {
         i64::from((1_u32 << self.spec.inverter.adc_bits) - 1) << self.scale.current_bits
     }
 

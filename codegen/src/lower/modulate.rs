@@ -57,19 +57,22 @@ pub struct PairModulation {
 }
 
 impl Lowering<'_> {
-    /// Three centred pulses from a limited voltage; `shifts` are against the dead time.
+    /// Three centred pulses from a limited voltage, lifted where the bus is fixed; `shifts` are against the dead time.
     pub fn modulate(&mut self, limited: Limited, bus: Bus, shifts: Option<[Value; 3]>) -> Command {
         self.b.stage(
             "modulate",
             &["Compare values of a centre-aligned timer; (max + min)/2 as offset centres the pulses as space-vector modulation does."],
         );
         let compares = [0, 1, 2].map(|x| {
-            self.compare_centred(
-                ["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x],
-                limited.centred[x],
-                bus,
-                shifts.map(|shifts| shifts[x]),
-            )
+            let name = ["compare_a_pulsed", "compare_b_pulsed", "compare_c_pulsed"][x];
+            let centred = limited.centred[x];
+            match bus.ratio {
+                None => {
+                    let lifted = self.shifted(centred, shifts.map(|shifts| shifts[x]));
+                    self.counts(name, lifted)
+                }
+                Some(_) => self.compare_centred(name, centred, bus, shifts.map(|shifts| shifts[x])),
+            }
         });
         let legs = [0; 3].map(|pulsed| self.b.literal(pulsed));
         Command { compares, legs }
@@ -82,20 +85,25 @@ impl Lowering<'_> {
         bus: Bus,
         shift: Option<Value>,
     ) -> Value {
-        let bits = self.scale.voltage_bits;
         let scaled = self.nominal_share(centred, bus);
         let scaled = self.shifted(scaled, shift);
+        let offset = self.half_period();
+        let lifted = self.b.add(scaled, offset);
+        self.counts(name, lifted)
+    }
+
+    /// What a centred voltage of the nominal bus is lifted by.
+    pub(super) fn half_period(&mut self) -> Value {
+        let bits = self.scale.voltage_bits;
         let half = i64::from(self.spec.inverter.timer_period) << (bits - 1);
-        let offset = self.number(
+        self.number(
             "half_period",
             half + (1 << (bits - 1)),
             &format!(
                 "Half the timer period, and half a count to round: {} timer counts, words of voltage.",
                 f64::midpoint(f64::from(self.spec.inverter.timer_period), 1.0)
             ),
-        );
-        let lifted = self.b.add(scaled, offset);
-        self.counts(name, lifted)
+        )
     }
 
     /// Compare value of a leg that is high for the share of the period that `volts` is of the bus; `shift` is against

@@ -51,7 +51,7 @@ impl Lowering<'_> {
         let inverter = self.spec.inverter.clone();
         let top = i64::from((1_u32 << inverter.adc_bits) - 1);
         let offset = (i64::from(inverter.adc_offset) << self.scale.current_bits) as i32;
-        let offset_range = Interval::new(0, self.current_span());
+        let offset_range = self.offset_range();
         let sum_range = Interval::new(0, top << inverter.calibration_log2);
         let watches_stall = inverter.stall_periods > 0;
         SupervisorWords {
@@ -112,7 +112,10 @@ impl Lowering<'_> {
             "find_rest",
             &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
         );
-        let unknown = self.b.or(sample.out_of_range, sample.no_hall);
+        let unknown = match sample.out_of_range {
+            Some(out_of_range) => self.b.or(out_of_range, sample.no_hall),
+            None => sample.no_hall,
+        };
         let any = self.b.or(unknown, motor_fault);
         self.b.name("faulty", any);
         let rests = self.b.or(any, sequencing);
@@ -202,14 +205,14 @@ impl Lowering<'_> {
             let sum = self.b.select(calibrating, sum, sums[x]);
             self.b.name(["sum_a_now", "sum_b_now"][x], sum)
         });
-        let bad_offset = self.offset_is_bad(new_sums);
+        let (bad_offset, good_sums) = self.within_tolerance(new_sums);
         let failed = self.b.and(calibrated, bad_offset);
         self.b.name("calibration_failed", failed);
         let good_offset = self.b.not(bad_offset);
         let calibrated = self.b.and(calibrated, good_offset);
         self.b.name("calibrated", calibrated);
         let new_offsets = [0, 1].map(|x| {
-            let sum = new_sums[x];
+            let sum = good_sums[x];
             let (bits, log2) = (self.scale.current_bits, inverter.calibration_log2);
             let mean = if bits >= log2 {
                 self.b.shift_left(sum, bits - log2)
@@ -264,33 +267,34 @@ impl Lowering<'_> {
         [joined[0], joined[1]]
     }
 
-    /// Flag: the mean of calibration samples is too far from the nominal offset.
-    fn offset_is_bad(&mut self, sums: [Value; 2]) -> Value {
+    /// Flag: the mean of calibration samples is too far from the nominal offset; and the sums, held within the tolerance.
+    fn within_tolerance(&mut self, sums: [Value; 2]) -> (Value, [Value; 2]) {
         let inverter = &self.spec.inverter;
         let log2 = inverter.calibration_log2;
-        let nominal = i64::from(inverter.adc_offset) << log2;
-        let tolerance = i64::from(inverter.offset_tolerance) << log2;
-        let doc = format!(
-            "Greatest distance of the sum of calibration samples from its nominal value: {} counts ({}) each.",
-            inverter.offset_tolerance,
-            engineering(
-                f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(),
-                "A"
-            )
+        let range = self.offset_range();
+        let [low, high] =
+            [range.low, range.high].map(|offset| (offset >> self.scale.current_bits) << log2);
+        let tolerance = engineering(
+            f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs(),
+            "A",
         );
-        let far = sums.map(|sum| {
-            let expected = self.number(
-                "calibration_sum_nominal",
-                nominal,
-                "Sum of calibration samples that are all at the nominal offset.",
+        let doc = format!(
+            "sum of calibration samples: {} counts ({tolerance}) each from the nominal offset.",
+            inverter.offset_tolerance
+        );
+        let held = [0, 1].map(|x| {
+            let least = self.number("calibration_sum_least", low, &format!("Least good {doc}"));
+            let most = self.number(
+                "calibration_sum_most",
+                high,
+                &format!("Greatest good {doc}"),
             );
-            let distance = self.b.sub(sum, expected);
-            let distance = self.b.abs(distance);
-            let limit = self.number("calibration_sum_tolerance", tolerance, &doc);
-            self.b.compare(Comparison::Less, limit, distance)
+            let held = self.b.clamp(sums[x], least, most);
+            self.b.name(["sum_a_good", "sum_b_good"][x], held)
         });
+        let far = [0, 1].map(|x| self.b.compare(Comparison::NotEqual, held[x], sums[x]));
         let either = self.b.or(far[0], far[1]);
-        self.b.name("offset_is_bad", either)
+        (self.b.name("offset_is_bad", either), held)
     }
 
     fn latch(
@@ -311,8 +315,9 @@ impl Lowering<'_> {
         let mut cause = self.b.select(sample.no_hall, hall, stall);
         let code = self.b.literal(2);
         cause = self.b.select(over_current, code, cause);
+        let at_end = self.at_end(sample.adc);
         let code = self.b.literal(1);
-        cause = self.b.select(sample.out_of_range, code, cause);
+        cause = self.b.select(at_end, code, cause);
         let tripped = self.b.literal(Mode::Tripped as i32);
         let already = self.b.compare(Comparison::Equal, mode, tripped);
         let latched = self.b.select(already, fault, cause);

@@ -115,7 +115,7 @@ impl LoopDesign {
             k_di: held("k_di", volt_per_ampere, self.k_di),
             k_r: held("k_r", volt_per_ampere, self.k_r),
             k_hold: held("k_hold", volt_per_ampere, self.k_hold),
-            k_decay: held("k_decay", 1.0, self.k_decay),
+            k_decay: held("k_decay", 1.0, held("k_fade", -1.0, self.k_decay)),
             ..self.clone()
         }
     }

@@ -14,8 +14,8 @@ struct Folded {
     now: Coefficient,
     /// What it adds to the next one's.
     past: Coefficient,
-    /// 1 - a, with delay 1.
-    decay: Option<Coefficient>,
+    /// a - 1, with delay 1; negative, so that its product is added, in one instruction with the multiplication.
+    fade: Option<Coefficient>,
 }
 
 impl Folded {
@@ -45,18 +45,27 @@ impl Folded {
             "Weight of the present current in the next step's voltage.",
             [symbols[1], "V/A"],
         );
-        let decay = delayed.then(|| design.decay(l, word));
-        Self { now, past, decay }
+        let fade = delayed.then(|| {
+            let symbol = format!("a - 1 = {:.6}", -design.k_decay);
+            l.coefficient(
+                "k_fade",
+                -design.k_decay,
+                word,
+                "What a voltage's effect changes by in one period.",
+                &symbol,
+            )
+        });
+        Self { now, past, fade }
     }
 
     /// Greatest magnitudes of the words `due` and `later`.
     fn bounds(&self, l: &Lowering<'_>) -> [i64; 2] {
         let volts = l.bus_interval().high;
         let past = l.rounded_product(self.past, l.current_span()).abs() + 1;
-        match self.decay {
+        match self.fade {
             None => [past + volts, 0],
-            Some(decay) => {
-                let lost = l.rounded_product(decay, volts).abs() + 1;
+            Some(fade) => {
+                let lost = l.rounded_product(fade, volts).abs() + 1;
                 let later = 2 * volts + lost;
                 [past + later + volts + lost, later]
             }
@@ -84,7 +93,7 @@ impl CurrentLoop<'_, '_> {
             let doc = "What past samples and commands add to this step's voltage.";
             l.state(name, 0, Interval::symmetric(due_bound), doc)
         });
-        let later = folded.decay.map(|_| {
+        let later = folded.fade.map(|_| {
             ["later_a", "later_b"].map(|name| {
                 let doc = "What past commands add to the next step's voltage.";
                 l.state(name, 0, Interval::symmetric(later_bound), doc)
@@ -125,7 +134,7 @@ impl CurrentLoop<'_, '_> {
     /// Step 12 with a held EMF: what the voltage `u` that this step commands leaves to the next two.
     pub(super) fn left_over(&mut self, held: &Held, u: [Value; 2]) -> LeftOver {
         let l = &mut *self.lowering;
-        let Some(decay) = held.folded.decay else {
+        let Some(fade) = held.folded.fade else {
             return LeftOver::of(u);
         };
         l.b.stage(
@@ -133,8 +142,8 @@ impl CurrentLoop<'_, '_> {
             &["What is left of this step's voltage one period later, a v, and both together."],
         );
         let left = [0, 1].map(|x| {
-            let lost = l.times(decay, u[x]);
-            let left = l.b.sub(u[x], lost);
+            let change = l.times(fade, u[x]);
+            let left = l.b.add(u[x], change);
             l.b.name(["left_a", "left_b"][x], left)
         });
         let both = [0, 1].map(|x| {
@@ -195,9 +204,9 @@ impl LeftOver {
 }
 
 impl Held {
-    /// 1 - a, with delay 1.
-    pub fn decay(&self) -> Option<Coefficient> {
-        self.folded.decay
+    /// a - 1, with delay 1.
+    pub fn fade(&self) -> Option<Coefficient> {
+        self.folded.fade
     }
 
     /// The EMF of the last period out of the folded words, added to the open stage.

@@ -28,9 +28,12 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
             Some(held) => held.seen_emf(l, design, options.common.word),
             None => front.e.unwrap_or(u),
         };
+        let bus = (front.bus, front.third);
+        // Of a pair the centred voltages are needed as they are, and of a measured bus before their scaling.
+        let lifts = !pair && front.bus.ratio.is_none();
         let limited = step
             .lowering
-            .limit_voltage(options.saturation, u, e, front.bus, front.third);
+            .limit_voltage(options.saturation, u, e, bus, lifts);
         let (command, applied) = match front.commutation {
             None => (step.lowering.modulate(limited, front.bus, shifts), None),
             Some([flag, ..]) => {

@@ -4,11 +4,12 @@ use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, N
 use crate::ir::{Interval, Value};
 use crate::lower::{Coefficient, Command, Lowering, Scale};
 use crate::scaling::Lowered;
-use crate::spec::{BusSource, PiPwmSpec, Spec};
+use crate::spec::{PiPwmSpec, Spec};
 
 /// What the stage that integrates is about.
 const INTEGRATION: &[&str] = &[
-    "Integration and tracking anti-windup in one product: what the limit cut off is taken back with the same time constant.",
+    "Integration and tracking anti-windup with one time constant: s + k_i (p + v - u) with u = p + s + e the voltage asked",
+    "for and v what the limit left of it, so the integral part follows v - e.",
 ];
 
 /// Lowers the controller at a scale.
@@ -35,28 +36,28 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             return six_step(&mut step, &front, spec, options);
         }
         let l = &mut *step.lowering;
-        let bound = l.bus_interval().high;
+        let range = integral_range(l, options);
         let integrals = ["integral_a", "integral_b"].map(|name| {
             let doc = "Integral part of the regulator, words of voltage.";
-            l.state(name, 0, Interval::symmetric(bound), doc)
+            l.state(name, 0, range, doc)
         });
-        let [k_p, k_i] = gains(l, spec, options);
+        let [k_drop, k_i] = gains(l, spec, options);
         l.b.stage(
             "regulate",
             &["PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward."],
         );
         let regulated = [0, 1].map(|x| {
-            let held = l.times(k_p, front.currents.phases[x]);
-            if options.dead_time_compensation {
-                l.b.name(["held_a", "held_b"][x], held);
-            }
-            let part = l.b.sub(front.reference[x], held);
-            [held, l.b.name(["p_a", "p_b"][x], part)]
+            let drop = l.times(k_drop, front.currents.phases[x]);
+            let held = options.dead_time_compensation.then(|| {
+                let held = l.b.neg(drop);
+                l.b.name(["held_a", "held_b"][x], held)
+            });
+            let part = l.b.add(front.reference[x], drop);
+            (held, l.b.name(["p_a", "p_b"][x], part))
         });
-        let parts = regulated.map(|[_, part]| part);
         let sums = [0, 1].map(|x| l.b.state(integrals[x]));
         let u = [0, 1].map(|x| {
-            let volts = l.b.add(parts[x], sums[x]);
+            let volts = l.b.add(regulated[x].1, sums[x]);
             let volts = match front.e {
                 Some(e) => l.b.add(volts, e[x]),
                 None => volts,
@@ -66,24 +67,26 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             l.b.state_error("voltage", volts, [doc, "V"], word);
             l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
         });
-        let held = regulated.map(|[held, _]| held);
-        let shifts = options
-            .dead_time_compensation
-            .then(|| step.dead_time_shifts(front.reference, held, gain));
+        let shifts = match regulated {
+            [(Some(a), _), (Some(b), _)] => {
+                Some(step.dead_time_shifts(front.reference, [a, b], gain))
+            }
+            _ => None,
+        };
         let l = &mut *step.lowering;
         let e = front.e.unwrap_or(u);
-        let limited = l.limit_voltage(options.saturation, u, |_| e, front.bus, front.third);
+        let lifts = front.bus.ratio.is_none();
+        let bus = (front.bus, front.third);
+        let limited = l.limit_voltage(options.saturation, u, |_| e, bus, lifts);
         l.b.stage("integrate", INTEGRATION);
         let mut remembered = vec![];
         for x in 0..2 {
-            let regulated = Regulated {
-                part: parts[x],
-                sum: sums[x],
-                u: u[x],
-                limited: limited.u[x],
+            let target = match front.e {
+                Some(e) => l.b.sub(limited.u[x], e[x]),
+                None => limited.u[x],
             };
             let names = [["drive_a", "integral_a_now"], ["drive_b", "integral_b_now"]][x];
-            let held = integrate(l, spec, k_i, &regulated, names);
+            let held = integrate(l, range, k_i, [sums[x], target], names);
             remembered.push((
                 integrals[x],
                 ["integral_a_next", "integral_b_next"][x],
@@ -95,65 +98,57 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
     })
 }
 
-/// k_p and k_i.
+/// -k_p, by which a product is added in one instruction, and k_i.
 fn gains(l: &mut Lowering<'_>, spec: &Spec, options: &PiPwmSpec) -> [Coefficient; 2] {
     let gain = options.proportional_gain(&spec.motor);
     let word = options.common.word;
-    let k_p = l.impedance(
-        "k_p",
-        gain,
+    let k_drop = l.impedance(
+        "k_drop",
+        -gain,
         word,
-        "Proportional gain 2 pi f L.",
-        ["k_p", "V/A"],
+        "Weight of the present current: the proportional gain k_p = 2 pi f L, negative.",
+        ["-k_p", "V/A"],
     );
     let share = options.integral_share(spec);
     let k_i = l.coefficient(
         "k_i",
         share,
         word,
-        "Share of the proportional voltage that one period integrates, T_s/T_i; also the weight of the anti-windup.",
+        "Share of its distance that the integral part covers in one period, T_s/T_i.",
         &format!("T_s/T_i = {share:.6}"),
     );
-    [k_p, k_i]
+    [k_drop, k_i]
 }
 
-/// What a regulator made of its error.
-struct Regulated {
-    /// Proportional part.
-    part: Value,
-    /// Integral part.
-    sum: Value,
-    /// Voltage asked for.
-    u: Value,
-    /// Voltage within the limit.
-    limited: Value,
+/// Where the integral part may lie: within the greatest bus. Without an EMF it cannot leave that, as a mean of itself and
+/// the limited voltage; the clamp is there for the proof then, and at the next power of two it takes one instruction
+/// where there is one that saturates.
+fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
+    let bus = l.bus_interval().high;
+    if options.feed_forward {
+        return Interval::symmetric(bus);
+    }
+    let limit = bus.unsigned_abs().next_power_of_two() as i64;
+    Interval::new(-limit, limit - 1)
 }
 
-/// The new integral part, within the greatest bus; `names` are those of what drives it and of itself.
+/// The new integral part `sum`, which follows `target`: what the limit left of the voltage, less the EMF fed forward.
+/// `names` are those of its distance and of itself.
 fn integrate(
     l: &mut Lowering<'_>,
-    spec: &Spec,
+    range: Interval,
     k_i: Coefficient,
-    regulated: &Regulated,
+    [sum, target]: [Value; 2],
     names: [&str; 2],
 ) -> Value {
-    let cut = l.b.sub(regulated.limited, regulated.u);
-    let drive = l.b.add(regulated.part, cut);
-    l.b.name(names[0], drive);
-    let change = l.times(k_i, drive);
-    let sum = l.b.add(regulated.sum, change);
-    let bound = l.bus_interval().high;
-    let doc = format!(
-        "Largest integral part, the {}bus",
-        if spec.inverter.bus == BusSource::Fixed {
-            ""
-        } else {
-            "greatest "
-        },
-    );
+    let distance = l.b.sub(target, sum);
+    l.b.name(names[0], distance);
+    let change = l.times(k_i, distance);
+    let sum = l.b.add(sum, change);
+    let doc = "Largest integral part";
     let (low, high) = (
-        l.voltage("integral_min", -bound, &doc),
-        l.voltage("integral_max", bound, &doc),
+        l.voltage("integral_min", range.low, doc),
+        l.voltage("integral_max", range.high, doc),
     );
     let held = l.b.clamp(sum, low, high);
     let doc = "Integral part after one step";
@@ -165,10 +160,10 @@ fn integrate(
 /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
 fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options: &PiPwmSpec) {
     let l = &mut *step.lowering;
-    let bound = Interval::symmetric(l.bus_interval().high);
+    let range = integral_range(l, options);
     let doc = "Integral part of the regulator, words of voltage.";
-    let integral = l.state("integral", 0, bound, doc);
-    let [k_p, k_i] = gains(l, spec, options);
+    let integral = l.state("integral", 0, range, doc);
+    let [k_drop, k_i] = gains(l, spec, options);
     l.b.stage(
         "regulate",
         &["PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding."],
@@ -177,12 +172,13 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let halves = [0, 1, 2].map(|x| l.b.shift_right(front.currents.phases[x], 1));
     let current = l.across_pair(sign, halves);
     l.b.name("pair_current", current);
-    let drop = l.times(k_p, current);
-    let part = l.b.sub(front.set_point, drop);
+    let drop = l.times(k_drop, current);
+    let part = l.b.add(front.set_point, drop);
     l.b.name("part", part);
     let flow = options.dead_time_compensation.then(|| {
         [0, 1].map(|x| {
-            let flow = l.times(k_p, front.currents.phases[x]);
+            let drop = l.times(k_drop, front.currents.phases[x]);
+            let flow = l.b.neg(drop);
             l.b.name(["held_a", "held_b"][x], flow)
         })
     });
@@ -196,13 +192,7 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let line = l.limit_line(line, front.bus);
     l.b.stage("integrate", INTEGRATION);
     let limited = l.b.shift_right(line, 1);
-    let regulated = Regulated {
-        part,
-        sum,
-        u,
-        limited,
-    };
-    let held = integrate(l, spec, k_i, &regulated, ["drive", "integral_now"]);
+    let held = integrate(l, range, k_i, [sum, limited], ["drive", "integral_now"]);
     let gain = options.proportional_gain(&spec.motor);
     let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, gain));
     let l = &mut *step.lowering;

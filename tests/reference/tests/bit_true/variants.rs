@@ -298,6 +298,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_r", shift(ohm * motor.resistance)),
         ("k_hold", shift(ohm * a / b)),
         ("k_decay", shift(b * motor.resistance)),
+        ("k_fade", shift(b * motor.resistance)),
         ("k_filter", shift(options.emf_filter)),
         ("k_slope", shift(slope)),
         ("k_integral", shift(1.0 / 8.0)),
@@ -308,7 +309,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_pole", shift(a)),
         ("k_first", shift(1.0 + a * a)),
         ("k_pole_sixth", shift(a / 6.0)),
-        ("k_p", shift(ohm * gain)),
+        ("k_drop", shift(ohm * gain)),
         ("k_i", shift(integral_share)),
         ("k_set", shift(scale * gain / w / 65_536.0)),
         (

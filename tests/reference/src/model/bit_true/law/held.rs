@@ -11,7 +11,7 @@ pub struct Held {
     delayed: bool,
     now: Coefficient,
     past: Coefficient,
-    decay: Coefficient,
+    fade: Coefficient,
     /// Whether the law asks for the EMF.
     asked: bool,
     due: Coefficient,
@@ -37,7 +37,7 @@ impl Held {
             delayed,
             now: scale.coefficient("k_now", -ohm * now / b)?,
             past: scale.coefficient("k_past", ohm * past / b)?,
-            decay: scale.only_if(delayed, "k_decay", b * scale.resistance)?,
+            fade: scale.only_if(delayed, "k_fade", -b * scale.resistance)?,
             asked,
             due: scale.only_if(unfolds, "k_due", 1.0 / (1.0 + a))?,
             later: scale.only_if(unfolds, "k_later", a / ((1.0 + a) * (1.0 + a)))?,
@@ -81,7 +81,7 @@ impl Held {
     pub fn past(&self, now: &Inputs, u: [Word; 2]) -> Past {
         let sampled = both(|x| self.past.mul(now.i[x]));
         if self.delayed {
-            let left = both(|x| u[x] - self.decay.mul(u[x]));
+            let left = both(|x| u[x] + self.fade.mul(u[x]));
             Past {
                 due: both(|x| now.past.later[x] - left[x] + sampled[x]),
                 later: both(|x| u[x] + left[x]),

@@ -14,21 +14,28 @@ pub struct PiPwm {
     /// One regulator, for the pair.
     six_step: bool,
     saturation: Saturation,
-    k_p: Coefficient,
+    k_drop: Coefficient,
     k_i: Coefficient,
-    integral_max: f64,
+    integral_range: [f64; 2],
     dead_time: DeadTime,
 }
 
 impl PiPwm {
     pub fn new(spec: &Spec, options: &crate::PiPwm, scale: &Scale) -> Result<Self, Error> {
+        let bus = round_half_up(spec.inverter.v_bus_max()? / scale.w * scale.two_v);
+        let integral_range = if options.feed_forward == Switch::On {
+            [-bus, bus]
+        } else {
+            let limit = bus.log2().ceil().exp2();
+            [-limit, limit - 1.0]
+        };
         Ok(Self {
             six_step: options.six_step == Switch::On,
             saturation: options.saturation,
-            k_p: scale.coefficient("k_p", scale.ohm * reference_gain(spec))?,
+            k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
             dead_time: DeadTime::new(spec, scale)?,
-            integral_max: round_half_up(spec.inverter.v_bus_max()? / scale.w * scale.two_v),
+            integral_range,
         })
     }
 
@@ -38,23 +45,30 @@ impl PiPwm {
             return self.decide_pair(now);
         }
         // 9; without feed-forward the EMF is 0.
-        let held = both(|x| self.k_p.mul(now.i[x]));
-        let p = both(|x| now.j[x] - held[x]);
+        let drop = both(|x| self.k_drop.mul(now.i[x]));
+        let p = both(|x| now.j[x] + drop[x]);
         let u_unsat = both(|x| p[x] + now.integral[x] + now.e[x]);
         // 10, 11
         let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
         let Limited { u, legs, reach } = limited;
         // 12
+        let [low, high] = self.integral_range;
         let integral = both(|x| {
-            let moved = now.integral[x] + self.k_i.mul(p[x] + u[x] - u_unsat[x]);
-            within(moved, -self.integral_max, self.integral_max)
+            let distance = u[x] - now.e[x] - now.integral[x];
+            let moved = now.integral[x] + self.k_i.mul(distance);
+            within(moved, low, high)
         });
         Decision {
             u_unsat,
             u,
             reach,
             vector: 0,
-            command: pulses::three(now, legs, self.dead_time.shifts(now, held), false),
+            command: pulses::three(
+                now,
+                legs,
+                self.dead_time.shifts(now, drop.map(|drop| -drop)),
+                false,
+            ),
             integral,
             rises: now.rises,
             past: now.past,
@@ -67,15 +81,16 @@ impl PiPwm {
         let ends = (now.sector_eff != 0)
             .then(|| (sector::PLUS[now.sector_eff], sector::MINUS[now.sector_eff]));
         let pair_current = ends.map_or(word(0.0), |(plus, minus)| halve(i[plus]) - halve(i[minus]));
-        let flow = both(|x| self.k_p.mul(now.i[x]));
-        let part = now.set_point - self.k_p.mul(pair_current);
+        let flow = both(|x| -self.k_drop.mul(now.i[x]));
+        let part = now.set_point + self.k_drop.mul(pair_current);
         let u = part + now.integral[0];
         // 10
         let line = within(2.0 * u, -now.v_bus, now.v_bus);
         // 12
         let limited = halve(line);
-        let moved = now.integral[0] + self.k_i.mul(part + limited - u);
-        let integral = within(moved, -self.integral_max, self.integral_max);
+        let [low, high] = self.integral_range;
+        let moved = now.integral[0] + self.k_i.mul(limited - now.integral[0]);
+        let integral = within(moved, low, high);
         let phases = |u: Word| {
             let mut phases = [word(0.0); 3];
             if let Some((plus, minus)) = ends {
