@@ -56,7 +56,6 @@ const UNAVAILABLE: &[(&str, &str, &str)] = &[
     ("fcs-mpc", "emf", "integral"),
     ("phcc", "emf", "integral"),
     ("pi-pwm", "emf", "integral"),
-    ("phcc", "emf", "held"),
     ("pi-pwm", "emf", "held"),
 ];
 

@@ -129,7 +129,7 @@ fn tabled_left_over(l: &mut Lowering<'_>, word: u32, held: &Held, vector: Value)
     let k_sixth = sixth(l, word);
     let unit = l.rounded_product(k_sixth, l.nominal_bus());
     let Some(k_fade) = held.fade() else {
-        return LeftOver::of(fixed_voltage(l, unit, vector));
+        return held.unfaded(fixed_voltage(l, unit, vector));
     };
     let volts = fixed_volts(unit);
     let left = volts.map(|volts| volts.map(|volts| volts + l.rounded_product(k_fade, volts)));

@@ -1,8 +1,8 @@
-//! Deadbeat control with the EMF held over the delay, folded: no estimate, no prediction, but what past samples and
-//! commands add to this step's voltage and to the next one's (semantics, `emf: held`).
+//! Prediction and deadbeat control with the EMF held over the delay, folded: no estimate, no prediction, but what past
+//! samples and commands add to this step's voltage, or error, and to the next one's (semantics, `emf: held`).
 
 use super::emf::believed;
-use super::{CurrentLoop, LoopDesign, Remembered, asked_for};
+use super::{CurrentLoop, EmfUse, LoopDesign, Needs, Remembered, asked_for};
 use crate::ir::{Interval, StateId, Value};
 use crate::lower::{Coefficient, Lowering};
 use crate::spec::LoopOptions;
@@ -14,15 +14,17 @@ struct Folded {
     now: Coefficient,
     /// What it adds to the next one's.
     past: Coefficient,
-    /// a - 1, with delay 1; negative, so that its product is added, in one instruction with the multiplication.
+    /// a - 1, in deadbeat control with delay 1; negative, so that its product is added, in one instruction with the
+    /// multiplication.
     fade: Option<Coefficient>,
 }
 
 impl Folded {
-    fn new(l: &mut Lowering<'_>, options: &LoopOptions, design: &LoopDesign) -> Self {
+    fn new(l: &mut Lowering<'_>, options: &LoopOptions, needs: Needs, design: &LoopDesign) -> Self {
         let (a, word) = (design.plant.pole, options.word);
-        let delayed = options.delay == 1;
-        let (now, past, symbols) = if delayed {
+        // Deadbeat control looks a second period ahead then.
+        let fades = options.delay == 1 && needs.emf == EmfUse::Deadbeat;
+        let (now, past, symbols) = if fades {
             (
                 1.0 + a + a * a,
                 a * (1.0 + a),
@@ -45,7 +47,7 @@ impl Folded {
             "Weight of the present current in the next step's voltage.",
             [symbols[1], "V/A"],
         );
-        let fade = delayed.then(|| {
+        let fade = fades.then(|| {
             let symbol = format!("a - 1 = {:.6}", -design.k_decay);
             l.coefficient(
                 "k_fade",
@@ -59,10 +61,11 @@ impl Folded {
     }
 
     /// Greatest magnitudes of the words `due` and `later`.
-    fn bounds(&self, l: &Lowering<'_>) -> [i64; 2] {
+    fn bounds(&self, l: &Lowering<'_>, delayed: bool) -> [i64; 2] {
         let volts = l.bus_interval().high;
         let past = l.rounded_product(self.past, l.current_span()).abs() + 1;
         match self.fade {
+            None if delayed => [past + 2 * volts, volts],
             None => [past + volts, 0],
             Some(fade) => {
                 let lost = l.rounded_product(fade, volts).abs() + 1;
@@ -87,13 +90,14 @@ impl CurrentLoop<'_, '_> {
     /// Declares the folded words and reads them.
     pub(super) fn held(&mut self, currents: [Value; 3]) -> Held {
         let l = &mut *self.lowering;
-        let folded = Folded::new(l, self.options, self.design);
-        let [due_bound, later_bound] = folded.bounds(l);
+        let folded = Folded::new(l, self.options, self.needs, self.design);
+        let delayed = self.options.delay == 1;
+        let [due_bound, later_bound] = folded.bounds(l, delayed);
         let due = ["due_a", "due_b"].map(|name| {
             let doc = "What past samples and commands add to this step's voltage.";
             l.state(name, 0, Interval::symmetric(due_bound), doc)
         });
-        let later = folded.fade.map(|_| {
+        let later = delayed.then(|| {
             ["later_a", "later_b"].map(|name| {
                 let doc = "What past commands add to the next step's voltage.";
                 l.state(name, 0, Interval::symmetric(later_bound), doc)
@@ -124,9 +128,7 @@ impl CurrentLoop<'_, '_> {
             ],
         );
         [0, 1].map(|x| {
-            let open = l.b.add(held.due_words[x], reference[x]);
-            let taken = l.times(held.folded.now, held.currents[x]);
-            let volts = l.b.add(open, taken);
+            let volts = held.sum(l, x, reference[x]);
             asked_for(l, x, volts)
         })
     }
@@ -135,7 +137,7 @@ impl CurrentLoop<'_, '_> {
     pub(super) fn left_over(&mut self, held: &Held, u: [Value; 2]) -> LeftOver {
         let l = &mut *self.lowering;
         let Some(fade) = held.folded.fade else {
-            return LeftOver::of(u);
+            return held.unfaded(u);
         };
         l.b.stage(
             "decay",
@@ -187,24 +189,29 @@ impl CurrentLoop<'_, '_> {
 /// What a command leaves to later steps, phases a and b.
 #[derive(Clone, Copy, Debug)]
 pub struct LeftOver {
-    /// What is left of the voltage when the next step's takes effect: a v with delay 1, v without.
+    /// What is left of the voltage when the next step's takes effect: a v in deadbeat control with delay 1, else v.
     pub left: [Value; 2],
-    /// With delay 1, that and the voltage itself.
+    /// With delay 1, what the step after the next has of it: in deadbeat control (1 + a) v, else v.
     pub both: Option<[Value; 2]>,
 }
 
-impl LeftOver {
-    /// Without delay: of voltages that take effect at once.
-    pub fn of(volts: [Value; 2]) -> Self {
-        Self {
+impl Held {
+    /// Reference, past and present current of phase `x` together, added to the open stage.
+    pub fn sum(&self, l: &mut Lowering<'_>, x: usize, reference: Value) -> Value {
+        let open = l.b.add(self.due_words[x], reference);
+        let taken = l.times(self.folded.now, self.currents[x]);
+        l.b.add(open, taken)
+    }
+
+    /// What voltages leave that count in full: all but those of deadbeat control with delay 1.
+    pub fn unfaded(&self, volts: [Value; 2]) -> LeftOver {
+        LeftOver {
             left: volts,
-            both: None,
+            both: self.later.map(|_| volts),
         }
     }
-}
 
-impl Held {
-    /// a - 1, with delay 1.
+    /// a - 1, in deadbeat control with delay 1.
     pub fn fade(&self) -> Option<Coefficient> {
         self.folded.fade
     }

@@ -240,7 +240,7 @@ impl CurrentLoop<'_, '_> {
 
     /// Whether the law predicts with the EMF of the last period.
     fn holds_emf(&self) -> bool {
-        self.needs.emf == EmfUse::Prediction && self.options.emf == EmfSource::Held
+        self.needs.predicts() && self.options.emf == EmfSource::Held
     }
 
     /// Where an off leg's terminal sits.

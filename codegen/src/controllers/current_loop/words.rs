@@ -19,6 +19,13 @@ pub struct Needs {
     pub integral: bool,
 }
 
+impl Needs {
+    /// Whether the law predicts the current at the end of the period that begins now.
+    pub fn predicts(self) -> bool {
+        matches!(self.emf, EmfUse::Prediction | EmfUse::Deadbeat)
+    }
+}
+
 /// What a law uses the EMF for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmfUse {
@@ -28,6 +35,8 @@ pub enum EmfUse {
     FeedForward,
     /// It takes part in the prediction of the current at the end of the period that begins now.
     Prediction,
+    /// Besides, it is part of the voltage that the law asks for then.
+    Deadbeat,
 }
 
 /// State words of the shared step.
@@ -91,10 +100,7 @@ impl CurrentLoop<'_, '_> {
                 )
             })
         });
-        let v_cmd = (options.delay == 1
-            && !needs.off_leg
-            && !holds
-            && (needs.emf == EmfUse::Prediction || sees))
+        let v_cmd = (options.delay == 1 && !needs.off_leg && !holds && (needs.predicts() || sees))
             .then(|| {
                 ["v_a_cmd", "v_b_cmd"].map(|name| {
                     l.state(

@@ -16,7 +16,7 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             needs: Needs {
                 commutation: options.pairs(),
                 off_leg: options.floating(),
-                emf: EmfUse::Prediction,
+                emf: EmfUse::Deadbeat,
                 integral: false,
             },
         };

@@ -18,7 +18,7 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
             needs: Needs {
                 commutation: pair,
                 off_leg: pair,
-                emf: EmfUse::Prediction,
+                emf: EmfUse::Deadbeat,
                 integral: options.integral,
             },
         };

@@ -46,6 +46,20 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
 impl CurrentLoop<'_, '_> {
     /// K (i_ref - i(k+1)) of phases a, b, words of voltage; with delay 0 K (i_ref - i).
     fn predicted_error(&mut self, front: &Front) -> [Value; 2] {
+        if let Some(held) = &front.held {
+            let l = &mut *self.lowering;
+            l.b.stage(
+                "predict_error",
+                &[
+                    "Error of the current predicted for the end of this period, as a voltage: K (i_ref - i(k+1)) with the estimate",
+                    "(9) put into the prediction (7) and the terms collected by their age: K i_ref + k_now i + due.",
+                ],
+            );
+            return [0, 1].map(|x| {
+                let error = held.sum(l, x, front.reference[x]);
+                deviation(l, x, error)
+            });
+        }
         let delayed = self.options.delay == 1;
         let hold = if delayed {
             self.design.k_di * self.design.plant.pole
@@ -80,12 +94,17 @@ impl CurrentLoop<'_, '_> {
                 }
                 _ => open,
             };
-            let doc = "Predicted error of a phase current, as the voltage K (i_ref - i)";
-            let word = 1.0 / l.scale.voltage();
-            l.b.state_error("deviation", error, [doc, "V"], word);
-            l.b.name(["q_a", "q_b"][x], error)
+            deviation(l, x, error)
         })
     }
+}
+
+/// Names the predicted error of phase `x`, 0 or 1, and states its own.
+fn deviation(l: &mut Lowering<'_>, x: usize, error: Value) -> Value {
+    let doc = "Predicted error of a phase current, as the voltage K (i_ref - i)";
+    let word = 1.0 / l.scale.voltage();
+    l.b.state_error("deviation", error, [doc, "V"], word);
+    l.b.name(["q_a", "q_b"][x], error)
 }
 
 /// The wishes of the two axes.

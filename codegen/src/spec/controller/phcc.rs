@@ -1,6 +1,6 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use super::common::{LoopOptions, Surroundings, read_common, refuse_held};
+use super::common::{EmfSource, LoopOptions, Surroundings, read_common};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -91,7 +91,22 @@ pub(crate) fn check_options(
     let off_leg = read_off_leg(reader, three_phase, errors);
     let given = reader.plain_quantity(errors, "band");
     let common = read_common(reader, surroundings, false, errors)?;
-    refuse_held(reader, &common, errors);
+    let floats = !three_phase && off_leg == OffLegModel::Physical && common.delay == 1;
+    if common.emf == EmfSource::Held
+        && floats
+        && let Some(field) = reader.field("emf")
+    {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            "emf",
+            "held",
+            reader
+                .field("off_leg")
+                .map_or(reader.location(), |field| &field.location),
+            "off_leg: physical",
+            "a leg that floats shows nothing of its EMF, so none can be held; choose `off_leg: nominal` or `candidates: three_phase`",
+        ));
+    }
     if common.delay == 0 {
         for name in ["emf", "emf_filter", "off_leg"] {
             let Some(field) = reader.field(name) else {

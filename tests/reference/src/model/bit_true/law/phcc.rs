@@ -6,12 +6,17 @@ use crate::exact::{Coefficient, both, round_half_up};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::switching::{self, Switching};
+use crate::model::trace::Past;
 use crate::{Error, Spec};
 
 #[derive(Clone, Debug)]
 pub struct Phcc {
     delayed: bool,
+    holds: bool,
     k_hold: Coefficient,
+    /// Of the present current in this prediction and in the next, the EMF held.
+    k_now: Coefficient,
+    k_past: Coefficient,
     sixth: Sixth,
     /// BAND_A, BAND_B.
     bands: [f64; 2],
@@ -22,11 +27,15 @@ impl Phcc {
     pub fn new(spec: &Spec, options: &crate::Phcc, scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
         let delayed = scale.variant.delayed();
+        let holds = scale.variant.holds();
         let held = if delayed { a } else { 1.0 };
         let band = options.band / b / scale.w * scale.two_v;
         Ok(Self {
             delayed,
-            k_hold: scale.coefficient("k_hold", scale.ohm * held / b)?,
+            holds,
+            k_hold: scale.only_if(!holds, "k_hold", scale.ohm * held / b)?,
+            k_now: scale.only_if(holds, "k_now", -scale.ohm * (1.0 + a) / b)?,
+            k_past: scale.only_if(holds, "k_past", scale.ohm * a / b)?,
             sixth: Sixth::new(scale)?,
             bands: [band, 3f64.sqrt() * band].map(round_half_up),
             switching: Switching::new(spec, options)?,
@@ -37,6 +46,9 @@ impl Phcc {
     pub fn decide(&self, now: &Inputs) -> Decision {
         // 9
         let q = both(|x| {
+            if self.holds {
+                return now.j[x] + now.past.due[x] + self.k_now.mul(now.i[x]);
+            }
             let held = now.j[x] - self.k_hold.mul(now.i[x]);
             if self.delayed {
                 held - (now.v_now[x] - now.e_now[x])
@@ -55,15 +67,24 @@ impl Phcc {
             .switching
             .vector(set, now.sector_eff, now.commutating, rises);
         // 11, 12
+        let u = self.sixth.voltage(now, vector);
+        let past = if self.holds {
+            Past {
+                due: both(|x| now.past.later[x] - u[x] + self.k_past.mul(now.i[x])),
+                later: u,
+            }
+        } else {
+            now.past
+        };
         Decision {
             u_unsat: q,
-            u: self.sixth.voltage(now, vector),
+            u,
             reach: Reach::Inside,
             vector,
             command: whole::command(now, vector, true),
             integral: now.integral,
             rises,
-            past: now.past,
+            past,
         }
     }
 }

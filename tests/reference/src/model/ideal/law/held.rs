@@ -21,6 +21,21 @@ pub fn voltage(now: &Inputs) -> Vector2<f64> {
     (now.i_ref - now.i * weight) / b + vector(now.past.due)
 }
 
+/// The error predicted for the end of this period, ampere.
+pub fn deviation(now: &Inputs) -> Vector2<f64> {
+    let DiscretePhase { a, b } = now.phase;
+    now.i_ref - now.i * (1.0 + a) + vector(now.past.due) * b
+}
+
+/// What this step's current and its voltage `u` leave to the next two predictions.
+pub fn past_of_prediction(now: &Inputs, u: &Vector2<f64>) -> Past {
+    let DiscretePhase { a, b } = now.phase;
+    Past {
+        due: to_ab(&(vector(now.past.later) - u + now.i * (a / b))),
+        later: to_ab(u),
+    }
+}
+
 /// The EMF that the last period showed, each phase within `limit`.
 pub fn emf(now: &Inputs, limit: f64) -> Vector2<f64> {
     let DiscretePhase { a, b } = now.phase;

@@ -1,6 +1,6 @@
 //! PHCC: the predicted error's components against their bands, and the vector that a table has for both wishes.
 
-use super::{Decision, Inputs, deadbeat, whole};
+use super::{Decision, Inputs, deadbeat, held, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::to_ab;
 use crate::model::switching::{self, Switching};
@@ -22,21 +22,30 @@ impl Phcc {
     }
 
     pub fn decide(&self, now: &Inputs) -> Decision {
-        let error = now.i_ref - deadbeat::current_then(now);
+        let error = if now.emf_is_held {
+            held::deviation(now)
+        } else {
+            now.i_ref - deadbeat::current_then(now)
+        };
         let rises = [0, 1].map(|axis| switching::wish(error[axis], self.band, now.rises[axis]));
         let set = switching::Set::of(now.direction, now.set_point);
         let vector = self
             .switching
             .vector(set, now.sector_eff, now.commutating, rises);
+        let u = whole::voltage(now, vector);
         Decision {
             u_unsat: error / now.phase.b,
-            u: whole::voltage(now, vector),
+            u,
             reach: Reach::Inside,
             vector,
             command: whole::command(now, vector, true),
             integral: to_ab(&now.integral),
             rises,
-            past: now.past,
+            past: if now.emf_is_held {
+                held::past_of_prediction(now, &u)
+            } else {
+                now.past
+            },
         }
     }
 }
