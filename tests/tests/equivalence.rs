@@ -34,6 +34,7 @@ const WITHOUT_EFFECT: &[&str] = &[
     "phcc off_leg=nominal delay=0",
     "phcc emf=unfiltered delay=0",
     "phcc emf=model delay=0",
+    "phcc emf=held delay=0",
     "pi-pwm saturation=torque_priority feed_forward=off",
     "pi-pwm saturation=torque_priority six_step=on",
     "pi-pwm saturation=keep_angle six_step=on",

@@ -49,6 +49,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
         let regulated = [0, 1].map(|x| {
             let drop = l.times(k_drop, front.currents.phases[x]);
             let held = options.dead_time_compensation.then(|| {
+                l.b.name(["drop_a", "drop_b"][x], drop);
                 let held = l.b.neg(drop);
                 l.b.name(["held_a", "held_b"][x], held)
             });
