@@ -8,6 +8,7 @@
 
 pub mod arith;
 mod boundary;
+mod constants;
 /// Signs, angles, sectors, wiring.
 ///
 #[cfg_attr(doc, doc = include_str!("conventions.md"))]
@@ -23,6 +24,7 @@ mod status;
 mod word;
 
 pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
+pub use constants::pairs_from_bits;
 pub use double_buffer::DoubleBuffer;
 pub use drive::{Drive, DriveLoop, DriveSetPoint};
 pub use fixed;

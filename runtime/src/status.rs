@@ -1,5 +1,7 @@
 //! What a drive is doing, in one word that its control loop publishes and anyone may read.
 
+use core::fmt;
+
 use crate::arith::Word;
 use crate::{Fault, mode};
 
@@ -59,6 +61,17 @@ impl Status {
             mode,
             fault: Fault::from_word(fault),
         }
+    }
+
+    /// `Debug` of a drive or of one of its halves: its name and its status.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub fn debug(self, name: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct(name)
+            .field("mode", &self.mode)
+            .field("fault", &self.fault)
+            .finish_non_exhaustive()
     }
 }
 

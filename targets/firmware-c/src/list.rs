@@ -35,7 +35,7 @@ pub const DRIVES: &[InC] = &[
         symbol: "step_trivedi_keshri_660w_phcc_three_phase_c",
         motor: "trivedi-keshri-660w",
         kind: "phcc",
-        options: "candidates: three_phase, emf_filter: 1",
+        options: "candidates: three_phase, emf: held",
     },
     InC {
         name: "TrivediPiPwmKeepAngle",

@@ -32,7 +32,7 @@ macro_rules! drives_for {
             TrivediFcsMpcPhysical, step_trivedi_keshri_660w_fcs_mpc_physical:
                 "../motors/trivedi-keshri-660w.toml", fcs_mpc { emf_filter: 1, target: $target };
             TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:
-                "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf_filter: 1, target: $target };
+                "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf: held, target: $target };
             TrivediPiPwmKeepAngle, step_trivedi_keshri_660w_pi_pwm_keep_angle:
                 "../motors/trivedi-keshri-660w.toml", pi_pwm { saturation: keep_angle, feed_forward: off, target: $target };
         }

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 13] = [
+const SHARED: [&str; 14] = [
     "DoubleBuffer",
     "Drive",
     "DriveLoop",
@@ -30,6 +30,7 @@ const SHARED: [&str; 13] = [
     "SharedWord",
     "Status",
     "mode",
+    "pairs_from_bits",
 ];
 
 /// Types that the module defines beside the user's; besides them the results of large stages and the rows of tables.

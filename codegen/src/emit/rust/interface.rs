@@ -32,6 +32,7 @@ impl Types<'_> {
             .iter()
             .map(|(name, kind, _)| quote!(#name: #kind));
         let names = measurements.iter().map(|(name, _, _)| name);
+        let debug = debug(&quote!(#name), &self.name.to_string());
         let shared = shared(self.program);
         let initial = shared.iter().map(|shared| {
             let name = snake(&shared.name);
@@ -48,7 +49,6 @@ impl Types<'_> {
         quote! {
             #docs
             #attributes
-            #[derive(Debug)]
             pub struct #name {
                 set_point: SetPoint,
                 state: State,
@@ -96,6 +96,8 @@ impl Types<'_> {
                     Self::new()
                 }
             }
+
+            #debug
         }
     }
 
@@ -113,9 +115,9 @@ impl Types<'_> {
         });
         let step_docs = self.step_docs();
         let commands = self.commands(&quote!(self.publish();));
+        let debug = debug(&quote!(ControlLoop<'_>), "ControlLoop");
         quote! {
             /// The half of the drive that the control interrupt owns.
-            #[derive(Debug)]
             pub struct ControlLoop<'drive> {
                 set_point: &'drive SetPoint,
                 state: &'drive mut State,
@@ -135,6 +137,8 @@ impl Types<'_> {
                     self.set_point.status.store(self.state.status());
                 }
             }
+
+            #debug
         }
     }
 
@@ -183,7 +187,6 @@ impl Types<'_> {
             #periods_definition
 
             /// What outlives a control period.
-            #[derive(Debug)]
             struct State {
                 #(#fields),*
             }
@@ -320,6 +323,18 @@ impl Types<'_> {
     }
 }
 
+/// What `{:?}` shows of a type that has a status. (Derived ones would show every state word, and cost the compiler as
+/// much as the step.)
+pub(super) fn debug(name: &TokenStream, text: &str) -> TokenStream {
+    quote! {
+        impl ::core::fmt::Debug for #name {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                self.status().debug(#text, f)
+            }
+        }
+    }
+}
+
 fn public_constant(constant: &PublicConstant) -> TokenStream {
     let name = screaming(&constant.name);
     let doc = docs(&constant.doc);
@@ -338,9 +353,12 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
             let count = Literal::usize_unsuffixed(bits.len());
             let vectors = bits.iter().map(|vector| {
                 let [alpha, beta] = vector.map(|bits| number(i64::from(bits)));
-                quote!([#kind::from_bits(#alpha), #kind::from_bits(#beta)])
+                quote!([#alpha, #beta])
             });
-            (quote!([[#kind; 2]; #count]), quote!([#(#vectors),*]))
+            (
+                quote!([[#kind; 2]; #count]),
+                quote!(pairs_from_bits([#(#vectors),*])),
+            )
         }
         PublicValue::Integers { rust_type, values } => {
             let kind = Ident::new(rust_type, Span::call_site());

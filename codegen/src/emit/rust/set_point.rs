@@ -3,7 +3,7 @@
 use super::super::set_point::{Shared, shared};
 use super::super::texts;
 use super::function::Setter;
-use super::interface::Types;
+use super::interface::{Types, debug};
 use super::names::{doc, docs, snake};
 use crate::ir::Word;
 use proc_macro2::{Literal, TokenStream};
@@ -44,9 +44,9 @@ impl Types<'_> {
                 quote!(#name)
             }
         });
+        let debug = debug(&quote!(SetPoint), "SetPoint");
         quote! {
             #docs
-            #[derive(Debug)]
             pub struct SetPoint {
                 #(#fields,)*
                 /// What the control loop last said of mode and fault; see [`Status::word`].
@@ -70,6 +70,8 @@ impl Types<'_> {
                     [#(#words),*]
                 }
             }
+
+            #debug
         }
     }
 }
