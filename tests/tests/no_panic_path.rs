@@ -63,16 +63,22 @@ fn firmware() -> String {
 
 /// The `fixed` types that emitted code names, as far as it uses them.
 fn fixed() -> String {
-    let mut text = "#![no_std]\npub mod types {\n".to_owned();
+    let mut text = "#![no_std]
+        pub struct FixedI32<Frac>(i32, core::marker::PhantomData<Frac>);
+        impl<Frac> Clone for FixedI32<Frac> { fn clone(&self) -> Self { *self } }
+        impl<Frac> Copy for FixedI32<Frac> {}
+        impl<Frac> FixedI32<Frac> {
+            #[inline(always)] pub const fn from_bits(bits: i32) -> Self { Self(bits, core::marker::PhantomData) }
+            #[inline(always)] pub const fn to_bits(self) -> i32 { self.0 }
+        }
+        pub mod types {\n"
+        .to_owned();
     for frac_bits in 0..32 {
         let integer_bits = 32 - frac_bits;
         writeln!(
             text,
-            "#[derive(Clone, Copy)] pub struct I{integer_bits}F{frac_bits}(i32);
-            impl I{integer_bits}F{frac_bits} {{
-                #[inline(always)] pub const fn from_bits(bits: i32) -> Self {{ Self(bits) }}
-                #[inline(always)] pub const fn to_bits(self) -> i32 {{ self.0 }}
-            }}"
+            "pub struct U{frac_bits};
+            pub type I{integer_bits}F{frac_bits} = crate::FixedI32<U{frac_bits}>;"
         )
         .expect("a string takes all");
     }

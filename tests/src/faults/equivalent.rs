@@ -27,12 +27,18 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         faults: &[(&["calibration_sum_max"], &["bit 6"])],
     },
     Unnoticed {
-        because: "a distance is the same from either end",
+        because: "a count beyond the ADC's range, limited to it, says a current above the trip level",
         drives: ALL,
-        faults: &[(
-            &["advance_sequence: in offset_is_bad"],
-            &["operands swapped", "operands swapped (3)"],
-        )],
+        faults: &[
+            (
+                &["read_sample: in out_of_range"],
+                &["another comparison", "another comparison (2)"],
+            ),
+            (
+                &["read_sample: out_of_range"],
+                &["and for or", "second left out"],
+            ),
+        ],
     },
     Unnoticed {
         because: "without stall time-out there is no fourth fault to tell",
@@ -379,7 +385,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         faults: &[
             (&["di_min"], &["one more", "one less"]),
             (&["di_max"], &["one less", "one more"]),
-            (&["di_min", "di_max"], &["bit 4"]),
+            (&["di_min", "di_max"], &["bit 4", "bit 9"]),
             (
                 &["estimate_emf: di_a", "estimate_emf: di_b"],
                 &["lower limit left out", "upper limit left out"],
@@ -388,7 +394,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
-        drives: &[PAPER, HOVERBOARD, FCS_PAPER, PHCC_PAPER],
+        drives: &[FCS_PAPER],
         faults: &[(&["di_min"], &["one more"]), (&["di_max"], &["one less"])],
     },
     Unnoticed {
@@ -412,7 +418,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "the set-point words of all inputs are the same",
-        drives: &[TEKNIC],
+        drives: &[TEKNIC, PI_ANAHEIM],
         faults: &[
             (&["i_max_bits"], &["one less"]),
             (&["i_min_bits"], &["one more"]),
@@ -432,7 +438,7 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         drives: &[FCS_HOVERBOARD],
         faults: &[(
             &["e_min", "e_max"],
-            &["one more", "one less", "bit 7", "bit 14"],
+            &["one more", "one less", "bit 7", "bit 15"],
         )],
     },
     Unnoticed {
@@ -645,13 +651,10 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             (
                 &[
                     "limit_torque_priority: in centred_a_limited",
-                    "limit_torque_priority: centred_a_limited",
                     "limit_torque_priority: in centred_b_limited",
-                    "limit_torque_priority: centred_b_limited",
                     "limit_torque_priority: in centred_c_limited",
-                    "limit_torque_priority: centred_c_limited",
                 ],
-                &["limit left out"],
+                &["limit left out", "limit left out (2)"],
             ),
         ],
     },
@@ -689,15 +692,36 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             (
                 &[
                     "limit_keep_angle: in centred_a_limited",
-                    "limit_keep_angle: centred_a_limited",
                     "limit_keep_angle: in centred_b_limited",
-                    "limit_keep_angle: centred_b_limited",
                     "limit_keep_angle: in centred_c_limited",
-                    "limit_keep_angle: centred_c_limited",
                 ],
                 &["limit left out"],
             ),
         ],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[TEKNIC, PI_ANAHEIM],
+        faults: &[(
+            &[
+                "limit_keep_angle: centred_a_limited",
+                "limit_keep_angle: centred_b_limited",
+                "limit_keep_angle: centred_c_limited",
+            ],
+            &["limit left out"],
+        )],
+    },
+    Unnoticed {
+        because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
+        drives: &[ESTUN],
+        faults: &[(
+            &[
+                "limit_keep_angle: in centred_a_limited",
+                "limit_keep_angle: in centred_b_limited",
+                "limit_keep_angle: in centred_c_limited",
+            ],
+            &["limit left out (2)"],
+        )],
     },
     Unnoticed {
         because: "a limited voltage leaves the bus, centred, by less than half a timer tick",
@@ -800,10 +824,9 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         because: "without an EMF the integral is a mean of itself and the limited voltage",
         drives: &[PI_ANAHEIM],
         faults: &[
-            (
-                &["integral_min", "integral_max"],
-                &["one more", "one less", "bit 5", "bit 10"],
-            ),
+            (&["integral_min", "integral_max"], &["one more", "one less"]),
+            (&["integral_min"], &["bit 6", "bit 12", "bit 17"]),
+            (&["integral_max"], &["bit 5", "bit 11"]),
             (
                 &["integrate: integral_a_now", "integrate: integral_b_now"],
                 &["lower limit left out", "upper limit left out"],
