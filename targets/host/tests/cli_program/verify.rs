@@ -220,7 +220,7 @@ fn compare_tells_accuracy_per_controller_and_word_length() {
         let one_step = &row["one_step"];
         let (largest, bound) = (number(one_step, "largest_v"), number(one_step, "bound_v"));
         let seen = number(one_step, "seen_to_bound");
-        assert_eq!(seen, largest / bound);
+        assert!((seen * bound / largest - 1.0).abs() < 1e-12, "{row}");
         // A bound that nothing comes near would say nothing.
         assert!(seen <= 1.0 && seen > 0.02, "{row}");
         let decisions = number(one_step, "decisions_equal_pct");

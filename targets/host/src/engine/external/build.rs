@@ -54,7 +54,7 @@ impl BuildError {
 }
 
 /// The runtime's sources.
-const RUNTIME: [(&str, &str); 8] = [
+const RUNTIME: [(&str, &str); 9] = [
     ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
     (
         "arith.rs",
@@ -63,6 +63,10 @@ const RUNTIME: [(&str, &str); 8] = [
     (
         "boundary.rs",
         include_str!("../../../../../runtime/src/boundary.rs"),
+    ),
+    (
+        "constants.rs",
+        include_str!("../../../../../runtime/src/constants.rs"),
     ),
     (
         "double_buffer.rs",
@@ -93,21 +97,23 @@ const DRIVER_C: &str = include_str!("driver.c");
 const MACROS: &str = "#[macro_export] macro_rules! controller { () => {} }\n\
     #[macro_export] macro_rules! verify { () => {} }\n";
 
-/// Names, `from_bits` and `to_bits` of the `fixed` crate's signed 32-bit types.
+/// The `fixed` crate's signed 32-bit types, with `from_bits` and `to_bits`.
 fn fixed_types() -> String {
     let mut text = String::from(
-        "#![no_std]\npub mod types {\n\
-         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]\n\
-         pub struct FixedI32<const FRAC: u32>(i32);\n\
-         impl<const FRAC: u32> FixedI32<FRAC> {\n\
-         pub const fn from_bits(bits: i32) -> Self { Self(bits) }\n\
-         pub const fn to_bits(self) -> i32 { self.0 }\n}\n",
+        "#![no_std]\n\
+         pub struct FixedI32<Frac>(i32, core::marker::PhantomData<Frac>);\n\
+         impl<Frac> Clone for FixedI32<Frac> { fn clone(&self) -> Self { *self } }\n\
+         impl<Frac> Copy for FixedI32<Frac> {}\n\
+         impl<Frac> FixedI32<Frac> {\n\
+         pub const fn from_bits(bits: i32) -> Self { Self(bits, core::marker::PhantomData) }\n\
+         pub const fn to_bits(self) -> i32 { self.0 }\n}\n\
+         pub mod types {\n",
     );
     for frac_bits in 0..=32 {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "pub type I{}F{frac_bits} = FixedI32<{frac_bits}>;",
+            "pub struct U{frac_bits};\npub type I{}F{frac_bits} = crate::FixedI32<U{frac_bits}>;",
             32 - frac_bits
         );
     }
