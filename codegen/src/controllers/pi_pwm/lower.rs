@@ -86,7 +86,10 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                 Some(e) => l.b.sub(limited.u[x], e[x]),
                 None => limited.u[x],
             };
-            let names = [["drive_a", "integral_a_now"], ["drive_b", "integral_b_now"]][x];
+            let names = [
+                ["distance_a", "integral_a_now"],
+                ["distance_b", "integral_b_now"],
+            ][x];
             let held = integrate(l, range, k_i, [sums[x], target], names);
             remembered.push((
                 integrals[x],
@@ -193,7 +196,7 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
     let line = l.limit_line(line, front.bus);
     l.b.stage("integrate", INTEGRATION);
     let limited = l.b.shift_right(line, 1);
-    let held = integrate(l, range, k_i, [sum, limited], ["drive", "integral_now"]);
+    let held = integrate(l, range, k_i, [sum, limited], ["distance", "integral_now"]);
     let gain = options.proportional_gain(&spec.motor);
     let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, gain));
     let l = &mut *step.lowering;
