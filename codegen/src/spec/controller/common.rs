@@ -153,6 +153,28 @@ const EMF_FILTER: f64 = 0.25;
 /// The default threshold where the motor is not too small for it, ampere.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
 
+/// Refuses the option `name`, if it is stated, beside another setting.
+pub(crate) fn refuse(
+    reader: &Reader,
+    name: &str,
+    [other, value]: [&str; 2],
+    why: &str,
+    errors: &mut Collector,
+) {
+    if let Some(field) = reader.field(name) {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            name,
+            &field.value.to_string(),
+            reader
+                .field(other)
+                .map_or(reader.location(), |field| &field.location),
+            &format!("{other}: {value}"),
+            why,
+        ));
+    }
+}
+
 /// Refuses `emf: held` where a law uses more of the EMF than its sum over the delay.
 pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Collector) {
     if common.emf == EmfSource::Held

@@ -1,6 +1,8 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
-use super::common::{EmfSource, LoopOptions, Surroundings, read_common, refuse_commutation};
+use super::common::{
+    EmfSource, LoopOptions, Surroundings, read_common, refuse, refuse_commutation,
+};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::check::reader::Reader;
@@ -118,28 +120,6 @@ fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     }
     if options.horizon == 2 {
         refuse(reader, "horizon", ["emf", "held"], why, errors);
-    }
-}
-
-/// Refuses the option `name`, if it is stated, beside another setting.
-fn refuse(
-    reader: &Reader,
-    name: &str,
-    [other, value]: [&str; 2],
-    why: &str,
-    errors: &mut Collector,
-) {
-    if let Some(field) = reader.field(name) {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            name,
-            &field.value.to_string(),
-            reader
-                .field(other)
-                .map_or(reader.location(), |field| &field.location),
-            &format!("{other}: {value}"),
-            why,
-        ));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::common::{
     EmfSource, LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
-    read_saturation, refuse_commutation,
+    read_saturation, refuse, refuse_commutation,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -46,20 +46,9 @@ pub(crate) fn check_options(
         refuse_commutation(reader, ["modulation", "three_phase"], errors);
     }
     let common = read_common(reader, surroundings, without_sectors, errors)?;
-    if common.emf == EmfSource::Held
-        && modulation == Modulation::Pair
-        && let Some(field) = reader.field("emf")
-    {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "emf",
-            "held",
-            reader
-                .field("modulation")
-                .map_or(reader.location(), |field| &field.location),
-            "modulation: pair",
-            "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`",
-        ));
+    if common.emf == EmfSource::Held && modulation == Modulation::Pair {
+        let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`";
+        refuse(reader, "emf", ["modulation", "pair"], why, errors);
     }
     Some(PdccSpec {
         modulation,

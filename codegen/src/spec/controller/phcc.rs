@@ -1,6 +1,6 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use super::common::{EmfSource, LoopOptions, Surroundings, read_common};
+use super::common::{EmfSource, LoopOptions, Surroundings, read_common, refuse};
 use super::off_leg::{OffLegModel, read_off_leg};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -92,36 +92,14 @@ pub(crate) fn check_options(
     let given = reader.plain_quantity(errors, "band");
     let common = read_common(reader, surroundings, false, errors)?;
     let floats = !three_phase && off_leg == OffLegModel::Physical && common.delay == 1;
-    if common.emf == EmfSource::Held
-        && floats
-        && let Some(field) = reader.field("emf")
-    {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "emf",
-            "held",
-            reader
-                .field("off_leg")
-                .map_or(reader.location(), |field| &field.location),
-            "off_leg: physical",
-            "a leg that floats shows nothing of its EMF, so none can be held; choose `off_leg: nominal` or `candidates: three_phase`",
-        ));
+    if common.emf == EmfSource::Held && floats {
+        let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `off_leg: nominal` or `candidates: three_phase`";
+        refuse(reader, "emf", ["off_leg", "physical"], why, errors);
     }
     if common.delay == 0 {
+        let why = "without delay the present current is compared, and nothing is predicted";
         for name in ["emf", "emf_filter", "off_leg"] {
-            let Some(field) = reader.field(name) else {
-                continue;
-            };
-            errors.push(catalogue::option_without_effect(
-                &field.location,
-                name,
-                &field.value.to_string(),
-                reader
-                    .field("delay")
-                    .map_or(reader.location(), |field| &field.location),
-                "delay: 0",
-                "without delay the present current is compared, and nothing is predicted",
-            ));
+            refuse(reader, name, ["delay", "0"], why, errors);
         }
     }
     let (rated, rated_part) = surroundings.rated_current.as_ref()?;

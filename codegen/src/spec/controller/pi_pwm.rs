@@ -2,7 +2,7 @@
 
 use super::common::{
     LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
-    read_saturation, refuse_held,
+    read_saturation, refuse, refuse_held,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -71,20 +71,10 @@ pub(crate) fn check_options(
         ));
     }
     let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::Nearest);
-    if saturation == LimitRule::TorquePriority
-        && !feed_forward
-        && let Some(field) = reader.field("saturation")
-    {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "saturation",
-            "torque_priority",
-            reader
-                .field("feed_forward")
-                .map_or(reader.location(), |field| &field.location),
-            "feed_forward: off",
-            "it keeps the component along the EMF, which is known with `feed_forward: on` only",
-        ));
+    if saturation == LimitRule::TorquePriority && !feed_forward {
+        let why =
+            "it keeps the component along the EMF, which is known with `feed_forward: on` only";
+        refuse(reader, "saturation", ["feed_forward", "off"], why, errors);
     }
     if six_step {
         check_six_step(reader, errors);
