@@ -65,13 +65,6 @@ impl Word {
         self.0.wrapping_add(limit) as u32 > (limit as u32).wrapping_mul(2)
     }
 
-    /// The lower half, for words that are known to fit 16 signed bits.
-    #[inline(always)]
-    #[must_use]
-    pub const fn to_i16(self) -> i16 {
-        self.0 as i16
-    }
-
     /// The lower half, for words that are known to lie in 0..=65535.
     #[inline(always)]
     #[must_use]

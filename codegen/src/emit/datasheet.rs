@@ -205,6 +205,11 @@ fn entries(table: &Table) -> String {
     }
 }
 
+/// The type of a word that is stored in so many bits.
+fn storage(bits: u32) -> &'static str {
+    if bits == 16 { "u16" } else { "i32" }
+}
+
 fn memory(sheet: &mut Sheet, program: &Program) {
     // Fields lie in the order that needs least; the whole is padded to the alignment of its largest word.
     let bytes = || program.states.iter().map(|word| word.storage_bits / 8);
@@ -242,7 +247,7 @@ fn memory(sheet: &mut Sheet, program: &Program) {
     for word in program.states.iter().chain(&program.params) {
         sheet.row([
             format!("`{}`", word.name),
-            format!("i{}", word.storage_bits),
+            storage(word.storage_bits).to_owned(),
             word.initial.to_string(),
             word.interval.to_string(),
             word.doc.clone(),

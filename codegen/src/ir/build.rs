@@ -107,7 +107,7 @@ impl Program {
         TableId(self.tables.len() as u32 - 1)
     }
 
-    /// Adds a state word; it is stored in 16 bits where its interval allows that.
+    /// Adds a state word; it is stored in 16 bits where its interval allows that, see [`Word::storage_bits`].
     pub fn state(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> StateId {
         self.states.push(word(name, initial, interval, doc));
         StateId(self.states.len() as u32 - 1)
@@ -124,7 +124,11 @@ impl Program {
 }
 
 fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
-    let storage_bits = if interval.bits() <= 16 { 16 } else { 32 };
+    let storage_bits = if Interval::HALFWORD.contains(interval) {
+        16
+    } else {
+        32
+    };
     Word {
         name: name.to_owned(),
         initial,

@@ -90,7 +90,8 @@ pub struct Word {
     pub initial: i32,
     /// Interval that it never leaves.
     pub interval: Interval,
-    /// Bits of the word that stores it: 16 or 32.
+    /// Bits of the word that stores it: 32, or 16 of a number that is never negative. A halfword with a sign takes more to
+    /// load than a whole word where only the unsigned load has an offset (ARMv6-M).
     pub storage_bits: u32,
     /// Meaning and format.
     pub doc: String,

@@ -19,6 +19,11 @@ impl Interval {
     };
     /// False and true.
     pub const FLAG: Self = Self { low: 0, high: 1 };
+    /// Numbers of an unsigned halfword.
+    pub const HALFWORD: Self = Self {
+        low: 0,
+        high: u16::MAX as i64,
+    };
 
     /// `low..=high`.
     pub fn new(low: i64, high: i64) -> Self {

@@ -23,14 +23,14 @@ impl fmt::Display for Program {
         for word in &self.params {
             writeln!(
                 f,
-                "param {}: i{} in {} = {}",
-                word.name, word.storage_bits, word.interval, word.initial
+                "param {}: i32 in {} = {}",
+                word.name, word.interval, word.initial
             )?;
         }
         for word in &self.states {
             writeln!(
                 f,
-                "state {}: i{} in {} = {}",
+                "state {}: {} bits in {} = {}",
                 word.name, word.storage_bits, word.interval, word.initial
             )?;
         }

@@ -124,7 +124,12 @@ fn check_word(word: &Word, violations: &mut Violations) {
             &format!("initial value {} outside {}", word.initial, word.interval),
         );
     }
-    if word.interval.bits() > word.storage_bits || ![16, 32].contains(&word.storage_bits) {
+    let fits = match word.storage_bits {
+        16 => Interval::HALFWORD.contains(word.interval),
+        32 => word.interval.bits() <= 32,
+        _ => false,
+    };
+    if !fits {
         violations.escape(&word.name, word.interval, word.storage_bits);
     }
 }

@@ -35,6 +35,8 @@ pub struct Hall {
     pub sector: Value,
     /// Sector of the last sample.
     pub sector_prev: Value,
+    /// Flag: the sector is not the last sample's, which may have had none.
+    pub changed: Value,
     /// Flag: the sector changed.
     pub edge: Value,
 }
@@ -170,6 +172,7 @@ impl Lowering<'_> {
         self.b.name("sector", sector);
         self.b.set_state(word, sector);
         let changed = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        self.b.name("sector_changed", changed);
         let zero = self.zero();
         let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
         let edge = self.b.and(changed, known);
@@ -177,6 +180,7 @@ impl Lowering<'_> {
         Hall {
             sector,
             sector_prev,
+            changed,
             edge,
         }
     }

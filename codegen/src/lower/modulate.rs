@@ -50,10 +50,8 @@ pub struct OffLeg {
 pub struct PairModulation {
     /// Sector in force at the last sample, where that is not the sample's own.
     pub sector_prev: Option<StateId>,
-    /// Whether a commutation was going on.
-    pub commutating: StateId,
-    /// Periods since it began.
-    pub age: StateId,
+    /// Samples for which a commutation may still last.
+    pub left: StateId,
 }
 
 impl Lowering<'_> {
@@ -164,100 +162,125 @@ impl Lowering<'_> {
                     "Sector in force at the last sample; 0 before the first.",
                 )
             }),
-            commutating: self.state(
-                "commutating",
+            left: self.state(
+                "commutation_left",
                 0,
-                Interval::new(0, 1),
-                "1 while the outgoing phase still carries current.",
-            ),
-            age: self.state(
-                "commutation_age",
-                0,
-                Interval::new(0, i64::from(timeout)),
-                "Periods since the commutation began.",
+                Interval::new(0, i64::from(timeout) + 1),
+                "Samples for which the commutation may still last, the last one counted; 0 while the outgoing phase carries no current.",
             ),
         }
     }
 
-    /// Whether a commutation is going on: flag, and the new words of [`PairModulation`] but the sector; and
-    /// the phase that goes off in the sector. `edge` tells a change of the sample's own sector.
+    /// Samples left to a commutation before this one: those of `left`, or where `began` holds all of them.
+    pub fn commutation_kept(&mut self, began: Value, left: Value, timeout: u32) -> Value {
+        let whole = self.whole_commutation(timeout);
+        let kept = self.b.select(began, whole, left);
+        self.b.name("commutation_restarted", kept)
+    }
+
+    /// What a commutation that begins is given, of which each sample takes one.
+    fn whole_commutation(&mut self, timeout: u32) -> Value {
+        self.number(
+            "commutation_begun",
+            i64::from(timeout) + 2,
+            "What a commutation that begins is given: one for each sample that it may last, one for its first, one that is never taken.",
+        )
+    }
+
+    /// Flag: the sector in force is another than at the last sample, for a reference that runs ahead of the sample.
+    pub fn sector_in_force_changed(&mut self, sector_prev: StateId, sector: Value) -> Value {
+        self.b.stage(
+            "compare_sectors",
+            &["Whether the sector in force is another than at the last sample."],
+        );
+        let sector_prev = self.b.state(sector_prev);
+        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        let zero = self.zero();
+        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+        let changed = self.b.and(different, known);
+        self.b.name("changed", changed)
+    }
+
+    /// Whether a commutation is going on: flag, and the samples left to it; and the phase that goes off in the sector.
+    /// `kept` is of [`Self::commutation_kept`].
     pub fn commutation(
         &mut self,
-        words: PairModulation,
-        [sector, edge, direction, set_point]: [Value; 4],
+        [sector, kept, direction, set_point]: [Value; 4],
         currents: &Currents,
         threshold: f64,
         timeout: u32,
-    ) -> ([Value; 3], Value) {
-        let table = |values: [i32; 6]| std::iter::once(0).chain(values).collect::<Vec<i32>>();
+    ) -> ([Value; 2], Value) {
         let phases = self.b.program.column(
             "sector",
             "off_phase",
-            table(OFF_PHASE),
+            std::iter::once(0).chain(OFF_PHASE).collect(),
             &["Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.".to_owned()],
         );
-        let signs = self.b.program.column(
-            "sector",
-            "outgoing_sign",
-            table(OUTGOING_SIGN),
-            &["Sign of the outgoing current on entry of sectors 1 to 6, positive torque, forward.".to_owned()],
-        );
+        // The outgoing current as a sum of those of phases a and b, c being their sum's negative.
+        let shares = [("outgoing_a", 0), ("outgoing_b", 1)].map(|(name, x)| {
+            let column = OFF_PHASE.iter().zip(OUTGOING_SIGN).map(|(&phase, sign)| match phase {
+                2 => -sign,
+                phase if phase == x => sign,
+                _ => 0,
+            });
+            let doc = format!(
+                "What the current of phase {} adds to the outgoing one on entry of sectors 1 to 6, positive torque, forward.",
+                ["a", "b"][x as usize]
+            );
+            let column = std::iter::once(0).chain(column).collect();
+            self.b.program.column("sector", name, column, &[doc])
+        });
         self.b.stage(
             "detect_commutation",
+            &["Whether the last sample left any to this commutation."],
+        );
+        let phase = self.b.lookup(phases, sector);
+        self.b.name("outgoing_phase", phase);
+        let one = self.b.literal(1);
+        let lasts = self.b.compare(Comparison::Less, one, kept);
+        self.b.name("commutation_lasts", lasts);
+        let none = self.zero();
+        self.b.guarded_stage(
+            "follow_commutation",
+            lasts,
+            false,
             &[
                 "A commutation begins at the first sample in a new sector and ends at a later one, when the outgoing",
                 "current has fallen to the threshold or the time-out has passed.",
             ],
         );
-        let changed = match words.sector_prev {
-            None => edge,
-            Some(word) => {
-                let sector_prev = self.b.state(word);
-                let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
-                let zero = self.zero();
-                let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
-                let changed = self.b.and(different, known);
-                self.b.name("changed", changed)
-            }
-        };
-        let phase = self.b.lookup(phases, sector);
-        self.b.name("outgoing_phase", phase);
-        let outgoing = self.of_phase(phase, currents.phases);
-        let sign = self.b.lookup(signs, sector);
+        let [of_a, of_b] = [0, 1].map(|x| {
+            let share = self.b.lookup(shares[x], sector);
+            self.b.mul(share, currents.phases[x], 0)
+        });
+        let outgoing = self.b.add(of_a, of_b);
+        let turned = self.b.mul(direction, outgoing, 0);
+        self.b.name("outgoing_turned", turned);
         let zero = self.zero();
         let braking = self.b.compare(Comparison::Less, set_point, zero);
-        let turned = self.b.mul(sign, direction, 0);
-        self.b.name("outgoing_sign_turned", turned);
         let back = self.b.neg(turned);
-        let sign = self.b.select(braking, back, turned);
-        let outgoing = self.b.mul(sign, outgoing, 0);
+        let outgoing = self.b.select(braking, back, turned);
         let doc = "Outgoing current at which a commutation ends";
         let threshold = self.ampere_word(threshold);
         let limit = self.current("i_comm", threshold, doc);
-        let decayed = self.b.compare(Comparison::LessEqual, outgoing, limit);
-        let age = self.b.state(words.age);
-        let doc = "Periods after which a commutation is taken as ended.";
-        let limit = self.number("commutation_timeout", i64::from(timeout), doc);
-        let expired = self.b.compare(Comparison::LessEqual, limit, age);
-        let ended = self.b.or(decayed, expired);
-        let was = self.b.state(words.commutating);
-        let zero = self.zero();
-        let was = self.b.compare(Comparison::NotEqual, was, zero);
-        let going_on = self.b.not(ended);
-        let still = self.b.and(was, going_on);
-        let commutating = self.b.or(changed, still);
-        self.b.name("in_commutation", commutating);
+        let flows = self.b.compare(Comparison::Less, limit, outgoing);
+        let whole = self.whole_commutation(timeout);
+        let begins = self.b.compare(Comparison::Equal, kept, whole);
+        let goes_on = self.b.or(begins, flows);
         let one = self.b.literal(1);
-        let older = self.b.add(age, one);
-        let limit = self.number("commutation_timeout", i64::from(timeout), doc);
-        let older = self.b.min(older, limit);
+        let less = self.b.sub(kept, one);
         let zero = self.zero();
-        let age = self.b.select(changed, zero, older);
-        self.b.name("commutation_age_now", age);
-        let (one, zero) = (self.b.literal(1), self.zero());
-        let word = self.b.select(commutating, one, zero);
-        self.b.name("commutating_now", word);
-        ([commutating, word, age], phase)
+        let less = self.b.max(less, zero);
+        let zero = self.zero();
+        let followed = self.b.select(goes_on, less, zero);
+        self.b.name("left_while_flowing", followed);
+        let [left] = self.b.join([("commutation_left_now", followed, none)]);
+        self.b
+            .stage("find_commutation", &["Whether a commutation goes on."]);
+        let zero = self.zero();
+        let commutating = self.b.compare(Comparison::NotEqual, left, zero);
+        self.b.name("in_commutation", commutating);
+        ([commutating, left], phase)
     }
 
     /// The value of the phase numbered 0 to 2 by `phase`.

@@ -136,19 +136,33 @@ impl Lowering<'_> {
         }
     }
 
-    /// Direction of rotation alone, for controllers that need no angle.
-    pub fn sense_direction(&mut self, direction: StateId, hall: &Hall) -> Value {
+    /// Direction of rotation alone, for controllers that need no angle; and [`Self::commutation_kept`] where the word of
+    /// that, with its time-out, is given.
+    pub fn sense_direction(
+        &mut self,
+        direction: StateId,
+        hall: &Hall,
+        commutation: Option<(StateId, u32)>,
+    ) -> (Value, Option<Value>) {
         let old = self.b.state(direction);
+        let left = commutation.map(|(word, timeout)| (self.b.state(word), timeout));
         self.b.guarded_stage(
             "sense_direction",
-            hall.edge,
+            hall.changed,
             true,
-            &["Which way the rotor turned at this edge: 1 to the next sector, -1 to the one before; a jump changes nothing."],
+            &["Which way the rotor turned at this edge: 1 to the next sector, -1 to the one before; a jump and the first sample change nothing."],
         );
         let seen = self.turned(hall, old).direction;
-        let [now] = self.b.join([("direction_next", seen, old)]);
-        self.b.set_state(direction, now);
-        now
+        let mut results = vec![("direction_next", seen, old)];
+        if let Some((left, timeout)) = left {
+            let zero = self.zero();
+            let known = self.b.compare(Comparison::NotEqual, hall.sector_prev, zero);
+            let kept = self.commutation_kept(known, left, timeout);
+            results.push(("commutation_kept", kept, left));
+        }
+        let joined = self.b.join_all(&results);
+        self.b.set_state(direction, joined[0]);
+        (joined[0], joined.get(1).copied())
     }
 
     /// Angle and speed from the edges.

@@ -91,8 +91,8 @@ pub struct Front {
     pub direction: Option<Value>,
     /// Set-point as a voltage word.
     pub set_point: Value,
-    /// Flag, and the new words of the commutation; where the law follows it.
-    pub commutation: Option<[Value; 3]>,
+    /// Flag, and the samples left to the commutation; where the law follows it.
+    pub commutation: Option<[Value; 2]>,
     /// Reference as voltage words, phases a, b.
     pub reference: [Value; 2],
     /// 1/3.
@@ -136,9 +136,13 @@ impl CurrentLoop<'_, '_> {
         let currents = l.measure(&sample, words.supervisor.offsets);
         let word = words.supervisor.sector_prev;
         let hall = word.map(|word| l.find_sector(&sample, word));
-        if let Some(direction) = words.direction {
-            // Read here, in an open stage: the stage that senses the direction is a guarded one.
-            l.b.state(direction);
+        // Read here, in an open stage: the stage that senses the direction is a guarded one.
+        for word in words
+            .direction
+            .into_iter()
+            .chain(words.pair.map(|pair| pair.left))
+        {
+            l.b.state(word);
         }
         let j = l.b.param(set_point.j);
         let demand = set_point
@@ -155,27 +159,38 @@ impl CurrentLoop<'_, '_> {
             _ => None,
         };
         let j = regulated.map_or(j, |regulated| regulated.j);
-        let direction = match (&rotor, words.direction.zip(hall.as_ref())) {
-            (Some(rotor), _) => Some(rotor.direction),
-            (None, Some((word, hall))) => Some(l.sense_direction(word, hall)),
-            (None, None) => None,
+        let timeout = options.commutation_timeout;
+        let advances = options.advance > 0.0;
+        // At an edge, which is rare, the commutation begins where the direction is sensed.
+        let at_edges = words.pair.filter(|_| rotor.is_none());
+        let (direction, kept) = match (&rotor, words.direction.zip(hall.as_ref())) {
+            (Some(rotor), _) => (Some(rotor.direction), None),
+            (None, Some((word, hall))) => {
+                let commutation = at_edges.map(|pair| (pair.left, timeout));
+                let (direction, kept) = l.sense_direction(word, hall, commutation);
+                (Some(direction), kept)
+            }
+            (None, None) => (None, None),
         };
         let sector_seen = hall.map_or(sample.sector, |hall| hall.sector);
         let sector = match &rotor {
-            Some(rotor) if options.advance > 0.0 => {
-                l.advanced_sector(options.advance, sector_seen, rotor)
-            }
+            Some(rotor) if advances => l.advanced_sector(options.advance, sector_seen, rotor),
             _ => sector_seen,
         };
         let (commutation, outgoing) = match (words.pair, direction.zip(hall)) {
             (Some(pair), Some((direction, hall))) => {
-                let inputs = [sector, hall.edge, direction, j];
+                let kept = kept.unwrap_or_else(|| {
+                    let began = pair
+                        .sector_prev
+                        .map_or(hall.edge, |word| l.sector_in_force_changed(word, sector));
+                    let left = l.b.state(pair.left);
+                    l.commutation_kept(began, left, timeout)
+                });
                 let (words, outgoing) = l.commutation(
-                    pair,
-                    inputs,
+                    [sector, kept, direction, j],
                     &currents,
                     options.commutation_threshold,
-                    options.commutation_timeout,
+                    timeout,
                 );
                 (Some(words), Some(outgoing))
             }
@@ -183,7 +198,7 @@ impl CurrentLoop<'_, '_> {
         };
         // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
         // legs off.
-        let corner = if options.advance > 0.0 {
+        let corner = if advances {
             Corner::Sector(sector)
         } else {
             Corner::HallCode(sample.hall)
@@ -375,12 +390,11 @@ impl CurrentLoop<'_, '_> {
         if let Some((state, integral)) = front.speed_integral {
             remembered.push((state, "speed_integral_next", integral));
         }
-        if let (Some([_, word, age]), Some(pair)) = (front.commutation, words.pair) {
+        if let (Some([_, left]), Some(pair)) = (front.commutation, words.pair) {
             if let Some(sector_prev) = pair.sector_prev {
                 self.lowering.b.set_state(sector_prev, front.sector);
             }
-            remembered.push((pair.commutating, "commutating_next", word));
-            remembered.push((pair.age, "commutation_age_next", age));
+            remembered.push((pair.left, "commutation_left_next", left));
         }
         if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
             for ((state, name), value) in terminals

@@ -1,6 +1,9 @@
 //! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
 
-use super::switching_table;
+use super::table::{
+    BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
+    switching_table,
+};
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
@@ -27,17 +30,19 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
             },
         };
         let front = step.front(set_point);
-        let flag = Interval::new(0, 1);
-        let memory = ["h_a", "h_b"].map(|name| {
-            let doc = "Wish of the axis: 1 its component shall rise, 0 fall.";
-            step.lowering.state(name, 0, flag, doc)
+        let bands = [1.0, 3.0_f64.sqrt()]
+            .map(|share| step.lowering.volts_word(share * design.k_di * options.band));
+        let memory = [("h_a", bands[0]), ("h_b", bands[1])].map(|(name, band)| {
+            let doc = "Memory of the axis, added to its error: half the band while its component shall rise, one word more and negative while it shall fall; 0 while it has no wish.";
+            let range = Interval::new(-band - 1, band);
+            (step.lowering.state(name, 0, range, doc), band)
         });
         let q = step.predicted_error(&front);
-        let wishes = compare_with_bands(step.lowering, options, design, q, memory);
-        let vector = look_up(step.lowering, options, &front, wishes);
+        let axes = compare_with_bands(step.lowering, options, design, q, memory);
+        let vector = look_up(step.lowering, options, &front, axes.map(|axis| axis.rises));
         let remembered = vec![
-            (memory[0], "h_a_next", wishes[0]),
-            (memory[1], "h_b_next", wishes[1]),
+            (memory[0].0, "h_a_next", axes[0].memory),
+            (memory[1].0, "h_b_next", axes[1].memory),
         ];
         step.apply_vector(&front, vector, remembered);
     })
@@ -107,19 +112,29 @@ fn deviation(l: &mut Lowering<'_>, x: usize, error: Value) -> Value {
     l.b.name(["q_a", "q_b"][x], error)
 }
 
-/// The wishes of the two axes.
+/// What an axis asks for, and what it remembers of that.
+#[derive(Clone, Copy)]
+struct Axis {
+    /// Flag: its component shall rise.
+    rises: Value,
+    /// What is added to its next error.
+    memory: Value,
+}
+
+/// The wishes of the two axes; `memory` has the state words and half the bands.
 fn compare_with_bands(
     l: &mut Lowering<'_>,
     options: &PhccSpec,
     design: &LoopDesign,
     q: [Value; 2],
-    memory: [StateId; 2],
-) -> [Value; 2] {
+    memory: [(StateId, i64); 2],
+) -> [Axis; 2] {
     l.b.stage(
         "compare_with_bands",
         &[
-            "Each axis asks for a rise (1) or a fall (0) of its component once the error leaves the band, and keeps asking.",
-            "Beta is taken times the square root of 3: (b - c) = 2 b + a.",
+            "Each axis asks for a rise or a fall of its component once the error leaves the band, and keeps asking: while it asks",
+            "for a rise, an error down to the band's lower edge will do, otherwise it takes one above the upper edge. An axis",
+            "that comes from rest goes by the sign. Beta is taken times the square root of 3: (b - c) = 2 b + a.",
         ],
     );
     let twice = l.b.shift_left(q[1], 1);
@@ -129,28 +144,27 @@ fn compare_with_bands(
     let doc = "Predicted error of the current on alpha and beta, which is compared with the band";
     let word = 1.0 / (l.scale.voltage() * design.k_di * 3.0_f64.sqrt());
     l.b.state_error("current", beta, [doc, "A"], word);
-    let band = design.k_di * options.band;
     [0, 1].map(|x| {
-        let volts = if x == 0 { band } else { 3.0_f64.sqrt() * band };
-        let raw = l.volts_word(volts);
-        let name = ["band_alpha", "band_beta"][x];
-        let doc = format!(
-            "Half width of the band of {} as a voltage",
-            engineering(options.band, "A")
-        );
-        let error = [q[0], beta][x];
-        let top = l.voltage(name, raw, &doc);
-        let above = l.b.compare(Comparison::Less, top, error);
-        l.b.name(["above_alpha", "above_beta"][x], above);
-        let top = l.voltage(name, raw, &doc);
-        let bottom = l.b.neg(top);
-        let below = l.b.compare(Comparison::Less, error, bottom);
-        let before = l.b.state(memory[x]);
+        let (state, band) = memory[x];
+        let before = l.b.state(state);
+        let lifted = l.b.add([q[0], beta][x], before);
+        l.b.name(["lifted_alpha", "lifted_beta"][x], lifted);
         let zero = l.zero();
-        let kept = l.b.select(below, zero, before);
-        let one = l.b.literal(1);
-        let wish = l.b.select(above, one, kept);
-        l.b.name(["wish_alpha", "wish_beta"][x], wish)
+        let rises = l.b.compare(Comparison::LessEqual, zero, lifted);
+        l.b.name(["alpha_rises", "beta_rises"][x], rises);
+        let (name, other) = [
+            ("band_alpha", "band_alpha_below"),
+            ("band_beta", "band_beta_below"),
+        ][x];
+        let half = engineering(options.band, "A");
+        let doc = format!("Half width of the band of {half} as a voltage");
+        let above = l.voltage(name, band, &doc);
+        let doc =
+            format!("Half width of the band of {half} and one word more, negative, as a voltage");
+        let below = l.voltage(other, -band - 1, &doc);
+        let memory = l.b.select(rises, above, below);
+        l.b.name(["memory_alpha", "memory_beta"][x], memory);
+        Axis { rises, memory }
     })
 }
 
@@ -161,46 +175,50 @@ fn look_up(
     front: &Front,
     [alpha, beta]: [Value; 2],
 ) -> Value {
-    let table = switching_table(options, l.spec.motor.emf_shape);
+    let sets = switching_table(options, l.spec.motor.emf_shape);
+    // Backward, unknown, forward; then a set-point of 0 and more, and one below.
+    let table = [
+        [BRAKING_BACKWARD, MOTORING_BACKWARD],
+        [BRAKING_FORWARD; 2],
+        [MOTORING_FORWARD, BRAKING_FORWARD],
+    ]
+    .iter()
+    .flatten()
+    .flat_map(|&set| &sets[PER_SET * set..][..PER_SET])
+    .copied()
+    .collect();
     let table = l.b.program.table(
         "switching",
         table,
         &[
-            "Vector by 64 set + 8 sector + 4 commutating + 2 alpha + beta; sets: 0 motoring forward, 1 motoring backward,".to_owned(),
-            "2 braking forward, 3 braking backward. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
+            "Vector by 128 (1 + direction) + 64 if the set-point is negative + 8 sector + 4 commutating + 2 alpha + beta.".to_owned(),
+            "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );
     l.b.stage(
         "look_up_vector",
-        &["The switching table: rows by quadrant of torque and speed, sector and commutation, columns by the wishes."],
+        &["The switching table: rows by direction, sign of the set-point, sector and commutation, columns by the wishes."],
     );
     let direction = front.direction.unwrap_or(front.set_point);
+    let turning = l.b.shift_left(direction, 7);
+    let origin = l.b.literal(128);
+    let turning = l.b.add(turning, origin);
     let zero = l.zero();
     let negative = l.b.compare(Comparison::Less, front.set_point, zero);
-    l.b.name("is_negative", negative);
-    let positive = l.b.not(negative);
-    let zero = l.zero();
-    let forward = l.b.compare(Comparison::Less, zero, direction);
-    let zero = l.zero();
-    let backward = l.b.compare(Comparison::Less, direction, zero);
-    l.b.name("is_backward", backward);
-    let with_forward = l.b.and(positive, forward);
-    let with_backward = l.b.and(negative, backward);
-    let motoring = l.b.or(with_forward, with_backward);
-    let (none, braking) = (l.zero(), l.b.literal(128));
-    let quadrant = l.b.select(motoring, none, braking);
-    let (reverse, none) = (l.b.literal(64), l.zero());
-    let side = l.b.select(backward, reverse, none);
-    let set = l.b.add(quadrant, side);
-    l.b.name("set", set);
+    let flags = [
+        (Some(negative), 64),
+        (front.commutation.map(|[commutating, _]| commutating), 4),
+        (Some(alpha), 2),
+        (Some(beta), 1),
+    ];
     let sector = l.b.shift_left(front.sector, 3);
-    let row = l.b.add(set, sector);
-    let commutating = front.commutation.map_or(alpha, |[_, word, _]| word);
-    let commutating = l.b.shift_left(commutating, 2);
-    let row = l.b.add(row, commutating);
-    let alpha = l.b.shift_left(alpha, 1);
-    let wishes = l.b.add(alpha, beta);
-    let index = l.b.add(row, wishes);
+    let mut index = l.b.add(turning, sector);
+    for (flag, weight) in flags {
+        let Some(flag) = flag else { continue };
+        let (set, clear) = (l.b.literal(weight), l.zero());
+        let bits = l.b.select(flag, set, clear);
+        index = l.b.add(index, bits);
+    }
     l.b.name("entry", index);
     let vector = l.b.lookup(table, index);
     l.b.name("vector", vector)

@@ -7,12 +7,23 @@ use crate::spec::{EmfShape, PhccCandidates, PhccSpec, SwitchingTable};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
-/// Sets of rows: motoring forward and backward, braking forward and backward.
+/// Sets of rows.
 const SETS: usize = 4;
 
-/// Entries of a sector, and of a set.
+/// Number of the set for torque and rotation forward.
+pub const MOTORING_FORWARD: usize = 0;
+/// Number of the set for torque and rotation backward.
+pub const MOTORING_BACKWARD: usize = 1;
+/// Number of the set for torque against forward rotation, or where the rotation is not known yet.
+pub const BRAKING_FORWARD: usize = 2;
+/// Number of the set for torque against backward rotation.
+pub const BRAKING_BACKWARD: usize = 3;
+
+/// Entries of a sector.
 const PER_SECTOR: usize = 8;
-const PER_SET: usize = 64;
+
+/// Entries of a set.
+pub const PER_SET: usize = 64;
 
 /// What a set is designed for. Voltages in units of the bus.
 struct Design {

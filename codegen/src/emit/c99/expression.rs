@@ -61,7 +61,7 @@ impl Printer<'_> {
         let value = self.scope.in_shape(value, Shape::of_state(word));
         let value = self.written(&value);
         if word.storage_bits == 16 && !value.is_literal {
-            format!("(int16_t){}", value.within(Binding::Unary))
+            format!("(uint16_t){}", value.within(Binding::Unary))
         } else {
             value.text
         }

@@ -242,7 +242,7 @@ impl Types<'_> {
         for word in &self.program.states {
             text.push_str(&names.comment(INDENT, &[meaning(word)]));
             let kind = if word.storage_bits == 16 {
-                "int16_t"
+                "uint16_t"
             } else {
                 "int32_t"
             };

@@ -198,7 +198,7 @@ impl Types<'_> {
         reset.push(inner("*state = initial_state;"));
         reset.extend(offsets.iter().map(|name| {
             let is_narrow = self.word(name).is_some_and(|word| word.storage_bits == 16);
-            let cast = if is_narrow { "(int16_t)" } else { "" };
+            let cast = if is_narrow { "(uint16_t)" } else { "" };
             inner(&format!("state->{name} = {cast}{name};"))
         }));
         reset.push(line("}"));
@@ -293,7 +293,7 @@ impl Types<'_> {
         let write = states.iter().enumerate().map(|(place, word)| {
             let inner = INDENT.repeat(2);
             let cast = if word.storage_bits == 16 {
-                "(int16_t)"
+                "(uint16_t)"
             } else {
                 ""
             };

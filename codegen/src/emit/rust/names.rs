@@ -150,7 +150,7 @@ fn doc_text(line: &str) -> String {
 /// The type that stores a word.
 pub(super) fn storage_type(word: &Word) -> TokenStream {
     if word.storage_bits == 16 {
-        quote!(i16)
+        quote!(u16)
     } else {
         quote!(Word)
     }
@@ -159,7 +159,7 @@ pub(super) fn storage_type(word: &Word) -> TokenStream {
 /// `value`, a word expression that binds tighter than a method call, as stored.
 pub(super) fn stored(word: &Word, value: &TokenStream) -> TokenStream {
     if word.storage_bits == 16 {
-        quote!(#value.to_i16())
+        quote!(#value.to_u16())
     } else {
         value.clone()
     }

@@ -109,14 +109,20 @@ fn emit_table(table: &Table) -> TokenStream {
     quote!(#doc static #name: [#element; #count] = [#(#values),*];)
 }
 
-/// The smallest elements that hold a table.
+/// The smallest elements that hold a table, unsigned where that will do: to load and to compare them takes no sign extension.
 fn element(table: &Table) -> TokenStream {
     match size(table) {
         1 if table.holds_legs => quote!(LegState),
+        1 if is_unsigned(table) => quote!(u8),
         1 => quote!(i8),
+        2 if is_unsigned(table) => quote!(u16),
         2 => quote!(i16),
         _ => quote!(i32),
     }
+}
+
+fn is_unsigned(table: &Table) -> bool {
+    table.values.iter().all(|&value| value >= 0)
 }
 
 fn entry(table: &Table, value: i32) -> TokenStream {

@@ -371,11 +371,11 @@ impl BitTrue {
             e,
             e_now,
             sector_eff,
-            commutating: self.state.commutating,
+            commutating: self.state.commutating(),
             integral,
             set_point: j,
             direction: self.state.timing.direction,
-            rises: self.state.rises,
+            hysteresis: self.state.hysteresis,
             vector_prev: self.state.vector_prev.0,
             past: self.state.past,
         });
@@ -410,7 +410,7 @@ impl BitTrue {
             self.state.e_prev = expected;
             self.state.speed_integral = speed_integral;
             self.state.integral = decision.integral;
-            self.state.rises = decision.rises;
+            self.state.hysteresis = decision.hysteresis;
             self.state.vector_prev = state::Vector(decision.vector);
             self.state.past = decision.past;
         } else {
@@ -430,7 +430,7 @@ impl BitTrue {
             theta: angle.theta,
             step_angle: angle.step,
             sector_eff,
-            commutating: self.state.commutating,
+            commutating: self.state.commutating(),
             reach: decision.reach,
             vector: if run { decision.vector } else { 0 },
             run,

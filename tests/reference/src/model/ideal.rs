@@ -352,7 +352,7 @@ impl Ideal {
             e,
             e_now,
             sector_eff,
-            commutating: self.state.commutating,
+            commutating: self.state.commutation_left > 0.0,
             integral,
             set_point: current,
             direction: self.state.timing.direction,
@@ -401,11 +401,10 @@ impl Ideal {
             self.state.e_prev = [0.0; 2];
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
-            self.state.rises = [false; 2];
+            self.state.rises = [None; 2];
             self.state.vector_prev = 0;
             self.state.past = Past::default();
-            self.state.commutating = false;
-            self.state.commutation_age = 0.0;
+            self.state.commutation_left = 0.0;
         }
         self.trace = Trace {
             i: [i_a, i_b],
@@ -416,7 +415,7 @@ impl Ideal {
             theta,
             step_angle,
             sector_eff,
-            commutating: self.state.commutating,
+            commutating: self.state.commutation_left > 0.0,
             reach: decision.reach,
             vector: if run { decision.vector } else { 0 },
             run,
@@ -461,17 +460,16 @@ impl Ideal {
     /// Follows the commutation (section 5).
     fn commutate(&mut self, sector_eff: usize, current: f64, i: &Vector3<f64>) {
         let state = &mut self.state;
-        let timeout = f64::from(self.end.timeout);
         let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
         let torque = if current < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * state.timing.direction;
-        let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= self.end.threshold
-            || state.commutation_age >= timeout;
-        state.commutating = changed || (state.commutating && !ended);
-        state.commutation_age = if changed {
-            0.0
+        let flows = sign * i[sector::OUT_PHASE[sector_eff]] > self.end.threshold;
+        state.commutation_left = if changed {
+            f64::from(self.end.timeout) + 1.0
+        } else if flows {
+            (state.commutation_left - 1.0).max(0.0)
         } else {
-            (state.commutation_age + 1.0).min(timeout)
+            0.0
         };
     }
 

@@ -42,18 +42,6 @@ impl Set {
     }
 }
 
-/// Whether a component is to rise: as the error says outside of the band, as before within it.
-#[inline]
-pub fn wish(error: Word, band: f64, before: bool) -> bool {
-    if error > band {
-        true
-    } else if error < -band {
-        false
-    } else {
-        before
-    }
-}
-
 /// One set's vectors by sector less one, state of commutation, wish along phase a, wish across it.
 type Rows = [[[[usize; 2]; 2]; 2]; 6];
 

@@ -64,8 +64,8 @@ pub struct PhysicalState {
     pub(super) timing: HallTiming,
     pub(super) sector_prev: usize,
     pub(super) sector_eff_prev: usize,
-    pub(super) commutating: bool,
-    pub(super) commutation_age: f64,
+    /// Samples for which a commutation may still last, the last one counted.
+    pub(super) commutation_left: f64,
     /// ADC offsets, counts.
     pub offset: [f64; 2],
     /// Currents of phases a, b at the last sample, ampere.
@@ -84,8 +84,8 @@ pub struct PhysicalState {
     pub e_prev: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
-    /// Whether the components along a and across it are to rise (PHCC).
-    pub rises: [bool; 2],
+    /// Whether the components along a and across it are to rise (PHCC); none before the first sample in control.
+    pub rises: [Option<bool>; 2],
     /// Number of the vector that the last step chose (FCS-MPC with a switching weight).
     pub vector_prev: usize,
     /// What the past adds to the voltage, volt.

@@ -44,7 +44,7 @@ pub struct Constants {
     pub di_max: f64,
     pub i_max_bits: f64,
     pub t_max_bits: f64,
-    pub comm_timeout: f64,
+    pub comm_samples: f64,
     pub e_max: f64,
     /// V_LARGEST.
     pub v_largest: f64,
@@ -315,7 +315,7 @@ impl Constants {
             ),
             i_max_bits,
             t_max_bits,
-            comm_timeout: f64::from(end.timeout),
+            comm_samples: f64::from(end.timeout) + 1.0,
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
             v_largest,
             line_max,

@@ -42,7 +42,7 @@ pub struct Inputs<'a> {
     /// Sense of rotation, 1 or -1.
     pub direction: Word,
     /// `h_a`, `h_b` (PHCC).
-    pub rises: [bool; 2],
+    pub hysteresis: [Word; 2],
     /// `vector_prev` (FCS-MPC).
     pub vector_prev: usize,
     /// What the past adds to the voltage (deadbeat with a held EMF).
@@ -62,7 +62,7 @@ pub struct Decision {
     /// `integral_x` (PI).
     pub integral: [Word; 2],
     /// `h_a`, `h_b` (PHCC).
-    pub rises: [bool; 2],
+    pub hysteresis: [Word; 2],
     /// What the past adds to the voltage (deadbeat with a held EMF).
     pub past: Past,
 }

@@ -67,8 +67,7 @@ impl State {
             timing: self.timing,
             sector_prev: self.sector_prev,
             sector_eff_prev: self.sector_eff_prev,
-            commutating: self.commutating,
-            commutation_age: self.commutation_age,
+            commutation_left: self.commutation_left,
             offset: self.offset.map(|word| word / k.count),
             i_prev: self.i_prev.map(|word| word * k.ampere),
             v_cmd: volts(self.v_cmd),
@@ -78,7 +77,9 @@ impl State {
             off_prev: self.off_prev.checked_sub(1),
             e_prev: volts(self.e_prev),
             integral: volts(self.integral),
-            rises: self.rises,
+            rises: self
+                .hysteresis
+                .map(|word| (word != 0.0).then_some(word > 0.0)),
             vector_prev: self.vector_prev.0,
             past: Past {
                 due: volts(self.past.due),

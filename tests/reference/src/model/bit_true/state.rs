@@ -19,8 +19,7 @@ pub struct State {
     pub omega: Word,
     pub speed_integral: Word,
     pub sector_eff_prev: usize,
-    pub commutating: bool,
-    pub commutation_age: Word,
+    pub commutation_left: Word,
     pub i_prev: [Word; 2],
     pub v_cmd: [Word; 2],
     pub t_cmd: [Word; 3],
@@ -29,7 +28,7 @@ pub struct State {
     pub off_prev: usize,
     pub e_prev: [Word; 2],
     pub integral: [Word; 2],
-    pub rises: [bool; 2],
+    pub hysteresis: [Word; 2],
     pub vector_prev: Vector,
     pub past: Past,
 }
@@ -214,8 +213,7 @@ macro_rules! for_each_word {
             if $parts.has(Part::SectorInForce) {
                 $show!("sector_eff_prev", $state.sector_eff_prev);
             }
-            $show!("commutating", $state.commutating);
-            $show!("commutation_age", $state.commutation_age);
+            $show!("commutation_left", $state.commutation_left);
         }
         if $parts.has(Part::Sight) {
             $show!("i_a_prev", $state.i_prev[0]);
@@ -258,8 +256,8 @@ macro_rules! for_each_word {
             $show!("later_b", $state.past.later[1]);
         }
         if $parts.has(Part::Hysteresis) {
-            $show!("h_a", $state.rises[0]);
-            $show!("h_b", $state.rises[1]);
+            $show!("h_a", $state.hysteresis[0]);
+            $show!("h_b", $state.hysteresis[1]);
         }
         if $parts.has(Part::VectorMemory) {
             $show!("vector_prev", $state.vector_prev);
@@ -286,14 +284,19 @@ impl State {
         let changed = sector_eff != self.sector_eff_prev && self.sector_eff_prev != 0;
         let torque = if j < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * self.timing.direction;
-        let ended = sign * i[sector::OUT_PHASE[sector_eff]] <= k.i_comm
-            || self.commutation_age >= k.comm_timeout;
-        self.commutating = changed || (self.commutating && !ended);
-        self.commutation_age = if changed {
-            word(0.0)
+        let flows = sign * i[sector::OUT_PHASE[sector_eff]] > k.i_comm;
+        self.commutation_left = if changed {
+            word(k.comm_samples)
+        } else if flows {
+            (self.commutation_left - 1.0).max(0.0)
         } else {
-            (self.commutation_age + 1.0).min(k.comm_timeout)
+            word(0.0)
         };
+    }
+
+    /// Whether a commutation is under way.
+    pub fn commutating(&self) -> bool {
+        self.commutation_left > 0.0
     }
 
     /// What a period outside of control leaves behind (section 12).
@@ -306,11 +309,10 @@ impl State {
         self.off_prev = 0;
         self.e_prev = [word(0.0); 2];
         self.integral = [word(0.0); 2];
-        self.rises = [false; 2];
+        self.hysteresis = [word(0.0); 2];
         self.vector_prev = Vector(0);
         self.past = Past::default();
-        self.commutating = false;
-        self.commutation_age = word(0.0);
+        self.commutation_left = word(0.0);
     }
 
     /// Writes the words in order.

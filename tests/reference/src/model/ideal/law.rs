@@ -37,8 +37,8 @@ pub struct Inputs {
     pub set_point: f64,
     /// Sense of rotation, 1 or -1.
     pub direction: f64,
-    /// Whether the components are to rise (PHCC).
-    pub rises: [bool; 2],
+    /// Whether the components are to rise (PHCC); none before the first sample in control.
+    pub rises: [Option<bool>; 2],
     /// Number of the vector that the last step chose (FCS-MPC).
     pub vector_prev: usize,
     /// Whether deadbeat control holds the EMF of the last period.
@@ -59,8 +59,8 @@ pub struct Decision {
     pub command: Command,
     /// Integral part of the voltage (PI), phases a, b.
     pub integral: [f64; 2],
-    /// Whether the components are to rise (PHCC).
-    pub rises: [bool; 2],
+    /// Whether the components are to rise (PHCC); none before the first sample in control.
+    pub rises: [Option<bool>; 2],
     /// What the past adds to the voltage (deadbeat with a held EMF).
     pub past: Past,
 }

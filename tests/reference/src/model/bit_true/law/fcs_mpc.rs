@@ -121,7 +121,7 @@ impl<'a> Choice<'a> {
             // 11
             command: whole::command(now, vector, self.law.candidates != Candidates::ThreePhase),
             integral: now.integral,
-            rises: now.rises,
+            hysteresis: now.hysteresis,
             past: self.law.form.past(now, u),
         }
     }
@@ -230,7 +230,7 @@ impl<'a> Choice<'a> {
             vector,
             command,
             integral: now.integral,
-            rises: now.rises,
+            hysteresis: now.hysteresis,
             past: self.law.form.past(now, u),
         }
     }

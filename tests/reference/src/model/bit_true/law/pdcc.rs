@@ -44,7 +44,7 @@ impl Pdcc {
             vector: 0,
             command,
             integral: now.integral,
-            rises: now.rises,
+            hysteresis: now.hysteresis,
             past: self.form.past(now, u),
         }
     }

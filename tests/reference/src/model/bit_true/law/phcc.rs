@@ -2,7 +2,7 @@
 
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Coefficient, both, round_half_up};
+use crate::exact::{Coefficient, both, round_half_up, word};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::switching::{self, Switching};
@@ -59,9 +59,10 @@ impl Phcc {
         // 10; sqrt(3) times the component across a is b less c, c being minus the sum of a and b.
         let [band_a, band_b] = self.bands;
         let rises = [
-            switching::wish(q[0], band_a, now.rises[0]),
-            switching::wish(2.0 * q[1] + q[0], band_b, now.rises[1]),
+            q[0] + now.hysteresis[0] >= 0.0,
+            2.0 * q[1] + q[0] + now.hysteresis[1] >= 0.0,
         ];
+        let memory = |rises, band: f64| word(if rises { band } else { -band - 1.0 });
         let set = switching::Set::of(now.direction, now.set_point);
         let vector = self
             .switching
@@ -83,7 +84,7 @@ impl Phcc {
             vector,
             command: whole::command(now, vector, true),
             integral: now.integral,
-            rises,
+            hysteresis: [memory(rises[0], band_a), memory(rises[1], band_b)],
             past,
         }
     }

@@ -70,7 +70,7 @@ impl PiPwm {
                 false,
             ),
             integral,
-            rises: now.rises,
+            hysteresis: now.hysteresis,
             past: now.past,
         }
     }
@@ -109,7 +109,7 @@ impl PiPwm {
             vector: 0,
             command: pulses::line(now, line, self.dead_time.shifts(now, flow)),
             integral: [integral, word(0.0)],
-            rises: now.rises,
+            hysteresis: now.hysteresis,
             past: now.past,
         }
     }

@@ -27,7 +27,12 @@ impl Phcc {
         } else {
             now.i_ref - deadbeat::current_then(now)
         };
-        let rises = [0, 1].map(|axis| switching::wish(error[axis], self.band, now.rises[axis]));
+        // As the error says outside of the band, as before within it; by its sign where there is no before.
+        let rises = [0, 1].map(|axis| match now.rises[axis] {
+            Some(true) => error[axis] >= -self.band,
+            Some(false) => error[axis] > self.band,
+            None => error[axis] >= 0.0,
+        });
         let set = switching::Set::of(now.direction, now.set_point);
         let vector = self
             .switching
@@ -40,7 +45,7 @@ impl Phcc {
             vector,
             command: whole::command(now, vector, true),
             integral: to_ab(&now.integral),
-            rises,
+            rises: rises.map(Some),
             past: if now.emf_is_held {
                 held::past_of_prediction(now, &u)
             } else {
