@@ -82,6 +82,8 @@ pub struct Held {
     due: [StateId; 2],
     later: Option<[StateId; 2]>,
     due_words: [Value; 2],
+    /// What is due and the present current's part together.
+    carried: [Value; 2],
     later_words: Option<[Value; 2]>,
     currents: [Value; 3],
 }
@@ -104,14 +106,21 @@ impl CurrentLoop<'_, '_> {
             })
         });
         l.b.stage(
-            "read_past",
-            &["What past samples and commands add to the voltages of this step and the next."],
+            "carry_past",
+            &["What past samples and commands and the present current add to this step's voltage: due + k_now i."],
         );
+        let due_words = due.map(|word| l.b.state(word));
+        let carried = [0, 1].map(|x| {
+            let taken = l.times(folded.now, currents[x]);
+            let carried = l.b.add(due_words[x], taken);
+            l.b.name(["carried_a", "carried_b"][x], carried)
+        });
         Held {
             folded,
             due,
             later,
-            due_words: due.map(|word| l.b.state(word)),
+            due_words,
+            carried,
             later_words: later.map(|words| words.map(|word| l.b.state(word))),
             currents,
         }
@@ -198,9 +207,7 @@ pub struct LeftOver {
 impl Held {
     /// Reference, past and present current of phase `x` together, added to the open stage.
     pub fn sum(&self, l: &mut Lowering<'_>, x: usize, reference: Value) -> Value {
-        let open = l.b.add(self.due_words[x], reference);
-        let taken = l.times(self.folded.now, self.currents[x]);
-        l.b.add(open, taken)
+        l.b.add(self.carried[x], reference)
     }
 
     /// What voltages leave that count in full: all but those of deadbeat control with delay 1.

@@ -196,6 +196,9 @@ impl CurrentLoop<'_, '_> {
             }
             _ => (None, None),
         };
+        // Ahead of the reference, so that its product with a sign is added last, by one instruction.
+        let held = self.holds_emf().then(|| self.held(currents.phases));
+        let l = &mut *self.lowering;
         // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
         // legs off.
         let corner = if advances {
@@ -230,7 +233,6 @@ impl CurrentLoop<'_, '_> {
         );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
         let off_leg = self.off_leg_of(bus, third);
-        let held = self.holds_emf().then(|| self.held(currents.phases));
         let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
             words,
