@@ -12,7 +12,7 @@
     reason = "each is one instruction, and firmware is debugged unoptimised, too"
 )]
 
-use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};
+use core::ops::{Add, BitOr, Mul, Neg, Shl, Shr, Sub};
 
 /// A 32-bit word.
 ///
@@ -101,6 +101,15 @@ operator! {
     Add::add = wrapping_add;
     Sub::sub = wrapping_sub;
     Mul::mul = wrapping_mul;
+}
+
+impl BitOr for Word {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
 }
 
 impl Neg for Word {

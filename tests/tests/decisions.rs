@@ -273,16 +273,21 @@ impl Subject {
     }
 
     /// Excess of the cost of a vector over the least, in parts of 2 eps.
-    fn excess(&self, trace: &Trace, set_point: f64, vector: usize) -> f64 {
+    fn excess(&self, before: &PhysicalState, trace: &Trace, set_point: f64, vector: usize) -> f64 {
         if let Controller::Phcc(options) = &self.spec.controller {
             if vector == trace.vector {
                 return 0.0;
             }
-            // A wish differs only where its error is as far from its band as the errors may be off.
+            // A wish differs only where its error is as far from its band, or from zero where there was none, as the
+            // errors may be off.
             let band = options.band / DiscretePhase::new(&self.spec).b;
             let [q_a, q_b] = trace.u_unsat;
-            let alpha = (q_a.abs() - band).abs();
-            let beta = ((q_a + 2.0 * q_b).abs() - 3f64.sqrt() * band).abs() / 3.0;
+            let from_edge = |axis: usize, error: f64, band: f64| match before.rises[axis] {
+                Some(_) => (error.abs() - band).abs(),
+                None => error.abs(),
+            };
+            let alpha = from_edge(0, q_a, band);
+            let beta = from_edge(1, q_a + 2.0 * q_b, 3f64.sqrt() * band) / 3.0;
             return alpha.min(beta) / (2.0 * self.eps);
         }
         let Controller::FcsMpc(options) = &self.spec.controller else {
@@ -334,7 +339,7 @@ impl Subject {
             tally.left_out += 1;
             return (legs, Some(found.vector));
         }
-        let excess = self.excess(&exact, set_point, found.vector);
+        let excess = self.excess(&before, &exact, set_point, found.vector);
         assert!(
             excess <= 1.0,
             "{}: vector {} for {}: {excess} of 2 eps above the least; {exact:?}, set-point {set_point} A, {sample:?}",
@@ -346,7 +351,7 @@ impl Subject {
         tally.different += u64::from(found.vector != exact.vector);
         tally.worst = tally.worst.max(excess);
         let wrong = self.neither_of(found.vector, &exact);
-        let is_refuted = |wrong| self.excess(&exact, set_point, wrong) > 1.0;
+        let is_refuted = |wrong| self.excess(&before, &exact, set_point, wrong) > 1.0;
         tally.refuted += u64::from(wrong.is_some_and(is_refuted));
         (legs, Some(found.vector))
     }

@@ -55,6 +55,8 @@ pub(super) enum Operator {
     AngleSub,
     /// a b, in one word
     Mul,
+    /// Bits that either word has.
+    BitOr,
     /// a < b
     Less,
     /// a <= b
@@ -279,9 +281,12 @@ impl<'a> Scope<'a> {
             }
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),
-            Op::Or(a, b) => match self.range_test(a, b) {
-                Some([x, limit]) => call(P::Exceeds, &[x, limit], None),
-                None => E::binary(O::Or, of(a), of(b)),
+            Op::Or(a, b) => match (self.range_test(a, b), self.either_above(a, b)) {
+                (Some([x, limit]), _) => call(P::Exceeds, &[x, limit], None),
+                (None, Some([x, y, limit])) => {
+                    E::binary(O::Greater, E::binary(O::BitOr, of(x), of(y)), of(limit))
+                }
+                (None, None) => E::binary(O::Or, of(a), of(b)),
             },
             Op::Not(a) => self.negation(a),
             Op::Select {
@@ -310,6 +315,28 @@ impl<'a> Scope<'a> {
             || matches!(self.node(limit).op, Op::Constant(_))
                 && self.node(other).op == self.node(limit).op;
         (x == again && is_limit && self.interval(limit).low >= 0).then_some([x, limit])
+    }
+
+    /// Two words and the limit that the flags compare them with, `limit < x` and `limit < y`, where one comparison
+    /// of the bits of both tells as much: the limit's bits are ones down to the last, and no word is negative.
+    fn either_above(&self, a: Value, b: Value) -> Option<[Value; 3]> {
+        let compared = |value: Value| match self.node(value) {
+            Node {
+                name,
+                op: Op::Compare(Comparison::Less, limit, x),
+                ..
+            } if name.is_empty() => Some((*limit, *x)),
+            _ => None,
+        };
+        let ((limit, x), (other, y)) = (compared(a)?, compared(b)?);
+        let Op::Constant(id) = self.node(limit).op else {
+            return None;
+        };
+        let raw = self.context.program.constants[id.index()].raw;
+        let is_mask = raw > 0 && raw & raw.wrapping_add(1) == 0;
+        let is_same = self.node(other).op == self.node(limit).op;
+        let are_signless = [x, y].iter().all(|&word| self.interval(word).low >= 0);
+        (is_mask && is_same && are_signless).then_some([x, y, limit])
     }
 
     /// The signal stands left, what it is compared with right.

@@ -159,6 +159,7 @@ enum Binding {
     Choice,
     Or,
     And,
+    BitOr,
     Compare,
     Sum,
     Product,
@@ -229,6 +230,7 @@ fn binary(operator: Operator, a: Written, b: Written) -> Written {
         Operator::Add => "+",
         Operator::Sub => "-",
         Operator::Mul => "*",
+        Operator::BitOr => "|",
         Operator::Less => "<",
         Operator::LessEqual => "<=",
         Operator::Greater => ">",
@@ -247,6 +249,12 @@ fn binary(operator: Operator, a: Written, b: Written) -> Written {
         Operator::Mul => (
             Binding::Product,
             a.operand(Binding::Product),
+            b.operand(Binding::Unary),
+        ),
+        // Beside other operators it has parentheses, and so have they.
+        Operator::BitOr => (
+            Binding::BitOr,
+            a.operand(Binding::Unary),
             b.operand(Binding::Unary),
         ),
         Operator::And => (Binding::And, a.within(Binding::And), b.within(Binding::And)),

@@ -85,6 +85,7 @@ enum Binding {
     Or,
     And,
     Compare,
+    BitOr,
     Shift,
     Sum,
     Product,
@@ -97,6 +98,7 @@ impl Binding {
         match operator {
             Operator::Add | Operator::Sub | Operator::AngleAdd | Operator::AngleSub => Self::Sum,
             Operator::Mul => Self::Product,
+            Operator::BitOr => Self::BitOr,
             Operator::And => Self::And,
             Operator::Or => Self::Or,
             _ => Self::Compare,
@@ -217,6 +219,7 @@ fn sign(operator: Operator) -> TokenStream {
         Operator::Add | Operator::AngleAdd => quote!(+),
         Operator::Sub | Operator::AngleSub => quote!(-),
         Operator::Mul => quote!(*),
+        Operator::BitOr => quote!(|),
         Operator::Less => quote!(<),
         Operator::LessEqual => quote!(<=),
         Operator::Greater => quote!(>),

@@ -67,6 +67,7 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             variant,
             step,
             sample,
+            &before,
             &bit_true,
             &ideal,
             &mut worst,
@@ -86,6 +87,7 @@ fn compare(
     variant: &Variant,
     step: u64,
     sample: Sample,
+    before: &PhysicalState,
     bit_true: &BitTrue,
     ideal: &Ideal,
     worst: &mut Worst,
@@ -112,13 +114,14 @@ fn compare(
     worst.unsat = worst.unsat.max(far(b.u_unsat, a.u_unsat));
     if b.vector != a.vector {
         if let Controller::Phcc(options) = &variant.spec.controller {
-            // Only where the error lies at the edge of its band may a wish differ.
+            // Only where the error lies at the edge of its band may a wish differ, or at zero where there was none.
             let DiscretePhase { b: gain, .. } = DiscretePhase::new(&variant.spec);
             let [q_a, q_b] = a.u_unsat;
             let errors = [q_a, (q_a + 2.0 * q_b) / 3f64.sqrt()].map(|q| (q * gain).abs());
-            let near = errors
-                .iter()
-                .any(|error| (error - options.band).abs() < 0.02 * options.band);
+            let near = errors.iter().zip(before.rises).any(|(error, before)| {
+                let edge = before.map_or(0.0, |_| options.band);
+                (error - edge).abs() < 0.02 * options.band
+            });
             assert!(near, "{} step {step}: errors {errors:?}", variant.name);
             worst.decided_otherwise += 1;
             return;
