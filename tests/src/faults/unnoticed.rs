@@ -9,7 +9,7 @@ pub struct Unnoticed {
     pub because: &'static str,
     /// The drives, by kind and motor.
     pub drives: &'static [&'static str],
-    /// All faults of each second list at all places of the first.
+    /// All faults of each second list at all places of the first; `table[0..8]` is entries 0 to 7.
     pub faults: &'static [Faults],
 }
 
@@ -41,6 +41,18 @@ pub(super) const PI_ANAHEIM: &str = "pi-pwm anaheim-bly172s";
 
 /// Those of FCS-MPC.
 pub(super) const FCS: &[&str] = &[FCS_PAPER, FCS_HOVERBOARD, FCS_ESTUN, FCS_TEKNIC];
+
+/// Those that follow commutations.
+pub(super) const COMMUTATES: &[&str] = &[
+    HOVERBOARD,
+    TEKNIC,
+    FCS_PAPER,
+    FCS_HOVERBOARD,
+    FCS_ESTUN,
+    FCS_TEKNIC,
+    PHCC_PAPER,
+    PHCC_ESTUN,
+];
 
 /// Every drive.
 pub(super) const ALL: &[&str] = &[
@@ -138,17 +150,49 @@ pub const RARE: &[Unnoticed] = &[
         because: "differs only where the error is at the end of its band to the last bit",
         drives: &[PHCC_ESTUN],
         faults: &[
-            (&["band_alpha", "band_beta"], &["one more", "one less"]),
             (
                 &[
-                    "compare_with_bands: above_beta",
-                    "compare_with_bands: above_alpha",
-                    "compare_with_bands: in h_a",
-                    "compare_with_bands: in h_b",
+                    "band_alpha",
+                    "band_beta",
+                    "band_alpha_below",
+                    "band_beta_below",
+                ],
+                &["one more", "one less"],
+            ),
+            (
+                &[
+                    "compare_with_bands: alpha_rises",
+                    "compare_with_bands: beta_rises",
                 ],
                 &["another comparison"],
             ),
         ],
+    },
+    Unnoticed {
+        because: "differs only in a commutation of unknown direction, where the rotor jumps over sectors at its first edge",
+        drives: &[PHCC_PAPER, PHCC_ESTUN],
+        faults: &[(
+            &[
+                "switching[140..144]",
+                "switching[148..152]",
+                "switching[156..160]",
+                "switching[164..168]",
+                "switching[172..176]",
+                "switching[180..184]",
+                "switching[204..208]",
+                "switching[212..216]",
+                "switching[220..224]",
+                "switching[228..232]",
+                "switching[236..240]",
+                "switching[244..248]",
+            ],
+            &["one more"],
+        )],
+    },
+    Unnoticed {
+        because: "moves the error by its last bit, which shows at the end of its band only",
+        drives: &[PHCC_PAPER],
+        faults: &[(&["k_hold"], &["one more", "one less"])],
     },
     Unnoticed {
         because: "differs only where the blend ends to the last bit",
@@ -190,7 +234,7 @@ pub const RARE: &[Unnoticed] = &[
         because: "moves a voltage or a score by its last digits, which changes the choice next to a tie only",
         drives: &[FCS_HOVERBOARD],
         faults: &[
-            (&["sector_last"], &["one less", "bit 10"]),
+            (&["sector_last"], &["one more", "one less", "bit 10"]),
             (
                 &[
                     "third_turn",
@@ -198,33 +242,9 @@ pub const RARE: &[Unnoticed] = &[
                     "sector_start[3]",
                     "sector_start[4]",
                     "sector_start[5]",
-                    "flux_c0[0]",
-                    "flux_c0[1]",
-                    "flux_c0[2]",
-                    "flux_c0[3]",
-                    "flux_c0[5]",
-                    "flux_c0[6]",
-                    "flux_c0[7]",
-                    "flux_c0[9]",
-                    "flux_c0[11]",
-                    "flux_c1[0]",
-                    "flux_c1[1]",
-                    "flux_c1[2]",
-                    "flux_c1[3]",
-                    "flux_c1[5]",
-                    "flux_c1[6]",
-                    "flux_c1[7]",
-                    "flux_c1[9]",
-                    "flux_c1[11]",
-                    "flux_c2[0]",
-                    "flux_c2[1]",
-                    "flux_c2[2]",
-                    "flux_c2[3]",
-                    "flux_c2[5]",
-                    "flux_c2[6]",
-                    "flux_c2[7]",
-                    "flux_c2[9]",
-                    "flux_c2[11]",
+                    "flux_c0[0..12]",
+                    "flux_c1[0..12]",
+                    "flux_c2[0..12]",
                 ],
                 &["one more"],
             ),
@@ -237,7 +257,10 @@ pub const RARE: &[Unnoticed] = &[
                 &["model_emf: in flux_now_a", "model_emf: in flux_now_b"],
                 &["rounded down", "rounded down (2)"],
             ),
-            (&["applied_voltage: in terminal_off"], &["-1 for 0"]),
+            (
+                &["applied_voltage: in terminal_off"],
+                &["1 for 0", "-1 for 0"],
+            ),
             (
                 &["predict_off_legs: in d_b", "predict_off_legs: in d_c"],
                 &["1 for 0"],
@@ -261,6 +284,28 @@ pub const RARE: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
+        because: "differs only where a phase is at a third of the bus to the last bit",
+        drives: &[FCS_HOVERBOARD],
+        faults: &[
+            (
+                &[
+                    "nearest_vector: in u_b_triple",
+                    "nearest_vector: in u_c_triple",
+                ],
+                &["another comparison"],
+            ),
+            (
+                &["nearest_vector: in vector_three"],
+                &["another comparison (2)"],
+            ),
+        ],
+    },
+    Unnoticed {
+        because: "differs only where a phase is next to zero and no third of the bus from the others",
+        drives: &[FCS_PAPER],
+        faults: &[(&["nearest_vector: in c_is_low"], &["-1 for 0 (2)"])],
+    },
+    Unnoticed {
         because: "differs only where two three-phase vectors tie to the last bit and no pair vector is nearer",
         drives: &[FCS_HOVERBOARD],
         faults: &[(&["nearest_vector: in a_is_low"], &["-1 for 0"])],
@@ -280,7 +325,7 @@ pub const RARE: &[Unnoticed] = &[
         drives: &[FCS_TEKNIC],
         faults: &[(
             &["nearest_pair: in vector_pair"],
-            &["another comparison (5)"],
+            &["another comparison (4)", "another comparison (5)"],
         )],
     },
     Unnoticed {
@@ -301,6 +346,19 @@ pub const RARE: &[Unnoticed] = &[
     },
 ];
 
+/// The places that a text names: entries of a table `table[first..end]`, or the one place.
+fn entries(text: &str) -> Vec<String> {
+    let range = text
+        .strip_suffix(']')
+        .and_then(|text| text.split_once('['))
+        .and_then(|(table, range)| Some((table, range.split_once("..")?)));
+    let Some((table, (first, end))) = range else {
+        return vec![text.to_owned()];
+    };
+    let [first, end] = [first, end].map(|number| number.parse::<usize>().expect("a number"));
+    (first..end).map(|n| format!("{table}[{n}]")).collect()
+}
+
 /// The listed faults of a drive, kind and motor, with the reasons; `wrong` gets those that are listed twice.
 pub fn listed<'r>(
     rows: &'r [Unnoticed],
@@ -309,10 +367,12 @@ pub fn listed<'r>(
 ) -> BTreeMap<String, &'r str> {
     let mut listed = BTreeMap::new();
     for row in rows.iter().filter(|row| row.drives.contains(&drive)) {
-        for (place, what) in row.faults() {
-            let fault = format!("{place}: {what}");
-            if listed.insert(fault, row.because).is_some() {
-                wrong.push(format!("{drive}: {place}: {what}: listed twice"));
+        for (places, what) in row.faults() {
+            for place in entries(places) {
+                let fault = format!("{place}: {what}");
+                if listed.insert(fault, row.because).is_some() {
+                    wrong.push(format!("{drive}: {place}: {what}: listed twice"));
+                }
             }
         }
     }
