@@ -6,7 +6,7 @@
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::module_name;
-use crate::emit::rust::{Surface, emit_rust};
+use crate::emit::rust::{Surface, emit_rust, write_rust};
 use crate::interface::Interface;
 use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate, warnings};
@@ -28,7 +28,10 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     match generate_input(&input, root) {
         Ok((Generated { graph, interface }, warnings)) => {
             let tracking = input.motor_file.iter().map(track);
-            let code = Part::Emission.timed(|| emit_rust(&graph, &interface, &surface));
+            let name = surface.name.to_string();
+            let code = Part::Emission.timed(|| write_rust(&graph, &interface, &name));
+            // Tokens of the text are the compiler's own work where this is a macro.
+            let code = code.into_tokens(&surface);
             let anchor = input.anchor();
             let warnings = warnings
                 .iter()

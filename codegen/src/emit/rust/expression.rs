@@ -3,13 +3,12 @@
 use super::super::expression::{Expression, Operator, Primitive, Scope};
 use super::super::signal::{Code, Shape};
 use super::names::{loaded, number, screaming, snake, stored};
+use super::source::{Source, quote};
 use super::tables::look_up;
 use crate::ir::{Program, Value, Word};
-use proc_macro2::TokenStream;
-use quote::quote;
 
 /// A number as the state word keeps it.
-pub(super) fn initial(word: &Word, raw: i32) -> TokenStream {
+pub(super) fn initial(word: &Word, raw: i32) -> Source {
     let literal = number(i64::from(raw));
     match Shape::of_state(word).code(raw) {
         Some(code) => stored(word, &coded(code)),
@@ -19,7 +18,7 @@ pub(super) fn initial(word: &Word, raw: i32) -> TokenStream {
 }
 
 /// The name of a number that has one.
-pub(super) fn coded(code: Code) -> TokenStream {
+pub(super) fn coded(code: Code) -> Source {
     match code {
         Code::Run => quote!(mode::RUN),
         Code::Calibrate => quote!(mode::CALIBRATE),
@@ -40,27 +39,27 @@ pub(super) fn coded(code: Code) -> TokenStream {
 /// Values as Rust, seen from a place.
 pub(super) trait RustScope {
     /// A value as a complete expression: what a `let` binds or a branch yields.
-    fn whole(&self, value: Value) -> TokenStream;
+    fn whole(&self, value: Value) -> Source;
     /// A value as a complete expression of the given shape.
-    fn shaped(&self, value: Value, shape: Shape) -> TokenStream;
+    fn shaped(&self, value: Value, shape: Shape) -> Source;
     /// A value as the state word keeps it.
-    fn kept(&self, word: &Word, value: Value) -> TokenStream;
+    fn kept(&self, word: &Word, value: Value) -> Source;
     /// What the `let` of a named value binds.
-    fn bound(&self, value: Value) -> TokenStream;
+    fn bound(&self, value: Value) -> Source;
     /// A value that a method is called on.
-    fn receiver(&self, value: Value) -> TokenStream;
+    fn receiver(&self, value: Value) -> Source;
 }
 
 impl RustScope for Scope<'_> {
-    fn whole(&self, value: Value) -> TokenStream {
+    fn whole(&self, value: Value) -> Source {
         written(self.context.program, &self.value(value)).tokens
     }
 
-    fn shaped(&self, value: Value, shape: Shape) -> TokenStream {
+    fn shaped(&self, value: Value, shape: Shape) -> Source {
         written(self.context.program, &self.in_shape(value, shape)).tokens
     }
 
-    fn kept(&self, word: &Word, value: Value) -> TokenStream {
+    fn kept(&self, word: &Word, value: Value) -> Source {
         if let Some(literal) = self.literal(value) {
             return initial(word, literal);
         }
@@ -69,11 +68,11 @@ impl RustScope for Scope<'_> {
         stored(word, &value.within(Binding::Atom))
     }
 
-    fn bound(&self, value: Value) -> TokenStream {
+    fn bound(&self, value: Value) -> Source {
         written(self.context.program, &self.definition(value)).tokens
     }
 
-    fn receiver(&self, value: Value) -> TokenStream {
+    fn receiver(&self, value: Value) -> Source {
         written(self.context.program, &self.value(value)).within(Binding::Atom)
     }
 }
@@ -119,14 +118,14 @@ impl Binding {
 
 /// A text of tokens and what it takes to embed it.
 struct Written {
-    tokens: TokenStream,
+    tokens: Source,
     binding: Binding,
     /// A branch as a call of `select`, for use inside of other expressions.
-    embedded: Option<TokenStream>,
+    embedded: Option<Source>,
 }
 
 impl Written {
-    fn new(tokens: TokenStream, binding: Binding) -> Self {
+    fn new(tokens: Source, binding: Binding) -> Self {
         Self {
             tokens,
             binding,
@@ -134,12 +133,12 @@ impl Written {
         }
     }
 
-    fn atom(tokens: TokenStream) -> Self {
+    fn atom(tokens: Source) -> Self {
         Self::new(tokens, Binding::Atom)
     }
 
     /// The tokens inside an expression that binds its operands as tightly as `least`.
-    fn within(self, least: Binding) -> TokenStream {
+    fn within(self, least: Binding) -> Source {
         let tokens = self.tokens;
         match self.embedded {
             Some(embedded) => embedded,
@@ -214,7 +213,7 @@ fn written(program: &Program, expression: &Expression) -> Written {
     }
 }
 
-fn sign(operator: Operator) -> TokenStream {
+fn sign(operator: Operator) -> Source {
     match operator {
         Operator::Add | Operator::AngleAdd => quote!(+),
         Operator::Sub | Operator::AngleSub => quote!(-),
@@ -232,14 +231,14 @@ fn sign(operator: Operator) -> TokenStream {
 }
 
 /// A right operand of an operator or method of `Word`, where a small number needs no wrapping.
-fn right_operand(program: &Program, expression: &Expression, least: Binding) -> TokenStream {
+fn right_operand(program: &Program, expression: &Expression, least: Binding) -> Source {
     match expression {
         Expression::Number(literal) => number(i64::from(*literal)),
         other => written(program, other).within(least),
     }
 }
 
-fn shift(a: &TokenStream, operator: &TokenStream, bits: u32) -> Written {
+fn shift(a: &Source, operator: &Source, bits: u32) -> Written {
     let bits = number(i64::from(bits));
     Written::new(quote!(#a #operator #bits), Binding::Shift)
 }
@@ -251,7 +250,7 @@ fn call(
     operands: &[Expression],
     parameter: Option<u32>,
 ) -> Written {
-    let method = |name: TokenStream| {
+    let method = |name: Source| {
         let mut operands = operands.iter();
         let receiver = operands.next().map(|receiver| written(program, receiver));
         let receiver = receiver.map(|receiver| receiver.within(Binding::Atom));

@@ -9,27 +9,26 @@ use super::super::plan::{Context, StagePlan};
 use super::super::signal::Shape;
 use super::expression::RustScope;
 use super::names::{docs, loaded, number, snake};
+use super::source::{Source, quote};
 use super::stage::StageFunction;
 use crate::ir::{Function, Paths, Program, Word};
-use proc_macro2::{Ident, TokenStream};
-use quote::quote;
 
 /// A function and the functions of its stages.
 pub(super) struct Emitted {
     /// The function itself.
-    pub main: TokenStream,
+    pub main: Source,
     /// Its stages, in order of their calls.
-    pub stages: TokenStream,
+    pub stages: Source,
 }
 
 /// A setter of set-point words.
 pub(super) struct Setter {
     /// The method of the set-point.
-    pub method: TokenStream,
+    pub method: Source,
     /// The method of the drive, which calls it.
-    pub delegate: TokenStream,
+    pub delegate: Source,
     /// Its stages, in order of their calls.
-    pub stages: TokenStream,
+    pub stages: Source,
 }
 
 /// The control step, `fn step(state, set-point, inputs) -> Legs`, and what takes over where it rests: there alone mode and
@@ -92,19 +91,19 @@ impl<'a> PathFunctions<'a> {
     }
 
     /// Names of the set-point words and inputs that it reads.
-    fn arguments(&self) -> Vec<Ident> {
+    fn arguments(&self) -> Vec<Source> {
         let names = names_read(self.context.program, self.context.function);
         names.into_iter().map(snake).collect()
     }
 
     /// The statement that leaves the step for this path.
-    fn call_rest(&self) -> TokenStream {
+    fn call_rest(&self) -> Source {
         let arguments = self.arguments();
         quote!(return Legs::at_rest(rest(state, &set_point.status, #(#arguments),*));)
     }
 
     /// This path as a function of its own. No leg pulses at rest, and all are alike.
-    fn rest(&self) -> TokenStream {
+    fn rest(&self) -> Source {
         let arguments = self.arguments();
         let (body, stages) = (self.body(None), self.definitions());
         let leg = self.leg("leg_a");
@@ -131,14 +130,14 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    fn leg(&self, name: &str) -> TokenStream {
+    fn leg(&self, name: &str) -> Source {
         match output(self.context.function, name) {
             None => quote!(LegState::Off),
             Some(value) => self.scope().shaped(value, Shape::Leg),
         }
     }
 
-    fn legs(&self) -> TokenStream {
+    fn legs(&self) -> Source {
         let scope = self.scope();
         let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
             match output(self.context.function, name) {
@@ -157,12 +156,12 @@ impl<'a> PathFunctions<'a> {
     }
 
     /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.
-    fn body(&self, leave: Option<&TokenStream>) -> TokenStream {
+    fn body(&self, leave: Option<&Source>) -> Source {
         let (function, scope) = (self.context.function, self.scope());
         let calls = self.stages.iter().map(|stage| {
             let call = stage.call();
             let flags = leaves_behind(function, stage.plan()).into_iter();
-            let flags: Vec<TokenStream> = flags.map(|flag| scope.whole(flag)).collect();
+            let flags: Vec<Source> = flags.map(|flag| scope.whole(flag)).collect();
             let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
             quote!(#call #leaves)
         });
@@ -170,7 +169,7 @@ impl<'a> PathFunctions<'a> {
         quote! { #(#calls)* #keep }
     }
 
-    fn definitions(&self) -> TokenStream {
+    fn definitions(&self) -> Source {
         let own = self.stages.iter().zip(&self.shared);
         let own = own.filter(|&(_, &shared)| !shared);
         own.map(|(stage, _)| stage.definition()).collect()
@@ -178,7 +177,7 @@ impl<'a> PathFunctions<'a> {
 }
 
 /// The set-point words by name; an underscore for one that the function neither reads nor keeps.
-fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> TokenStream {
+fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> Source {
     let read = params_read(function);
     let read = |index: usize| kept.contains(&index) || read.contains(&index);
     let names = program.params.iter().enumerate().map(|(index, word)| {
@@ -193,7 +192,7 @@ fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> Toke
 }
 
 /// The new state words, each written once at the end.
-fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> TokenStream {
+fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> Source {
     let scope = |reads_state| Scope {
         context,
         reads_state,
@@ -226,7 +225,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             StageFunction::new(&context, plan, &name)
         })
         .collect();
-    let body: TokenStream = if single {
+    let body: Source = if single {
         stages.iter().flat_map(StageFunction::statements).collect()
     } else {
         stages.iter().map(StageFunction::call).collect()
@@ -236,7 +235,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         reads_state: true,
     };
     let mut kept = vec![];
-    let mut stores = TokenStream::new();
+    let mut stores = Source::new();
     for (shared, values) in writes(program, function) {
         let values = shared
             .words
@@ -251,9 +250,9 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
                 let name = snake(&known.name);
                 quote!(#name)
             });
-        let values: Vec<TokenStream> = values.collect();
+        let values: Vec<Source> = values.collect();
         let name = snake(&shared.name);
-        stores.extend(match values.as_slice() {
+        stores.insert(&match values.as_slice() {
             [only] => quote!(self.#name.store(#only);),
             many => quote!(self.#name.store([#(#many),*]);),
         });
@@ -284,7 +283,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         }
     };
     let stages = if single {
-        TokenStream::new()
+        Source::new()
     } else {
         stages.iter().map(StageFunction::definition).collect()
     };
@@ -298,11 +297,11 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
 /// The arguments of a setter.
 struct Arguments {
     /// With their types.
-    typed: TokenStream,
+    typed: Source,
     /// Without.
-    names: TokenStream,
+    names: Source,
     /// What makes words of them.
-    conversion: TokenStream,
+    conversion: Source,
 }
 
 fn setter_arguments(function: &Function) -> Arguments {
@@ -329,15 +328,18 @@ fn setter_arguments(function: &Function) -> Arguments {
         let narrow = input.interval.low >= 0 && input.interval.high <= i64::from(u16::MAX);
         if narrow { quote!(u16) } else { quote!(i32) }
     });
+    let conversions = names
+        .iter()
+        .map(|name| quote!(let #name = Word::from(#name);));
     Arguments {
         typed: quote!(#(#names: #types),*),
         names: quote!(#(#names),*),
-        conversion: quote!(#(let #names = Word::from(#names);)*),
+        conversion: conversions.collect(),
     }
 }
 
 /// A state word read at its place, for methods of the state.
-pub(super) fn state_word(word: &Word) -> TokenStream {
+pub(super) fn state_word(word: &Word) -> Source {
     let field = snake(&word.name);
     loaded(word, &quote!(self.#field))
 }

@@ -5,8 +5,7 @@
 
 use super::super::signal::{Shape, Signal};
 use super::names::snake;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use super::source::{Source, quote};
 
 /// What a signature may hold at most (clippy's `too_many_arguments`).
 pub(super) const ARGUMENTS: usize = 7;
@@ -77,7 +76,7 @@ pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
 
 impl Group {
     /// `[i_a, i_b]`, or `sector`: as a pattern or as an expression.
-    pub(super) fn names(&self, signals: &[Signal]) -> TokenStream {
+    pub(super) fn names(&self, signals: &[Signal]) -> Source {
         self.of(|member| {
             let name = snake(&signals[member].name);
             quote!(#name)
@@ -85,16 +84,12 @@ impl Group {
     }
 
     /// The same shape with `each` in place of the names.
-    pub(super) fn of(&self, each: impl FnMut(usize) -> TokenStream) -> TokenStream {
-        let each: Vec<TokenStream> = self.members.iter().copied().map(each).collect();
+    pub(super) fn of(&self, each: impl FnMut(usize) -> Source) -> Source {
+        let each: Vec<Source> = self.members.iter().copied().map(each).collect();
         match each.as_slice() {
             [single] => single.clone(),
-            [first, rest @ ..]
-                if rest
-                    .iter()
-                    .all(|each| each.to_string() == first.to_string()) =>
-            {
-                let count = Literal::usize_unsuffixed(rest.len() + 1);
+            [first, rest @ ..] if rest.iter().all(|each| each == first) => {
+                let count = rest.len() + 1;
                 quote!([#first; #count])
             }
             many => quote!([#(#many),*]),
@@ -102,12 +97,11 @@ impl Group {
     }
 
     /// `[Word; 2]`, or `Word`.
-    pub(super) fn rust_type(&self) -> TokenStream {
+    pub(super) fn rust_type(&self) -> Source {
         let kind = rust_type(self.shape);
         match self.members.len() {
             1 => kind,
             count => {
-                let count = Literal::usize_unsuffixed(count);
                 quote!([#kind; #count])
             }
         }
@@ -120,7 +114,7 @@ fn share_type(one: Shape, other: Shape) -> bool {
 }
 
 /// `Word`, `bool` or `LegState`.
-pub(super) fn rust_type(shape: Shape) -> TokenStream {
+pub(super) fn rust_type(shape: Shape) -> Source {
     match shape {
         Shape::Word | Shape::Mode | Shape::Fault => quote!(Word),
         Shape::Flag => quote!(bool),

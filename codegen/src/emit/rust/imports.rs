@@ -6,11 +6,11 @@
 
 use super::interface::fixed_type;
 use super::names::HELPERS;
+use super::source::{Source, quote};
 use crate::interface::{Interface, PublicValue};
-use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
+use proc_macro2::{Group, Ident, TokenStream, TokenTree};
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// Stands for the user's type where that has a name of another item, until all names are settled.
 const PLACEHOLDER: &str = "EmittedDrive";
@@ -37,41 +37,37 @@ const SHARED: [&str; 14] = [
 const OWN: [&str; 3] = ["ControlLoop", "SetPoint", "State"];
 
 /// The user's type in a body that [`settle`] has not seen yet.
-pub(super) fn unsettled(name: &Ident) -> Ident {
-    if clashes(name) {
-        format_ident!("{PLACEHOLDER}")
-    } else {
-        name.clone()
-    }
+pub(super) fn unsettled(name: &str) -> Source {
+    Source::of(if clashes(name) { PLACEHOLDER } else { name })
 }
 
 /// Gives the user's type its name, and every other type of that name in `body` another one.
-pub(super) fn settle(body: TokenStream, name: &Ident) -> TokenStream {
+pub(super) fn settle(body: TokenStream, name: &str) -> TokenStream {
     if clashes(name) {
-        replace(body, name, &alias(&name.to_string()))
+        replace(body, name, &alias(name))
     } else {
         body
     }
 }
 
 /// Whether another item of the module has this name.
-fn clashes(name: &Ident) -> bool {
-    let taken = name.to_string();
+fn clashes(taken: &str) -> bool {
     taken == "Word"
         || taken == "Default"
-        || SHARED.contains(&&*taken)
-        || OWN.contains(&&*taken)
+        || SHARED.contains(&taken)
+        || OWN.contains(&taken)
         || taken.ends_with("Results")
         || taken.ends_with("Row")
-        || is_fixed(&taken)
+        || is_fixed(taken)
 }
 
-fn replace(tokens: TokenStream, name: &Ident, alias: &Ident) -> TokenStream {
+fn replace(tokens: TokenStream, name: &str, alias: &str) -> TokenStream {
+    let named = |name: &str, ident: &Ident| Ident::new(name, ident.span());
     tokens
         .into_iter()
         .map(|token| match token {
-            TokenTree::Ident(ident) if ident == PLACEHOLDER => name.clone().into(),
-            TokenTree::Ident(ident) if ident == *name => alias.clone().into(),
+            TokenTree::Ident(ident) if ident == PLACEHOLDER => named(name, &ident).into(),
+            TokenTree::Ident(ident) if ident == name => named(alias, &ident).into(),
             // Links of the documentation follow.
             TokenTree::Literal(literal) => {
                 let text = literal.to_string();
@@ -90,31 +86,25 @@ fn replace(tokens: TokenStream, name: &Ident, alias: &Ident) -> TokenStream {
         .collect()
 }
 
-fn alias(name: &str) -> Ident {
-    format_ident!("Hexagen{name}")
+fn alias(name: &str) -> String {
+    format!("Hexagen{name}")
 }
 
 /// Whether the name is that of a `fixed` type of 32 bits, as [`fixed_type`] gives them.
 fn is_fixed(name: &str) -> bool {
-    (0..=32).any(|frac_bits| fixed_type(frac_bits) == name)
+    (0..=32).any(|frac_bits| fixed_type(frac_bits).as_str() == name)
 }
 
 /// The imports of a body that holds `names`; `name` is the user's type.
-pub(super) fn imports(
-    names: &BTreeSet<String>,
-    interface: &Interface,
-    name: &Ident,
-) -> TokenStream {
+pub(super) fn imports(names: &HashSet<&str>, interface: &Interface, name: &str) -> Source {
     let import = |item: &str| {
-        let ident = Ident::new(item, Span::call_site());
-        if *name == item {
-            let alias = alias(item);
-            quote!(#ident as #alias)
+        if name == item {
+            Source::of(format!("{item} as {}", alias(item)))
         } else {
-            quote!(#ident)
+            Source::of(item)
         }
     };
-    let list = |items: Vec<TokenStream>| match items.as_slice() {
+    let list = |items: Vec<Source>| match items.as_slice() {
         [single] => single.clone(),
         many => quote!({ #(#many),* }),
     };
@@ -136,10 +126,10 @@ pub(super) fn imports(
     frac_bits.insert(Reverse(16));
     let fixed = frac_bits
         .into_iter()
-        .map(|Reverse(frac_bits)| import(&fixed_type(frac_bits).to_string()));
+        .map(|Reverse(frac_bits)| import(fixed_type(frac_bits).as_str()));
     let fixed = list(fixed.collect());
     let shared = list(SHARED.into_iter().filter(used).map(import).collect());
-    let standard = (*name == "Default").then(|| {
+    let standard = (name == "Default").then(|| {
         let import = import("Default");
         quote!(use ::core::default::#import;)
     });

@@ -6,33 +6,31 @@ use super::expression::initial;
 use super::function::{Setter, state_word};
 use super::imports::unsettled;
 use super::names::{doc, docs, number, screaming, snake, storage_type, stored};
+use super::source::{Source, quote};
 use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::ir::{Input, Program, Word};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::{format_ident, quote};
 
 /// What the types are emitted from.
 pub(super) struct Types<'a> {
     pub program: &'a Program,
     pub interface: &'a Interface,
-    /// The type's name, with the span that the user gave it.
-    pub name: &'a Ident,
+    /// The type's name.
+    pub name: &'a str,
 }
 
 impl Types<'_> {
-    /// The drive: set-point and state together.
-    pub(super) fn drive(&self, attributes: &TokenStream, setters: &[Setter]) -> TokenStream {
+    /// The drive, set-point and state together, from the fields of its structure on.
+    pub(super) fn drive(&self, setters: &[Setter]) -> Source {
         let name = unsettled(self.name);
         let setters = setters.iter().map(|setter| &setter.delegate);
         let commands = self.commands(&quote!(self.split().1.publish();));
-        let docs = docs(&self.interface.doc);
         let constants = self.interface.constants.iter().map(public_constant);
         let measurements = self.measurements();
         let arguments = measurements
             .iter()
             .map(|(name, kind, _)| quote!(#name: #kind));
         let names = measurements.iter().map(|(name, _, _)| name);
-        let debug = debug(&quote!(#name), &self.name.to_string());
+        let debug = debug(&quote!(#name), self.name);
         let shared = shared(self.program);
         let initial = shared.iter().map(|shared| {
             let name = snake(&shared.name);
@@ -47,9 +45,7 @@ impl Types<'_> {
             }
         });
         quote! {
-            #docs
-            #attributes
-            pub struct #name {
+            {
                 set_point: SetPoint,
                 state: State,
             }
@@ -102,10 +98,10 @@ impl Types<'_> {
     }
 
     /// The half that the control interrupt owns.
-    pub(super) fn control_loop(&self) -> TokenStream {
+    pub(super) fn control_loop(&self) -> Source {
         let measurements = self.measurements();
         let arguments = measurements.iter().map(|(name, kind, input)| {
-            let unused = format_ident!("_{name}");
+            let unused = Source::of(format!("_{name}"));
             let name = if input.is_some() { name } else { &unused };
             quote!(#name: #kind)
         });
@@ -143,7 +139,7 @@ impl Types<'_> {
     }
 
     /// The words that outlive a control period.
-    pub(super) fn state(&self) -> TokenStream {
+    pub(super) fn state(&self) -> Source {
         let words = &self.program.states;
         let fields = words.iter().map(|word| {
             let (name, kind) = (snake(&word.name), storage_type(word));
@@ -158,7 +154,10 @@ impl Types<'_> {
         let kept = ["offset_a", "offset_b"]
             .into_iter()
             .filter(|name| self.word(name).is_some())
-            .map(snake);
+            .map(|name| {
+                let name = snake(name);
+                quote!(#name: self.#name)
+            });
         let mode = self.word("mode").map_or(quote!(mode::RUN), state_word);
         let fault = self.word("fault").map_or(quote!(Word(0)), state_word);
         let (samples_definition, samples) = self.own_constant(
@@ -171,7 +170,7 @@ impl Types<'_> {
             self.interface.precharge_periods,
             "Control periods of bootstrap pre-charge.",
         );
-        let set_mode = |mode: &TokenStream| self.assign("mode", mode);
+        let set_mode = |mode: &Source| self.assign("mode", mode);
         let calibrate = [
             set_mode(&quote!(mode::CALIBRATE)),
             self.assign("countdown", &samples),
@@ -196,7 +195,7 @@ impl Types<'_> {
 
                 fn reset(&mut self) {
                     if self.mode() == mode::RUN || self.mode() == mode::TRIPPED {
-                        *self = Self { #(#kept: self.#kept,)* ..Self::INITIAL };
+                        *self = Self { #(#kept,)* ..Self::INITIAL };
                     }
                 }
 
@@ -229,7 +228,7 @@ impl Types<'_> {
     }
 
     /// A constant of the methods: its definition, unless the program has it already, and its use.
-    fn own_constant(&self, name: &str, value: i32, line: &str) -> (TokenStream, TokenStream) {
+    fn own_constant(&self, name: &str, value: i32, line: &str) -> (Source, Source) {
         let ident = screaming(name);
         let raw = number(i64::from(value));
         let known = self
@@ -245,13 +244,13 @@ impl Types<'_> {
                     quote!(#ident),
                 )
             }
-            Some(true) => (TokenStream::new(), quote!(#ident)),
-            Some(false) => (TokenStream::new(), quote!(Word(#raw))),
+            Some(true) => (Source::new(), quote!(#ident)),
+            Some(false) => (Source::new(), quote!(Word(#raw))),
         }
     }
 
-    fn assign(&self, name: &str, value: &TokenStream) -> TokenStream {
-        self.word(name).map_or_else(TokenStream::new, |word| {
+    fn assign(&self, name: &str, value: &Source) -> Source {
+        self.word(name).map_or_else(Source::new, |word| {
             let field = snake(name);
             let value = stored(word, value);
             quote!(self.#field = #value;)
@@ -259,7 +258,7 @@ impl Types<'_> {
     }
 
     /// What the public `step` takes: name, hardware type, and the step's input of that name.
-    pub(super) fn measurements(&self) -> Vec<(Ident, TokenStream, Option<&Input>)> {
+    pub(super) fn measurements(&self) -> Vec<(Source, Source, Option<&Input>)> {
         let measurements = texts::measurements(self.program, self.interface);
         let typed = measurements.into_iter().map(|(name, input)| {
             let kind = if name == "hall" {
@@ -274,7 +273,7 @@ impl Types<'_> {
 
     /// What both the drive and its control loop let their owner do, besides stepping. `publish` says what
     /// the drive is doing.
-    fn commands(&self, publish: &TokenStream) -> TokenStream {
+    fn commands(&self, publish: &Source) -> Source {
         let calibrate = doc(&texts::calibrate(self.interface));
         let precharge = doc(&texts::precharge(self.interface));
         quote! {
@@ -317,7 +316,7 @@ impl Types<'_> {
         }
     }
 
-    fn step_docs(&self) -> TokenStream {
+    fn step_docs(&self) -> Source {
         let measurements = texts::measurements(self.program, self.interface);
         docs(&texts::step(self.interface, &measurements))
     }
@@ -325,7 +324,7 @@ impl Types<'_> {
 
 /// What `{:?}` shows of a type that has a status. (Derived ones would show every state word, and cost the compiler as
 /// much as the step.)
-pub(super) fn debug(name: &TokenStream, text: &str) -> TokenStream {
+pub(super) fn debug(name: &Source, text: &str) -> Source {
     quote! {
         impl ::core::fmt::Debug for #name {
             fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
@@ -335,12 +334,12 @@ pub(super) fn debug(name: &TokenStream, text: &str) -> TokenStream {
     }
 }
 
-fn public_constant(constant: &PublicConstant) -> TokenStream {
+fn public_constant(constant: &PublicConstant) -> Source {
     let name = screaming(&constant.name);
     let doc = docs(&constant.doc);
     let (kind, value) = match &constant.value {
         PublicValue::Integer { rust_type, value } => {
-            let kind = Ident::new(rust_type, Span::call_site());
+            let kind = Source::of(*rust_type);
             (quote!(#kind), number(*value))
         }
         PublicValue::Fixed { bits, frac_bits } => {
@@ -350,7 +349,7 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
         }
         PublicValue::Vectors { bits, frac_bits } => {
             let kind = fixed_type(*frac_bits);
-            let count = Literal::usize_unsuffixed(bits.len());
+            let count = bits.len();
             let vectors = bits.iter().map(|vector| {
                 let [alpha, beta] = vector.map(|bits| number(i64::from(bits)));
                 quote!([#alpha, #beta])
@@ -361,8 +360,8 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
             )
         }
         PublicValue::Integers { rust_type, values } => {
-            let kind = Ident::new(rust_type, Span::call_site());
-            let count = Literal::usize_unsuffixed(values.len());
+            let kind = Source::of(*rust_type);
+            let count = values.len();
             let values = values.iter().map(|&value| number(value));
             (quote!([#kind; #count]), quote!([#(#values),*]))
         }
@@ -372,7 +371,7 @@ fn public_constant(constant: &PublicConstant) -> TokenStream {
 }
 
 /// The `fixed` type of 32 bits with so many fraction bits.
-pub(super) fn fixed_type(frac_bits: u32) -> Ident {
+pub(super) fn fixed_type(frac_bits: u32) -> Source {
     let integer_bits = 32_u32.saturating_sub(frac_bits);
-    Ident::new(&format!("I{integer_bits}F{frac_bits}"), Span::call_site())
+    Source::of(format!("I{integer_bits}F{frac_bits}"))
 }

@@ -12,6 +12,7 @@ mod imports;
 mod interface;
 mod names;
 mod set_point;
+mod source;
 mod stage;
 mod tables;
 mod traits;
@@ -26,8 +27,8 @@ use imports::{imports, settle};
 use interface::Types;
 use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::quote;
-use std::collections::BTreeSet;
+use source::{Source, quote};
+use std::collections::HashSet;
 use tables::emit_tables;
 
 /// How the emitted type appears to the code around it.
@@ -48,15 +49,26 @@ impl Surface {
     pub fn public(name: &str) -> Self {
         Self {
             name: Ident::new(name, Span::call_site()),
-            visibility: quote!(pub),
+            visibility: quote::quote!(pub),
             attributes: TokenStream::new(),
             type_attributes: TokenStream::new(),
         }
     }
 }
 
-/// The module of one drive, and the re-export of its type.
-pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface) -> TokenStream {
+/// A drive's module as text, around the name that the user gave its type: all that this emitter works out.
+pub struct RustText {
+    type_name: String,
+    /// Documentation of the module, and its imports.
+    head: Source,
+    /// Constants, tables, and documentation of the type.
+    before: Source,
+    /// The type's fields, and everything behind them.
+    body: Source,
+}
+
+/// The text of one drive's module.
+pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str) -> RustText {
     let program = graph.program();
     let step = emit_step(program);
     let setters: Vec<_> = program
@@ -67,9 +79,9 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
     let types = Types {
         program,
         interface,
-        name: &surface.name,
+        name: type_name,
     };
-    let drive = types.drive(&surface.type_attributes, &setters);
+    let drive = types.drive(&setters);
     let set_point = types.set_point(&setters);
     let control_loop = types.control_loop();
     let (step_main, step_stages) = (&step.main, &step.stages);
@@ -87,33 +99,59 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
         #drive_trait
     };
     let names = identifiers(&body);
-    let constants = constants(program, &names);
-    let imports = imports(&names, interface, &surface.name);
-    let items = settle(quote!(#constants #body), &surface.name);
     let header = inner_docs(&texts::header(program, interface));
-    let Surface {
-        name,
-        visibility,
-        attributes,
-        ..
-    } = surface;
-    let module = module_ident(&name.to_string());
-    quote! {
-        #attributes
-        #visibility use #module::#name;
+    let imports = imports(&names, interface, type_name);
+    let (constants, docs) = (constants(program, &names), docs(&interface.doc));
+    RustText {
+        type_name: type_name.to_owned(),
+        head: quote!(#header #imports),
+        before: quote!(#constants #docs),
+        body,
+    }
+}
 
-        #attributes
-        #visibility mod #module {
-            #header
-            #imports
-            #items
+impl RustText {
+    /// The module with the re-export of its type, as it appears to the code around it.
+    pub fn into_tokens(self, surface: &Surface) -> TokenStream {
+        let Surface {
+            name,
+            visibility,
+            attributes,
+            type_attributes,
+        } = surface;
+        let head = tokens(&self.head);
+        let before = settle(tokens(&self.before), &self.type_name);
+        let body = settle(tokens(&self.body), &self.type_name);
+        let module = module_ident(&self.type_name);
+        quote::quote! {
+            #attributes
+            #visibility use #module::#name;
+
+            #attributes
+            #visibility mod #module {
+                #head
+                #before
+                #type_attributes
+                pub struct #name
+                #body
+            }
         }
     }
 }
 
+/// The module of one drive, and the re-export of its type.
+pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface) -> TokenStream {
+    write_rust(graph, interface, &surface.name.to_string()).into_tokens(surface)
+}
+
+fn tokens(code: &Source) -> TokenStream {
+    // Cannot fail: templates are tokens, and what they name is numbers, names and literals.
+    code.as_str().parse().unwrap_or_default()
+}
+
 /// The constants and tables that the body names.
-fn constants(program: &Program, names: &BTreeSet<String>) -> TokenStream {
-    let named = |name: &str| names.contains(&name.to_uppercase());
+fn constants(program: &Program, names: &HashSet<&str>) -> Source {
+    let named = |name: &str| names.contains(&*name.to_uppercase());
     let constants = program
         .constants
         .iter()

@@ -1,10 +1,10 @@
 //! How names, numbers and documentation look in emitted Rust.
 
 use super::super::names::module_name;
+use super::source::{Source, quote};
 use crate::ir::Word;
-use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
-use std::collections::BTreeSet;
+use proc_macro2::{Ident, Span};
+use std::collections::HashSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
 pub(super) const HELPERS: [&str; 13] = [
@@ -28,11 +28,11 @@ const RESERVED: [&str; 3] = ["rest", "state", "step"];
 
 /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind
 /// it where that name is taken.
-pub(super) fn snake(name: &str) -> Ident {
+pub(super) fn snake(name: &str) -> Source {
     if RESERVED.contains(&name) || HELPERS.contains(&name) || is_keyword(name) {
-        Ident::new(&format!("{name}_"), Span::call_site())
+        Source::of(format!("{name}_"))
     } else {
-        Ident::new(name, Span::call_site())
+        Source::of(name)
     }
 }
 
@@ -53,17 +53,16 @@ fn is_keyword(name: &str) -> bool {
 
 /// The identifier of a type's module: `loop_` for `Loop`.
 pub(super) fn module_ident(type_name: &str) -> Ident {
-    let name = module_name(type_name);
+    let mut name = module_name(type_name);
     if is_keyword(&name) {
-        format_ident!("{name}_")
-    } else {
-        format_ident!("{name}")
+        name.push('_');
     }
+    Ident::new(&name, Span::call_site())
 }
 
 /// The identifier of a constant or table.
-pub(super) fn screaming(name: &str) -> Ident {
-    Ident::new(&name.to_uppercase(), Span::call_site())
+pub(super) fn screaming(name: &str) -> Source {
+    Source::of(name.to_uppercase())
 }
 
 /// `HubDrive` of `hub_drive`.
@@ -80,31 +79,23 @@ pub(super) fn camel(name: &str) -> String {
 }
 
 /// A number with its thousands apart: `-1_234_567`.
-pub(super) fn number(value: i64) -> TokenStream {
-    let magnitude = value.unsigned_abs();
-    let literal = if magnitude < 10_000 {
-        Literal::u64_unsuffixed(magnitude)
-    } else {
-        let digits = magnitude.to_string();
-        let mut text = String::new();
-        for (index, digit) in digits.chars().enumerate() {
-            if index > 0 && (digits.len() - index).is_multiple_of(3) {
-                text.push('_');
-            }
-            text.push(digit);
-        }
-        text.parse()
-            .unwrap_or_else(|_| Literal::u64_unsuffixed(magnitude))
-    };
+pub(super) fn number(value: i64) -> Source {
+    let digits = value.unsigned_abs().to_string();
+    let mut text = String::new();
     if value < 0 {
-        quote!(-#literal)
-    } else {
-        quote!(#literal)
+        text.push('-');
     }
+    for (index, digit) in digits.chars().enumerate() {
+        if digits.len() > 4 && index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('_');
+        }
+        text.push(digit);
+    }
+    Source::of(text)
 }
 
 /// A text that keeps its line breaks: a raw string literal.
-pub(super) fn raw_text(text: &str) -> Literal {
+pub(super) fn raw_text(text: &str) -> Source {
     // No quote in the text is followed by as many hashes as the longest run of them.
     let longest = text
         .split(|letter| letter != '#')
@@ -112,43 +103,42 @@ pub(super) fn raw_text(text: &str) -> Literal {
         .max()
         .unwrap_or(0);
     let hashes = "#".repeat(longest + 1);
-    format!("r{hashes}\"{text}\"{hashes}")
-        .parse()
-        .unwrap_or_else(|_| Literal::string(text))
+    Source::of(format!("r{hashes}\"{text}\"{hashes}"))
 }
 
 /// Documentation lines of an item.
-pub(super) fn docs<T: AsRef<str>>(lines: &[T]) -> TokenStream {
-    lines.iter().map(|line| doc(line.as_ref())).collect()
+pub(super) fn docs<T: AsRef<str>>(lines: &[T]) -> Source {
+    comments("///", lines)
 }
 
 /// One documentation line of an item.
-pub(super) fn doc(line: &str) -> TokenStream {
-    let text = doc_text(line);
-    quote!(#[doc = #text])
+pub(super) fn doc(line: &str) -> Source {
+    docs(&[line])
 }
 
 /// Documentation lines of the module around them.
-pub(super) fn inner_docs<T: AsRef<str>>(lines: &[T]) -> TokenStream {
-    lines
-        .iter()
-        .map(|line| {
-            let text = doc_text(line.as_ref());
-            quote!(#![doc = #text])
-        })
-        .collect()
+pub(super) fn inner_docs<T: AsRef<str>>(lines: &[T]) -> Source {
+    comments("//!", lines)
 }
 
-fn doc_text(line: &str) -> String {
-    if line.is_empty() {
-        String::new()
-    } else {
-        format!(" {line}")
+/// A comment ends at the end of its line, and the user's own words may have several.
+fn comments<T: AsRef<str>>(sign: &str, lines: &[T]) -> Source {
+    let mut text = String::new();
+    for line in lines {
+        for line in line.as_ref().split('\n').flat_map(|line| line.split('\r')) {
+            text.push_str(sign);
+            if !line.is_empty() {
+                text.push(' ');
+                text.push_str(line);
+            }
+            text.push('\n');
+        }
     }
+    Source::of(text)
 }
 
 /// The type that stores a word.
-pub(super) fn storage_type(word: &Word) -> TokenStream {
+pub(super) fn storage_type(word: &Word) -> Source {
     if word.storage_bits == 16 {
         quote!(u16)
     } else {
@@ -157,7 +147,7 @@ pub(super) fn storage_type(word: &Word) -> TokenStream {
 }
 
 /// `value`, a word expression that binds tighter than a method call, as stored.
-pub(super) fn stored(word: &Word, value: &TokenStream) -> TokenStream {
+pub(super) fn stored(word: &Word, value: &Source) -> Source {
     if word.storage_bits == 16 {
         quote!(#value.to_u16())
     } else {
@@ -166,7 +156,7 @@ pub(super) fn stored(word: &Word, value: &TokenStream) -> TokenStream {
 }
 
 /// A word read from where it is stored.
-pub(super) fn loaded(word: &Word, place: &TokenStream) -> TokenStream {
+pub(super) fn loaded(word: &Word, place: &Source) -> Source {
     if word.storage_bits == 16 {
         quote!(Word::from(#place))
     } else {
@@ -174,28 +164,57 @@ pub(super) fn loaded(word: &Word, place: &TokenStream) -> TokenStream {
     }
 }
 
-/// All identifiers in `tokens`.
-pub(super) fn identifiers(tokens: &TokenStream) -> BTreeSet<String> {
-    let mut found = BTreeSet::new();
-    collect(tokens.clone(), &mut found);
+/// All identifiers in `code`, besides those in its comments and texts.
+pub(super) fn identifiers(code: &Source) -> HashSet<&str> {
+    let (code, mut found, mut at) = (code.as_str(), HashSet::new(), 0);
+    let bytes = code.as_bytes();
+    while at < bytes.len() {
+        let begin = at;
+        while at < bytes.len() && is_letter(bytes[at]) {
+            at += 1;
+        }
+        if at > begin {
+            found.insert(&code[begin..at]);
+        }
+        at += match bytes.get(at) {
+            Some(b'/') if code[at..].starts_with("//") => code[at..].find('\n').unwrap_or(1),
+            Some(b'"') => text_length(&bytes[at..]),
+            Some(b'#') if code[begin..].starts_with("r#") => raw_text_length(&code[at..]),
+            _ => 1,
+        };
+    }
     found
 }
 
-fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
-    for token in tokens {
-        match token {
-            TokenTree::Ident(ident) => {
-                found.insert(ident.to_string());
-            }
-            TokenTree::Group(group) => collect(group.stream(), found),
-            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
-        }
+/// Whether an identifier holds the byte; those of letters beyond ASCII are all alike.
+fn is_letter(byte: u8) -> bool {
+    byte == b'_' || byte.is_ascii_alphanumeric() || !byte.is_ascii()
+}
+
+/// Length of the string literal that `code` begins with.
+fn text_length(code: &[u8]) -> usize {
+    let mut at = 1;
+    while at < code.len() && code[at] != b'"' {
+        at += if code[at] == b'\\' { 2 } else { 1 };
     }
+    at + 1
+}
+
+/// Length of the raw string literal that `code`, behind its `r`, begins with; one where it is a raw identifier.
+fn raw_text_length(code: &str) -> usize {
+    let inside = code.trim_start_matches('#');
+    let hashes = &code[..code.len() - inside.len()];
+    if !inside.starts_with('"') {
+        return 1;
+    }
+    let end = format!("\"{hashes}");
+    let length = inside[1..].find(&end).unwrap_or(0);
+    hashes.len() + 1 + length + end.len()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{KEYWORDS, camel, is_keyword, module_ident, number, raw_text};
+    use super::{KEYWORDS, Source, camel, identifiers, is_keyword, module_ident, number, raw_text};
 
     #[test]
     fn names_convert_between_cases() {
@@ -218,10 +237,20 @@ mod tests {
     }
 
     #[test]
+    fn names_are_found_in_code_alone() {
+        let code = Source::of(
+            "//! A doc.\n# [x] fn f (r#a : B < 'c >) { r#\"d \" e\"# ; \"g\\\"h\" . i_1 }",
+        );
+        let mut names: Vec<&str> = identifiers(&code).into_iter().collect();
+        names.sort_unstable();
+        assert_eq!(names, ["B", "a", "c", "f", "fn", "i_1", "r", "x"]);
+    }
+
+    #[test]
     fn numbers_group_their_digits() {
         assert_eq!(number(1234).to_string(), "1234");
         assert_eq!(number(1_234_567).to_string(), "1_234_567");
-        assert_eq!(number(i64::from(i32::MIN)).to_string(), "- 2_147_483_648");
+        assert_eq!(number(i64::from(i32::MIN)).to_string(), "-2_147_483_648");
     }
 
     #[test]

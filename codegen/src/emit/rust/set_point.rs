@@ -5,13 +5,12 @@ use super::super::texts;
 use super::function::Setter;
 use super::interface::{Types, debug};
 use super::names::{doc, docs, snake};
+use super::source::{Source, quote};
 use crate::ir::Word;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
 
 impl Types<'_> {
     /// The half that the main program writes.
-    pub(super) fn set_point(&self, setters: &[Setter]) -> TokenStream {
+    pub(super) fn set_point(&self, setters: &[Setter]) -> Source {
         let methods = setters.iter().map(|setter| &setter.method);
         let shared = shared(self.program);
         let docs = docs(&texts::set_point(self.program, &shared));
@@ -25,10 +24,10 @@ impl Types<'_> {
             let lines = shared.words.iter().enumerate().map(|(index, (_, word))| {
                 doc(&format!("{index}. `{}`: {}", word.name, meaning(word)))
             });
-            let count = Literal::usize_unsuffixed(shared.words.len());
+            let count = shared.words.len();
             quote!(#(#lines)* #field: DoubleBuffer<#count>)
         });
-        let count = Literal::usize_unsuffixed(self.program.params.len());
+        let count = self.program.params.len();
         let reads = shared.iter().filter(|shared| shared.words.len() > 1);
         let reads = reads.map(|shared| {
             let field = snake(&shared.name);

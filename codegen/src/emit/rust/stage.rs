@@ -8,9 +8,8 @@ use super::super::texts;
 use super::expression::RustScope;
 use super::groups::{ARGUMENTS, Group, bundle, group, rust_type};
 use super::names::{camel, docs, loaded, snake};
+use super::source::{Source, quote};
 use crate::ir::{StateId, Word};
-use proc_macro2::{Ident, Span, TokenStream};
-use quote::quote;
 
 /// More results than this travel in a structure with named fields, and so do results whose tuple
 /// would be more complex (in the measure of clippy's `type_complexity`) than readers like.
@@ -22,7 +21,7 @@ pub(super) struct StageFunction<'a> {
     context: &'a Context<'a>,
     plan: StagePlan<'a>,
     own_name: String,
-    name: Ident,
+    name: Source,
     arguments: Vec<Group>,
     argument_signals: Vec<Signal>,
     results: Results,
@@ -33,7 +32,7 @@ struct Results {
     signals: Vec<Signal>,
     groups: Vec<Group>,
     /// Name of the structure that holds them, if they are many.
-    structure: Option<Ident>,
+    structure: Option<Source>,
 }
 
 impl Results {
@@ -48,7 +47,7 @@ impl Results {
             .map(|group| if group.members.len() > 1 { 50 } else { 20 })
             .sum();
         let structure = (groups.len() > RESULTS || complexity + 10 > COMPLEXITY)
-            .then(|| Ident::new(&format!("{}Results", camel(stage)), Span::call_site()));
+            .then(|| Source::of(format!("{}Results", camel(stage))));
         Self {
             signals,
             groups,
@@ -56,8 +55,8 @@ impl Results {
         }
     }
 
-    fn rust_type(&self) -> TokenStream {
-        let types: Vec<TokenStream> = self.groups.iter().map(Group::rust_type).collect();
+    fn rust_type(&self) -> Source {
+        let types: Vec<Source> = self.groups.iter().map(Group::rust_type).collect();
         match (&self.structure, types.as_slice()) {
             (Some(name), _) => quote!(#name),
             (None, [single]) => single.clone(),
@@ -66,7 +65,7 @@ impl Results {
     }
 
     /// The pattern that binds all results by name.
-    fn pattern(&self) -> TokenStream {
+    fn pattern(&self) -> Source {
         if let Some(structure) = &self.structure {
             let fields = self.signals.iter().map(|signal| snake(&signal.name));
             return quote!(#structure { #(#fields),* });
@@ -78,14 +77,14 @@ impl Results {
     }
 
     /// The results built from one expression each.
-    fn built(&self, mut of: impl FnMut(usize) -> TokenStream) -> TokenStream {
+    fn built(&self, mut of: impl FnMut(usize) -> Source) -> Source {
         let Some(structure) = &self.structure else {
             return self.shaped(of);
         };
         let fields = self.signals.iter().enumerate().map(|(member, signal)| {
             let field = snake(&signal.name);
             let value = of(member);
-            if field == value.to_string() {
+            if field == value {
                 quote!(#field)
             } else {
                 quote!(#field: #value)
@@ -94,17 +93,17 @@ impl Results {
         quote!(#structure { #(#fields),* })
     }
 
-    fn shaped(&self, mut of: impl FnMut(usize) -> TokenStream) -> TokenStream {
-        let parts: Vec<TokenStream> = self.groups.iter().map(|group| group.of(&mut of)).collect();
+    fn shaped(&self, mut of: impl FnMut(usize) -> Source) -> Source {
+        let parts: Vec<Source> = self.groups.iter().map(|group| group.of(&mut of)).collect();
         match parts.as_slice() {
             [single] => single.clone(),
             many => quote!((#(#many),*)),
         }
     }
 
-    fn definition(&self, stage: &Ident) -> TokenStream {
+    fn definition(&self, stage: &Source) -> Source {
         let Some(structure) = &self.structure else {
-            return TokenStream::new();
+            return Source::new();
         };
         let fields = self.signals.iter().map(|signal| {
             let (name, kind) = (snake(&signal.name), rust_type(signal.shape));
@@ -158,9 +157,9 @@ impl<'a> StageFunction<'a> {
     }
 
     /// The statement that runs the stage.
-    pub(super) fn call(&self) -> TokenStream {
+    pub(super) fn call(&self) -> Source {
         let scope = self.scope(true);
-        let mut arguments: Vec<TokenStream> = vec![];
+        let mut arguments: Vec<Source> = vec![];
         if !self.plan.reads.is_empty() || !self.plan.stores.is_empty() {
             arguments.push(quote!(state));
         }
@@ -176,7 +175,7 @@ impl<'a> StageFunction<'a> {
             return if self.has_body() {
                 quote!(let #pattern = #call;)
             } else {
-                TokenStream::new()
+                Source::new()
             };
         };
         let condition = scope.whole(guard.condition);
@@ -205,7 +204,7 @@ impl<'a> StageFunction<'a> {
     }
 
     /// The `let`s of the stage.
-    pub(super) fn statements(&self) -> Vec<TokenStream> {
+    pub(super) fn statements(&self) -> Vec<Source> {
         let scope = self.scope(false);
         let reads = self.plan.reads.iter().map(|&state| {
             let word = self.word(state);
@@ -227,9 +226,9 @@ impl<'a> StageFunction<'a> {
     }
 
     /// The function, and the structure of its results where there is one.
-    pub(super) fn definition(&self) -> TokenStream {
+    pub(super) fn definition(&self) -> Source {
         if !self.has_body() {
-            return TokenStream::new();
+            return Source::new();
         }
         let mut statements = self.statements();
         let scope = self.scope(false);
@@ -258,7 +257,7 @@ impl<'a> StageFunction<'a> {
         }
     }
 
-    fn parameters(&self) -> Vec<TokenStream> {
+    fn parameters(&self) -> Vec<Source> {
         let mut parameters = vec![];
         if !self.plan.stores.is_empty() {
             parameters.push(quote!(state: &mut State));
@@ -275,10 +274,10 @@ impl<'a> StageFunction<'a> {
 
     /// The return type, and the expression at the function's end; a single result is not bound to
     /// its name first.
-    fn result(&self, statements: &mut Vec<TokenStream>) -> (TokenStream, TokenStream) {
+    fn result(&self, statements: &mut Vec<Source>) -> (Source, Source) {
         let scope = self.scope(false);
         if self.plan.outcomes.is_empty() {
-            return (TokenStream::new(), TokenStream::new());
+            return (Source::new(), Source::new());
         }
         let kind = self.results.rust_type();
         let last = self
@@ -307,7 +306,7 @@ impl<'a> StageFunction<'a> {
     }
 
     /// The stage's documentation, and the proven ranges of its results.
-    fn doc(&self) -> TokenStream {
+    fn doc(&self) -> Source {
         let members = self.results.groups.iter().flat_map(|group| &group.members);
         let outcomes = members.map(|&member| &self.plan.outcomes[member]);
         let name = |name: &str| snake(name).to_string();

@@ -4,14 +4,13 @@
 
 use super::expression::coded;
 use super::names::{camel, docs, number, screaming, snake};
+use super::source::{Source, quote};
 use crate::emit::rows::{columns, padding, row_of, size};
 use crate::emit::signal::Shape;
 use crate::ir::{Program, Table, TableId};
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
 
 /// The entry of a table at an index: a word, or the state of a leg.
-pub(super) fn look_up(program: &Program, id: TableId, index: &TokenStream) -> TokenStream {
+pub(super) fn look_up(program: &Program, id: TableId, index: &Source) -> Source {
     let table = &program.tables[id.index()];
     let name = screaming(&table.name);
     let Some(row) = row_of(program, table) else {
@@ -27,15 +26,15 @@ pub(super) fn look_up(program: &Program, id: TableId, index: &TokenStream) -> To
 }
 
 /// All tables of a program that its code names: those alone by `named`, those in rows all together.
-pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> TokenStream {
-    let mut items = TokenStream::new();
+pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> Source {
+    let mut items = Source::new();
     let mut known = vec![];
     for table in &program.tables {
         match row_of(program, table) {
-            None if named(&table.name) => items.extend(emit_table(table)),
+            None if named(&table.name) => items.insert(&emit_table(table)),
             Some(row) if !known.contains(&row) && named(&rows(row).to_string()) => {
                 known.push(row);
-                items.extend(emit_rows(program, row));
+                items.insert(&emit_rows(program, row));
             }
             _ => {}
         }
@@ -44,12 +43,12 @@ pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> To
 }
 
 /// The name of all rows together.
-fn rows(row: &str) -> Ident {
+fn rows(row: &str) -> Source {
     screaming(&format!("{row}_rows"))
 }
 
 /// The name of a column, without the row's own.
-fn field(row: &str, table: &Table) -> Ident {
+fn field(row: &str, table: &Table) -> Source {
     let name = table.name.strip_prefix(row);
     let name = name.and_then(|name| name.strip_prefix('_'));
     snake(name.unwrap_or(&table.name))
@@ -65,8 +64,8 @@ fn shares_a_word(program: &Program, row: &'static str) -> bool {
         && (alike(|name| name.split('_').next()) || alike(|name| name.rsplit('_').next()))
 }
 
-fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
-    let (name, rows) = (format_ident!("{}Row", camel(row)), rows(row));
+fn emit_rows(program: &Program, row: &'static str) -> Source {
+    let (name, rows) = (Source::of(format!("{}Row", camel(row))), rows(row));
     let fields = columns(program, row).map(|table| {
         let (field, doc, element) = (field(row, table), docs(&table.doc), element(table));
         quote!(#doc #field: #element)
@@ -82,14 +81,10 @@ fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
         quote!(#name { #(#fields),* })
     });
     let doc = docs(&[format!("What one {row} tells.")]);
-    let layout = padding(columns(program, row)).map(|bytes| {
-        let bytes = Literal::usize_unsuffixed(bytes);
-        quote!(#[repr(align(#bytes))])
-    });
+    let layout = padding(columns(program, row)).map(|bytes| quote!(#[repr(align(#bytes))]));
     let alike = shares_a_word(program, row)
         .then(|| quote!(#[expect(clippy::struct_field_names, reason = "signals of three phases")]));
     let all = docs(&[format!("The rows of every {row}.")]);
-    let count = Literal::usize_unsuffixed(count);
     quote! {
         #doc
         #layout
@@ -102,15 +97,15 @@ fn emit_rows(program: &Program, row: &'static str) -> TokenStream {
 }
 
 /// A table by itself.
-fn emit_table(table: &Table) -> TokenStream {
+fn emit_table(table: &Table) -> Source {
     let (name, doc, element) = (screaming(&table.name), docs(&table.doc), element(table));
-    let count = Literal::usize_unsuffixed(table.values.len());
+    let count = table.values.len();
     let values = table.values.iter().map(|&value| entry(table, value));
     quote!(#doc static #name: [#element; #count] = [#(#values),*];)
 }
 
 /// The smallest elements that hold a table, unsigned where that will do: to load and to compare them takes no sign extension.
-fn element(table: &Table) -> TokenStream {
+fn element(table: &Table) -> Source {
     match size(table) {
         1 if table.holds_legs => quote!(LegState),
         1 if is_unsigned(table) => quote!(u8),
@@ -125,7 +120,7 @@ fn is_unsigned(table: &Table) -> bool {
     table.values.iter().all(|&value| value >= 0)
 }
 
-fn entry(table: &Table, value: i32) -> TokenStream {
+fn entry(table: &Table, value: i32) -> Source {
     let code = table.holds_legs.then(|| Shape::Leg.code(value)).flatten();
     code.map_or_else(|| number(i64::from(value)), coded)
 }

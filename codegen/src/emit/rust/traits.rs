@@ -3,15 +3,14 @@
 use super::imports::unsettled;
 use super::interface::Types;
 use super::names::{number, raw_text, snake, stored};
+use super::source::{Source, quote};
 use crate::interface::Rounding;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
 
 impl Types<'_> {
     /// The trait that all drives share.
-    pub(super) fn drive_trait(&self) -> TokenStream {
+    pub(super) fn drive_trait(&self) -> Source {
         let name = unsettled(self.name);
-        let name_text = self.name.to_string();
+        let name_text = self.name;
         let spec = raw_text(&self.interface.spec_toml);
         let formats = self.interface.formats.iter().map(|entry| {
             let name = &entry.name;
@@ -38,7 +37,6 @@ impl Types<'_> {
             }
         });
         let writes = words.iter().enumerate().map(|(index, word)| {
-            let index = Literal::usize_unsuffixed(index);
             let field = snake(&word.name);
             let value = stored(word, &quote!(Word(value)));
             quote!(#index => self.state.#field = #value)
