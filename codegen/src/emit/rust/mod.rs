@@ -17,6 +17,8 @@ mod stage;
 mod tables;
 mod traits;
 
+extern crate proc_macro;
+
 pub use format::{format_rust, rustfmt};
 
 use super::texts;
@@ -146,7 +148,15 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
 
 fn tokens(code: &Source) -> TokenStream {
     // Cannot fail: templates are tokens, and what they name is numbers, names and literals.
-    code.as_str().parse().unwrap_or_default()
+    let code = code.as_str();
+    if proc_macro::is_available() {
+        // What `proc_macro2` makes in a macro, without its own reading of the text before the compiler's, which would
+        // take longer than all the rest of the emission.
+        let tokens = code.parse::<proc_macro::TokenStream>();
+        tokens.unwrap_or_default().into()
+    } else {
+        code.parse().unwrap_or_default()
+    }
 }
 
 /// The constants and tables that the body names.
