@@ -57,11 +57,8 @@ impl Function {
         let live = self.live();
         let position = renumbered(&live);
         let moved = |value: Value| Value(position[value.index()]);
-        let before = |index: usize| {
-            position
-                .get(index)
-                .map_or(live.iter().filter(|&&x| x).count(), |&p| p as usize)
-        };
+        let count = live.iter().filter(|&&live| live).count();
+        let before = |index: usize| position.get(index).map_or(count, |&p| p as usize);
         for stage in &mut self.stages {
             stage.first = before(stage.first);
             stage.end = before(stage.end);
