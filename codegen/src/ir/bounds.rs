@@ -9,8 +9,6 @@
 //! A value that is thrown away needs no bound: what reaches a result only where a condition holds is
 //! bounded under that condition ([`Bounds::operand`]).
 
-use std::collections::BTreeSet;
-
 use super::error::{ErrorInterval, Exact, Real};
 use super::graph::{Function, Program};
 use super::interval::Interval;
@@ -121,14 +119,36 @@ pub fn cases<'p>(program: &'p Program, function: &'p Function) -> Vec<Case<'p>> 
             names.join("_and_")
         },
         is_rare,
-        bounds: Bounds::where_known(program, function, &known),
+        bounds: if known.is_empty() {
+            all.clone()
+        } else {
+            Bounds::where_known(program, function, &known)
+        },
         known,
     });
     named.collect()
 }
 
-/// Conditions, each with whether it holds.
-type Context = BTreeSet<(Value, bool)>;
+/// Conditions, each with whether it holds: few, so that a list holds them.
+#[derive(Clone, Debug, Default)]
+struct Context(Vec<(Value, bool)>);
+
+impl Context {
+    fn contains(&self, known: (Value, bool)) -> bool {
+        self.0.contains(&known)
+    }
+
+    fn insert(&mut self, known: (Value, bool)) {
+        if !self.contains(known) {
+            self.0.push(known);
+        }
+    }
+
+    /// Keeps what the other knows, too.
+    fn intersect(&mut self, other: &Self) {
+        self.0.retain(|&known| other.contains(known));
+    }
+}
 
 /// Intervals and errors of all values of a function.
 #[derive(Clone, Debug)]
@@ -155,7 +175,9 @@ impl<'p> Bounds<'p> {
         let nodes = function.nodes.len();
         let mut contexts = contexts(function);
         for context in &mut contexts {
-            context.extend(known);
+            for &condition in known {
+                context.insert(condition);
+            }
         }
         let mut bounds = Self {
             program,
@@ -202,7 +224,7 @@ impl<'p> Bounds<'p> {
     fn refined(&self, context: &Context, value: Value) -> Interval {
         let own = self.intervals[value.index()];
         let mut interval = own;
-        for &(condition, holds) in context {
+        for &(condition, holds) in &context.0 {
             self.refine(condition, holds, value, &mut interval);
         }
         // Conditions that contradict each other: the place is never reached, and any bound will do.
@@ -294,7 +316,7 @@ impl<'p> Bounds<'p> {
         let context = &self.contexts[index];
         [true, false]
             .into_iter()
-            .find(|&holds| context.contains(&(condition, holds)))
+            .find(|&holds| context.contains((condition, holds)))
     }
 
     /// The guard of the stage that a join belongs to.
@@ -477,7 +499,7 @@ fn contexts(function: &Function) -> Vec<Context> {
         .chain(params)
         .chain(guards.clone().map(|guard| guard.condition))
     {
-        contexts[root.index()] = Some(Context::new());
+        contexts[root.index()] = Some(Context::default());
     }
     for index in (0..function.nodes.len()).rev() {
         let Some(own) = contexts[index].clone() else {
@@ -485,12 +507,13 @@ fn contexts(function: &Function) -> Vec<Context> {
         };
         let mut reach = |value: Value, condition: Option<(Value, bool)>| {
             let mut context = own.clone();
-            context.extend(condition);
-            let known = &mut contexts[value.index()];
-            *known = Some(match known.take() {
-                None => context,
-                Some(known) => known.intersection(&context).copied().collect(),
-            });
+            if let Some(condition) = condition {
+                context.insert(condition);
+            }
+            match &mut contexts[value.index()] {
+                Some(known) => known.intersect(&context),
+                unknown => *unknown = Some(context),
+            }
         };
         match function.nodes[index].op {
             Op::Select {
