@@ -31,6 +31,7 @@ use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
 use proc_macro2::{Ident, Span, TokenStream};
 use source::{Source, quote};
 use std::collections::HashSet;
+use std::panic::resume_unwind;
 use tables::emit_tables;
 
 /// How the emitted type appears to the code around it.
@@ -72,44 +73,55 @@ pub struct RustText {
 /// The text of one drive's module.
 pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str) -> RustText {
     let program = graph.program();
-    let step = emit_step(program);
-    let setters: Vec<_> = program
-        .setters
-        .iter()
-        .map(|setter| emit_setter(program, setter))
-        .collect();
     let types = Types {
         program,
         interface,
         name: type_name,
     };
-    let drive = types.drive(&setters);
-    let set_point = types.set_point(&setters);
-    let control_loop = types.control_loop();
+    let around = || {
+        let setters: Vec<_> = program
+            .setters
+            .iter()
+            .map(|setter| emit_setter(program, setter))
+            .collect();
+        let drive = types.drive(&setters);
+        let set_point = types.set_point(&setters);
+        let control_loop = types.control_loop();
+        let setter_stages = setters.iter().map(|setter| &setter.stages);
+        let state = types.state();
+        let drive_trait = types.drive_trait();
+        let header = inner_docs(&texts::header(program, interface));
+        let before = quote!(#drive #set_point #control_loop);
+        let behind = quote!(#(#setter_stages)* #state #drive_trait);
+        (header, before, behind, docs(&interface.doc))
+    };
+    let (step, (header, before, behind, docs)) = at_once(|| emit_step(program), around);
     let (step_main, step_stages) = (&step.main, &step.stages);
-    let setter_stages = setters.iter().map(|setter| &setter.stages);
-    let state = types.state();
-    let drive_trait = types.drive_trait();
     let body = quote! {
-        #drive
-        #set_point
-        #control_loop
+        #before
         #step_main
         #step_stages
-        #(#setter_stages)*
-        #state
-        #drive_trait
+        #behind
     };
     let names = identifiers(&body);
-    let header = inner_docs(&texts::header(program, interface));
     let imports = imports(&names, interface, type_name);
-    let (constants, docs) = (constants(program, &names), docs(&interface.doc));
+    let constants = constants(program, &names);
     RustText {
         type_name: type_name.to_owned(),
         head: quote!(#header #imports),
         before: quote!(#constants #docs),
         body,
     }
+}
+
+/// Does both, the first beside the second: the compiler uses one core, and that one waits for its macros.
+fn at_once<A: Send, B>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
+    std::thread::scope(|scope| {
+        let first = scope.spawn(first);
+        let second = second();
+        let first = first.join();
+        (first.unwrap_or_else(|panic| resume_unwind(panic)), second)
+    })
 }
 
 impl RustText {
