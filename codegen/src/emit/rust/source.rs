@@ -1,7 +1,7 @@
 //! Emitted Rust as text, written through templates that look like those of the `quote` crate.
 //!
-//! Users run the generator in macros, which nobody optimises: there a text takes a third of the time that tokens take,
-//! and the compiler reads it faster than tokens one by one. Texts also come from any thread; tokens do not.
+//! Users run the generator in macros, which nobody optimises: there a text takes a third of the time that tokens take.
+//! The compiler reads it in one piece. Texts also come from any thread; tokens do not.
 
 use std::fmt;
 
