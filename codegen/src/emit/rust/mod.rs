@@ -159,16 +159,20 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
 }
 
 fn tokens(code: &Source) -> TokenStream {
-    // Cannot fail: templates are tokens, and what they name is numbers, names and literals.
     let code = code.as_str();
-    if proc_macro::is_available() {
+    let tokens = if proc_macro::is_available() {
         // What `proc_macro2` makes in a macro, without its own reading of the text before the compiler's, which would
         // take longer than all the rest of the emission.
-        let tokens = code.parse::<proc_macro::TokenStream>();
-        tokens.unwrap_or_default().into()
+        code.parse().map(proc_macro::TokenStream::into).ok()
     } else {
-        code.parse().unwrap_or_default()
-    }
+        code.parse().ok()
+    };
+    // Templates are tokens, and what they name is numbers, names and literals.
+    tokens.unwrap_or_else(|| {
+        quote::quote!(::core::compile_error!(
+            "hexagen emitted a text that is no Rust: a bug of hexagen, please report it with the specification"
+        );)
+    })
 }
 
 /// The constants and tables that the body names.
