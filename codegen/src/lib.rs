@@ -23,6 +23,7 @@
 //! [`spec::ControllerSpec`]; blocks of that step (measurement, supervision, rotor angle,
 //! limits, modulation) live in [`lower`].
 
+mod at_once;
 mod builder;
 pub mod controllers;
 pub mod design;

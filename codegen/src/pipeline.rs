@@ -1,8 +1,10 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
+use crate::at_once::at_once;
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
 use crate::controllers::{
-    StableRange, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm, wide_words,
+    StableRange, accuracy_constants, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm,
+    wide_words,
 };
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
@@ -78,7 +80,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     .map_err(|why| Diagnostics::from(unscalable(&why, common.word, origins)))?;
     let rounded = design.rounded(&scaled);
     let mut errors = Collector::new();
-    let law = match &spec.controller {
+    let law = || match &spec.controller {
         ControllerSpec::FcsMpc(options) => {
             if options.modulated {
                 check_miss(spec, &design, origins, &mut errors);
@@ -108,7 +110,9 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
             pi_pwm::law(spec, options, stable)
         }
     };
-    let interface = interface(spec, &design, &scaled, &law);
+    let accuracy = || accuracy_constants(scaled.graph.program(), &spec.inverter);
+    let (accuracy, law) = at_once(accuracy, law);
+    let interface = interface(spec, &design, &scaled, &law, accuracy);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
 }

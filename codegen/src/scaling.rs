@@ -5,6 +5,7 @@
 //! whose program passes verification and keeps its coefficients and products within the word. Of 32-bit products that is the
 //! upper word, unless no scale at all allows that.
 
+use crate::at_once::at_once;
 use crate::interface::FormatEntry;
 use crate::ir::{Function, Op, Program, VerifiedGraph, Violation, verify};
 use crate::lower::Scale;
@@ -59,7 +60,7 @@ const FINEST_VOLTAGE: u32 = 20;
 pub fn choose_scale(
     inverter: &InverterSpec,
     word: u32,
-    lower: impl Fn(Scale) -> Lowered,
+    lower: impl Fn(Scale) -> Lowered + Sync,
 ) -> Result<Scaled, Unscalable> {
     // i_c = -(i_a + i_b) and differences of two currents need one bit more than a current; with 16-bit
     // words currents themselves must fit the word as factors.
@@ -92,7 +93,7 @@ pub fn choose_scale(
 /// The finest of 1 to `high` voltage bits that fits.
 fn finest_of(
     mut high: u32,
-    fit: impl Fn(u32) -> Result<Scaled, Unscalable>,
+    fit: impl Fn(u32) -> Result<Scaled, Unscalable> + Sync,
 ) -> Result<Scaled, Unscalable> {
     let mut low = 1;
     let mut finest = Err(Unscalable::TooNarrow {
@@ -100,18 +101,34 @@ fn finest_of(
         bits: None,
     });
     while low <= high {
-        let voltage_bits = low.midpoint(high);
-        match fit(voltage_bits) {
+        // Two at once part what is left in three.
+        let third = (high - low) / 3;
+        let (coarse, fine) = (low + third, high - third);
+        let (fitted_coarse, fitted_fine) = if coarse < fine {
+            let (coarse, fine) = at_once(|| fit(coarse), || fit(fine));
+            (Some(coarse), fine)
+        } else {
+            (None, fit(fine))
+        };
+        let mut fits = |bits: u32, fitted| match fitted {
             Ok(scaled) => {
                 finest = Ok(scaled);
-                low = voltage_bits + 1;
+                low = bits + 1;
+                Ok(true)
             }
-            Err(broken @ Unscalable::Broken(_)) => return Err(broken),
+            Err(broken @ Unscalable::Broken(_)) => Err(broken),
             Err(too_narrow) => {
                 // Told of the coarsest scale, which is the last to fail where none fits.
-                finest = finest.or(Err(too_narrow));
-                high = voltage_bits - 1;
+                if finest.is_err() {
+                    finest = Err(too_narrow);
+                }
+                high = bits - 1;
+                Ok(false)
             }
+        };
+        let fine_fits = fits(fine, fitted_fine)?;
+        if let (false, Some(fitted)) = (fine_fits, fitted_coarse) {
+            fits(coarse, fitted)?;
         }
     }
     finest

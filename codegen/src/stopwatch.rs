@@ -1,6 +1,7 @@
 //! How long this thread has been at each part of the generator: what `cargo xtask compile-time` prints.
 //!
-//! A part that runs inside another takes its time from it. Nothing else depends on these times.
+//! A part that runs inside another takes its time from it; what a second thread does beside this one takes no time but
+//! that of waiting for it. Nothing else depends on these times.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 /// Modules of the generator, each with those that it may import besides itself.
-const IMPORTS: [(&str, &[&str]); 14] = [
+const IMPORTS: [(&str, &[&str]); 15] = [
+    ("at_once", &[]),
     ("stopwatch", &[]),
     ("diagnostics", &[]),
     ("interface", &[]),
@@ -18,7 +19,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
     ),
     (
         "scaling",
-        &["interface", "ir", "lower", "spec", "stopwatch"],
+        &["at_once", "interface", "ir", "lower", "spec", "stopwatch"],
     ),
     (
         "controllers",
@@ -36,6 +37,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
     (
         "pipeline",
         &[
+            "at_once",
             "controllers",
             "diagnostics",
             "interface",
@@ -46,7 +48,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
         ],
     ),
     ("interpreted", &["interface", "ir", "lower"]),
-    ("emit", &["diagnostics", "interface", "ir"]),
+    ("emit", &["at_once", "diagnostics", "interface", "ir"]),
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
     (
         "expand",

@@ -4,6 +4,7 @@ use super::interface::fraction_bits;
 use crate::diagnostics::significant;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::ir::{Program, StatedError, stated_errors};
+use crate::spec::InverterSpec;
 use crate::stopwatch::Part;
 
 /// A number, rounded up.
@@ -66,8 +67,14 @@ fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
 }
 
 /// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`; `TIE_BAND` of scores and of what bands compare.
-/// What is not bounded more closely than `widest`, in its unit, has no constant.
-pub fn accuracy_constants(program: &Program, widest: impl Fn(&str) -> f64) -> Vec<PublicConstant> {
+/// What is not bounded more closely than the inverter's own ranges has no constant.
+pub fn accuracy_constants(program: &Program, inverter: &InverterSpec) -> Vec<PublicConstant> {
+    let widest = |unit: &str| match unit {
+        "V" => inverter.greatest_bus(),
+        "V^2" => inverter.greatest_bus().powi(2),
+        "A" => inverter.max_current,
+        _ => f64::from(inverter.timer_period),
+    };
     let mut constants = vec![];
     for stated in Part::ProofRanges.timed(|| stated_errors(program)) {
         let StatedError {

@@ -1,6 +1,6 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
-use super::accuracy::{accuracy_constants, accuracy_notes};
+use super::accuracy::accuracy_notes;
 use super::current_loop::{LoopDesign, StableRange};
 use super::operation;
 use super::start::start_rpm;
@@ -29,7 +29,13 @@ pub struct Law {
 }
 
 /// Builds the interface of a scaled controller.
-pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Interface {
+pub fn interface(
+    spec: &Spec,
+    design: &LoopDesign,
+    scaled: &Scaled,
+    law: &Law,
+    accuracy: Vec<PublicConstant>,
+) -> Interface {
     let inverter = &spec.inverter;
     Interface {
         type_name: spec.name.clone(),
@@ -37,7 +43,7 @@ pub fn interface(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -
         header: header(spec, design, scaled),
         spec_toml: spec.to_toml(),
         formats: scaled.formats.clone(),
-        constants: constants(spec, design, scaled, law),
+        constants: constants(spec, design, law, accuracy),
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
@@ -285,7 +291,12 @@ fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> Public
     }
 }
 
-fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Vec<PublicConstant> {
+fn constants(
+    spec: &Spec,
+    design: &LoopDesign,
+    law: &Law,
+    accuracy: Vec<PublicConstant>,
+) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let v_bus = inverter.v_bus;
     let three: Vec<Vector2<f64>> = THREE_PHASE
@@ -349,14 +360,7 @@ fn constants(spec: &Spec, design: &LoopDesign, scaled: &Scaled, law: &Law) -> Ve
         ),
     ];
     list.extend(law.constants.iter().cloned());
-    // Beyond these a bound says nothing.
-    let widest = |unit: &str| match unit {
-        "V" => inverter.greatest_bus(),
-        "V^2" => inverter.greatest_bus().powi(2),
-        "A" => inverter.max_current,
-        _ => period,
-    };
-    list.extend(accuracy_constants(scaled.graph.program(), widest));
+    list.extend(accuracy);
     if let Some(stable) = law.stable {
         list.extend([
             PublicConstant {

@@ -15,6 +15,7 @@ mod start;
 mod whole_vectors;
 mod word_choice;
 
+pub use accuracy::accuracy_constants;
 pub use current_loop::StableRange;
 pub use interface::{Law, interface};
 pub use word_choice::{narrow_words, wide_words};

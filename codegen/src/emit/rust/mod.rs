@@ -22,6 +22,7 @@ extern crate proc_macro;
 pub use format::{format_rust, rustfmt};
 
 use super::texts;
+use crate::at_once::at_once;
 use crate::interface::Interface;
 use crate::ir::{Program, VerifiedGraph};
 use function::{emit_setter, emit_step};
@@ -31,7 +32,6 @@ use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
 use proc_macro2::{Ident, Span, TokenStream};
 use source::{Source, quote};
 use std::collections::HashSet;
-use std::panic::resume_unwind;
 use tables::emit_tables;
 
 /// How the emitted type appears to the code around it.
@@ -112,16 +112,6 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         before: quote!(#constants #docs),
         body,
     }
-}
-
-/// Does both, the first beside the second: the compiler uses one core, and that one waits for its macros.
-fn at_once<A: Send, B>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
-    std::thread::scope(|scope| {
-        let first = scope.spawn(first);
-        let second = second();
-        let first = first.join();
-        (first.unwrap_or_else(|panic| resume_unwind(panic)), second)
-    })
 }
 
 impl RustText {

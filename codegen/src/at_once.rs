@@ -1,0 +1,14 @@
+//! Two works at once: the compiler uses one core, and that one waits for its macros.
+
+use std::panic::resume_unwind;
+use std::thread::scope;
+
+/// Does both, the first beside the second.
+pub fn at_once<A: Send, B>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
+    scope(|scope| {
+        let first = scope.spawn(first);
+        let second = second();
+        let first = first.join();
+        (first.unwrap_or_else(|panic| resume_unwind(panic)), second)
+    })
+}
