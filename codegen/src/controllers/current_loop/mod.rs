@@ -161,12 +161,11 @@ impl CurrentLoop<'_, '_> {
         let j = regulated.map_or(j, |regulated| regulated.j);
         let timeout = options.commutation_timeout;
         let advances = options.advance > 0.0;
-        // At an edge, which is rare, the commutation begins where the direction is sensed.
-        let at_edges = words.pair.filter(|_| rotor.is_none());
+        // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
         let (direction, kept) = match (&rotor, words.direction.zip(hall.as_ref())) {
             (Some(rotor), _) => (Some(rotor.direction), None),
             (None, Some((word, hall))) => {
-                let commutation = at_edges.map(|pair| (pair.left, timeout));
+                let commutation = words.pair.map(|pair| (pair.left, timeout));
                 let (direction, kept) = l.sense_direction(word, hall, commutation);
                 (Some(direction), kept)
             }

@@ -55,7 +55,7 @@ const TIE: f64 = 1e-9;
 /// Entries of one set: sector 1 to 6, commutating, 2 H_a + H_b.
 type Rows = [[[u8; 4]; 2]; 6];
 
-/// The table of a drive: 3 sets of 64, each sector 0 to 7, commutating, 2 H_a + H_b.
+/// The table of a drive: 4 sets of 64, each sector 0 to 7, commutating, 2 H_a + H_b.
 pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
     let derived = |design| derive(options.candidates, shape, design);
     let braking = derived(&BRAKING);

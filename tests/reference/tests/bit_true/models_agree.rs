@@ -68,8 +68,7 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             step,
             sample,
             &before,
-            &bit_true,
-            &ideal,
+            (&bit_true, &ideal),
             &mut worst,
             |phase| {
                 let exact = duties.duty[phase] * f64::from(variant.spec.inverter.timer_period);
@@ -88,8 +87,7 @@ fn compare(
     step: u64,
     sample: Sample,
     before: &PhysicalState,
-    bit_true: &BitTrue,
-    ideal: &Ideal,
+    (bit_true, ideal): (&BitTrue, &Ideal),
     worst: &mut Worst,
     leg: impl Fn(usize) -> (f64, bool),
 ) {
