@@ -171,11 +171,8 @@ impl Lowering<'_> {
         let sector = self.b.select(sample.no_hall, sector_prev, sample.sector);
         self.b.name("sector", sector);
         self.b.set_state(word, sector);
-        let changed = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        let [changed, edge] = self.compare_sectors(sector, sector_prev);
         self.b.name("sector_changed", changed);
-        let zero = self.zero();
-        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
-        let edge = self.b.and(changed, known);
         self.b.name("edge", edge);
         Hall {
             sector,
@@ -183,5 +180,13 @@ impl Lowering<'_> {
             changed,
             edge,
         }
+    }
+
+    /// Flags, added to the open stage: the sector is not the last sample's, which may have had none (0); and it is another.
+    pub(super) fn compare_sectors(&mut self, sector: Value, sector_prev: Value) -> [Value; 2] {
+        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
+        let zero = self.zero();
+        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
+        [different, self.b.and(different, known)]
     }
 }

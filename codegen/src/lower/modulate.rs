@@ -194,10 +194,7 @@ impl Lowering<'_> {
             &["Whether the sector in force is another than at the last sample."],
         );
         let sector_prev = self.b.state(sector_prev);
-        let different = self.b.compare(Comparison::NotEqual, sector, sector_prev);
-        let zero = self.zero();
-        let known = self.b.compare(Comparison::NotEqual, sector_prev, zero);
-        let changed = self.b.and(different, known);
+        let [_, changed] = self.compare_sectors(sector, sector_prev);
         self.b.name("changed", changed)
     }
 

@@ -346,25 +346,10 @@ fn read_speed_loop(
 
 /// Refuses the options of commutations where the controller does not know of any; `other` is the setting that
 /// it follows from.
-pub(crate) fn refuse_commutation(
-    reader: &Reader,
-    [other, value]: [&str; 2],
-    errors: &mut Collector,
-) {
+pub(crate) fn refuse_commutation(reader: &Reader, setting: [&str; 2], errors: &mut Collector) {
+    let why = "where no leg is turned off, no commutation has to end";
     for name in ["commutation_threshold", "commutation_timeout"] {
-        let Some(field) = reader.field(name) else {
-            continue;
-        };
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            name,
-            &field.value.to_string(),
-            reader
-                .field(other)
-                .map_or(reader.location(), |field| &field.location),
-            &format!("{other}: {value}"),
-            "where no leg is turned off, no commutation has to end",
-        ));
+        refuse(reader, name, setting, why, errors);
     }
 }
 
