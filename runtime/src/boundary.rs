@@ -50,15 +50,19 @@ impl LegState {
 /// The three legs' commands: compare values for a centre-aligned timer and a state per leg.
 ///
 /// A compare value is the time during which the upper switch is on, in counts, from 0 to the
-/// timer's period; it is 0 for a leg that is not pulsed. Laid out as in C.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
-pub struct Legs {
-    /// Compare values of phases a, b, c, in timer counts.
-    pub compare: [u16; 3],
-    /// States of legs a, b, c.
-    pub state: [LegState; 3],
-}
+/// timer's period; it is 0 for a leg that is not pulsed. All of them are one word of 64 bits, which functions
+/// return in two registers of a small core.
+///
+/// ```
+/// use hexagen::{LegState, Legs};
+///
+/// let legs = Legs::new([900, 450, 0], [LegState::Pulsed, LegState::Pulsed, LegState::Off]);
+/// assert_eq!(legs.compare(), [900, 450, 0]);
+/// assert_eq!(legs.state()[2], LegState::Off);
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Legs(u64);
 
 impl Legs {
     /// All legs off: the safe command of a tripped drive.
@@ -66,14 +70,77 @@ impl Legs {
     /// All lower switches on: charges the bootstrap capacitors.
     pub const LOW: Self = Self::at_rest(LegState::Low);
 
+    /// Compare values and states of legs a, b, c.
+    #[inline]
+    #[must_use]
+    pub const fn new(compare: [u16; 3], state: [LegState; 3]) -> Self {
+        let ([a, b, c], [state_a, state_b, state_c]) = (compare, state);
+        let states = state_a as u32 | (state_b as u32) << 2 | (state_c as u32) << 4;
+        let low = a as u32 | (b as u32) << 16;
+        let high = c as u32 | states << 16;
+        Self(low as u64 | (high as u64) << 32)
+    }
+
     /// All legs alike, without pulses.
     #[inline]
     #[must_use]
     pub const fn at_rest(state: LegState) -> Self {
-        Self {
-            compare: [0; 3],
-            state: [state; 3],
-        }
+        Self::new([0; 3], [state; 3])
+    }
+
+    /// Compare values of phases a, b, c, in timer counts.
+    #[inline]
+    #[must_use]
+    pub const fn compare(self) -> [u16; 3] {
+        [self.0 as u16, (self.0 >> 16) as u16, (self.0 >> 32) as u16]
+    }
+
+    /// States of legs a, b, c.
+    #[inline]
+    #[must_use]
+    pub const fn state(self) -> [LegState; 3] {
+        let states = self.states() as i32;
+        [
+            LegState::from_word(Word(states & 3)),
+            LegState::from_word(Word(states >> 2 & 3)),
+            LegState::from_word(Word(states >> 4 & 3)),
+        ]
+    }
+
+    /// States of legs a, b, c in two bits each, a's lowest: the place in a table of what a timer's output enables take.
+    #[inline]
+    #[must_use]
+    pub const fn states(self) -> u16 {
+        (self.0 >> 48) as u16
+    }
+
+    /// The word: compare values in 16 bits each from the lowest on, then [`states`](Self::states).
+    #[inline]
+    #[must_use]
+    pub const fn to_bits(self) -> u64 {
+        self.0
+    }
+
+    /// The legs of a word as [`to_bits`](Self::to_bits) gives it; of other words, what they read as.
+    #[inline]
+    #[must_use]
+    pub const fn from_bits(bits: u64) -> Self {
+        Self(bits)
+    }
+}
+
+impl Default for Legs {
+    fn default() -> Self {
+        Self::OFF
+    }
+}
+
+impl core::fmt::Debug for Legs {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Legs")
+            .field("compare", &self.compare())
+            .field("state", &self.state())
+            .finish()
     }
 }
 

@@ -42,6 +42,27 @@ impl Word {
         Self(self.0.max(other.into().0))
     }
 
+    /// The lesser of two words whose difference fits a word: without a comparison, and with [`greater`](Self::greater) of
+    /// the same words by one difference.
+    #[inline(always)]
+    #[must_use]
+    pub fn lesser(self, other: Self) -> Self {
+        other + (self - other).negative_part()
+    }
+
+    /// The greater of two words whose difference fits a word.
+    #[inline(always)]
+    #[must_use]
+    pub fn greater(self, other: Self) -> Self {
+        self - (self - other).negative_part()
+    }
+
+    /// The word where it is negative, else 0.
+    #[inline(always)]
+    fn negative_part(self) -> Self {
+        Self(self.0 & self.0 >> 31)
+    }
+
     /// `low` below `low`, `high` above `high`. Unlike [`i32::clamp`] it has no panic path: limits
     /// in the wrong order give `high`.
     #[inline(always)]

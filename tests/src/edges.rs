@@ -33,7 +33,7 @@ impl Watched {
         model.set_state_words(words);
         let legs = model.step(sample);
         match self {
-            Self::Compare(phase) => vec![legs.compare[phase].into()],
+            Self::Compare(phase) => vec![legs.compare()[phase].into()],
             Self::Reach => vec![(model.course().reach != Reach::Inside).into()],
             Self::Torque => {
                 let trace = model.trace();
@@ -50,9 +50,9 @@ impl Watched {
             Self::All => {
                 let mut result = vec![0; words.len()];
                 model.state_words(&mut result);
-                result.extend(legs.compare.map(i32::from));
+                result.extend(legs.compare().map(i32::from));
                 // A leg that changes its state jumps by a bus voltage.
-                result.extend(legs.state.map(|state: LegState| (state as i32) << 24));
+                result.extend(legs.state().map(|state: LegState| (state as i32) << 24));
                 result
             }
         }

@@ -96,7 +96,7 @@ fn calibration_averages_then_charges_then_runs() {
     assert!(drive.is_running());
     // The new zero is 2148 and 1998 counts: no current, so the legs stand at half.
     let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
-    assert_eq!(legs.compare, [900; 3]);
+    assert_eq!(legs.compare(), [900; 3]);
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
         assert_eq!(drive.fault(), fault, "{a} {b}");
         drive.reset();
         if fault != Fault::None {
-            assert_eq!(quiet(&mut drive, 1).compare, [900; 3], "the old zero holds");
+            assert_eq!(quiet(&mut drive, 1).compare(), [900; 3], "the old zero holds");
         }
     }
 }
@@ -131,7 +131,7 @@ fn start_up_is_not_cut_short() {
     quiet(&mut drive, 1);
     drive.reset();
     assert!(!drive.is_running(), "pre-charge went on");
-    assert_eq!(quiet(&mut drive, 2).state, [LegState::Low; 3]);
+    assert_eq!(quiet(&mut drive, 2).state(), [LegState::Low; 3]);
     drive.calibrate();
     assert_eq!(
         quiet(&mut drive, 1),

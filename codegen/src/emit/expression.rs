@@ -86,6 +86,10 @@ pub(super) enum Primitive {
     Min,
     /// max(a, b)
     Max,
+    /// min(a, b), neither a constant, a - b in one word
+    Lesser,
+    /// max(a, b), likewise
+    Greater,
     /// min(max(x, low), high)
     Clamp,
     /// [`Op::MulRound`]
@@ -252,6 +256,8 @@ impl<'a> Scope<'a> {
             Op::ShiftLeft(a, 0) | Op::ShiftRight(a, 0) => of(a),
             Op::ShiftLeft(a, bits) => E::ShiftedLeft(boxed(a), bits),
             Op::ShiftRight(a, bits) => E::ShiftedRight(boxed(a), bits),
+            Op::Min(a, b) if self.are_near(a, b) => call(P::Lesser, &[a, b], None),
+            Op::Max(a, b) if self.are_near(a, b) => call(P::Greater, &[a, b], None),
             Op::Min(a, b) => extreme(P::Min, of(a), of(b)),
             Op::Max(a, b) => extreme(P::Max, of(a), of(b)),
             Op::Clamp { x, low, high } => call(P::Clamp, &[x, low, high], None),
@@ -384,6 +390,14 @@ impl<'a> Scope<'a> {
         }
         let [then, otherwise] = [then, otherwise].map(|arm| self.in_shape(arm, shape));
         Expression::Choice(Box::new([condition, then, otherwise]))
+    }
+
+    /// Whether two signals are known to differ by no more than a word holds.
+    fn are_near(&self, a: Value, b: Value) -> bool {
+        let (left, right) = (self.interval(a), self.interval(b));
+        let differences = Interval::new(left.low - right.high, left.high - right.low);
+        let is_signal = |value| !self.value(value).is_constant();
+        is_signal(a) && is_signal(b) && fits_word(differences)
     }
 
     /// Every product of the two.

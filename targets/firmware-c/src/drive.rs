@@ -48,7 +48,7 @@ macro_rules! drives {
                     adc_b: u16,
                     hall: u8,
                     hall_ticks: u16,
-                ) -> Legs;
+                ) -> LegsInC;
                 fn $set_current(drive: *mut $name, bits: i32);
                 fn $set_torque(drive: *mut $name, bits: i32);
                 fn $reset(drive: *mut $name);
@@ -127,7 +127,7 @@ macro_rules! drives {
             impl DriveLoop for Whole<'_, $name> {
                 fn step(&mut self, sample: &Sample) -> Legs {
                     let drive = unsafe { &mut *self.0 };
-                    $symbol(drive, sample.adc_a, sample.adc_b, sample.hall, sample.hall_ticks)
+                    StepFn::Structure($symbol).call(drive, *sample)
                 }
 
                 fn reset(&mut self) {
@@ -157,7 +157,7 @@ macro_rules! drives {
             size: size_of::<$name>(),
             state_names: <$name as Drive>::STATE_NAMES,
             spec: <$name as Drive>::SPEC,
-            replay: |link, task| replay($symbol, link, task),
+            replay: |link, task| replay(StepFn::Structure($symbol), link, task),
         },)*];
     };
 }

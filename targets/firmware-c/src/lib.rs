@@ -15,7 +15,7 @@ use drive::CStatus;
 use hexagen_firmware::hexagen::fixed::types::I16F16;
 use hexagen_firmware::hexagen::{Drive, DriveLoop, DriveSetPoint, Format, Legs, Sample, Status};
 use hexagen_firmware::session::replay;
-use hexagen_firmware::{Drives, Listed};
+use hexagen_firmware::{Drives, LegsInC, Listed, StepFn};
 
 /// A drive in C as its control loop.
 pub struct Whole<'drive, D>(*mut D, PhantomData<&'drive mut D>);

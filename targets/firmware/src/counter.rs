@@ -9,9 +9,10 @@
     reason = "the functions of counter.s are known to the linker only, and clocks lie at fixed addresses"
 )]
 
-use crate::drives::StepFn;
+use crate::drives::{LegsInC, StepFn};
 use core::arch::global_asm;
-use hexagen::{Legs, Sample};
+use core::ffi::c_void;
+use hexagen::{LegState, Sample};
 
 #[cfg(target_arch = "arm")]
 global_asm!(include_str!("counter_arm.s"));
@@ -21,23 +22,18 @@ global_asm!(include_str!("counter_riscv32.s"));
 /// Instructions of a loop, counted by hand.
 const KNOWN: u32 = 64;
 
-/// What the assembly loads the arguments from, in its order.
+/// What the assembly loads the function and its arguments from, in its order: four in registers, two behind them.
 #[repr(C)]
-struct Call<D> {
-    step: StepFn<D>,
-    legs: *mut Legs,
-    drive: *mut D,
-    adc_a: u32,
-    adc_b: u32,
-    hall: u32,
-    hall_ticks: u32,
+struct Call {
+    step: *const c_void,
+    arguments: [usize; 6],
 }
 
 unsafe extern "C" {
     /// Ticks of the clock that a call takes.
-    fn hexagen_counted_call(call: *mut core::ffi::c_void) -> u32;
+    fn hexagen_counted_call(call: *const Call) -> u32;
     /// Bytes below the stack pointer that a call writes to.
-    fn hexagen_sounded_call(call: *mut core::ffi::c_void) -> u32;
+    fn hexagen_sounded_call(call: *const Call) -> u32;
     /// A step that returns at once.
     fn hexagen_empty_step();
     /// A step of [`KNOWN`] instructions.
@@ -45,23 +41,29 @@ unsafe extern "C" {
 }
 
 fn call<D>(
-    assembly: unsafe extern "C" fn(*mut core::ffi::c_void) -> u32,
+    assembly: unsafe extern "C" fn(*const Call) -> u32,
     step: StepFn<D>,
     drive: &mut D,
     sample: Sample,
 ) -> u32 {
-    let mut legs = Legs::OFF;
-    let mut call = Call {
-        step,
-        legs: &raw mut legs,
-        drive,
-        adc_a: sample.adc_a.into(),
-        adc_b: sample.adc_b.into(),
-        hall: sample.hall.into(),
-        hall_ticks: sample.hall_ticks.into(),
+    let mut legs = LegsInC {
+        compare: [0; 3],
+        state: [LegState::Off; 3],
+    };
+    let legs = (&raw mut legs).expose_provenance();
+    let drive = core::ptr::from_mut(drive).expose_provenance();
+    let [adc_a, adc_b, ticks] = [sample.adc_a, sample.adc_b, sample.hall_ticks].map(usize::from);
+    let hall = usize::from(sample.hall);
+    // Room for a structure comes before all other arguments.
+    let (step, arguments) = match step {
+        StepFn::Bits(step) => (step as *const c_void, [drive, adc_a, adc_b, hall, ticks, 0]),
+        StepFn::Structure(step) => (
+            step as *const c_void,
+            [legs, drive, adc_a, adc_b, hall, ticks],
+        ),
     };
     // SAFETY: the assembly calls `step` as its type says, with pointers that are valid and unshared here.
-    unsafe { assembly((&raw mut call).cast()) }
+    unsafe { assembly(&Call { step, arguments }) }
 }
 
 /// Instructions of one call, from the function's entry to its return, both included. None where a loop that is
@@ -97,13 +99,13 @@ pub fn trace<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<()> {
 /// A step that is written in assembly.
 fn assembly(function: unsafe extern "C" fn()) -> StepFn<()> {
     // SAFETY: both such steps take any arguments, and touch no memory.
-    unsafe { core::mem::transmute(function) }
+    StepFn::Bits(unsafe { core::mem::transmute(function) })
 }
 
 /// An interrupt's function in the place of a step.
 pub fn interrupt_step(interrupt: extern "C" fn()) -> StepFn<()> {
-    // SAFETY: a function without arguments takes no harm from some, and leaves `legs` as it is.
-    unsafe { core::mem::transmute(interrupt) }
+    // SAFETY: a function without arguments takes no harm from some; what it returns is not looked at.
+    StepFn::Bits(unsafe { core::mem::transmute(interrupt) })
 }
 
 /// Bytes of stack that one call uses.

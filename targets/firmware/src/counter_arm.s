@@ -1,4 +1,4 @@
-@ Calls of a step on ARMv6-M and above. r0: step, legs, drive, adc_a, adc_b, hall, hall_ticks.
+@ Calls of a step on ARMv6-M and above. r0: step, and six arguments.
     .syntax unified
     .thumb
     .section .text.hexagen_counter, "ax", %progbits

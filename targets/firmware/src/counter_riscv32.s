@@ -1,4 +1,4 @@
-# Calls of a step on RV32. a0: step, legs, drive, adc_a, adc_b, hall, hall_ticks.
+# Calls of a step on RV32. a0: step, and six arguments.
     .section .text.hexagen_counter, "ax", @progbits
 
     .global hexagen_counted_call

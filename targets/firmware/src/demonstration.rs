@@ -47,7 +47,7 @@ pub fn run(
     let (status, legs) = (set_point.status(), registers.legs());
     let from = started.unwrap_or(PERIODS);
     println!("{PERIODS} times awoken, control from the {from}th on; {status:?}, {legs:?}");
-    if status.is_running() && started.is_some() && legs.compare != [0; 3] {
+    if status.is_running() && started.is_some() && legs.compare() != [0; 3] {
         process::exit(0)
     }
     eprintln!("the drive does not control");

@@ -2,11 +2,55 @@
 
 use crate::session::{Broken, Link};
 use crate::wire::Task;
-use hexagen::Legs;
+use hexagen::{LegState, Legs, Sample};
 
 /// A step function as it stands in the ELF: drive, counts of phases a and b, Hall code, ticks since the last
 /// Hall edge.
-pub type StepFn<D> = extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs;
+#[derive(Debug)]
+pub enum StepFn<D> {
+    /// Returns its legs in registers, as a word of 64 bits is returned.
+    Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs),
+    /// Returns them as C99 has them, in room of the caller's.
+    Structure(extern "C" fn(&mut D, u16, u16, u8, u16) -> LegsInC),
+}
+
+// Derived, they would ask as much of `D`.
+impl<D> Clone for StepFn<D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D> Copy for StepFn<D> {}
+
+impl<D> StepFn<D> {
+    /// One step.
+    pub fn call(self, drive: &mut D, sample: Sample) -> Legs {
+        let Sample {
+            adc_a,
+            adc_b,
+            hall,
+            hall_ticks,
+        } = sample;
+        match self {
+            Self::Bits(step) => step(drive, adc_a, adc_b, hall, hall_ticks),
+            Self::Structure(step) => {
+                let legs = step(drive, adc_a, adc_b, hall, hall_ticks);
+                Legs::new(legs.compare, legs.state)
+            }
+        }
+    }
+}
+
+/// The legs as C99 has them.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct LegsInC {
+    /// Compare values of phases a, b, c.
+    pub compare: [u16; 3],
+    /// States of legs a, b, c.
+    pub state: [LegState; 3],
+}
 
 /// All drives of a firmware.
 pub type Drives = &'static [Listed];
@@ -104,7 +148,7 @@ macro_rules! drives {
             size: size_of::<$name>(),
             state_names: <$name as $crate::hexagen::Drive>::STATE_NAMES,
             spec: <$name as $crate::hexagen::Drive>::SPEC,
-            replay: |link, task| $crate::session::replay($symbol, link, task),
+            replay: |link, task| $crate::session::replay($crate::StepFn::Bits($symbol), link, task),
         },)*];
     };
 }

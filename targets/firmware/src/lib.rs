@@ -20,7 +20,7 @@ pub mod semihosted;
 pub mod session;
 pub mod wire;
 
-pub use drives::{Drives, Listed, StepFn};
+pub use drives::{Drives, LegsInC, Listed, StepFn};
 pub use handed::Handed;
 pub use hexagen;
 pub use registers::Registers;

@@ -6,7 +6,7 @@
 )]
 
 use core::sync::atomic::AtomicU32;
-use hexagen::{LegState, Legs, Sample};
+use hexagen::{Legs, Sample};
 
 /// One register.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Registers {
             adc_b: Register::new(0),
             hall: Register::new(0),
             compare: [const { Register::new(0) }; 3],
-            legs: Register::new(0x02_02_02),
+            legs: Register::new(Legs::OFF.states() as u32),
         }
     }
 
@@ -69,25 +69,17 @@ impl Registers {
     /// Writes the three compare values, and what the legs do besides into the timer's output enables.
     #[inline]
     pub fn apply(&self, legs: &Legs) {
-        for (register, value) in self.compare.iter().zip(legs.compare) {
+        for (register, value) in self.compare.iter().zip(legs.compare()) {
             register.write(u32::from(value));
         }
-        let [a, b, c] = legs.state.map(|state| state as u8);
-        self.legs.write(u32::from_le_bytes([a, b, c, 0]));
+        self.legs.write(u32::from(legs.states()));
     }
 
     /// What the inverter is told.
     #[must_use]
     pub fn legs(&self) -> Legs {
-        let [a, b, c, _] = self.legs.read().to_le_bytes();
-        let state = |byte: u8| LegState::from_word(byte.into());
-        Legs {
-            compare: self
-                .compare
-                .each_ref()
-                .map(|register| register.read() as u16),
-            state: [a, b, c].map(state),
-        }
+        let [a, b, c] = self.compare.each_ref().map(Register::read).map(u64::from);
+        Legs::from_bits(a | b << 16 | c << 32 | u64::from(self.legs.read()) << 48)
     }
 
     /// Plays the converters and the Hall sensors.

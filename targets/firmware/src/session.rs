@@ -164,13 +164,7 @@ impl<D: Drive> Replayed<D> {
     }
 
     fn step(&mut self, sample: Sample) -> Legs {
-        (self.step)(
-            &mut self.drive,
-            sample.adc_a,
-            sample.adc_b,
-            sample.hall,
-            sample.hall_ticks,
-        )
+        self.step.call(&mut self.drive, sample)
     }
 
     /// The state words behind a step, in front of `words`.

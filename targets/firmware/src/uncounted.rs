@@ -18,7 +18,7 @@ pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
     extern "C" fn nothing(_: &mut (), _: u16, _: u16, _: u8, _: u16) -> Legs {
         Legs::OFF
     }
-    nothing
+    StepFn::Bits(nothing)
 }
 
 /// Bytes of stack that one call uses: unknown.

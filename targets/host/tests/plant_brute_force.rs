@@ -59,8 +59,8 @@ impl<'a> Naive<'a> {
         let mut v: [Option<f64>; 3] = [None; 3];
         let mut open = [false; 3];
         for x in 0..3 {
-            let half = 0.5 * p.t_s * f64::from(legs.compare[x]) / f64::from(p.timer_period);
-            let want = match legs.state[x] {
+            let half = 0.5 * p.t_s * f64::from(legs.compare()[x]) / f64::from(p.timer_period);
+            let want = match legs.state()[x] {
                 LegState::Off => 0,
                 LegState::Pulsed if (in_period - 0.5 * p.t_s).abs() < half => 1,
                 LegState::Pulsed | LegState::Low => -1,
@@ -197,18 +197,18 @@ fn random_commands(count: usize, mut word: u32) -> Vec<Legs> {
     };
     (0..count)
         .map(|_| {
-            let mut legs = Legs::default();
+            let (mut compare, mut state) = ([0; 3], [LegState::Off; 3]);
             for x in 0..3 {
-                legs.state[x] = match next() % 8 {
+                state[x] = match next() % 8 {
                     0 => LegState::Low,
                     1 | 2 => LegState::Off,
                     _ => LegState::Pulsed,
                 };
-                if legs.state[x] == LegState::Pulsed {
-                    legs.compare[x] = (next() % 1801) as u16;
+                if state[x] == LegState::Pulsed {
+                    compare[x] = (next() % 1801) as u16;
                 }
             }
-            legs
+            Legs::new(compare, state)
         })
         .collect()
 }

@@ -120,10 +120,10 @@ impl CurrentLoop for Deadbeat {
         let t = v.map(|x| (x - f64::midpoint(most, least) + V_BUS / 2.0).clamp(0.0, V_BUS));
         let mean = t.iter().sum::<f64>() / 3.0;
         self.applied = t.map(|x| x - mean);
-        Legs {
-            compare: t.map(|x| (x / V_BUS * f64::from(N)).round() as u16),
-            state: [LegState::Pulsed; 3],
-        }
+        Legs::new(
+            t.map(|x| (x / V_BUS * f64::from(N)).round() as u16),
+            [LegState::Pulsed; 3],
+        )
     }
 }
 

@@ -19,16 +19,16 @@ fn motor() -> PlantParams {
 }
 
 fn legs(command: [Option<u16>; 3]) -> Legs {
-    Legs {
-        compare: command.map(Option::unwrap_or_default),
-        state: command.map(|c| {
+    Legs::new(
+        command.map(Option::unwrap_or_default),
+        command.map(|c| {
             if c.is_some() {
                 LegState::Pulsed
             } else {
                 LegState::Off
             }
         }),
-    }
+    )
 }
 
 /// Keeps all segments.

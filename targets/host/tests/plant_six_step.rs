@@ -72,11 +72,11 @@ impl CurrentLoop for SixStep {
         let unlimited = part + self.integral;
         let line = (2.0 * unlimited).clamp(0.0, V_BUS);
         self.integral += T_S * R / L * (part + line / 2.0 - unlimited);
-        let mut legs = Legs::OFF;
-        legs.state[plus] = LegState::Pulsed;
-        legs.compare[plus] = (line / V_BUS * N).round() as u16;
-        legs.state[minus] = LegState::Low;
-        legs
+        let (mut compare, mut state) = ([0; 3], [LegState::Off; 3]);
+        state[plus] = LegState::Pulsed;
+        compare[plus] = (line / V_BUS * N).round() as u16;
+        state[minus] = LegState::Low;
+        Legs::new(compare, state)
     }
 }
 

@@ -124,14 +124,14 @@ fn random_motors_under_random_commands_obey_the_circuit() {
         };
         let periods = 200;
         for _ in 0..periods {
-            let mut legs = Legs::default();
+            let (mut compare, mut state) = ([0; 3], [LegState::Off; 3]);
             for x in 0..3 {
-                legs.state[x] = [LegState::Pulsed, LegState::Off, LegState::Low][random.pick(3)];
-                if legs.state[x] == LegState::Pulsed {
-                    legs.compare[x] =
-                        [0, 1, 900, 1799, 1800, random.pick(1801) as u16][random.pick(6)];
+                state[x] = [LegState::Pulsed, LegState::Off, LegState::Low][random.pick(3)];
+                if state[x] == LegState::Pulsed {
+                    compare[x] = [0, 1, 900, 1799, 1800, random.pick(1801) as u16][random.pick(6)];
                 }
             }
+            let legs = Legs::new(compare, state);
             let before = auditor.count;
             plant.run_period(&legs, &mut auditor);
             let events = auditor.count - before;

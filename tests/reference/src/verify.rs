@@ -204,9 +204,9 @@ impl<S: Subject> Pair<S> {
             });
         };
         for (phase, name) in ["a", "b", "c"].into_iter().enumerate() {
-            let compare = [found, expected].map(|legs| i32::from(legs.compare[phase]));
+            let compare = [found, expected].map(|legs| i32::from(legs.compare()[phase]));
             note(&format!("compare_{name}"), None, compare[0], compare[1]);
-            let state = [found, expected].map(|legs| legs.state[phase] as i32);
+            let state = [found, expected].map(|legs| legs.state()[phase] as i32);
             note(&format!("state_{name}"), None, state[0], state[1]);
         }
         note(

@@ -18,6 +18,6 @@ fn main() {
     // The type keeps its shape: nothing here is reported.
     let mut hub = Hub::new();
     let legs = hub.step(2048, 2048, 1);
-    let _: [u16; 3] = legs.compare;
+    let _: [u16; 3] = legs.compare();
     hub.reset();
 }

@@ -79,7 +79,7 @@ fn run<D: Drive>(drive: &mut D, amperes: i16) -> [LegState; 3] {
                 hall: 1,
                 hall_ticks: 0,
             })
-            .state;
+            .state();
     }
     states
 }
@@ -141,7 +141,7 @@ fn halves<D: Drive>() {
     set_point.set_bus(2400);
     (0..8).for_each(|_| interrupt.strikes(1));
     assert!(set_point.status().is_running(), "{}", D::NAME);
-    assert!(interrupt.legs.state.contains(&LegState::Pulsed));
+    assert!(interrupt.legs.state().contains(&LegState::Pulsed));
     interrupt.strikes(7);
     let tripped = Status {
         mode: Mode::Tripped,
@@ -181,7 +181,7 @@ fn the_halves_live_in_contexts_of_their_own() {
     let mut told = |counts| {
         drive.set_bus(counts);
         drive.reset();
-        let compare = drive.step(2048, 2048, 1).compare;
+        let compare = drive.step(2048, 2048, 1).compare();
         compare.iter().max().expect("three legs") - compare.iter().min().expect("three legs")
     };
     assert!(told(2000) > told(2400) && told(2400) > 0);
@@ -239,9 +239,9 @@ fn the_owner_of_a_drive_needs_neither_its_halves_nor_the_trait() {
     drive.set_torque(I16F16::from_num(1));
     drive.precharge();
     assert!(!drive.is_running());
-    assert_eq!(drive.step(2048, 2048, 1).state, [LegState::Low; 3]);
+    assert_eq!(drive.step(2048, 2048, 1).state(), [LegState::Low; 3]);
     drive.calibrate();
-    assert_eq!(drive.step(2048, 2048, 1).state, [LegState::Off; 3]);
+    assert_eq!(drive.step(2048, 2048, 1).state(), [LegState::Off; 3]);
     drive.step(2048, 2048, 0);
     assert_eq!(drive.fault(), Fault::Hall);
     drive.reset();

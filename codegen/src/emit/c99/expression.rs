@@ -293,8 +293,8 @@ fn called(primitive: Primitive) -> &'static str {
     match primitive {
         Primitive::Abs => "abs_of",
         Primitive::Exceeds => "exceeds",
-        Primitive::Min => "min_of",
-        Primitive::Max => "max_of",
+        Primitive::Min | Primitive::Lesser => "min_of",
+        Primitive::Max | Primitive::Greater => "max_of",
         Primitive::Clamp => "clamp",
         Primitive::MulRound => "mul_round",
         Primitive::MulRoundNarrow => "mul_round_narrow",

@@ -262,6 +262,8 @@ fn call(
         Primitive::Exceeds => return method(quote!(exceeds)),
         Primitive::Min => return method(quote!(min)),
         Primitive::Max => return method(quote!(max)),
+        Primitive::Lesser => return method(quote!(lesser)),
+        Primitive::Greater => return method(quote!(greater)),
         Primitive::Clamp => return method(quote!(clamp)),
         Primitive::MulRound => quote!(mul_round),
         Primitive::MulRoundNarrow => quote!(mul_round_narrow),

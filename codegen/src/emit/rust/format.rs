@@ -103,7 +103,7 @@ fn begins_item(line: &str) -> bool {
 /// What a step leaves behind stands apart from what it computes.
 fn begins_ending(before: &str, line: &str) -> bool {
     let stores = |line: &str| line.trim_start().starts_with("state.");
-    stores(line) && !stores(before) || line.trim_start() == "Legs {"
+    stores(line) && !stores(before) || line.trim_start().starts_with("Legs::new(")
 }
 
 fn ends_item(line: &str) -> bool {

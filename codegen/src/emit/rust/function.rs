@@ -96,10 +96,14 @@ impl<'a> PathFunctions<'a> {
         names.into_iter().map(snake).collect()
     }
 
-    /// The statement that leaves the step for this path.
+    /// The statements that leave the step for this path, and tell those who hold the set-point.
     fn call_rest(&self) -> Source {
         let arguments = self.arguments();
-        quote!(return Legs::at_rest(rest(state, &set_point.status, #(#arguments),*));)
+        quote! {
+            let legs = rest(state, #(#arguments),*);
+            set_point.status.store(state.status());
+            return legs;
+        }
     }
 
     /// This path as a function of its own. No leg pulses at rest, and all are alike.
@@ -108,14 +112,12 @@ impl<'a> PathFunctions<'a> {
         let (body, stages) = (self.body(None), self.definitions());
         let leg = self.leg("leg_a");
         quote! {
-            /// One control period without current control, in start-up or with a fault: what all legs do. Tells `status`
-            /// what the drive is doing from here on.
+            /// One control period without current control, in start-up or with a fault: what all legs do.
             #[cold]
             #[inline(never)]
-            fn rest(state: &mut State, status: &SharedWord, #(#arguments: Word),*) -> LegState {
+            fn rest(state: &mut State, #(#arguments: Word),*) -> Legs {
                 #body
-                status.store(state.status());
-                #leg
+                Legs::at_rest(#leg)
             }
             #stages
         }
@@ -151,8 +153,12 @@ impl<'a> PathFunctions<'a> {
                 ),
             }
         });
-        let state = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
-        quote!(Legs { compare: [#(#compare),*], state: [#(#state),*] })
+        let states = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
+        let states = match states.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|state| state == first) => quote!([#first; 3]),
+            many => quote!([#(#many),*]),
+        };
+        quote!(Legs::new([#(#compare),*], #states))
     }
 
     /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.

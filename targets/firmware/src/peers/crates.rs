@@ -51,10 +51,7 @@ impl Peer for FocLoop {
         let turns = I16F16::from_bits(ANGLES[usize::from(sample.hall & 7)] >> 16);
         let currents = [current(sample.adc_a), current(sample.adc_b)];
         let compare = self.0.update(currents, turns * I16F16::TAU, DEMAND, T_S);
-        Legs {
-            compare,
-            state: [LegState::Pulsed; 3],
-        }
+        Legs::new(compare, [LegState::Pulsed; 3])
     }
 }
 
@@ -101,9 +98,6 @@ impl Peer for IdspLoop {
             let counts = times(x - middle, i32::from(TIMER)) + i32::from(TIMER / 2);
             counts.max(0).min(i32::from(TIMER)) as u16
         });
-        Legs {
-            compare,
-            state: [LegState::Pulsed; 3],
-        }
+        Legs::new(compare, [LegState::Pulsed; 3])
     }
 }

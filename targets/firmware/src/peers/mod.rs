@@ -50,7 +50,7 @@ macro_rules! peers {
             size: size_of::<$type>(),
             state_names: &[],
             spec: "",
-            replay: |link, task| $crate::session::replay_peer($symbol, link, task),
+            replay: |link, task| $crate::session::replay_peer($crate::StepFn::Bits($symbol), link, task),
         },)*];
     };
 }

@@ -93,16 +93,16 @@ fn modulate<R: Real + Div<Output = R>>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Le
         counts.greatest(R::num(0.0)).least(R::num(TIMER)).compare()
     });
     let state = [LegState::Pulsed; 3];
-    (applied, Legs { compare, state })
+    (applied, Legs::new(compare, state))
 }
 
 /// The legs of a vector for the whole period.
 #[inline]
 fn whole(vector: usize) -> Legs {
-    Legs {
-        compare: LEGS[vector].map(|leg| leg * TIMER as u16),
-        state: [LegState::Pulsed; 3],
-    }
+    Legs::new(
+        LEGS[vector].map(|leg| leg * TIMER as u16),
+        [LegState::Pulsed; 3],
+    )
 }
 
 /// EMF of the last period and the current at the next sample, by the voltages applied.

@@ -274,10 +274,10 @@ impl Observer for Trace {
 
 /// Whether a command reaches the edge of the voltage hexagon.
 fn saturated(legs: &Legs, timer_period: u16) -> bool {
-    let driven = (0..3).filter(|&x| legs.state[x] != LegState::Off);
+    let driven = (0..3).filter(|&x| legs.state()[x] != LegState::Off);
     let values = driven.map(|x| {
-        if legs.state[x] == LegState::Pulsed {
-            legs.compare[x]
+        if legs.state()[x] == LegState::Pulsed {
+            legs.compare()[x]
         } else {
             0
         }
@@ -301,8 +301,8 @@ impl Recorder for Trace {
             hall: step.sample.hall,
             adc: [step.sample.adc_a, step.sample.adc_b],
             currents: step.truth.currents,
-            compare: step.applied.compare,
-            state: step.applied.state.map(|state| state as u8),
+            compare: step.applied.compare(),
+            state: step.applied.state().map(|state| state as u8),
             torque_mean: after.mean_torque,
             v_alpha_mean,
             v_beta_mean,
@@ -330,10 +330,7 @@ mod tests {
     }
 
     fn pulsed(compare: [u16; 3]) -> Legs {
-        Legs {
-            compare,
-            state: [LegState::Pulsed; 3],
-        }
+        Legs::new(compare, [LegState::Pulsed; 3])
     }
 
     #[test]
@@ -380,10 +377,10 @@ mod tests {
 
     #[test]
     fn switching_counts_turn_ons_of_both_switches() {
-        let pair = Legs {
-            compare: [900, 0, 0],
-            state: [LegState::Pulsed, LegState::Low, LegState::Off],
-        };
+        let pair = Legs::new(
+            [900, 0, 0],
+            [LegState::Pulsed, LegState::Low, LegState::Off],
+        );
         for (legs, per_period) in [(pulsed([900, 600, 300]), 6), (pair, 2), (Legs::LOW, 0)] {
             let mut closed =
                 ClosedLoop::new(plant(10.0), |_: &Sample, _: &Truth| legs, Delay::None);

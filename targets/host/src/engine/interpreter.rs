@@ -46,10 +46,10 @@ impl Subject for Interpreted<'_> {
         } = *sample;
         let words = [adc_a, adc_b, u16::from(hall), hall_ticks].map(i32::from);
         match self.drive.step(words) {
-            Ok([compare, legs]) => Legs {
-                compare: compare.map(|word| word as u16),
-                state: legs.map(|word| LegState::from_word(Word(word))),
-            },
+            Ok([compare, legs]) => Legs::new(
+                compare.map(|word| word as u16),
+                legs.map(|word| LegState::from_word(Word(word))),
+            ),
             Err(escape) => {
                 self.escape.get_or_insert(escape);
                 Legs::OFF

@@ -74,12 +74,12 @@ impl Gates {
         self.requests.clear();
         self.next = 0;
         for leg in 0..3 {
-            match command.state[leg] {
+            match command.state()[leg] {
                 LegState::Off => self.requests.push((0.0, leg, Gate::Off)),
                 LegState::Low => self.requests.push((0.0, leg, Gate::Lower)),
                 LegState::Pulsed => {
-                    let duty =
-                        f64::from(command.compare[leg].min(timer_period)) / f64::from(timer_period);
+                    let duty = f64::from(command.compare()[leg].min(timer_period))
+                        / f64::from(timer_period);
                     if duty < 1.0 {
                         self.requests.push((0.0, leg, Gate::Lower));
                     }
@@ -158,10 +158,10 @@ mod tests {
     }
 
     fn pulsed(compare: u16) -> Legs {
-        Legs {
-            compare: [compare, 0, 0],
-            state: [LegState::Pulsed, LegState::Off, LegState::Off],
-        }
+        Legs::new(
+            [compare, 0, 0],
+            [LegState::Pulsed, LegState::Off, LegState::Off],
+        )
     }
 
     #[test]

@@ -102,10 +102,10 @@ impl CurrentLoop for Deadbeat {
         });
         let mean = t.iter().sum::<f64>() / 3.0;
         self.applied = t.map(|x| x - mean);
-        Legs {
-            compare: t.map(|x| (x / V_BUS * 1800.0).round() as u16),
-            state: [LegState::Pulsed; 3],
-        }
+        Legs::new(
+            t.map(|x| (x / V_BUS * 1800.0).round() as u16),
+            [LegState::Pulsed; 3],
+        )
     }
 }
 

@@ -53,10 +53,7 @@ impl Duties {
         let compare = self
             .duty
             .map(|duty| (duty * f64::from(timer_period) + 0.5).floor() as u16);
-        Legs {
-            compare,
-            state: self.state,
-        }
+        Legs::new(compare, self.state)
     }
 }
 

@@ -72,8 +72,10 @@ impl ToyMotor {
         let i = [self.i[0], self.i[1], -(self.i[0] + self.i[1])];
         let mut v = [0.0; 3];
         for phase in 0..3 {
-            v[phase] = match legs.state[phase] {
-                LegState::Pulsed => f64::from(legs.compare[phase]) / self.timer_period * self.v_bus,
+            v[phase] = match legs.state()[phase] {
+                LegState::Pulsed => {
+                    f64::from(legs.compare()[phase]) / self.timer_period * self.v_bus
+                }
                 LegState::Low => 0.0,
                 // A diode against the current; without current about what makes none.
                 LegState::Off if i[phase].abs() > self.phase.b * self.v_bus / 4.0 => {

@@ -73,8 +73,8 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             |phase| {
                 let exact = duties.duty[phase] * f64::from(variant.spec.inverter.timer_period);
                 (
-                    f64::from(legs.compare[phase]) - exact,
-                    legs.state[phase] == duties.state[phase],
+                    f64::from(legs.compare()[phase]) - exact,
+                    legs.state()[phase] == duties.state[phase],
                 )
             },
         );

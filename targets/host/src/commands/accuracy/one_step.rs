@@ -198,9 +198,9 @@ impl Sums {
         }
         let rounded = duties.to_legs(period);
         self.equal_steps += u64::from(*legs == rounded);
-        let same_vector = legs.state == rounded.state && found.vector == exact.vector;
+        let same_vector = legs.state() == rounded.state() && found.vector == exact.vector;
         if same_vector {
-            for (compare, exact) in legs.compare.iter().zip(rounded.compare) {
+            for (compare, exact) in legs.compare().iter().zip(rounded.compare()) {
                 self.compares_apart = self.compares_apart.max(compare.abs_diff(exact));
             }
         }
@@ -228,11 +228,11 @@ impl Sums {
         }
         for phase in 0..3 {
             let exact = duties.duty[phase] * f64::from(period);
-            let error = (f64::from(legs.compare[phase]) - exact).abs();
+            let error = (f64::from(legs.compare()[phase]) - exact).abs();
             let largest = &mut self.duty_largest[limited];
             *largest = largest.max(error);
             self.duty_error += error * error;
-            self.equal_compares += u64::from(legs.compare[phase] == rounded.compare[phase]);
+            self.equal_compares += u64::from(legs.compare()[phase] == rounded.compare()[phase]);
         }
     }
 

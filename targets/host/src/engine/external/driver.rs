@@ -52,10 +52,10 @@ fn main() {
                         hall_ticks: calls.half(),
                     };
                     let legs = Drive::step(&mut drive, &sample);
-                    for compare in legs.compare {
+                    for compare in legs.compare() {
                         answers.extend(compare.to_le_bytes());
                     }
-                    answers.extend(legs.state.map(|state| state as u8));
+                    answers.extend(legs.state().map(|state| state as u8));
                     answers.push(Drive::fault(&drive) as u8);
                     Drive::state_words(&drive, &mut state);
                     answers.extend(state.iter().flat_map(|word| word.to_le_bytes()));

@@ -131,11 +131,11 @@ impl Link {
         self.send_step(sample);
         let expected = &mut self.expected;
         expected.extend(
-            legs.compare
+            legs.compare()
                 .iter()
                 .flat_map(|compare| compare.to_le_bytes()),
         );
-        expected.extend(legs.state.map(|state| state as u8));
+        expected.extend(legs.state().map(|state| state as u8));
         expected.push(fault as u8);
         expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         if self.pending >= BATCH {
@@ -162,10 +162,10 @@ impl Link {
         for (word, bytes) in words.iter_mut().zip(answer[10..].chunks_exact(4)) {
             *word = i32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
-        let legs = Legs {
-            compare: [compare(0), compare(1), compare(2)],
-            state: [state(0), state(1), state(2)],
-        };
+        let legs = Legs::new(
+            [compare(0), compare(1), compare(2)],
+            [state(0), state(1), state(2)],
+        );
         let fault = Fault::from_word(hexagen::arith::Word(i32::from(answer[9])));
         Some((legs, fault))
     }

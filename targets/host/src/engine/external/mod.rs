@@ -9,7 +9,7 @@ mod link;
 
 pub use build::{Binding, BuildError, External, compile, compile_c99};
 
-use hexagen::{Fault, Format, Legs, Sample};
+use hexagen::{Fault, Format, LegState, Legs, Sample};
 use hexagen_reference::BitTrue;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
 use link::{Call, Link, LinkError};
@@ -112,10 +112,7 @@ impl Subject for Remote<'_> {
                     legs
                 }
                 // A broken process answers what no step does; the link knows why.
-                None => Legs {
-                    compare: [u16::MAX; 3],
-                    ..Legs::OFF
-                },
+                None => Legs::new([u16::MAX; 3], [LegState::Off; 3]),
             },
         }
     }

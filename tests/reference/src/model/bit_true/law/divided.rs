@@ -45,9 +45,9 @@ pub fn between(v_bus: Word, pair: [usize; 2], scores: [Word; 2]) -> [Word; 3] {
 /// The command for these terminals.
 pub fn command(now: &Inputs, terminal: [Word; 3], off: Option<usize>) -> Command {
     Command {
-        legs: Legs {
-            compare: terminal.map(|t| pulses::compare_of(now, t, word(0.0))),
-            state: all_three(|x| {
+        legs: Legs::new(
+            terminal.map(|t| pulses::compare_of(now, t, word(0.0))),
+            all_three(|x| {
                 if off == Some(x) {
                     LegState::Off
                 } else if terminal[x] > 0.0 {
@@ -56,7 +56,7 @@ pub fn command(now: &Inputs, terminal: [Word; 3], off: Option<usize>) -> Command
                     LegState::Low
                 }
             }),
-        },
+        ),
         terminal,
         off: off.map_or(0, |leg| leg + 1),
     }

@@ -47,10 +47,10 @@ pub fn three(now: &Inputs, u: [Word; 3], shifts: [Word; 3], terminals: bool) -> 
         [word(0.0); 3]
     };
     Command {
-        legs: Legs {
-            compare: all_three(|x| compare(now, nominal(now, centred[x]) + shifts[x] + now.k.half)),
-            state: [LegState::Pulsed; 3],
-        },
+        legs: Legs::new(
+            all_three(|x| compare(now, nominal(now, centred[x]) + shifts[x] + now.k.half)),
+            [LegState::Pulsed; 3],
+        ),
         terminal,
         off: 0,
     }
@@ -81,9 +81,11 @@ pub fn line(now: &Inputs, v: Word, shifts: [Word; 3]) -> Command {
     } else {
         (minus, plus, -v)
     };
-    command.legs.compare[pulsed] = compare_of(now, t, shifts[pulsed]);
-    command.legs.state[pulsed] = LegState::Pulsed;
-    command.legs.state[low] = LegState::Low;
+    let (mut compare, mut state) = ([0; 3], [LegState::Off; 3]);
+    compare[pulsed] = compare_of(now, t, shifts[pulsed]);
+    state[pulsed] = LegState::Pulsed;
+    state[low] = LegState::Low;
+    command.legs = Legs::new(compare, state);
     command.terminal[pulsed] = t;
     command.off = sector::OUT_PHASE[sector_eff] + 1;
     command

@@ -13,14 +13,14 @@ pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
     let legs = vectors::LEGS[vector];
     let on = now.k.timer_period as u16;
     Command {
-        legs: Legs {
-            compare: legs.map(|leg| if leg > 0 { on } else { 0 }),
-            state: if turns_off {
+        legs: Legs::new(
+            legs.map(|leg| if leg > 0 { on } else { 0 }),
+            if turns_off {
                 vectors::states(vector)
             } else {
                 [LegState::Pulsed; 3]
             },
-        },
+        ),
         terminal: legs.map(|leg| if leg > 0 { now.v_bus } else { word(0.0) }),
         off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
     }
