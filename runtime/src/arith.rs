@@ -115,6 +115,16 @@ pub fn row<T, const N: usize>(rows: &[T; N], index: Word) -> &T {
     &rows[index.0 as usize & (N - 1)]
 }
 
+/// Not 0 where the magnitude of one of `x`, `y` and `sum`, which is `x + y`, is more than `limit`, which is not negative.
+///
+/// Of `x`, `y` and `-sum`, which add up to 0, those above 0 add up to the largest magnitude of the three.
+#[inline(always)]
+#[must_use]
+pub fn exceeding(x: Word, y: Word, sum: Word, limit: Word) -> Word {
+    let largest = x.positive_part() + y.positive_part() - sum.negative_part();
+    (limit - largest) >> 31
+}
+
 /// `then` where the condition holds, else `otherwise`; both are evaluated.
 #[inline(always)]
 #[must_use]

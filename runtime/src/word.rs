@@ -57,9 +57,15 @@ impl Word {
         self - (self - other).negative_part()
     }
 
+    /// The word where it is positive, else 0.
+    #[inline(always)]
+    pub(crate) fn positive_part(self) -> Self {
+        Self(self.0 & !(self.0 >> 31))
+    }
+
     /// The word where it is negative, else 0.
     #[inline(always)]
-    fn negative_part(self) -> Self {
+    pub(crate) fn negative_part(self) -> Self {
         Self(self.0 & self.0 >> 31)
     }
 

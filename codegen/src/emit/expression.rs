@@ -82,6 +82,8 @@ pub(super) enum Primitive {
     Abs,
     /// Flag: |a| > b, b not negative
     Exceeds,
+    /// Not 0 where one of |a|, |b| and |c| is more than d: c is a + b, d not negative
+    Exceeding,
     /// min(a, b)
     Min,
     /// max(a, b)
@@ -303,6 +305,62 @@ impl<'a> Scope<'a> {
         }
     }
 
+    /// What a flag that is seen as a word is bound to: a word that is not 0 where the flag holds.
+    pub(super) fn alarm(&self, value: Value) -> Expression {
+        use Expression as E;
+        use Operator as O;
+        let boxed = |value: Value| Box::new(self.value(value));
+        match self.node(value).op {
+            Op::Compare(Comparison::NotEqual, word, other) if self.literal(other) == Some(0) => {
+                self.value(word)
+            }
+            Op::Compare(Comparison::Equal, word, other)
+                if self.literal(other) == Some(0) && self.interval(word).low >= 0 =>
+            {
+                let less = E::binary(O::Sub, self.value(word), E::Number(1));
+                E::ShiftedRight(Box::new(less), 31)
+            }
+            Op::Compare(Comparison::Less, limit, word) => match self.bits_above(limit, &[word]) {
+                Some(bits) => E::ShiftedRight(boxed(word), bits),
+                None => E::FlagWord(Box::new(self.definition(value))),
+            },
+            Op::Or(a, b) => {
+                if let Some([x, y, limit]) = self.either_above(a, b) {
+                    let either = E::binary(O::BitOr, self.value(x), self.value(y));
+                    let bits = self.bits_above(limit, &[x, y]).unwrap_or(0);
+                    return E::ShiftedRight(Box::new(either), bits);
+                }
+                match self.range_test_of_three(a, b) {
+                    Some(operands) => {
+                        let operands = operands.map(|operand| self.value(operand));
+                        E::Call(Primitive::Exceeding, operands.into(), None)
+                    }
+                    None => E::FlagWord(Box::new(self.definition(value))),
+                }
+            }
+            _ => E::FlagWord(Box::new(self.definition(value))),
+        }
+    }
+
+    /// Two words, their sum, and the limit that each of the three is tested against: `(|x| > limit or |y| > limit) or
+    /// |x + y| > limit`.
+    fn range_test_of_three(&self, two: Value, third: Value) -> Option<[Value; 4]> {
+        let either = |value: Value| match self.node(value) {
+            Node {
+                name,
+                op: Op::Or(a, b),
+                ..
+            } if name.is_empty() => Some((*a, *b)),
+            _ => None,
+        };
+        let test = |value: Value| either(value).and_then(|(a, b)| self.range_test(a, b));
+        let (first, second) = either(two)?;
+        let ([x, limit], [y, again], [sum, last]) = (test(first)?, test(second)?, test(third)?);
+        let is_limit = |other: Value| self.node(other).op == self.node(limit).op;
+        let is_sum = self.node(sum).op == Op::Add(x, y);
+        (is_sum && is_limit(again) && is_limit(last)).then_some([x, y, sum, limit])
+    }
+
     /// The word and the limit whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
     fn range_test(&self, above: Value, below: Value) -> Option<[Value; 2]> {
         let unnamed = |value: Value| {
@@ -335,14 +393,21 @@ impl<'a> Scope<'a> {
             _ => None,
         };
         let ((limit, x), (other, y)) = (compared(a)?, compared(b)?);
+        let is_same = self.node(other).op == self.node(limit).op;
+        let is_bitwise = self.bits_above(limit, &[x, y]).is_some();
+        (is_same && is_bitwise).then_some([x, y, limit])
+    }
+
+    /// Bits of a limit that are ones down to the last, above which any bit of words that are not negative tells that
+    /// they are more.
+    fn bits_above(&self, limit: Value, words: &[Value]) -> Option<u32> {
         let Op::Constant(id) = self.node(limit).op else {
             return None;
         };
         let raw = self.context.program.constants[id.index()].raw;
         let is_mask = raw > 0 && raw & raw.wrapping_add(1) == 0;
-        let is_same = self.node(other).op == self.node(limit).op;
-        let are_signless = [x, y].iter().all(|&word| self.interval(word).low >= 0);
-        (is_mask && is_same && are_signless).then_some([x, y, limit])
+        let are_signless = words.iter().all(|&word| self.interval(word).low >= 0);
+        (is_mask && are_signless).then_some(raw.trailing_ones())
     }
 
     /// The signal stands left, what it is compared with right.

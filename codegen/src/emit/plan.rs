@@ -30,6 +30,7 @@ pub(super) struct Context<'a> {
     pub function: &'a Function,
     users: Vec<Vec<User>>,
     legs: BTreeSet<Value>,
+    alarms: BTreeSet<Value>,
     codes: BTreeMap<Value, Shape>,
 }
 
@@ -81,8 +82,29 @@ impl<'a> Context<'a> {
             function,
             users,
             legs,
+            alarms: BTreeSet::new(),
             codes,
         }
+    }
+
+    /// Likewise, of a path whose flags to leave by are looked at together, behind the last of them: flags that do
+    /// nothing else are words, which take no comparison each. None where a stage on the way is guarded: what it does
+    /// is not for periods that are left.
+    pub(super) fn watched(program: &'a Program, function: &'a Function) -> Self {
+        let mut context = Self::new(program, function);
+        if context.leaves_once() {
+            let only = |flag: &Value| context.users[flag.index()] == [User::Other];
+            context.alarms = function.leave.iter().copied().filter(only).collect();
+        }
+        context
+    }
+
+    /// Whether no stage up to the last flag to leave by is guarded.
+    fn leaves_once(&self) -> bool {
+        let last = self.function.leave.iter().map(|flag| flag.index()).max();
+        let stages = self.function.stages.iter();
+        let mut before = stages.filter(|stage| last.is_some_and(|last| stage.first <= last));
+        before.all(|stage| stage.guard.is_none())
     }
 
     /// Plans all stages.
@@ -97,6 +119,7 @@ impl<'a> Context<'a> {
     /// What a value is in emitted code.
     pub(super) fn shape(&self, value: Value) -> Shape {
         match self.function.node(value).kind {
+            Kind::Flag if self.alarms.contains(&value) => Shape::Alarm,
             Kind::Flag => Shape::Flag,
             Kind::Word if self.legs.contains(&value) => Shape::Leg,
             Kind::Word => self.codes.get(&value).copied().unwrap_or(Shape::Word),

@@ -13,6 +13,8 @@ pub(super) enum Shape {
     Fault,
     /// True or false.
     Flag,
+    /// A flag as a word that is not 0 where it holds: it does nothing but end the path, together with others.
+    Alarm,
     /// The state of a leg: a word that does nothing but leave the step as such.
     Leg,
 }

@@ -293,6 +293,7 @@ fn called(primitive: Primitive) -> &'static str {
     match primitive {
         Primitive::Abs => "abs_of",
         Primitive::Exceeds => "exceeds",
+        Primitive::Exceeding => "exceeding",
         Primitive::Min | Primitive::Lesser => "min_of",
         Primitive::Max | Primitive::Greater => "max_of",
         Primitive::Clamp => "clamp",

@@ -326,7 +326,7 @@ fn result_name(name: &str) -> String {
 pub(super) fn kind(shape: Shape, names: &Names) -> String {
     match shape {
         Shape::Word | Shape::Mode | Shape::Fault => "int32_t".to_owned(),
-        Shape::Flag => "bool".to_owned(),
+        Shape::Flag | Shape::Alarm => "bool".to_owned(),
         Shape::Leg => names.type_of("leg"),
     }
 }

@@ -69,7 +69,11 @@ impl RustScope for Scope<'_> {
     }
 
     fn bound(&self, value: Value) -> Source {
-        written(self.context.program, &self.definition(value)).tokens
+        let definition = match self.context.shape(value) {
+            Shape::Alarm => self.alarm(value),
+            _ => self.definition(value),
+        };
+        written(self.context.program, &definition).tokens
     }
 
     fn receiver(&self, value: Value) -> Source {
@@ -265,6 +269,7 @@ fn call(
         Primitive::Lesser => return method(quote!(lesser)),
         Primitive::Greater => return method(quote!(greater)),
         Primitive::Clamp => return method(quote!(clamp)),
+        Primitive::Exceeding => quote!(exceeding),
         Primitive::MulRound => quote!(mul_round),
         Primitive::MulRoundNarrow => quote!(mul_round_narrow),
         Primitive::MulFloor => quote!(mul_floor),

@@ -35,7 +35,7 @@ pub(super) struct Setter {
 /// fault change, so there they are published.
 pub(super) fn emit_step(program: &Program) -> Emitted {
     let Paths { normal, exit } = program.step.paths();
-    let context = Context::new(program, &normal);
+    let context = Context::watched(program, &normal);
     let path = PathFunctions::new(&context, &[]);
     let exit = exit.as_ref().map(|exit| Context::new(program, exit));
     let exit = exit
@@ -164,10 +164,26 @@ impl<'a> PathFunctions<'a> {
     /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.
     fn body(&self, leave: Option<&Source>) -> Source {
         let (function, scope) = (self.context.function, self.scope());
+        // Alarms wait for the last of them: one branch for all.
+        let mut alarms: Vec<Source> = vec![];
+        let last = function.leave.iter().map(|flag| flag.index()).max();
         let calls = self.stages.iter().map(|stage| {
             let call = stage.call();
-            let flags = leaves_behind(function, stage.plan()).into_iter();
-            let flags: Vec<Source> = flags.map(|flag| scope.whole(flag)).collect();
+            let mut flags: Vec<Source> = vec![];
+            for flag in leaves_behind(function, stage.plan()) {
+                let alarm = scope.whole(flag);
+                match self.context.shape(flag) {
+                    Shape::Alarm => alarms.push(alarm),
+                    _ => flags.push(alarm),
+                }
+            }
+            if last.is_some_and(|last| stage.plan().stage.end > last) && !alarms.is_empty() {
+                flags.push(match alarms.as_slice() {
+                    [only] => quote!(#only != 0),
+                    many => quote!((#(#many)|*) != 0),
+                });
+                alarms.clear();
+            }
             let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
             quote!(#call #leaves)
         });

@@ -50,7 +50,7 @@ pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
 /// single signals, then the arrays.
 pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
-        for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
+        for shape in [Shape::Word, Shape::Flag, Shape::Alarm, Shape::Leg] {
             if groups.len() > limit {
                 let fits = |group: &Group| {
                     share_type(group.shape, shape) && (!singles || group.members.len() == 1)
@@ -116,7 +116,7 @@ fn share_type(one: Shape, other: Shape) -> bool {
 /// `Word`, `bool` or `LegState`.
 pub(super) fn rust_type(shape: Shape) -> Source {
     match shape {
-        Shape::Word | Shape::Mode | Shape::Fault => quote!(Word),
+        Shape::Word | Shape::Mode | Shape::Fault | Shape::Alarm => quote!(Word),
         Shape::Flag => quote!(bool),
         Shape::Leg => quote!(LegState),
     }

@@ -7,11 +7,12 @@ use proc_macro2::{Ident, Span};
 use std::collections::HashSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
-pub(super) const HELPERS: [&str; 13] = [
+pub(super) const HELPERS: [&str; 14] = [
     "angle_fraction",
     "angle_index",
     "divide",
     "divide_narrow",
+    "exceeding",
     "lookup",
     "mul_add_floor",
     "mul_floor",
