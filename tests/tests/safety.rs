@@ -115,7 +115,11 @@ fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
         assert_eq!(drive.fault(), fault, "{a} {b}");
         drive.reset();
         if fault != Fault::None {
-            assert_eq!(quiet(&mut drive, 1).compare(), [900; 3], "the old zero holds");
+            assert_eq!(
+                quiet(&mut drive, 1).compare(),
+                [900; 3],
+                "the old zero holds"
+            );
         }
     }
 }

@@ -165,6 +165,10 @@ impl<'a> Scope<'a> {
             Op::Literal(literal) => Expression::Number(literal),
             Op::State(id) if self.reads_state => Expression::State(id),
             _ if node.name.is_empty() => self.definition(value),
+            _ if self.context.shape(value) == Shape::Alarm => {
+                let alarm = Expression::Signal(node.name.clone());
+                Expression::binary(Operator::NotEqual, alarm, Expression::Number(0))
+            }
             _ => Expression::Signal(node.name.clone()),
         }
     }
@@ -174,6 +178,9 @@ impl<'a> Scope<'a> {
         let code = |literal| shape.code(literal);
         if let Some(code) = self.literal(value).and_then(code) {
             return Expression::Code(code);
+        }
+        if shape == Shape::Alarm {
+            return Expression::Signal(self.node(value).name.clone());
         }
         let is_as_wanted = shape != Shape::Leg || self.context.shape(value) == Shape::Leg;
         let word = self.value(value);

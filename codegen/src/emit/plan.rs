@@ -99,6 +99,20 @@ impl<'a> Context<'a> {
         context
     }
 
+    /// Of the other path, where the flags that `path` has as words are words, too: so both share the stages that find them.
+    pub(super) fn beside(program: &'a Program, function: &'a Function, path: &Self) -> Self {
+        let mut context = Self::new(program, function);
+        let names = path
+            .alarms
+            .iter()
+            .map(|&flag| &path.function.node(flag).name);
+        let names: BTreeSet<&String> = names.collect();
+        let values = (0..).map(Value).zip(&function.nodes);
+        let named = values.filter(|(_, node)| names.contains(&node.name));
+        context.alarms = named.map(|(value, _)| value).collect();
+        context
+    }
+
     /// Whether no stage up to the last flag to leave by is guarded.
     fn leaves_once(&self) -> bool {
         let last = self.function.leave.iter().map(|flag| flag.index()).max();

@@ -222,9 +222,15 @@ pub enum Op {
 impl Op {
     /// The operands, in order.
     pub fn operands(&self) -> Vec<Value> {
-        let (mut op, mut operands) = (*self, vec![]);
-        op.each_operand(|operand| operands.push(*operand));
+        let mut operands = Vec::with_capacity(4);
+        self.visit_operands(|operand| operands.push(operand));
         operands
+    }
+
+    /// Visits every operand, in order.
+    pub(crate) fn visit_operands(&self, mut visit: impl FnMut(Value)) {
+        let mut op = *self;
+        op.each_operand(|operand| visit(*operand));
     }
 
     /// Replaces every operand.
@@ -232,7 +238,7 @@ impl Op {
         self.each_operand(|operand| *operand = f(*operand));
     }
 
-    /// Visits every operand, in order.
+    /// Likewise, to replace them.
     fn each_operand(&mut self, mut visit: impl FnMut(&mut Value)) {
         match self {
             Self::Input(_)

@@ -400,27 +400,30 @@ impl FunctionCheck<'_> {
             .repeated(function.stages.iter().map(|stage| &stage.name));
         let stage_of = self.stage_of_nodes();
         let mut names = HashSet::new();
-        let mut uses: Vec<Vec<Option<usize>>> = vec![vec![]; function.nodes.len()];
+        // How often each is used, and the stage of the last use.
+        let mut uses: Vec<(usize, Option<usize>)> = vec![(0, None); function.nodes.len()];
+        let mut note = |operand: Value, stage| {
+            let used = &mut uses[operand.index()];
+            *used = (used.0 + 1, stage);
+        };
         for (index, node) in function.nodes.iter().enumerate() {
-            for operand in node.op.operands() {
-                uses[operand.index()].push(if matches!(node.op, Op::Join { .. }) {
-                    None
-                } else {
-                    stage_of[index]
-                });
-            }
+            let stage = match node.op {
+                Op::Join { .. } => None,
+                _ => stage_of[index],
+            };
+            node.op.visit_operands(|operand| note(operand, stage));
             if !node.name.is_empty() && !names.insert(node.name.as_str()) {
                 self.fail(index, "named twice");
             }
         }
         for root in self.roots() {
-            uses[root.index()].push(None);
+            note(root, None);
         }
         for (index, node) in function.nodes.iter().enumerate() {
             let free = matches!(node.op, Op::Constant(_) | Op::Literal(_));
-            if uses[index].is_empty() {
+            if uses[index].0 == 0 {
                 self.fail(index, "is never used");
-            } else if node.name.is_empty() && !free && uses[index] != [stage_of[index]] {
+            } else if node.name.is_empty() && !free && uses[index] != (1, stage_of[index]) {
                 self.fail(
                     index,
                     "is used more than once or outside its stage and has no name",

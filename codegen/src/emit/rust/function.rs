@@ -37,7 +37,9 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
     let Paths { normal, exit } = program.step.paths();
     let context = Context::watched(program, &normal);
     let path = PathFunctions::new(&context, &[]);
-    let exit = exit.as_ref().map(|exit| Context::new(program, exit));
+    let exit = exit
+        .as_ref()
+        .map(|exit| Context::beside(program, exit, &context));
     let exit = exit
         .as_ref()
         .map(|exit| PathFunctions::new(exit, &path.stages));
@@ -171,10 +173,9 @@ impl<'a> PathFunctions<'a> {
             let call = stage.call();
             let mut flags: Vec<Source> = vec![];
             for flag in leaves_behind(function, stage.plan()) {
-                let alarm = scope.whole(flag);
                 match self.context.shape(flag) {
-                    Shape::Alarm => alarms.push(alarm),
-                    _ => flags.push(alarm),
+                    Shape::Alarm => alarms.push(scope.shaped(flag, Shape::Alarm)),
+                    _ => flags.push(scope.whole(flag)),
                 }
             }
             if last.is_some_and(|last| stage.plan().stage.end > last) && !alarms.is_empty() {

@@ -28,7 +28,7 @@ use crate::ir::{Program, VerifiedGraph};
 use function::{emit_setter, emit_step};
 use imports::{imports, settle};
 use interface::Types;
-use names::{docs, identifiers, inner_docs, module_ident, number, screaming};
+use names::{docs, inner_docs, item_names, module_ident, number, screaming};
 use proc_macro2::{Ident, Span, TokenStream};
 use source::{Source, quote};
 use std::collections::HashSet;
@@ -103,7 +103,7 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         #step_stages
         #behind
     };
-    let names = identifiers(&body);
+    let names = item_names(&body);
     let imports = imports(&names, interface, type_name);
     let constants = constants(program, &names);
     RustText {
