@@ -46,11 +46,12 @@ pub(super) fn unless_lost(l: &mut Lowering<'_>, sector: Value, vector: Value) ->
 }
 
 impl CurrentLoop<'_, '_> {
-    /// Drives the legs of the chosen vector and closes the step.
+    /// Drives the legs of the chosen vector and closes the step; `pairs` is whether vectors of pairs are allowed.
     pub(super) fn apply_vector(
         &mut self,
         front: &Front,
         vector: Value,
+        pairs: bool,
         mut remembered: Remembered,
     ) {
         let l = &mut *self.lowering;
@@ -58,7 +59,7 @@ impl CurrentLoop<'_, '_> {
             "drive_legs",
             &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
         );
-        let command = command(l, vector, self.needs.commutation);
+        let command = command(l, vector, pairs);
         let is_fixed = matches!(l.spec.inverter.bus, BusSource::Fixed);
         if let (Some(held), true) = (&front.held, is_fixed) {
             let left = tabled_left_over(l, self.options.word, held, vector);

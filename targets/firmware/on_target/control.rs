@@ -32,19 +32,16 @@ pub fn hand_over(prepare: impl FnOnce(&mut Loop)) -> &'static SetPoint {
     set_point
 }
 
-/// What the timer's interrupt does.
+/// What the timer's interrupt does; behind [`hand_over`] alone.
 #[unsafe(no_mangle)]
 pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
-    // SAFETY: the only one that takes the control loop once it is handed over.
-    if let Some(control) = unsafe { CONTROL.take_turn() } {
-        control_period(control, &REGISTERS);
-    }
+    // SAFETY: the only one that takes the control loop; the timer starts behind the hand-over.
+    let control = unsafe { CONTROL.take_turn() };
+    control_period(control, &REGISTERS);
 }
 
-/// Begins again from rest; from where the interrupt's function is called.
+/// Begins again from rest; from where the interrupt's function is called, and behind [`hand_over`], too.
 pub fn reset() {
     // SAFETY: as above.
-    if let Some(control) = unsafe { CONTROL.take_turn() } {
-        control.reset();
-    }
+    unsafe { CONTROL.take_turn() }.reset();
 }

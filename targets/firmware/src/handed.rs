@@ -34,18 +34,18 @@ impl<T> Handed<T> {
         unsafe { (*self.0.get()).insert(value) }
     }
 
-    /// The value, if it is here.
+    /// The value.
     ///
     /// # Safety
-    /// From one context only, which does not interrupt itself, and never beside the reference that
-    /// [`Handed::hand_over`] returned.
+    /// Only behind [`Handed::hand_over`] and never beside the reference that it returned; from one context only, which
+    /// does not interrupt itself.
     #[inline]
     #[expect(
         clippy::mut_from_ref,
         reason = "the callers promise that it is the only one"
     )]
-    pub unsafe fn take_turn(&'static self) -> Option<&'static mut T> {
-        // SAFETY: the caller is the only one here.
-        unsafe { (*self.0.get()).as_mut() }
+    pub unsafe fn take_turn(&'static self) -> &'static mut T {
+        // SAFETY: the value is here, and so is the caller alone.
+        unsafe { (*self.0.get()).as_mut().unwrap_unchecked() }
     }
 }

@@ -5,26 +5,26 @@
     reason = "what is written to a register counts as read; only a volatile access says so"
 )]
 
-use core::sync::atomic::AtomicU32;
+use core::sync::atomic::AtomicU16;
 use hexagen::{Legs, Sample};
 
-/// One register.
+/// One register, of which a halfword is used, as data registers of converters and compare registers of timers have it.
 #[derive(Debug)]
-struct Register(AtomicU32);
+struct Register(AtomicU16);
 
 impl Register {
-    const fn new(word: u32) -> Self {
-        Self(AtomicU32::new(word))
+    const fn new(word: u16) -> Self {
+        Self(AtomicU16::new(word))
     }
 
     #[inline]
-    fn read(&self) -> u32 {
+    fn read(&self) -> u16 {
         // SAFETY: the word is valid for as long as the borrow of it, and aligned; one core alone accesses it.
         unsafe { self.0.as_ptr().read_volatile() }
     }
 
     #[inline]
-    fn write(&self, word: u32) {
+    fn write(&self, word: u16) {
         // SAFETY: as above.
         unsafe { self.0.as_ptr().write_volatile(word) }
     }
@@ -50,7 +50,7 @@ impl Registers {
             adc_b: Register::new(0),
             hall: Register::new(0),
             compare: [const { Register::new(0) }; 3],
-            legs: Register::new(Legs::OFF.states() as u32),
+            legs: Register::new(Legs::OFF.states()),
         }
     }
 
@@ -59,8 +59,8 @@ impl Registers {
     #[must_use]
     pub fn sample(&self) -> Sample {
         Sample {
-            adc_a: self.adc_a.read() as u16,
-            adc_b: self.adc_b.read() as u16,
+            adc_a: self.adc_a.read(),
+            adc_b: self.adc_b.read(),
             hall: self.hall.read() as u8,
             hall_ticks: 0,
         }
@@ -70,9 +70,9 @@ impl Registers {
     #[inline]
     pub fn apply(&self, legs: &Legs) {
         for (register, value) in self.compare.iter().zip(legs.compare()) {
-            register.write(u32::from(value));
+            register.write(value);
         }
-        self.legs.write(u32::from(legs.states()));
+        self.legs.write(legs.states());
     }
 
     /// What the inverter is told.
@@ -84,8 +84,8 @@ impl Registers {
 
     /// Plays the converters and the Hall sensors.
     pub fn feed(&self, sample: &Sample) {
-        self.adc_a.write(sample.adc_a.into());
-        self.adc_b.write(sample.adc_b.into());
+        self.adc_a.write(sample.adc_a);
+        self.adc_b.write(sample.adc_b);
         self.hall.write(sample.hall.into());
     }
 }

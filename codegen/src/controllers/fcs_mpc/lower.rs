@@ -24,7 +24,7 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
         let u = step.deadbeat(&front, false).u;
         if options.horizon == 2 {
             let vector = step.choose_two_steps(options, &front, u);
-            step.apply_vector(&front, vector, vec![]);
+            step.apply_vector(&front, vector, options.pairs(), vec![]);
             return;
         }
         if options.weighted() && !options.modulated {
@@ -34,20 +34,21 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             });
             let vector = step.choose_weighted(options, &front, u, memory);
             let remembered = memory.map(|memory| (memory, "vector_prev_next", vector));
-            step.apply_vector(&front, vector, remembered.into_iter().collect());
+            let remembered = remembered.into_iter().collect();
+            step.apply_vector(&front, vector, options.pairs(), remembered);
             return;
         }
         let of_table2 = options.candidates == Candidates::Table2 && !options.modulated;
         if let (true, Some([commutating, ..])) = (of_table2, front.commutation) {
             let vector = step.choose_of_table2(options, &front, u, commutating);
-            step.apply_vector(&front, vector, vec![]);
+            step.apply_vector(&front, vector, options.pairs(), vec![]);
             return;
         }
         let choice = step.choose(options, &front, u);
         if options.modulated {
             step.apply_two_vectors(&front, &choice);
         } else {
-            step.apply_vector(&front, choice.vector, vec![]);
+            step.apply_vector(&front, choice.vector, options.pairs(), vec![]);
         }
     })
 }

@@ -1,7 +1,7 @@
 //! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
 
 use super::table::{
-    BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
+    BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET, WISHES,
     switching_table,
 };
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
@@ -9,7 +9,7 @@ use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
-use crate::spec::{PhccSpec, Spec};
+use crate::spec::{PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -39,12 +39,13 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
         });
         let q = step.predicted_error(&front);
         let axes = compare_with_bands(step.lowering, options, design, q, memory);
-        let vector = look_up(step.lowering, options, &front, axes.map(|axis| axis.rises));
+        let vector = look_up(step.lowering, options, &front, axes.map(|axis| axis.falls));
         let remembered = vec![
             (memory[0].0, "h_a_next", axes[0].memory),
             (memory[1].0, "h_b_next", axes[1].memory),
         ];
-        step.apply_vector(&front, vector, remembered);
+        let pairs = options.candidates == PhccCandidates::Table2;
+        step.apply_vector(&front, vector, pairs, remembered);
     })
 }
 
@@ -115,8 +116,8 @@ fn deviation(l: &mut Lowering<'_>, x: usize, error: Value) -> Value {
 /// What an axis asks for, and what it remembers of that.
 #[derive(Clone, Copy)]
 struct Axis {
-    /// Flag: its component shall rise.
-    rises: Value,
+    /// Flag: its component shall fall.
+    falls: Value,
     /// What is added to its next error.
     memory: Value,
 }
@@ -150,8 +151,8 @@ fn compare_with_bands(
         let lifted = l.b.add([q[0], beta][x], before);
         l.b.name(["lifted_alpha", "lifted_beta"][x], lifted);
         let zero = l.zero();
-        let rises = l.b.compare(Comparison::LessEqual, zero, lifted);
-        l.b.name(["alpha_rises", "beta_rises"][x], rises);
+        let falls = l.b.compare(Comparison::Less, lifted, zero);
+        l.b.name(["alpha_falls", "beta_falls"][x], falls);
         let (name, other) = [
             ("band_alpha", "band_alpha_below"),
             ("band_beta", "band_beta_below"),
@@ -162,9 +163,9 @@ fn compare_with_bands(
         let doc =
             format!("Half width of the band of {half} and one word more, negative, as a voltage");
         let below = l.voltage(other, -band - 1, &doc);
-        let memory = l.b.select(rises, above, below);
+        let memory = l.b.select(falls, below, above);
         l.b.name(["memory_alpha", "memory_beta"][x], memory);
-        Axis { rises, memory }
+        Axis { falls, memory }
     })
 }
 
@@ -176,22 +177,27 @@ fn look_up(
     [alpha, beta]: [Value; 2],
 ) -> Value {
     let sets = switching_table(options, l.spec.motor.emf_shape);
-    // Backward, unknown, forward; then a set-point of 0 and more, and one below.
+    // Direction unknown, forward, none, backward (the index wraps); then a set-point of 0 and more, and one below.
     let table = [
-        [BRAKING_BACKWARD, MOTORING_BACKWARD],
         [BRAKING_FORWARD; 2],
         [MOTORING_FORWARD, BRAKING_FORWARD],
+        [BRAKING_FORWARD; 2],
+        [BRAKING_BACKWARD, MOTORING_BACKWARD],
     ]
     .iter()
     .flatten()
-    .flat_map(|&set| &sets[PER_SET * set..][..PER_SET])
-    .copied()
+    .flat_map(|&set| sets[PER_SET * set..][..PER_SET].as_chunks::<WISHES>().0)
+    // A sign bit is 1 where an axis shall fall.
+    .flat_map(|&[both_fall, beta_rises, alpha_rises, both_rise]| {
+        [both_rise, beta_rises, alpha_rises, both_fall]
+    })
     .collect();
     let table = l.b.program.table(
         "switching",
         table,
         &[
-            "Vector by 128 (1 + direction) + 64 if the set-point is negative + 8 sector + 4 commutating + 2 alpha + beta.".to_owned(),
+            "Vector by 128 direction, modulo the table's length, + 64 if the set-point is negative + 8 sector + 4 commutating".to_owned(),
+            "+ 2 if beta shall fall + 1 if alpha shall.".to_owned(),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );
@@ -201,15 +207,13 @@ fn look_up(
     );
     let direction = front.direction.unwrap_or(front.set_point);
     let turning = l.b.shift_left(direction, 7);
-    let origin = l.b.literal(128);
-    let turning = l.b.add(turning, origin);
     let zero = l.zero();
     let negative = l.b.compare(Comparison::Less, front.set_point, zero);
     let flags = [
         (Some(negative), 64),
         (front.commutation.map(|[commutating, _]| commutating), 4),
-        (Some(alpha), 2),
-        (Some(beta), 1),
+        (Some(beta), 2),
+        (Some(alpha), 1),
     ];
     let sector = l.b.shift_left(front.sector, 3);
     let mut index = l.b.add(turning, sector);

@@ -7,12 +7,15 @@ use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::switching::{self, Switching};
 use crate::model::trace::Past;
-use crate::{Error, Spec};
+
+use crate::{Candidates, Error, Spec};
 
 #[derive(Clone, Debug)]
 pub struct Phcc {
     delayed: bool,
     holds: bool,
+    /// Vectors of pairs are allowed, which turn legs off.
+    pairs: bool,
     k_hold: Coefficient,
     /// Of the present current in this prediction and in the next, the EMF held.
     k_now: Coefficient,
@@ -33,6 +36,7 @@ impl Phcc {
         Ok(Self {
             delayed,
             holds,
+            pairs: options.candidates != Candidates::ThreePhase,
             k_hold: scale.only_if(!holds, "k_hold", scale.ohm * held / b)?,
             k_now: scale.only_if(holds, "k_now", -scale.ohm * (1.0 + a) / b)?,
             k_past: scale.only_if(holds, "k_past", scale.ohm * a / b)?,
@@ -82,7 +86,7 @@ impl Phcc {
             u,
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector, true),
+            command: whole::command(now, vector, self.pairs),
             integral: now.integral,
             hysteresis: [memory(rises[0], band_a), memory(rises[1], band_b)],
             past,

@@ -4,12 +4,15 @@ use super::{Decision, Inputs, deadbeat, held, whole};
 use crate::model::Reach;
 use crate::model::ideal::vector::to_ab;
 use crate::model::switching::{self, Switching};
-use crate::{Error, Spec};
+
+use crate::{Candidates, Error, Spec};
 
 #[derive(Clone, Debug)]
 pub struct Phcc {
     /// Ampere.
     band: f64,
+    /// Vectors of pairs are allowed, which turn legs off.
+    pairs: bool,
     switching: Switching,
 }
 
@@ -17,6 +20,7 @@ impl Phcc {
     pub fn new(spec: &Spec, options: &crate::Phcc) -> Result<Self, Error> {
         Ok(Self {
             band: options.band,
+            pairs: options.candidates != Candidates::ThreePhase,
             switching: Switching::new(spec, options)?,
         })
     }
@@ -43,7 +47,7 @@ impl Phcc {
             u,
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector, true),
+            command: whole::command(now, vector, self.pairs),
             integral: to_ab(&now.integral),
             rises: rises.map(Some),
             past: if now.emf_is_held {
