@@ -349,6 +349,14 @@ impl<'a> Scope<'a> {
         }
     }
 
+    /// Whether the alarm of a flag is made of a sign bit.
+    pub(super) fn is_sign(&self, flag: Value) -> bool {
+        matches!(
+            self.alarm(flag),
+            Expression::ShiftedRight(_, 31) | Expression::Call(Primitive::Exceeding, ..)
+        )
+    }
+
     /// Two words, their sum, and the limit that each of the three is tested against: `(|x| > limit or |y| > limit) or
     /// |x + y| > limit`.
     fn range_test_of_three(&self, two: Value, third: Value) -> Option<[Value; 4]> {

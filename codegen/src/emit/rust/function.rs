@@ -167,23 +167,27 @@ impl<'a> PathFunctions<'a> {
     fn body(&self, leave: Option<&Source>) -> Source {
         let (function, scope) = (self.context.function, self.scope());
         // Alarms wait for the last of them: one branch for all.
-        let mut alarms: Vec<Source> = vec![];
+        let mut alarms: Vec<(bool, Source)> = vec![];
         let last = function.leave.iter().map(|flag| flag.index()).max();
         let calls = self.stages.iter().map(|stage| {
             let call = stage.call();
             let mut flags: Vec<Source> = vec![];
             for flag in leaves_behind(function, stage.plan()) {
                 match self.context.shape(flag) {
-                    Shape::Alarm => alarms.push(scope.shaped(flag, Shape::Alarm)),
+                    Shape::Alarm => {
+                        alarms.push((!scope.is_sign(flag), scope.shaped(flag, Shape::Alarm)));
+                    }
                     _ => flags.push(scope.whole(flag)),
                 }
             }
             if last.is_some_and(|last| stage.plan().stage.end > last) && !alarms.is_empty() {
-                flags.push(match alarms.as_slice() {
+                // Signs stand together, so that one shift does for them.
+                alarms.sort_by_key(|&(is_last, _)| is_last);
+                let words: Vec<Source> = alarms.drain(..).map(|(_, word)| word).collect();
+                flags.push(match words.as_slice() {
                     [only] => quote!(#only != 0),
                     many => quote!((#(#many)|*) != 0),
                 });
-                alarms.clear();
             }
             let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
             quote!(#call #leaves)
