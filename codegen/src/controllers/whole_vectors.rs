@@ -1,13 +1,60 @@
 //! One whole voltage vector per period: the vectors' legs, and what a step keeps of the vector that it chose.
 //!
 //! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
-//! leg a, b or c off.
+//! leg a, b or c off. Where nothing but the legs is asked of a three-phase vector, the pattern of its low legs stands for it.
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
 use crate::ir::{Comparison, Exact, TableId, Value};
 use crate::lower::{Applied, Coefficient, Command, Lowering};
 use crate::spec::BusSource;
+
+/// What a number of [`CurrentLoop::apply_vector`] means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// Any vector.
+    Vectors,
+    /// A vector without an off leg.
+    WithoutPairs,
+    /// Legs that are low: 1 a, 2 b, 4 c; V0 is 7.
+    LowLegs,
+}
+
+/// The pattern of V0.
+pub(super) const ALL_LOW: i32 = 7;
+
+impl Numbers {
+    /// Legs by number.
+    fn legs(self) -> Vec<LegSigns> {
+        let by_pattern =
+            |pattern: i32| [1, 2, 4].map(|leg| if pattern & leg == 0 { 1 } else { -1 });
+        match self {
+            Self::Vectors | Self::WithoutPairs => vector_legs().to_vec(),
+            // No voltage is high on all phases.
+            Self::LowLegs => std::iter::once([-1; 3])
+                .chain((1..=ALL_LOW).map(by_pattern))
+                .collect(),
+        }
+    }
+
+    /// What rows of tables by this number are called.
+    fn row(self) -> &'static str {
+        match self {
+            Self::Vectors | Self::WithoutPairs => "vector",
+            Self::LowLegs => "pattern",
+        }
+    }
+
+    /// The numbers in words.
+    fn meaning(self) -> &'static str {
+        match self {
+            Self::Vectors | Self::WithoutPairs => {
+                "by vector: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero."
+            }
+            Self::LowLegs => "by the legs that are low: 1 a, 2 b, 4 c.",
+        }
+    }
+}
 
 /// Legs of vectors 0 to 15: high (1), low (-1) or off (0).
 pub(super) fn vector_legs() -> [LegSigns; 16] {
@@ -36,22 +83,31 @@ pub(super) fn zero_vectors() -> Vec<i32> {
         .collect()
 }
 
-/// `value` where the sector is known, else vector 0.
-pub(super) fn unless_lost(l: &mut Lowering<'_>, sector: Value, vector: Value) -> Value {
+/// The vector of this number where the sector is known, else V0.
+pub(super) fn unless_lost(
+    l: &mut Lowering<'_>,
+    sector: Value,
+    vector: Value,
+    numbers: Numbers,
+) -> Value {
     let zero = l.zero();
     let known = l.b.compare(Comparison::NotEqual, sector, zero);
-    let zero = l.zero();
+    let zero = l.b.literal(if numbers == Numbers::LowLegs {
+        ALL_LOW
+    } else {
+        0
+    });
     let vector = l.b.select(known, vector, zero);
-    l.b.name("vector", vector)
+    l.b.name(numbers.row(), vector)
 }
 
 impl CurrentLoop<'_, '_> {
-    /// Drives the legs of the chosen vector and closes the step; `pairs` is whether vectors of pairs are allowed.
+    /// Drives the legs of the chosen vector and closes the step; `numbers` says what its number means.
     pub(super) fn apply_vector(
         &mut self,
         front: &Front,
         vector: Value,
-        pairs: bool,
+        numbers: Numbers,
         mut remembered: Remembered,
     ) {
         let l = &mut *self.lowering;
@@ -59,16 +115,20 @@ impl CurrentLoop<'_, '_> {
             "drive_legs",
             &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
         );
-        let command = command(l, vector, pairs);
+        let command = command(l, vector, numbers);
         let is_fixed = matches!(l.spec.inverter.bus, BusSource::Fixed);
         if let (Some(held), true) = (&front.held, is_fixed) {
-            let left = tabled_left_over(l, self.options.word, held, vector);
+            let left = tabled_left_over(l, self.options.word, held, (vector, numbers));
             remembered.extend(self.fold(held, left));
             self.remember(front, &command, None, None, remembered);
             return;
         }
-        let v_cmd = (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, vector));
-        let applied = self.needs.off_leg.then(|| terminals(l, front, vector));
+        let v_cmd =
+            (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, (vector, numbers)));
+        let applied = self
+            .needs
+            .off_leg
+            .then(|| terminals(l, front, (vector, numbers)));
         self.remember(front, &command, v_cmd, applied, remembered);
     }
 }
@@ -76,21 +136,25 @@ impl CurrentLoop<'_, '_> {
 /// A table over the vectors.
 fn over_vectors(
     l: &mut Lowering<'_>,
+    numbers: Numbers,
     name: &str,
     doc: &str,
     entry: impl Fn(LegSigns) -> i32,
 ) -> TableId {
-    let values = vector_legs().into_iter().map(entry).collect();
+    let values = numbers.legs().into_iter().map(entry).collect();
+    let name = format!("{}_{name}", numbers.row());
     l.b.program
-        .column("vector", name, values, &[doc.to_owned()])
+        .column(numbers.row(), &name, values, &[doc.to_owned()])
 }
 
 /// Entries of a table over the vectors, phases a, b, c.
-type Volts = [[i64; 3]; 16];
+type Volts = Vec<[i64; 3]>;
 
 /// The voltages that the vectors stand for, where a sixth of the bus is `unit` words.
-fn fixed_volts(unit: i64) -> Volts {
-    vector_legs().map(|legs| sixths(legs).map(|share| i64::from(share) * unit))
+fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
+    let legs = numbers.legs().into_iter();
+    legs.map(|legs| sixths(legs).map(|share| i64::from(share) * unit))
+        .collect()
 }
 
 /// Looks up phases a and b of a voltage of the chosen vector, in words, at most so many from the exact one; `doc` says
@@ -100,16 +164,17 @@ fn look_up_volts(
     [name, meaning]: [&str; 2],
     volts: &Volts,
     within: u32,
-    vector: Value,
+    (vector, numbers): (Value, Numbers),
 ) -> [Value; 2] {
     ["a", "b"].map(|phase| {
         let x = usize::from(phase == "b");
-        let values = volts.map(|volts| volts[x] as i32).to_vec();
-        let doc = format!("{meaning}, by vector, words of voltage.");
+        let values = volts.iter().map(|volts| volts[x] as i32).collect();
+        let row = numbers.row();
+        let doc = format!("{meaning}, by {row}, words of voltage.");
         let exact = (Exact::Within(within), None);
-        let table = format!("vector_{name}_{phase}");
+        let table = format!("{row}_{name}_{phase}");
         let table = l.b.program.rounded_table(&table, values, exact, &[doc]);
-        l.b.program.put_in_row(table, "vector");
+        l.b.program.put_in_row(table, row);
         l.b.lookup(table, vector)
     })
 }
@@ -126,16 +191,24 @@ fn sixth(l: &mut Lowering<'_>, word: u32) -> Coefficient {
 }
 
 /// What the voltage of the chosen vector leaves to later steps, from tables: with a fixed bus it is known beforehand.
-fn tabled_left_over(l: &mut Lowering<'_>, word: u32, held: &Held, vector: Value) -> LeftOver {
+fn tabled_left_over(
+    l: &mut Lowering<'_>,
+    word: u32,
+    held: &Held,
+    vector: (Value, Numbers),
+) -> LeftOver {
     let k_sixth = sixth(l, word);
     let unit = l.rounded_product(k_sixth, l.nominal_bus());
     let Some(k_fade) = held.fade() else {
         return held.unfaded(fixed_voltage(l, unit, vector));
     };
-    let volts = fixed_volts(unit);
-    let left = volts.map(|volts| volts.map(|volts| volts + l.rounded_product(k_fade, volts)));
-    let both: Volts =
-        std::array::from_fn(|vector| std::array::from_fn(|x| volts[vector][x] + left[vector][x]));
+    let volts = fixed_volts(vector.1, unit);
+    let fade = |volts: i64| volts + l.rounded_product(k_fade, volts);
+    let left: Volts = volts.iter().map(|volts| volts.map(fade)).collect();
+    let both = volts.iter().zip(&left);
+    let both: Volts = both
+        .map(|(volts, left)| std::array::from_fn(|x| volts[x] + left[x]))
+        .collect();
     let texts = [
         "left",
         "What is left of the vector's voltage one period later, a v",
@@ -157,21 +230,23 @@ fn tabled_left_over(l: &mut Lowering<'_>, word: u32, held: &Held, vector: Value)
 }
 
 /// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
-fn command(l: &mut Lowering<'_>, vector: Value, turns_off: bool) -> Command {
+fn command(l: &mut Lowering<'_>, vector: Value, numbers: Numbers) -> Command {
+    let turns_off = numbers == Numbers::Vectors;
     let top = l.spec.inverter.timer_period as i32;
     let compares = [0, 1, 2].map(|x| {
-        let name = ["vector_compare_a", "vector_compare_b", "vector_compare_c"][x];
-        let doc = "Compare value of the leg by vector: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
-        let table = over_vectors(l, name, doc, |legs| if legs[x] == 1 { top } else { 0 });
+        let name = ["compare_a", "compare_b", "compare_c"][x];
+        let doc = format!("Compare value of the leg {}", numbers.meaning());
+        let high = |legs: LegSigns| if legs[x] == 1 { top } else { 0 };
+        let table = over_vectors(l, numbers, name, &doc, high);
         l.b.lookup(table, vector)
     });
     let legs = [0, 1, 2].map(|x| {
         if !turns_off {
             return l.b.literal(0);
         }
-        let name = ["vector_leg_a", "vector_leg_b", "vector_leg_c"][x];
+        let name = ["leg_a", "leg_b", "leg_c"][x];
         let doc = "State of the leg by vector: 0 pulsed, 1 low, 2 off.";
-        let table = over_vectors(l, name, doc, |legs| match legs[x] {
+        let table = over_vectors(l, numbers, name, doc, |legs| match legs[x] {
             1 => 0,
             -1 => 1,
             _ => 2,
@@ -192,18 +267,23 @@ fn command(l: &mut Lowering<'_>, vector: Value, turns_off: bool) -> Command {
 }
 
 /// The zero-sum voltage that the chosen vector stands for, phases a and b.
-fn voltage(l: &mut Lowering<'_>, word: u32, front: &Front, vector: Value) -> [Value; 2] {
+fn voltage(
+    l: &mut Lowering<'_>,
+    word: u32,
+    front: &Front,
+    (vector, numbers): (Value, Numbers),
+) -> [Value; 2] {
     let k_sixth = sixth(l, word);
     if let BusSource::Fixed = l.spec.inverter.bus {
         let unit = l.rounded_product(k_sixth, l.nominal_bus());
-        return fixed_voltage(l, unit, vector);
+        return fixed_voltage(l, unit, (vector, numbers));
     }
     let product = l.times(k_sixth, front.bus.volts);
     let unit = l.b.name("sixth_of_bus", product);
     [0, 1].map(|x| {
-        let name = ["vector_sixths_a", "vector_sixths_b"][x];
+        let name = ["sixths_a", "sixths_b"][x];
         let doc = "Phase voltage of the vector, sixths of the bus.";
-        let table = over_vectors(l, name, doc, |legs| sixths(legs)[x]);
+        let table = over_vectors(l, numbers, name, doc, |legs| sixths(legs)[x]);
         let share = l.b.lookup(table, vector);
         let volts = l.b.mul(share, unit, 0);
         l.b.name(["v_a_chosen", "v_b_chosen"][x], volts)
@@ -211,9 +291,9 @@ fn voltage(l: &mut Lowering<'_>, word: u32, front: &Front, vector: Value) -> [Va
 }
 
 /// The same from tables, where a sixth of the bus is `unit` words.
-fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: Value) -> [Value; 2] {
+fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: (Value, Numbers)) -> [Value; 2] {
     let texts = ["volts", "Phase voltage of the vector"];
-    let volts = look_up_volts(l, texts, &fixed_volts(unit), 2, vector);
+    let volts = look_up_volts(l, texts, &fixed_volts(vector.1, unit), 2, vector);
     for x in 0..2 {
         l.b.name(["v_a_chosen", "v_b_chosen"][x], volts[x]);
     }
@@ -221,11 +301,11 @@ fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: Value) -> [Value; 2] {
 }
 
 /// The terminals that the chosen vector drives, and which leg it turns off.
-fn terminals(l: &mut Lowering<'_>, front: &Front, vector: Value) -> Applied {
+fn terminals(l: &mut Lowering<'_>, front: &Front, (vector, numbers): (Value, Numbers)) -> Applied {
     let terminals = [0, 1, 2].map(|x| {
-        let name = ["vector_high_a", "vector_high_b", "vector_high_c"][x];
+        let name = ["high_a", "high_b", "high_c"][x];
         let doc = "1 where the vector turns the leg's upper switch on.";
-        let table = over_vectors(l, name, doc, |legs| i32::from(legs[x] == 1));
+        let table = over_vectors(l, numbers, name, doc, |legs| i32::from(legs[x] == 1));
         let high = l.b.lookup(table, vector);
         let volts = l.b.mul(high, front.bus.volts, 0);
         l.b.name(["t_a_chosen", "t_b_chosen", "t_c_chosen"][x], volts)
@@ -239,7 +319,7 @@ fn terminals(l: &mut Lowering<'_>, front: &Front, vector: Value) -> Applied {
 /// The leg that a vector turns off: 1 a, 2 b, 3 c, 0 none.
 pub(super) fn off_leg_table(l: &mut Lowering<'_>) -> TableId {
     let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
-    over_vectors(l, "vector_off", doc, |legs| {
+    over_vectors(l, Numbers::Vectors, "off", doc, |legs| {
         legs.iter()
             .position(|&sign| sign == 0)
             .map_or(0, |phase| phase as i32 + 1)

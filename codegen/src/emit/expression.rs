@@ -296,13 +296,17 @@ impl<'a> Scope<'a> {
             }
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),
-            Op::Or(a, b) => match (self.range_test(a, b), self.either_above(a, b)) {
-                (Some([x, limit]), _) => call(P::Exceeds, &[x, limit], None),
-                (None, Some([x, y, limit])) => {
+            Op::Or(a, b) => {
+                if let Some([x, limit]) = self.range_test(a, b) {
+                    call(P::Exceeds, &[x, limit], None)
+                } else if let Some([x, y, limit]) = self.either_above(a, b) {
                     E::binary(O::Greater, E::binary(O::BitOr, of(x), of(y)), of(limit))
+                } else if let Some(exceeding) = self.exceeding(a, b) {
+                    E::binary(O::NotEqual, exceeding, E::Number(0))
+                } else {
+                    E::binary(O::Or, of(a), of(b))
                 }
-                (None, None) => E::binary(O::Or, of(a), of(b)),
-            },
+            }
             Op::Not(a) => self.negation(a),
             Op::Select {
                 condition,
@@ -337,13 +341,8 @@ impl<'a> Scope<'a> {
                     let bits = self.bits_above(limit, &[x, y]).unwrap_or(0);
                     return E::ShiftedRight(Box::new(either), bits);
                 }
-                match self.range_test_of_three(a, b) {
-                    Some(operands) => {
-                        let operands = operands.map(|operand| self.value(operand));
-                        E::Call(Primitive::Exceeding, operands.into(), None)
-                    }
-                    None => E::FlagWord(Box::new(self.definition(value))),
-                }
+                let exceeding = self.exceeding(a, b);
+                exceeding.unwrap_or_else(|| E::FlagWord(Box::new(self.definition(value))))
             }
             _ => E::FlagWord(Box::new(self.definition(value))),
         }
@@ -357,9 +356,8 @@ impl<'a> Scope<'a> {
         )
     }
 
-    /// Two words, their sum, and the limit that each of the three is tested against: `(|x| > limit or |y| > limit) or
-    /// |x + y| > limit`.
-    fn range_test_of_three(&self, two: Value, third: Value) -> Option<[Value; 4]> {
+    /// `(|x| > limit or |y| > limit) or |z| > limit` for `z` the sum of the others or its negative, by one test.
+    fn exceeding(&self, two: Value, third: Value) -> Option<Expression> {
         let either = |value: Value| match self.node(value) {
             Node {
                 name,
@@ -372,8 +370,16 @@ impl<'a> Scope<'a> {
         let (first, second) = either(two)?;
         let ([x, limit], [y, again], [sum, last]) = (test(first)?, test(second)?, test(third)?);
         let is_limit = |other: Value| self.node(other).op == self.node(limit).op;
-        let is_sum = self.node(sum).op == Op::Add(x, y);
-        (is_sum && is_limit(again) && is_limit(last)).then_some([x, y, sum, limit])
+        let is_added = |value: Value| self.node(value).op == Op::Add(x, y);
+        let whole = self.value(sum);
+        let sum = match self.node(sum).op {
+            Op::Neg(added) if is_added(added) => Expression::Negated(Box::new(whole)),
+            _ if is_added(sum) => whole,
+            _ => return None,
+        };
+        let operands = vec![self.value(x), self.value(y), sum, self.value(limit)];
+        let alike = is_limit(again) && is_limit(last);
+        alike.then_some(Expression::Call(Primitive::Exceeding, operands, None))
     }
 
     /// The word and the limit whose magnitudes the two flags compare: `limit < x` or `x < -limit`.

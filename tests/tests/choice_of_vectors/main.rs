@@ -27,6 +27,9 @@ type Verdict = Result<Result<(), String>, Contradiction>;
 
 const PHASES: [&str; 3] = ["a", "b", "c"];
 
+/// Legs that are low in V0 to V6: 1 a, 2 b, 4 c.
+const LOW_LEGS: [usize; 7] = [7, 3, 2, 6, 4, 5, 1];
+
 /// What a proof is about: a drive's program.
 #[derive(Clone, Debug)]
 struct Subject {
@@ -137,8 +140,15 @@ impl Subject {
     /// Part two: the choice, wherever off legs sit. `plane`: the bus, and u of phases a and b, as numbers.
     fn choice(&self, plane: Option<[i64; 3]>, path: &mut Path) -> Verdict {
         self.compared(plane, path, |subject, situation, slice, path| {
-            let expected = Linear::number(situation.vector(path)? as i64);
-            let found = slice.named("vector", path)?.word();
+            let vector = situation.vector(path)?;
+            // By the legs that are low, where nothing else is asked for.
+            let (name, number) = if subject.has("pattern") {
+                ("pattern", LOW_LEGS[vector])
+            } else {
+                ("vector", vector)
+            };
+            let expected = Linear::number(number as i64);
+            let found = slice.named(name, path)?.word();
             Ok(if found == expected {
                 Ok(())
             } else {
@@ -370,7 +380,7 @@ impl Subject {
         }
         let legs = if self.options.floating() { 3 } else { 0 };
         // Between two three-phase vectors the choice itself leaves no trace.
-        let mut paths = if self.has("vector") {
+        let mut paths = if self.has("vector") || self.has("pattern") {
             for_all_paths(|path| self.choice(None, path))?
         } else {
             0

@@ -6,7 +6,7 @@
 
 use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
-use crate::controllers::whole_vectors::{unless_lost, zero_vectors};
+use crate::controllers::whole_vectors::{ALL_LOW, Numbers, unless_lost, zero_vectors};
 use crate::ir::{Comparison, TableId, Value};
 use crate::lower::Lowering;
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
@@ -101,13 +101,28 @@ impl CurrentLoop<'_, '_> {
             },
         };
         Choice {
-            vector: unless_lost(&mut *self.lowering, front.sector, vector),
+            vector: unless_lost(&mut *self.lowering, front.sector, vector, Numbers::Vectors),
             u: phases,
             is_low,
             heights: [high, depth],
             largest,
             conducting: off_legs.map(|off_legs| off_legs.conducting),
         }
+    }
+
+    /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
+    pub(super) fn choose_low_legs(&mut self, front: &Front, u: [Value; 2]) -> Value {
+        let l = &mut *self.lowering;
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
+        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
+        let phases = [u[0], u[1], u_c];
+        state_exact_scores(l, u_c);
+        let (low_legs, _) = low_legs_of(l, phases);
+        let beyond = any_beyond(l, phases, 3, front.bus.volts);
+        let all = l.b.literal(ALL_LOW);
+        let pattern = l.b.select(beyond, low_legs, all);
+        l.b.name("pattern_nearest", pattern);
+        unless_lost(l, front.sector, pattern, Numbers::LowLegs)
     }
 
     /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
@@ -141,7 +156,7 @@ impl CurrentLoop<'_, '_> {
             "know_sector",
             &["No vector before the first valid Hall code."],
         );
-        unless_lost(l, front.sector, nearest)
+        unless_lost(l, front.sector, nearest, Numbers::Vectors)
     }
 
     /// Where each leg would sit if it were off in the target period.
@@ -456,8 +471,8 @@ fn any_beyond(l: &mut Lowering<'_>, volts: [Value; 3], parts: i32, bus: Value) -
     l.b.or(pair, c)
 }
 
-/// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
-fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], bus: Value) -> (Value, [Value; 3]) {
+/// The legs that are low in the nearest to `u` of V1 to V6: as a pattern and as flags.
+fn low_legs_of(l: &mut Lowering<'_>, u: [Value; 3]) -> (Value, [Value; 3]) {
     // A zero lies as the leg does in the first of the two tied vectors: b low, a as b, c unlike b. The words tell
     // by their signs once a one is taken from those that lie low.
     let one = l.b.literal(1);
@@ -471,7 +486,12 @@ fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], bus: Value) -> (Valu
     let c_under = lowered_by(l, u[2], b_is_not);
     let c_is_low = is_negative(l, "c_is_low", c_under);
     let is_low = [a_is_low, b_is_low, c_is_low];
-    let low_legs = index_of_flags(l, "low_legs", is_low);
+    (index_of_flags(l, "low_legs", is_low), is_low)
+}
+
+/// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
+fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], bus: Value) -> (Value, [Value; 3]) {
+    let (low_legs, is_low) = low_legs_of(l, u);
     let table = vector_of_low_legs(l);
     let active = l.b.lookup(table, low_legs);
     let beyond = any_beyond(l, u, 3, bus);

@@ -1,6 +1,7 @@
 //! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
 
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
+use crate::controllers::whole_vectors::Numbers;
 use crate::ir::Interval;
 use crate::lower::Scale;
 use crate::scaling::Lowered;
@@ -20,11 +21,16 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
                 integral: false,
             },
         };
+        let numbers = if options.pairs() {
+            Numbers::Vectors
+        } else {
+            Numbers::WithoutPairs
+        };
         let front = step.front(set_point);
         let u = step.deadbeat(&front, false).u;
         if options.horizon == 2 {
             let vector = step.choose_two_steps(options, &front, u);
-            step.apply_vector(&front, vector, options.pairs(), vec![]);
+            step.apply_vector(&front, vector, numbers, vec![]);
             return;
         }
         if options.weighted() && !options.modulated {
@@ -35,20 +41,25 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             let vector = step.choose_weighted(options, &front, u, memory);
             let remembered = memory.map(|memory| (memory, "vector_prev_next", vector));
             let remembered = remembered.into_iter().collect();
-            step.apply_vector(&front, vector, options.pairs(), remembered);
+            step.apply_vector(&front, vector, numbers, remembered);
             return;
         }
         let of_table2 = options.candidates == Candidates::Table2 && !options.modulated;
         if let (true, Some([commutating, ..])) = (of_table2, front.commutation) {
             let vector = step.choose_of_table2(options, &front, u, commutating);
-            step.apply_vector(&front, vector, options.pairs(), vec![]);
+            step.apply_vector(&front, vector, numbers, vec![]);
+            return;
+        }
+        if options.candidates == Candidates::ThreePhase && !options.modulated {
+            let pattern = step.choose_low_legs(&front, u);
+            step.apply_vector(&front, pattern, Numbers::LowLegs, vec![]);
             return;
         }
         let choice = step.choose(options, &front, u);
         if options.modulated {
             step.apply_two_vectors(&front, &choice);
         } else {
-            step.apply_vector(&front, choice.vector, options.pairs(), vec![]);
+            step.apply_vector(&front, choice.vector, numbers, vec![]);
         }
     })
 }

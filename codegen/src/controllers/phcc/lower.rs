@@ -5,6 +5,7 @@ use super::table::{
     switching_table,
 };
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
+use crate::controllers::whole_vectors::Numbers;
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::lower::{Lowering, Scale};
@@ -44,8 +45,11 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
             (memory[0].0, "h_a_next", axes[0].memory),
             (memory[1].0, "h_b_next", axes[1].memory),
         ];
-        let pairs = options.candidates == PhccCandidates::Table2;
-        step.apply_vector(&front, vector, pairs, remembered);
+        let numbers = match options.candidates {
+            PhccCandidates::Table2 => Numbers::Vectors,
+            PhccCandidates::ThreePhase => Numbers::WithoutPairs,
+        };
+        step.apply_vector(&front, vector, numbers, remembered);
     })
 }
 

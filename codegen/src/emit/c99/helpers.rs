@@ -16,7 +16,7 @@ pub(super) struct Helper {
 }
 
 /// All, each behind those that it calls.
-pub(super) const HELPERS: [Helper; 21] = [
+pub(super) const HELPERS: [Helper; 22] = [
     Helper {
         name: "exceeds",
         text: "\
@@ -114,6 +114,17 @@ static inline int32_t min_of(int32_t a, int32_t b)
 static inline int32_t max_of(int32_t a, int32_t b)
 {
     return (a > b) ? a : b;
+}
+",
+    },
+    Helper {
+        name: "exceeding",
+        text: "\
+/** Not 0 where the magnitude of one of x, y and sum = x + y is more than `limit`: of x, y and -sum, which add up to 0,
+ *  those above 0 add up to the largest magnitude. */
+static inline int32_t exceeding(int32_t x, int32_t y, int32_t sum, int32_t limit)
+{
+    return ((max_of(x, 0) + max_of(y, 0)) - min_of(sum, 0) > limit) ? 1 : 0;
 }
 ",
     },
