@@ -89,10 +89,12 @@ const KINDS: &[Kind] = &[
     ("- for +", |text, code| replaced(text, code, " + ", " - ")),
     ("+ for -", |text, code| replaced(text, code, " - ", " + ")),
     ("min for max", |text, code| {
-        replaced(text, code, ".max(", ".min(")
+        let near = replaced(text, code, ".greater(", ".lesser(");
+        [replaced(text, code, ".max(", ".min("), near].concat()
     }),
     ("max for min", |text, code| {
-        replaced(text, code, ".min(", ".max(")
+        let near = replaced(text, code, ".lesser(", ".greater(");
+        [replaced(text, code, ".min(", ".max("), near].concat()
     }),
     ("<= for <", |text, code| replaced(text, code, " < ", " <= ")),
     ("< for <=", |text, code| replaced(text, code, " <= ", " < ")),
