@@ -220,7 +220,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
                 "switching[128..136]",
                 "switching[184..192]",
                 "switching[192..200]",
-                "switching[248..256]",
                 "switching[384..392]",
                 "switching[440..448]",
                 "switching[448..456]",
@@ -228,11 +227,6 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             ],
             &["one more"],
         )],
-    },
-    Unnoticed {
-        because: "the direction is 0, 1 or -1",
-        drives: &[PHCC_PAPER, PHCC_ESTUN],
-        faults: &[(&["switching[256..384]"], &["one more"])],
     },
     Unnoticed {
         because: "direction is 1 or -1",
