@@ -423,7 +423,7 @@ impl Subject {
                 self.seek_edge(&mut scratch, (&words, word), sample, &mut tally);
             }
             let (legs, _) = self.compare(&mut models, sample, &mut tally);
-            stimulus.respond(&legs);
+            stimulus.respond(legs);
         }
         tally
     }

@@ -221,7 +221,7 @@ impl<'g> Recorder<'g> {
         let legs = self.subject.step(&sample);
         let fault = self.subject.fault();
         self.subject.state_words(&mut self.words);
-        self.digest.answer(&legs, fault);
+        self.digest.answer(legs, fault);
         for &word in &self.words {
             self.digest.word(word as u32);
         }
@@ -230,7 +230,7 @@ impl<'g> Recorder<'g> {
             self.vectors.full.push(Answer {
                 sample,
                 step: self.vectors.steps,
-                bytes: encode_outputs(&legs, fault)
+                bytes: encode_outputs(legs, fault)
                     .into_iter()
                     .chain(words)
                     .collect(),
@@ -303,7 +303,7 @@ impl<'g> Recorder<'g> {
                 None => {}
             }
             let legs = self.step(sample);
-            stimulus.respond(&legs);
+            stimulus.respond(legs);
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use hexagen::{DriveLoop, DriveSetPoint};
 #[inline]
 pub fn control_period(control: &mut impl DriveLoop, registers: &Registers) {
     let legs = control.step(&registers.sample());
-    registers.apply(&legs);
+    registers.apply(legs);
 }
 
 /// Serves a task of counting on an interrupt that is called as a function: the core's own entry and exit are not

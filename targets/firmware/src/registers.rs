@@ -68,7 +68,7 @@ impl Registers {
 
     /// Writes the three compare values, and what the legs do besides into the timer's output enables.
     #[inline]
-    pub fn apply(&self, legs: &Legs) {
+    pub fn apply(&self, legs: Legs) {
         for (register, value) in self.compare.iter().zip(legs.compare()) {
             register.write(value);
         }

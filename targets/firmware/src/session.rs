@@ -181,7 +181,7 @@ impl<D: Drive> Replayed<D> {
                 continue;
             };
             let legs = self.step(sample);
-            digest.answer(&legs, self.drive.fault());
+            digest.answer(legs, self.drive.fault());
             for &word in self.state_words(&mut words) {
                 digest.word(word as u32);
             }
@@ -196,7 +196,7 @@ impl<D: Drive> Replayed<D> {
                 continue;
             };
             let legs = self.step(sample);
-            link.write(&encode_outputs(&legs, self.drive.fault()))?;
+            link.write(&encode_outputs(legs, self.drive.fault()))?;
             for word in self.state_words(&mut words) {
                 link.write(&word.to_le_bytes())?;
             }

@@ -194,7 +194,7 @@ impl Digest {
     }
 
     /// Takes in what a step put out.
-    pub fn answer(&mut self, legs: &Legs, fault: Fault) {
+    pub fn answer(&mut self, legs: Legs, fault: Fault) {
         for (compare, state) in legs.compare().into_iter().zip(legs.state()) {
             self.word(u32::from(compare) | (state as u32) << 16);
         }
@@ -213,7 +213,7 @@ impl Digest {
 
 /// A step's outputs as bytes; its state words follow.
 #[must_use]
-pub fn encode_outputs(legs: &Legs, fault: Fault) -> [u8; ANSWER] {
+pub fn encode_outputs(legs: Legs, fault: Fault) -> [u8; ANSWER] {
     let [[a0, a1], [b0, b1], [c0, c1]] = legs.compare().map(u16::to_le_bytes);
     let [a, b, c] = legs.state().map(|state| state as u8);
     [a0, a1, b0, b1, c0, c1, a, b, c, fault as u8]

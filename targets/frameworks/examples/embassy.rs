@@ -24,7 +24,7 @@ fn ADC0_SEQUENCE_0() {
         if let Some(control) = CONTROL.borrow_ref_mut(token).as_mut() {
             let sample = REGISTERS.sample();
             let legs = control.step(sample.adc_a, sample.adc_b, sample.hall);
-            REGISTERS.apply(&legs);
+            REGISTERS.apply(legs);
         }
     });
 }

@@ -32,7 +32,7 @@ mod app {
         let control = context.local.control;
         let sample = REGISTERS.sample();
         let legs = control.step(sample.adc_a, sample.adc_b, sample.hall);
-        REGISTERS.apply(&legs);
+        REGISTERS.apply(legs);
     }
 
     #[idle(local = [set_point])]

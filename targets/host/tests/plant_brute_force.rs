@@ -53,7 +53,7 @@ impl<'a> Naive<'a> {
         self.p.k_phase[x] * self.omega_m * shape
     }
 
-    fn step(&mut self, legs: &Legs, in_period: f64) {
+    fn step(&mut self, legs: Legs, in_period: f64) {
         let p = self.p;
         let (bottom, top) = (-p.diode_drop, p.v_bus + p.diode_drop);
         let mut v: [Option<f64>; 3] = [None; 3];
@@ -142,7 +142,7 @@ impl<'a> Naive<'a> {
         (weight > 0.0).then(|| sum / weight)
     }
 
-    fn run_period(&mut self, legs: &Legs) {
+    fn run_period(&mut self, legs: Legs) {
         let steps = (self.p.t_s / DT).round() as u32;
         for step in 0..steps {
             self.step(legs, (f64::from(step) + 0.5) * DT);
@@ -176,8 +176,8 @@ fn compare(
     plant.set_currents(i);
     let mut naive = Naive::new(p, theta_e, omega_m, [i[0], i[1], -i[0] - i[1]]);
     for (period, command) in commands.iter().enumerate() {
-        plant.run_period(command, &mut ());
-        naive.run_period(command);
+        plant.run_period(*command, &mut ());
+        naive.run_period(*command);
         for (got, want) in plant.truth().currents.iter().zip(naive.i) {
             assert!(
                 (got - want).abs() < tolerance,
@@ -277,8 +277,8 @@ fn rectification_above_the_bus_voltage_agrees() {
         let mut naive = Naive::new(&p, 0.1, omega_m, [0.0; 3]);
         let mut charge = Charge::default();
         for command in &off {
-            plant.run_period(command, &mut charge);
-            naive.run_period(command);
+            plant.run_period(*command, &mut charge);
+            naive.run_period(*command);
         }
         let duration = naive.t;
         let (got, want) = (charge.0 / duration, naive.magnitude * DT / duration);

@@ -57,7 +57,7 @@ fn current_rises_as_an_exponential() {
     params.resistance = [R, 3.0 * R, R];
     let mut plant = Plant::new(params, 0.0, 0.0).unwrap();
     for period in 1..=200 {
-        plant.run_period(&legs([Some(N), Some(0), None]), &mut ());
+        plant.run_period(legs([Some(N), Some(0), None]), &mut ());
         let t = f64::from(period) * T_S;
         let want = V / (4.0 * R) * (1.0 - (-4.0 * R * t / (3.0 * L)).exp());
         let [i_a, i_b, i_c] = plant.truth().currents;
@@ -75,7 +75,7 @@ fn emf_ramp_on_a_lossless_winding_integrates_to_a_parabola() {
     let start = -20.0_f64.to_radians();
     let mut plant = Plant::new(params, start, omega_m).unwrap();
     for period in 1..=30 {
-        plant.run_period(&Legs::LOW, &mut ());
+        plant.run_period(Legs::LOW, &mut ());
         // e_a ramps through zero while e_b = -E and e_c = +E: a sees two thirds of its own EMF.
         let angle = start + 4.0 * omega_m * f64::from(period) * T_S;
         let slope = 0.0824 * omega_m * 6.0 / PI;
@@ -93,7 +93,7 @@ fn three_unequal_phases_settle_where_ohm_says() {
     params.resistance = [1.0, 2.0, 3.0];
     let mut plant = Plant::new(params, 0.0, 0.0).unwrap();
     for _ in 0..400 {
-        plant.run_period(&legs([Some(N), Some(0), Some(0)]), &mut ());
+        plant.run_period(legs([Some(N), Some(0), Some(0)]), &mut ());
     }
     let total = V / (1.0 + 2.0 * 3.0 / 5.0);
     let currents = plant.truth().currents;
@@ -126,7 +126,7 @@ fn commutation_slopes_of_the_three_classic_cases() {
         let mut tape = Tape::default();
         let periods = 6;
         for _ in 0..periods {
-            plant.run_period(&legs([None, Some(N), Some(0)]), &mut tape);
+            plant.run_period(legs([None, Some(N), Some(0)]), &mut tape);
         }
         let (during, after): (Vec<_>, Vec<_>) = tape
             .0
@@ -160,7 +160,7 @@ fn outgoing_current_of_either_sign_is_clamped_to_its_own_rail() {
         let mut plant = Plant::new(params, 1.0, 10.0).unwrap();
         plant.set_currents([sign * 10.0, -sign * 10.0]);
         let mut tape = Tape::default();
-        plant.run_period(&legs([None, Some(900), Some(900)]), &mut tape);
+        plant.run_period(legs([None, Some(900), Some(900)]), &mut tape);
         assert_eq!(tape.0[0].voltages_at(0.0)[0], volts);
         assert!(matches!(
             tape.0[0].terminal[0],
@@ -176,7 +176,7 @@ fn leg_without_current_floats_at_its_emf_above_the_star_point() {
     let mut plant = Plant::new(motor(), theta, omega_m).unwrap();
     let mut tape = Tape::default();
     for _ in 0..3 {
-        plant.run_period(&legs([Some(1200), Some(0), None]), &mut tape);
+        plant.run_period(legs([Some(1200), Some(0), None]), &mut tape);
     }
     let e = 0.0824 * omega_m;
     for segment in &tape.0 {
@@ -199,7 +199,7 @@ fn leg_without_current_floats_at_its_emf_above_the_star_point() {
     }
     // Coasting without current, the terminals show the EMF; means over a period included.
     let mut coasting = Plant::new(motor(), theta, omega_m).unwrap();
-    coasting.run_period(&Legs::OFF, &mut ());
+    coasting.run_period(Legs::OFF, &mut ());
     let v = coasting.truth().mean_voltages;
     let middle = theta + 4.0 * omega_m * T_S / 2.0;
     assert_close(v[0] - v[1], 2.0 * e, 1e-9);
@@ -233,7 +233,7 @@ fn diodes_begin_to_rectify_when_the_line_emf_exceeds_the_bus() {
         let mut plant = Plant::new(params, PI / 6.0, omega).unwrap();
         let mut tape = Tape::default();
         for _ in 0..20 {
-            plant.run_period(&Legs::OFF, &mut tape);
+            plant.run_period(Legs::OFF, &mut tape);
         }
         let onset = ((1.6 / 3.0_f64.sqrt()).asin() - PI / 3.0) / omega;
         let first = tape
@@ -264,7 +264,7 @@ fn diodes_begin_to_rectify_when_the_line_emf_exceeds_the_bus() {
     let quiet = 0.999 * V / (2.0 * 0.0824);
     let mut plant = Plant::new(motor(), 0.3, quiet).unwrap();
     for _ in 0..200 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
         assert_eq!(plant.truth().currents, [0.0; 3]);
     }
 }
@@ -279,7 +279,7 @@ fn mean_line_voltage_is_the_difference_of_the_compare_values() {
     };
     for _ in 0..500 {
         let compare = [random(), random(), random()];
-        plant.run_period(&legs(compare.map(Some)), &mut ());
+        plant.run_period(legs(compare.map(Some)), &mut ());
         let v = plant.truth().mean_voltages;
         for (x, y) in [(0, 1), (1, 2), (2, 0)] {
             let want = (f64::from(compare[x]) - f64::from(compare[y])) / f64::from(N) * V;
@@ -296,8 +296,8 @@ fn dead_time_costs_the_volt_seconds_that_the_current_decides() {
     params.inductance = [1.0; 3];
     let mut plant = Plant::new(params, 0.0, 0.0).unwrap();
     plant.set_currents([10.0, -4.0]);
-    plant.run_period(&legs([Some(900); 3]), &mut ());
-    plant.run_period(&legs([Some(900); 3]), &mut ());
+    plant.run_period(legs([Some(900); 3]), &mut ());
+    plant.run_period(legs([Some(900); 3]), &mut ());
     let v = plant.truth().mean_voltages;
     // Into the motor the lower diode conducts in both gaps: the rising edge comes late; out of
     // the motor the upper one does: the falling edge comes late.
@@ -333,7 +333,7 @@ fn energy_of(params: PlantParams, omega_m: f64, limit: f64) {
         if period % 11 == 0 {
             command = [Some(duty), Some(700), Some(900)];
         }
-        plant.run_period(&legs(command), &mut (&mut meter, &mut turned));
+        plant.run_period(legs(command), &mut (&mut meter, &mut turned));
     }
     let account = meter.balance(&plant);
     assert!(account.relative_error() < limit, "{account:?}");
@@ -388,11 +388,11 @@ fn free_shaft_coasts_to_rest_and_yields_to_external_torque() {
     let mut plant = Plant::new(params.clone(), 0.0, -10.0).unwrap();
     // Both torques brake: 10 rad/s end after 10 J / 0.5 N m = 4 ms.
     for _ in 0..40 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
     }
     assert_close(plant.truth().omega_m, -5.0, 1e-9);
     for _ in 0..60 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
     }
     assert_eq!(plant.truth().omega_m, 0.0);
     params.mechanics = Some(Mechanics {
@@ -403,7 +403,7 @@ fn free_shaft_coasts_to_rest_and_yields_to_external_torque() {
     });
     let mut plant = Plant::new(params, 0.0, 0.0).unwrap();
     for _ in 0..40 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
     }
     assert_close(plant.truth().omega_m, 0.3 / inertia * 2e-3, 1e-9);
     let viscous = Mechanics {
@@ -418,7 +418,7 @@ fn free_shaft_coasts_to_rest_and_yields_to_external_torque() {
     };
     let mut plant = Plant::new(params, 0.0, 50.0).unwrap();
     for _ in 0..40 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
     }
     // One time constant J/B of 2 ms.
     assert_close(plant.truth().omega_m, 50.0 / 1.0_f64.exp(), 1e-5);
@@ -449,7 +449,7 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
     let sample = plant.sample();
     assert_eq!((sample.adc_a, sample.adc_b), (2098, 542));
     for period in 1..=100_u16 {
-        plant.run_period(&Legs::OFF, &mut ());
+        plant.run_period(Legs::OFF, &mut ());
         let angle = 29.5 + f64::from(period);
         // Ha's edge at 30 degrees comes 4 degrees late, Hc's at 90 in time.
         let (code, since) = match angle {

@@ -133,7 +133,7 @@ fn random_motors_under_random_commands_obey_the_circuit() {
             }
             let legs = Legs::new(compare, state);
             let before = auditor.count;
-            plant.run_period(&legs, &mut auditor);
+            plant.run_period(legs, &mut auditor);
             let events = auditor.count - before;
             assert!(events < 100, "seed {seed}: {events} segments in one period");
         }

@@ -90,7 +90,7 @@ pub fn verify_subject<S: Subject>(
         }
         let mode = pair.model.mode();
         match pair.step(sample) {
-            Ok(legs) => stimulus.respond(&legs),
+            Ok(legs) => stimulus.respond(legs),
             Err(differences) => {
                 return Err(VerifyError::Mismatch(Box::new(Mismatch {
                     step: report.steps,
@@ -188,12 +188,12 @@ impl<S: Subject> Pair<S> {
         {
             Ok(expected)
         } else {
-            Err(self.differences(&found, &expected))
+            Err(self.differences(found, expected))
         }
     }
 
     #[cold]
-    fn differences(&self, found: &Legs, expected: &Legs) -> Vec<Difference> {
+    fn differences(&self, found: Legs, expected: Legs) -> Vec<Difference> {
         let mut differences = Vec::new();
         let mut note = |name: &str, before: Option<i32>, found: i32, expected: i32| {
             differences.push(Difference {

@@ -200,8 +200,8 @@ fn look_up(
         "switching",
         table,
         &[
-            "Vector by 128 direction, modulo the table's length, + 64 if the set-point is negative + 8 sector + 4 commutating".to_owned(),
-            "+ 2 if beta shall fall + 1 if alpha shall.".to_owned(),
+            "Vector by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,".to_owned(),
+            "4 if it commutates, 2 if beta shall fall, 1 if alpha shall.".to_owned(),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );

@@ -77,7 +77,7 @@ pub struct Step<'a> {
     /// The plant's state at the sample.
     pub truth: &'a Truth,
     /// What the inverter did in this period.
-    pub applied: &'a Legs,
+    pub applied: Legs,
     /// The plant at the end of the period.
     pub plant: &'a Plant,
 }
@@ -173,11 +173,11 @@ impl<C: CurrentLoop> ClosedLoop<C> {
                 Delay::None => command,
                 Delay::OnePeriod => std::mem::replace(&mut self.pending, command),
             };
-            self.plant.run_period(&applied, recorder);
+            self.plant.run_period(applied, recorder);
             recorder.period(&Step {
                 sample: &sample,
                 truth: &truth,
-                applied: &applied,
+                applied,
                 plant: &self.plant,
             });
         }

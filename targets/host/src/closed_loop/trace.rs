@@ -273,7 +273,7 @@ impl Observer for Trace {
 }
 
 /// Whether a command reaches the edge of the voltage hexagon.
-fn saturated(legs: &Legs, timer_period: u16) -> bool {
+fn saturated(legs: Legs, timer_period: u16) -> bool {
     let driven = (0..3).filter(|&x| legs.state()[x] != LegState::Off);
     let values = driven.map(|x| {
         if legs.state()[x] == LegState::Pulsed {

@@ -70,7 +70,7 @@ impl Gates {
     }
 
     /// Starts a period of `t_s` seconds with the given command.
-    pub(super) fn begin(&mut self, command: &Legs, timer_period: u16, t_s: f64) {
+    pub(super) fn begin(&mut self, command: Legs, timer_period: u16, t_s: f64) {
         self.requests.clear();
         self.next = 0;
         for leg in 0..3 {
@@ -140,7 +140,7 @@ mod tests {
         let mut gates = Gates::new(dead_time);
         let mut changes = Vec::new();
         for (period, command) in commands.iter().enumerate() {
-            gates.begin(command, 100, 1.0);
+            gates.begin(*command, 100, 1.0);
             let mut t = 0.0;
             while t < 1.0 {
                 let before = gates.state();

@@ -155,7 +155,7 @@ impl Plant {
     }
 
     /// Runs one PWM period under a command.
-    pub fn run_period(&mut self, command: &Legs, observer: &mut dyn Observer) {
+    pub fn run_period(&mut self, command: Legs, observer: &mut dyn Observer) {
         let t_s = self.params.t_s;
         let mut volt_seconds = [0.0; 3];
         let mut impulse = 0.0;

@@ -208,12 +208,12 @@ impl Stimulus {
 
     /// Takes the drive's answer to the last sample.
     #[inline]
-    pub fn respond(&mut self, legs: &Legs) {
+    pub fn respond(&mut self, legs: Legs) {
         if self.stream == Stream::Motor {
-            let applied = if self.delay == 1 { self.pending } else { *legs };
-            self.motor.advance(&applied);
+            let applied = if self.delay == 1 { self.pending } else { legs };
+            self.motor.advance(applied);
         }
-        self.pending = *legs;
+        self.pending = legs;
     }
 
     fn action(&mut self) -> Option<Action> {

@@ -62,7 +62,7 @@ impl ToyMotor {
 
     /// One period under the legs' command.
     #[inline]
-    pub fn advance(&mut self, legs: &Legs) {
+    pub fn advance(&mut self, legs: Legs) {
         self.speed += (self.speed_target - self.speed) / 64.0;
         self.turn += self.speed;
         self.turn -= floor(self.turn);

@@ -58,7 +58,7 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
         ideal.rebuild_from(&before);
         let legs = bit_true.step(&sample);
         let duties = ideal.step(&sample);
-        stimulus.respond(&legs);
+        stimulus.respond(legs);
         if tie && far(bit_true.trace().e, ideal.trace().e) > 0.1 {
             worst.decided_otherwise += 1;
             continue;

@@ -303,7 +303,7 @@ fn a_wish_holds_within_the_band() {
                 _ => {}
             }
             let before = wishes(&model);
-            stimulus.respond(&model.step(&sample));
+            stimulus.respond(model.step(&sample));
             let after = wishes(&model);
             let trace = model.trace();
             if !trace.run {

@@ -127,7 +127,7 @@ impl Link {
     }
 
     /// Adds a step and the answer that is expected to it.
-    pub fn step(&mut self, sample: Sample, legs: &Legs, fault: Fault, words: &[i32]) {
+    pub fn step(&mut self, sample: Sample, legs: Legs, fault: Fault, words: &[i32]) {
         self.send_step(sample);
         let expected = &mut self.expected;
         expected.extend(

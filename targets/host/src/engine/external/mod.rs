@@ -103,7 +103,7 @@ impl Subject for Remote<'_> {
                 let legs = model.step(sample);
                 model.state_words(&mut self.words);
                 self.fault = model.fault();
-                link.step(*sample, &legs, self.fault, &self.words);
+                link.step(*sample, legs, self.fault, &self.words);
                 legs
             }
             None => match link.step_and_wait(*sample, &mut self.words) {
