@@ -53,6 +53,9 @@ pub enum Unscalable {
 /// Finest fraction bits that are tried for voltages.
 const FINEST_VOLTAGE: u32 = 20;
 
+/// The first two to try of so many: most motors' drives have 12 or 15.
+const FIRST_VOLTAGES: (u32, u32) = (12, 16);
+
 /// Searches the finest scale for `lower`: what fits at some scale fits at every coarser one, so the search halves.
 ///
 /// # Errors
@@ -103,7 +106,10 @@ fn finest_of(
     while low <= high {
         // Two at once part what is left in three.
         let third = (high - low) / 3;
-        let (coarse, fine) = (low + third, high - third);
+        let (coarse, fine) = match (low, high) {
+            (1, FINEST_VOLTAGE) => FIRST_VOLTAGES,
+            _ => (low + third, high - third),
+        };
         let (fitted_coarse, fitted_fine) = if coarse < fine {
             let (coarse, fine) = at_once(|| fit(coarse), || fit(fine));
             (Some(coarse), fine)
