@@ -1,8 +1,8 @@
 //! The integer primitives of emitted code against the meaning of the IR's operators.
 
 use hexagen::arith::{
-    Word, angle_fraction, angle_index, divide, divide_narrow, lookup, mul_add_floor, mul_floor,
-    mul_limited, mul_round, mul_round_narrow, select, turn_over,
+    Word, angle_fraction, angle_index, divide, divide_narrow, exceeding, lookup, mul_add_floor,
+    mul_floor, mul_limited, mul_round, mul_round_narrow, select, turn_over,
 };
 use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
 use proptest::prelude::*;
@@ -50,6 +50,25 @@ const TABLE: [i16; 8] = [5, -3, 32767, -32768, 0, 1, 2, 3];
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn extremes_of_words_that_lie_near(x in word(31), y in word(31)) {
+        let low = interpreted(&[symmetric(31); 2], &[x, y], &[0], |b, x, _| b.min(x[0], x[1]));
+        let high = interpreted(&[symmetric(31); 2], &[x, y], &[0], |b, x, _| b.max(x[0], x[1]));
+        prop_assert_eq!(Word(x).lesser(Word(y)).0, low);
+        prop_assert_eq!(Word(x).greater(Word(y)).0, high);
+    }
+
+    #[test]
+    fn magnitudes_of_three_words_that_add_up_to_zero(x in word(31), y in word(31), limit in natural(31), at in 0..3_usize) {
+        let magnitudes = [x, y, x + y].map(i32::abs);
+        // Any limit, and those about a magnitude.
+        for limit in [limit, magnitudes[at], (magnitudes[at] - 1).max(0)] {
+            let exceeds = magnitudes.iter().any(|&magnitude| magnitude > limit);
+            let found = exceeding(Word(x), Word(y), Word(x + y), Word(limit)) != 0;
+            prop_assert_eq!(found, exceeds, "{} {} {}", x, y, limit);
+        }
+    }
 
     #[test]
     fn rounded_products(c in word(32), x in word(32), shift in 32_u32..=62) {

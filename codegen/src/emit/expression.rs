@@ -299,7 +299,7 @@ impl<'a> Scope<'a> {
             Op::Or(a, b) => {
                 if let Some([x, limit]) = self.range_test(a, b) {
                     call(P::Exceeds, &[x, limit], None)
-                } else if let Some([x, y, limit]) = self.either_above(a, b) {
+                } else if let Some(([x, y, limit], _)) = self.either_above(a, b) {
                     E::binary(O::Greater, E::binary(O::BitOr, of(x), of(y)), of(limit))
                 } else if let Some(exceeding) = self.exceeding(a, b) {
                     E::binary(O::NotEqual, exceeding, E::Number(0))
@@ -336,9 +336,8 @@ impl<'a> Scope<'a> {
                 None => E::FlagWord(Box::new(self.definition(value))),
             },
             Op::Or(a, b) => {
-                if let Some([x, y, limit]) = self.either_above(a, b) {
+                if let Some(([x, y, _], bits)) = self.either_above(a, b) {
                     let either = E::binary(O::BitOr, self.value(x), self.value(y));
-                    let bits = self.bits_above(limit, &[x, y]).unwrap_or(0);
                     return E::ShiftedRight(Box::new(either), bits);
                 }
                 let exceeding = self.exceeding(a, b);
@@ -403,8 +402,9 @@ impl<'a> Scope<'a> {
     }
 
     /// Two words and the limit that the flags compare them with, `limit < x` and `limit < y`, where one comparison
-    /// of the bits of both tells as much: the limit's bits are ones down to the last, and no word is negative.
-    fn either_above(&self, a: Value, b: Value) -> Option<[Value; 3]> {
+    /// of the bits of both tells as much: the limit's bits, whose number stands beside, are ones down to the last, and
+    /// no word is negative.
+    fn either_above(&self, a: Value, b: Value) -> Option<([Value; 3], u32)> {
         let compared = |value: Value| match self.node(value) {
             Node {
                 name,
@@ -415,8 +415,8 @@ impl<'a> Scope<'a> {
         };
         let ((limit, x), (other, y)) = (compared(a)?, compared(b)?);
         let is_same = self.node(other).op == self.node(limit).op;
-        let is_bitwise = self.bits_above(limit, &[x, y]).is_some();
-        (is_same && is_bitwise).then_some([x, y, limit])
+        let bits = self.bits_above(limit, &[x, y])?;
+        is_same.then_some(([x, y, limit], bits))
     }
 
     /// Bits of a limit that are ones down to the last, above which any bit of words that are not negative tells that

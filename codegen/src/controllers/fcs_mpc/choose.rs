@@ -110,21 +110,6 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
-    pub(super) fn choose_low_legs(&mut self, front: &Front, u: [Value; 2]) -> Value {
-        let l = &mut *self.lowering;
-        l.b.stage("nearest_vector", &NEAREST_VECTOR);
-        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
-        let phases = [u[0], u[1], u_c];
-        state_exact_scores(l, u_c);
-        let (low_legs, _) = low_legs_of(l, phases);
-        let beyond = any_beyond(l, phases, 3, front.bus.volts);
-        let all = l.b.literal(ALL_LOW);
-        let pattern = l.b.select(beyond, low_legs, all);
-        l.b.name("pattern_nearest", pattern);
-        unless_lost(l, front.sector, pattern, Numbers::LowLegs)
-    }
-
     /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
     /// commutation alone.
     pub(super) fn choose_of_table2(
@@ -157,6 +142,21 @@ impl CurrentLoop<'_, '_> {
             &["No vector before the first valid Hall code."],
         );
         unless_lost(l, front.sector, nearest, Numbers::Vectors)
+    }
+
+    /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
+    pub(super) fn choose_low_legs(&mut self, front: &Front, u: [Value; 2]) -> Value {
+        let l = &mut *self.lowering;
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
+        let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
+        let phases = [u[0], u[1], u_c];
+        state_exact_scores(l, u_c);
+        let (low_legs, _) = low_legs_of(l, phases);
+        let beyond = any_beyond(l, phases, 3, front.bus.volts);
+        let all = l.b.literal(ALL_LOW);
+        let pattern = l.b.select(beyond, low_legs, all);
+        l.b.name("pattern_nearest", pattern);
+        unless_lost(l, front.sector, pattern, Numbers::LowLegs)
     }
 
     /// Where each leg would sit if it were off in the target period.

@@ -8,6 +8,7 @@ use super::super::path::{
 use super::super::plan::{Context, StagePlan};
 use super::super::signal::Shape;
 use super::expression::RustScope;
+use super::groups::array;
 use super::names::{docs, loaded, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
@@ -156,10 +157,7 @@ impl<'a> PathFunctions<'a> {
             }
         });
         let states = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
-        let states = match states.as_slice() {
-            [first, rest @ ..] if rest.iter().all(|state| state == first) => quote!([#first; 3]),
-            many => quote!([#(#many),*]),
-        };
+        let states = array(&states);
         quote!(Legs::new([#(#compare),*], #states))
     }
 

@@ -88,11 +88,7 @@ impl Group {
         let each: Vec<Source> = self.members.iter().copied().map(each).collect();
         match each.as_slice() {
             [single] => single.clone(),
-            [first, rest @ ..] if rest.iter().all(|each| each == first) => {
-                let count = rest.len() + 1;
-                quote!([#first; #count])
-            }
-            many => quote!([#(#many),*]),
+            many => array(many),
         }
     }
 
@@ -105,6 +101,17 @@ impl Group {
                 quote!([#kind; #count])
             }
         }
+    }
+}
+
+/// The elements as an array, written once where all are alike.
+pub(super) fn array(elements: &[Source]) -> Source {
+    match elements {
+        [first, rest @ ..] if rest.iter().all(|element| element == first) => {
+            let count = elements.len();
+            quote!([#first; #count])
+        }
+        many => quote!([#(#many),*]),
     }
 }
 
