@@ -20,7 +20,7 @@ pub struct Node {
 /// A named constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// `snake_case` name.
+    /// `snake_case` name; empty for one that stands by its value where it is used.
     pub name: String,
     /// Value.
     pub raw: i32,

@@ -53,6 +53,14 @@ impl VerifiedGraph {
     pub fn program(&self) -> &Program {
         &self.0
     }
+
+    /// The same program with nameless constants: like other values without a name, they stand where they are used.
+    pub(crate) fn without_constant_names(mut self) -> Self {
+        for constant in &mut self.0.constants {
+            constant.name.clear();
+        }
+        self
+    }
 }
 
 /// Checks all invariants.

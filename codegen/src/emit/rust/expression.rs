@@ -165,8 +165,12 @@ fn written(program: &Program, expression: &Expression) -> Written {
             Written::atom(loaded(word, &quote!(state.#field)))
         }
         Expression::Constant(id) => {
-            let name = screaming(&program.constants[id.index()].name);
-            Written::atom(quote!(#name))
+            let constant = &program.constants[id.index()];
+            let raw = number(i64::from(constant.raw));
+            Written::atom(match constant.name.as_str() {
+                "" => quote!(Word(#raw)),
+                name => screaming(name),
+            })
         }
         Expression::Number(literal) => {
             let literal = number(i64::from(*literal));

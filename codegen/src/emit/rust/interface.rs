@@ -227,15 +227,15 @@ impl Types<'_> {
         self.program.states.iter().find(|word| word.name == name)
     }
 
-    /// A constant of the methods: its definition, unless the program has it already, and its use.
+    /// A constant of the methods: its definition, unless the program has it already or names none, and its use.
     fn own_constant(&self, name: &str, value: i32, line: &str) -> (Source, Source) {
         let ident = screaming(name);
         let raw = number(i64::from(value));
-        let known = self
-            .program
-            .constants
-            .iter()
-            .find(|known| known.name == name);
+        let constants = &self.program.constants;
+        if constants.iter().any(|constant| constant.name.is_empty()) {
+            return (Source::new(), quote!(Word(#raw)));
+        }
+        let known = constants.iter().find(|known| known.name == name);
         match known.map(|known| known.raw == value) {
             None => {
                 let doc = doc(line);

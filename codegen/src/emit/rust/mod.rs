@@ -167,7 +167,7 @@ fn tokens(code: &Source) -> TokenStream {
 
 /// The constants and tables that the body names.
 fn constants(program: &Program, names: &HashSet<&str>) -> Source {
-    let named = |name: &str| names.contains(&*name.to_uppercase());
+    let named = |name: &str| !name.is_empty() && names.contains(&*name.to_uppercase());
     let constants = program
         .constants
         .iter()
