@@ -58,8 +58,8 @@ pub(super) struct StagePlan<'a> {
     pub arguments: Vec<Value>,
     /// Values that it yields.
     pub outcomes: Vec<Outcome>,
-    /// State words that a guarded stage stores itself: nothing else happens to them, so that the
-    /// normal path need not touch them.
+    /// State words that a guarded stage stores itself: they change nowhere else, so that the normal path does not
+    /// write them.
     pub stores: Vec<(StateId, Value)>,
 }
 
@@ -176,13 +176,14 @@ impl<'a> Context<'a> {
                     let Op::Join { taken, otherwise } = function.node(join).op else {
                         continue;
                     };
-                    match self.stored_inside(stage, join, otherwise) {
-                        Some(state) => stores.push((state, taken)),
-                        None => outcomes.push(Outcome {
+                    let stored = self.stored_inside(stage, join, otherwise);
+                    stores.extend(stored.map(|state| (state, taken)));
+                    if stored.is_none_or(|state| self.is_used_besides(join, state)) {
+                        outcomes.push(Outcome {
                             signal: self.signal(join),
                             value: taken,
                             otherwise: Some(otherwise),
-                        }),
+                        });
                     }
                 }
             }
@@ -217,18 +218,22 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The state word that the guarded stage may store itself in place of `join`: the join is its next
-    /// value and nothing else, it keeps its value where the stage does not run, and nothing reads the
-    /// old value later.
+    /// The state word that the guarded stage may store itself: the join is its next value, it keeps its value where
+    /// the stage does not run, and nothing reads the old value later.
     fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
         let Op::State(kept) = self.function.node(otherwise).op else {
             return None;
         };
-        let only_next = self.users[join.index()] == [User::NextState(kept)];
+        let is_next = self.users[join.index()].contains(&User::NextState(kept));
         let joins = stage.guard.as_ref().map_or(0, |guard| guard.joins.len());
         let behind = stage.end + joins;
         let read_before = |user: &User| matches!(user, User::Node(index) if *index < behind);
-        (only_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
+        (is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
+    }
+
+    /// Whether a value is more than the next one of a state word.
+    fn is_used_besides(&self, value: Value, state: StateId) -> bool {
+        self.users[value.index()] != [User::NextState(state)]
     }
 }
 

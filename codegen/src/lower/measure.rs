@@ -35,6 +35,8 @@ pub struct Hall {
     pub sector: Value,
     /// Sector of the last sample.
     pub sector_prev: Value,
+    /// The state word of that.
+    pub word: StateId,
     /// Flag: the sector is not the last sample's, which may have had none.
     pub changed: Value,
     /// Flag: the sector changed.
@@ -161,7 +163,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Sector and edge, and `sector_prev` for the next step.
+    /// Sector and edge.
     pub fn find_sector(&mut self, sample: &Sample, word: StateId) -> Hall {
         self.b.stage(
             "find_sector",
@@ -170,13 +172,13 @@ impl Lowering<'_> {
         let sector_prev = self.b.state(word);
         let sector = self.b.select(sample.no_hall, sector_prev, sample.sector);
         self.b.name("sector", sector);
-        self.b.set_state(word, sector);
         let [changed, edge] = self.compare_sectors(sector, sector_prev);
         self.b.name("sector_changed", changed);
         self.b.name("edge", edge);
         Hall {
             sector,
             sector_prev,
+            word,
             changed,
             edge,
         }

@@ -17,7 +17,7 @@ mod supervise;
 pub use emf::{Corner, FluxModel, ModelledEmf};
 pub use limit::Limited;
 pub use measure::{Currents, Hall, Sample};
-pub use modulate::{Applied, Command, OffLeg, PairModulation, PairPulses};
+pub use modulate::{Applied, Command, Commutation, OffLeg, PairModulation, PairPulses};
 use number::round_half_up;
 pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};

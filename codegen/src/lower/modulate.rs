@@ -54,6 +54,17 @@ pub struct PairModulation {
     pub left: StateId,
 }
 
+/// The commutation in the period of a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Commutation {
+    /// Flag: it goes on.
+    pub flag: Value,
+    /// 1 where it goes on, else 0.
+    pub word: Value,
+    /// Samples for which it may last behind this one.
+    pub left: Value,
+}
+
 impl Lowering<'_> {
     /// Three centred pulses from a limited voltage, lifted where the bus is fixed; `shifts` are against the dead time.
     pub fn modulate(&mut self, limited: Limited, bus: Bus, shifts: Option<[Value; 3]>) -> Command {
@@ -165,8 +176,8 @@ impl Lowering<'_> {
             left: self.state(
                 "commutation_left",
                 0,
-                Interval::new(0, i64::from(timeout) + 1),
-                "Samples for which the commutation may still last, the last one counted; 0 while the outgoing phase carries no current.",
+                Interval::new(0, i64::from(timeout)),
+                "Samples for which the commutation may last behind the last one; 0 while the outgoing phase carries no current.",
             ),
         }
     }
@@ -182,8 +193,8 @@ impl Lowering<'_> {
     fn whole_commutation(&mut self, timeout: u32) -> Value {
         self.number(
             "commutation_begun",
-            i64::from(timeout) + 2,
-            "What a commutation that begins is given: one for each sample that it may last, one for its first, one that is never taken.",
+            i64::from(timeout) + 1,
+            "What a commutation that begins is given: one for its first sample, and one for each that it may last behind it.",
         )
     }
 
@@ -198,15 +209,16 @@ impl Lowering<'_> {
         self.b.name("changed", changed)
     }
 
-    /// Whether a commutation is going on: flag, and the samples left to it; and the phase that goes off in the sector.
-    /// `kept` is of [`Self::commutation_kept`].
+    /// The commutation, and the phase that goes off in the sector. `kept` is of [`Self::commutation_kept`], from the state
+    /// word `left`.
     pub fn commutation(
         &mut self,
         [sector, kept, direction, set_point]: [Value; 4],
+        left: StateId,
         currents: &Currents,
         threshold: f64,
         timeout: u32,
-    ) -> ([Value; 2], Value) {
+    ) -> (Commutation, Value) {
         let phases = self.b.program.column(
             "sector",
             "off_phase",
@@ -233,9 +245,11 @@ impl Lowering<'_> {
         );
         let phase = self.b.lookup(phases, sector);
         self.b.name("outgoing_phase", phase);
-        let one = self.b.literal(1);
-        let lasts = self.b.compare(Comparison::Less, one, kept);
+        let zero = self.zero();
+        let lasts = self.b.compare(Comparison::NotEqual, kept, zero);
         self.b.name("commutation_lasts", lasts);
+        // Where none lasts, none is left.
+        let none_left = self.b.state(left);
         let none = self.zero();
         self.b.guarded_stage(
             "follow_commutation",
@@ -264,20 +278,27 @@ impl Lowering<'_> {
         let whole = self.whole_commutation(timeout);
         let begins = self.b.compare(Comparison::Equal, kept, whole);
         let goes_on = self.b.or(begins, flows);
+        self.b.name("commutation_goes_on", goes_on);
         let one = self.b.literal(1);
         let less = self.b.sub(kept, one);
-        let zero = self.zero();
-        let less = self.b.max(less, zero);
-        let zero = self.zero();
-        let followed = self.b.select(goes_on, less, zero);
+        let over = self.zero();
+        let less = self.b.max(less, over);
+        let over = self.zero();
+        let followed = self.b.select(goes_on, less, over);
         self.b.name("left_while_flowing", followed);
-        let [left] = self.b.join([("commutation_left_now", followed, none)]);
+        let one = self.b.literal(1);
+        let flowing = self.b.select(goes_on, one, over);
+        self.b.name("flowing", flowing);
+        let [left, word] = self.b.join([
+            ("commutation_left_now", followed, none_left),
+            ("commutating", flowing, none),
+        ]);
         self.b
             .stage("find_commutation", &["Whether a commutation goes on."]);
         let zero = self.zero();
-        let commutating = self.b.compare(Comparison::NotEqual, left, zero);
-        self.b.name("in_commutation", commutating);
-        ([commutating, left], phase)
+        let flag = self.b.compare(Comparison::NotEqual, word, zero);
+        self.b.name("in_commutation", flag);
+        (Commutation { flag, word, left }, phase)
     }
 
     /// The value of the phase numbered 0 to 2 by `phase`.

@@ -153,7 +153,10 @@ impl Lowering<'_> {
             &["Which way the rotor turned at this edge: 1 to the next sector, -1 to the one before; a jump and the first sample change nothing."],
         );
         let seen = self.turned(hall, old).direction;
-        let mut results = vec![("direction_next", seen, old)];
+        let mut results = vec![
+            ("direction_next", seen, old),
+            ("sector_prev_next", hall.sector, hall.sector_prev),
+        ];
         if let Some((left, timeout)) = left {
             let zero = self.zero();
             let known = self.b.compare(Comparison::NotEqual, hall.sector_prev, zero);
@@ -162,7 +165,8 @@ impl Lowering<'_> {
         }
         let joined = self.b.join_all(&results);
         self.b.set_state(direction, joined[0]);
-        (joined[0], joined.get(1).copied())
+        self.b.set_state(hall.word, joined[1]);
+        (joined[0], joined.get(2).copied())
     }
 
     /// Angle and speed from the edges.

@@ -17,7 +17,8 @@ pub use words::{EmfUse, Needs, Words};
 use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{
-    Applied, Bus, Coefficient, Command, Corner, Currents, Lowering, OffLeg, Rest, Scale,
+    Applied, Bus, Coefficient, Command, Commutation, Corner, Currents, Lowering, OffLeg, Rest,
+    Scale,
 };
 use crate::scaling::Lowered;
 use crate::spec::{EmfSource, LoopOptions, Reference, Spec};
@@ -91,8 +92,8 @@ pub struct Front {
     pub direction: Option<Value>,
     /// Set-point as a voltage word.
     pub set_point: Value,
-    /// Flag, and the samples left to the commutation; where the law follows it.
-    pub commutation: Option<[Value; 2]>,
+    /// The commutation; where the law follows it.
+    pub commutation: Option<Commutation>,
     /// Reference as voltage words, phases a, b.
     pub reference: [Value; 2],
     /// 1/3.
@@ -162,14 +163,18 @@ impl CurrentLoop<'_, '_> {
         let timeout = options.commutation_timeout;
         let advances = options.advance > 0.0;
         // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
-        let (direction, kept) = match (&rotor, words.direction.zip(hall.as_ref())) {
-            (Some(rotor), _) => (Some(rotor.direction), None),
-            (None, Some((word, hall))) => {
+        let (direction, kept) = match (&rotor, words.direction, &hall) {
+            (None, Some(word), Some(hall)) => {
                 let commutation = words.pair.map(|pair| (pair.left, timeout));
                 let (direction, kept) = l.sense_direction(word, hall, commutation);
                 (Some(direction), kept)
             }
-            (None, None) => (None, None),
+            (rotor, _, hall) => {
+                if let Some(hall) = hall {
+                    l.b.set_state(hall.word, hall.sector);
+                }
+                (rotor.as_ref().map(|rotor| rotor.direction), None)
+            }
         };
         let sector_seen = hall.map_or(sample.sector, |hall| hall.sector);
         let sector = match &rotor {
@@ -187,6 +192,7 @@ impl CurrentLoop<'_, '_> {
                 });
                 let (words, outgoing) = l.commutation(
                     [sector, kept, direction, j],
+                    pair.left,
                     &currents,
                     options.commutation_threshold,
                     timeout,
@@ -391,11 +397,11 @@ impl CurrentLoop<'_, '_> {
         if let Some((state, integral)) = front.speed_integral {
             remembered.push((state, "speed_integral_next", integral));
         }
-        if let (Some([_, left]), Some(pair)) = (front.commutation, words.pair) {
+        if let (Some(commutation), Some(pair)) = (front.commutation, words.pair) {
             if let Some(sector_prev) = pair.sector_prev {
                 self.lowering.b.set_state(sector_prev, front.sector);
             }
-            remembered.push((pair.left, "commutation_left_next", left));
+            remembered.push((pair.left, "commutation_left_next", commutation.left));
         }
         if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
             for ((state, name), value) in terminals

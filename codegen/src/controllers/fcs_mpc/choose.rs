@@ -79,7 +79,7 @@ impl CurrentLoop<'_, '_> {
         }
         let vector = match (options.candidates, front.commutation) {
             (Candidates::ThreePhase, _) | (_, None) => three,
-            (Candidates::Table2, Some([commutating, ..])) => {
+            (Candidates::Table2, Some(commutation)) => {
                 let pair = if let Some(off_legs) = &off_legs {
                     self.nearest_physical(off_legs, front, phases, None, None)
                 } else {
@@ -87,7 +87,7 @@ impl CurrentLoop<'_, '_> {
                     nearest_nominal(&mut *self.lowering, front, phases)
                 };
                 let l = &mut *self.lowering;
-                l.b.select(commutating, three, pair)
+                l.b.select(commutation.flag, three, pair)
             }
             (Candidates::All, Some(_)) => match &off_legs {
                 Some(off_legs) => {

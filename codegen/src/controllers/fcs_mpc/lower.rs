@@ -45,8 +45,8 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             return;
         }
         let of_table2 = options.candidates == Candidates::Table2 && !options.modulated;
-        if let (true, Some([commutating, ..])) = (of_table2, front.commutation) {
-            let vector = step.choose_of_table2(options, &front, u, commutating);
+        if let (true, Some(commutation)) = (of_table2, front.commutation) {
+            let vector = step.choose_of_table2(options, &front, u, commutation.flag);
             step.apply_vector(&front, vector, numbers, vec![]);
             return;
         }

@@ -100,12 +100,12 @@ impl CurrentLoop<'_, '_> {
             state_score_over_bus(&mut *self.lowering, three.score, 1.0);
         }
         let rival = (options.candidates == Candidates::All).then_some(three);
-        let pair = front.commutation.map(|[commutating, ..]| {
+        let pair = front.commutation.map(|commutation| {
             let vector = match off_legs {
                 Some(off_legs) => self.nearest_physical(off_legs, front, u, Some(changes), rival),
                 None => nearest_exact(&mut *self.lowering, front, u, changes, rival),
             };
-            (commutating, vector)
+            (commutation.flag, vector)
         });
         match (options.candidates, pair) {
             (Candidates::ThreePhase, _) | (_, None) => three.vector,
@@ -177,10 +177,10 @@ impl CurrentLoop<'_, '_> {
                 three.extend(pairs);
                 least(l, three, shift, &torque, terms)
             }
-            (Candidates::Table2, Some([commutating, ..])) => {
+            (Candidates::Table2, Some(commutation)) => {
                 let three = least(l, three, shift, &torque, terms);
                 let pair = least(l, pairs, shift, &torque, terms);
-                l.b.select(commutating, three, pair)
+                l.b.select(commutation.flag, three, pair)
             }
             _ => least(l, three, shift, &torque, terms),
         }

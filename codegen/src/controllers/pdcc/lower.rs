@@ -36,9 +36,9 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
             .limit_voltage(options.saturation, u, e, bus, lifts);
         let (command, applied) = match front.commutation {
             None => (step.lowering.modulate(limited, front.bus, shifts), None),
-            Some([flag, ..]) => {
+            Some(commutation) => {
                 let (command, applied) = step.lowering.modulate_pair(
-                    [front.sector, flag],
+                    [front.sector, commutation.flag],
                     u,
                     limited,
                     front.bus,

@@ -213,16 +213,13 @@ fn look_up(
     let turning = l.b.shift_left(direction, 7);
     let zero = l.zero();
     let negative = l.b.compare(Comparison::Less, front.set_point, zero);
-    let flags = [
-        (Some(negative), 64),
-        (front.commutation.map(|[commutating, _]| commutating), 4),
-        (Some(beta), 2),
-        (Some(alpha), 1),
-    ];
     let sector = l.b.shift_left(front.sector, 3);
     let mut index = l.b.add(turning, sector);
-    for (flag, weight) in flags {
-        let Some(flag) = flag else { continue };
+    if let Some(commutation) = front.commutation {
+        let bit = l.b.shift_left(commutation.word, 2);
+        index = l.b.add(index, bit);
+    }
+    for (flag, weight) in [(negative, 64), (beta, 2), (alpha, 1)] {
         let (set, clear) = (l.b.literal(weight), l.zero());
         let bits = l.b.select(flag, set, clear);
         index = l.b.add(index, bits);

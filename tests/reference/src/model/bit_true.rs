@@ -283,9 +283,9 @@ impl BitTrue {
         }
 
         // 5 commutation
-        if self.variant.commutation.is_some() {
-            self.state.commutate(k, sector_eff, j, &[i[0], i[1], i_c]);
-        }
+        let i_abc = [i[0], i[1], i_c];
+        let commutating =
+            self.variant.commutation.is_some() && self.state.commutate(k, sector_eff, j, &i_abc);
 
         // 6 reference
         let delayed = self.variant.delayed();
@@ -371,7 +371,7 @@ impl BitTrue {
             e,
             e_now,
             sector_eff,
-            commutating: self.state.commutating(),
+            commutating,
             integral,
             set_point: j,
             direction: self.state.timing.direction,
@@ -430,7 +430,7 @@ impl BitTrue {
             theta: angle.theta,
             step_angle: angle.step,
             sector_eff,
-            commutating: self.state.commutating(),
+            commutating: run && commutating,
             reach: decision.reach,
             vector: if run { decision.vector } else { 0 },
             run,

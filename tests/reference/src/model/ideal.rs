@@ -268,9 +268,8 @@ impl Ideal {
         }
 
         // 5 commutation
-        if self.variant.commutation.is_some() {
-            self.commutate(sector_eff, current, &i_abc);
-        }
+        let commutating =
+            self.variant.commutation.is_some() && self.commutate(sector_eff, current, &i_abc);
 
         // 6 reference
         let target = f64::from(1 + self.variant.options.delay) * step_angle;
@@ -349,7 +348,7 @@ impl Ideal {
             e,
             e_now,
             sector_eff,
-            commutating: self.state.commutation_left > 0.0,
+            commutating,
             integral,
             set_point: current,
             direction: self.state.timing.direction,
@@ -412,7 +411,7 @@ impl Ideal {
             theta,
             step_angle,
             sector_eff,
-            commutating: self.state.commutation_left > 0.0,
+            commutating: run && commutating,
             reach: decision.reach,
             vector: if run { decision.vector } else { 0 },
             run,
@@ -454,20 +453,21 @@ impl Ideal {
         (theta, step_angle, sector_eff)
     }
 
-    /// Follows the commutation (section 5).
-    fn commutate(&mut self, sector_eff: usize, current: f64, i: &Vector3<f64>) {
+    /// Follows the commutation (section 5); whether it goes on.
+    fn commutate(&mut self, sector_eff: usize, current: f64, i: &Vector3<f64>) -> bool {
         let state = &mut self.state;
         let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
         let torque = if current < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * state.timing.direction;
         let flows = sign * i[sector::OUT_PHASE[sector_eff]] > self.end.threshold;
-        state.commutation_left = if changed {
+        let kept = if changed {
             f64::from(self.end.timeout) + 1.0
-        } else if flows {
-            (state.commutation_left - 1.0).max(0.0)
         } else {
-            0.0
+            state.commutation_left
         };
+        let goes_on = kept > 0.0 && (changed || flows);
+        state.commutation_left = if goes_on { kept - 1.0 } else { 0.0 };
+        goes_on
     }
 
     /// Voltage that a command really applies while the currents are `i` (section 7).

@@ -278,25 +278,21 @@ pub fn names(parts: Parts) -> Vec<&'static str> {
 }
 
 impl State {
-    /// Follows the commutation (section 5).
+    /// Follows the commutation (section 5); whether it goes on.
     #[inline]
-    pub fn commutate(&mut self, k: &Constants, sector_eff: usize, j: Word, i: &[Word; 3]) {
+    pub fn commutate(&mut self, k: &Constants, sector_eff: usize, j: Word, i: &[Word; 3]) -> bool {
         let changed = sector_eff != self.sector_eff_prev && self.sector_eff_prev != 0;
         let torque = if j < 0.0 { -1.0 } else { 1.0 };
         let sign = sector::OUT_SIGN[sector_eff] * torque * self.timing.direction;
         let flows = sign * i[sector::OUT_PHASE[sector_eff]] > k.i_comm;
-        self.commutation_left = if changed {
+        let kept = if changed {
             word(k.comm_samples)
-        } else if flows {
-            (self.commutation_left - 1.0).max(0.0)
         } else {
-            word(0.0)
+            self.commutation_left
         };
-    }
-
-    /// Whether a commutation is under way.
-    pub fn commutating(&self) -> bool {
-        self.commutation_left > 0.0
+        let goes_on = kept > 0.0 && (changed || flows);
+        self.commutation_left = if goes_on { kept - 1.0 } else { word(0.0) };
+        goes_on
     }
 
     /// What a period outside of control leaves behind (section 12).
