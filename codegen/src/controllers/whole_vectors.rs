@@ -1,7 +1,8 @@
 //! One whole voltage vector per period: the vectors' legs, and what a step keeps of the vector that it chose.
 //!
 //! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
-//! leg a, b or c off. Where nothing but the legs is asked of a three-phase vector, the pattern of its low legs stands for it.
+//! leg a, b or c off. Where nothing but the legs is asked of a three-phase vector, the pattern of its low legs stands for
+//! it; where the wishes that chose a vector leave something behind, too, a number stands for both.
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
@@ -18,7 +19,21 @@ pub(super) enum Numbers {
     WithoutPairs,
     /// Legs that are low: 1 a, 2 b, 4 c; V0 is 7.
     LowLegs,
+    /// Four times the vector, and the wishes that chose it.
+    Choices(Choices),
 }
+
+/// Vectors and the wishes that choose them: 1 if phase a's current shall fall, 2 if beta's shall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Choices {
+    /// Whether a vector may have an off leg.
+    pub pairs: bool,
+    /// What wishes leave to the next step's error, phases a and b, words of voltage.
+    pub memory: [[i64; 2]; WISHES],
+}
+
+/// How many wishes there are.
+pub(super) const WISHES: usize = 4;
 
 /// The pattern of V0.
 pub(super) const ALL_LOW: i32 = 7;
@@ -34,6 +49,21 @@ impl Numbers {
             Self::LowLegs => std::iter::once([-1; 3])
                 .chain((1..=ALL_LOW).map(by_pattern))
                 .collect(),
+            Self::Choices(choices) => {
+                // V0 to V6, and one more to fill the table.
+                let vectors = if choices.pairs { 16 } else { 8 };
+                let legs = vector_legs().into_iter().take(vectors);
+                legs.flat_map(|legs| [legs; WISHES]).collect()
+            }
+        }
+    }
+
+    /// Whether a number may stand for an off leg.
+    fn turns_off(self) -> bool {
+        match self {
+            Self::Vectors => true,
+            Self::WithoutPairs | Self::LowLegs => false,
+            Self::Choices(choices) => choices.pairs,
         }
     }
 
@@ -42,6 +72,7 @@ impl Numbers {
         match self {
             Self::Vectors | Self::WithoutPairs => "vector",
             Self::LowLegs => "pattern",
+            Self::Choices(_) => "choice",
         }
     }
 
@@ -52,6 +83,9 @@ impl Numbers {
                 "by vector: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero."
             }
             Self::LowLegs => "by the legs that are low: 1 a, 2 b, 4 c.",
+            Self::Choices(_) => {
+                "by 4 vector (0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero) + 2 if beta shall fall + 1 if alpha shall."
+            }
         }
     }
 }
@@ -199,10 +233,29 @@ fn tabled_left_over(
 ) -> LeftOver {
     let k_sixth = sixth(l, word);
     let unit = l.rounded_product(k_sixth, l.nominal_bus());
-    let Some(k_fade) = held.fade() else {
-        return held.unfaded(fixed_voltage(l, unit, vector));
-    };
     let volts = fixed_volts(vector.1, unit);
+    let Some(k_fade) = held.fade() else {
+        let later = fixed_voltage(l, unit, vector);
+        let Numbers::Choices(Choices { memory, .. }) = vector.1 else {
+            return held.unfaded(later);
+        };
+        let volts = volts.into_iter().zip(memory.iter().cycle());
+        let left: Volts = volts
+            .map(|([a, b, c], memory)| [a - memory[0], b - memory[1], c])
+            .collect();
+        let texts = [
+            "left",
+            "Phase voltage of the vector less the memory of the wishes",
+        ];
+        let left = look_up_volts(l, texts, &left, 4, vector);
+        for x in 0..2 {
+            l.b.name(["left_a", "left_b"][x], left[x]);
+        }
+        return LeftOver {
+            left,
+            ..held.unfaded(later)
+        };
+    };
     let fade = |volts: i64| volts + l.rounded_product(k_fade, volts);
     let left: Volts = volts.iter().map(|volts| volts.map(fade)).collect();
     let both = volts.iter().zip(&left);
@@ -231,7 +284,7 @@ fn tabled_left_over(
 
 /// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
 fn command(l: &mut Lowering<'_>, vector: Value, numbers: Numbers) -> Command {
-    let turns_off = numbers == Numbers::Vectors;
+    let turns_off = numbers.turns_off();
     let top = l.spec.inverter.timer_period as i32;
     let compares = [0, 1, 2].map(|x| {
         let name = ["compare_a", "compare_b", "compare_c"][x];

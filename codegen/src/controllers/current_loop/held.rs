@@ -95,10 +95,14 @@ impl CurrentLoop<'_, '_> {
         let folded = Folded::new(l, self.options, self.needs, self.design);
         let delayed = self.options.delay == 1;
         let [due_bound, later_bound] = folded.bounds(l, delayed);
-        let due = ["due_a", "due_b"].map(|name| {
-            let doc = "What past samples and commands add to this step's voltage.";
-            l.state(name, 0, Interval::symmetric(due_bound), doc)
-        });
+        let memory = self.needs.memory;
+        let doc = if memory == 0 {
+            "What past samples and commands add to this step's voltage."
+        } else {
+            "What past samples, commands and wishes add to this step's voltage."
+        };
+        let due = ["due_a", "due_b"]
+            .map(|name| l.state(name, 0, Interval::symmetric(due_bound + memory), doc));
         let later = delayed.then(|| {
             ["later_a", "later_b"].map(|name| {
                 let doc = "What past commands add to the next step's voltage.";

@@ -17,6 +17,8 @@ pub struct Needs {
     pub emf: EmfUse,
     /// What the modelled EMF lacks, integrated.
     pub integral: bool,
+    /// The folded words for a memory of its own, of so many words of voltage at most; 0 without one.
+    pub memory: i64,
 }
 
 impl Needs {

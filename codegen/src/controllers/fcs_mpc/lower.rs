@@ -19,6 +19,7 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
                 off_leg: options.floating(),
                 emf: EmfUse::Deadbeat,
                 integral: false,
+                memory: 0,
             },
         };
         let numbers = if options.pairs() {

@@ -20,6 +20,7 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 integral: options.integral,
+                memory: 0,
             },
         };
         let front = step.front(set_point);

@@ -1,55 +1,85 @@
 //! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
 
 use super::table::{
-    BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET, WISHES,
+    BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
     switching_table,
 };
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
-use crate::controllers::whole_vectors::Numbers;
+use crate::controllers::whole_vectors::{Choices, Numbers, WISHES};
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
-use crate::spec::{PhccCandidates, PhccSpec, Spec};
+use crate::spec::{BusSource, EmfSource, PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     lower_with(spec, scale, design.k_di, |lowering, set_point| {
+        let bands = [1.0, 3.0_f64.sqrt()]
+            .map(|share| lowering.volts_word(share * design.k_di * options.band));
+        let common = &options.common;
+        // With a fixed bus a table has what a vector leaves to the next error, and what its wishes leave goes into it.
+        let folds = common.emf == EmfSource::Held
+            && common.delay == 1
+            && matches!(spec.inverter.bus, BusSource::Fixed);
         let mut step = CurrentLoop {
             lowering,
-            options: &options.common,
+            options: common,
             design,
             needs: Needs {
                 commutation: true,
                 off_leg: options.floating(),
-                emf: if options.common.delay == 1 {
+                emf: if common.delay == 1 {
                     EmfUse::Prediction
                 } else {
                     EmfUse::None
                 },
                 integral: false,
+                memory: if folds { bands[1] + 1 } else { 0 },
             },
         };
         let front = step.front(set_point);
-        let bands = [1.0, 3.0_f64.sqrt()]
-            .map(|share| step.lowering.volts_word(share * design.k_di * options.band));
-        let memory = [("h_a", bands[0]), ("h_b", bands[1])].map(|(name, band)| {
-            let doc = "Memory of the axis, added to its error: half the band while its component shall rise, one word more and negative while it shall fall; 0 while it has no wish.";
-            let range = Interval::new(-band - 1, band);
-            (step.lowering.state(name, 0, range, doc), band)
+        let memory = (!folds).then(|| {
+            [("h_a", bands[0]), ("h_b", bands[1])].map(|(name, band)| {
+                let doc = "Memory of the axis, added to its error: half the band while its component shall rise, one word more and negative while it shall fall; 0 while it has no wish.";
+                let range = Interval::new(-band - 1, band);
+                (step.lowering.state(name, 0, range, doc), band)
+            })
         });
         let q = step.predicted_error(&front);
         let axes = compare_with_bands(step.lowering, options, design, q, memory);
-        let vector = look_up(step.lowering, options, &front, axes.map(|axis| axis.falls));
-        let remembered = vec![
-            (memory[0].0, "h_a_next", axes[0].memory),
-            (memory[1].0, "h_b_next", axes[1].memory),
-        ];
-        let numbers = match options.candidates {
-            PhccCandidates::Table2 => Numbers::Vectors,
-            PhccCandidates::ThreePhase => Numbers::WithoutPairs,
+        let falls = axes.map(|axis| axis.falls);
+        let pairs = options.candidates == PhccCandidates::Table2;
+        let numbers = match (folds, pairs) {
+            (true, pairs) => Numbers::Choices(Choices {
+                pairs,
+                memory: folded_memory(bands),
+            }),
+            (false, true) => Numbers::Vectors,
+            (false, false) => Numbers::WithoutPairs,
         };
-        step.apply_vector(&front, vector, numbers, remembered);
+        let number = look_up(step.lowering, options, &front, falls, numbers);
+        let names = ["h_a_next", "h_b_next"];
+        let words = memory.iter().flatten().zip(names).zip(axes);
+        let remembered = words
+            .filter_map(|((&(word, _), name), axis)| Some((word, name, axis.memory?)))
+            .collect();
+        step.apply_vector(&front, number, numbers, remembered);
+    })
+}
+
+/// What wishes leave to the next errors of phases a and b, words of voltage: the memory of alpha, which is phase a, and
+/// what makes that of beta, twice phase b and phase a, together with it.
+fn folded_memory(bands: [i64; 2]) -> [[i64; 2]; WISHES] {
+    std::array::from_fn(|wishes| {
+        let [alpha, beta] = [0, 1].map(|axis| {
+            if wishes >> axis & 1 == 1 {
+                -bands[axis] - 1
+            } else {
+                bands[axis]
+            }
+        });
+        [alpha, (beta - alpha) >> 1]
     })
 }
 
@@ -122,26 +152,33 @@ fn deviation(l: &mut Lowering<'_>, x: usize, error: Value) -> Value {
 struct Axis {
     /// Flag: its component shall fall.
     falls: Value,
-    /// What is added to its next error.
-    memory: Value,
+    /// What is added to its next error, unless that is folded into what is due.
+    memory: Option<Value>,
 }
 
-/// The wishes of the two axes; `memory` has the state words and half the bands.
+/// The wishes of the two axes; `memory` has the state words and half the bands, unless what is due holds the memory.
 fn compare_with_bands(
     l: &mut Lowering<'_>,
     options: &PhccSpec,
     design: &LoopDesign,
     q: [Value; 2],
-    memory: [(StateId, i64); 2],
+    memory: Option<[(StateId, i64); 2]>,
 ) -> [Axis; 2] {
-    l.b.stage(
-        "compare_with_bands",
+    let folded: &[&str] = if memory.is_none() {
         &[
-            "Each axis asks for a rise or a fall of its component once the error leaves the band, and keeps asking: while it asks",
-            "for a rise, an error down to the band's lower edge will do, otherwise it takes one above the upper edge. An axis",
-            "that comes from rest goes by the sign. Beta is taken times the square root of 3: (b - c) = 2 b + a.",
-        ],
-    );
+            "",
+            "What is due to an error has half the band of the last wish in it: no more than the sign is left to look at.",
+        ]
+    } else {
+        &[]
+    };
+    let doc = [
+        "Each axis asks for a rise or a fall of its component once the error leaves the band, and keeps asking: while it asks",
+        "for a rise, an error down to the band's lower edge will do, otherwise it takes one above the upper edge. An axis",
+        "that comes from rest goes by the sign. Beta is taken times the square root of 3: (b - c) = 2 b + a.",
+    ];
+    let doc = [&doc, folded].concat();
+    l.b.stage("compare_with_bands", &doc);
     let twice = l.b.shift_left(q[1], 1);
     let beta = l.b.add(twice, q[0]);
     l.b.name("q_beta", beta);
@@ -150,35 +187,48 @@ fn compare_with_bands(
     let word = 1.0 / (l.scale.voltage() * design.k_di * 3.0_f64.sqrt());
     l.b.state_error("current", beta, [doc, "A"], word);
     [0, 1].map(|x| {
-        let (state, band) = memory[x];
-        let before = l.b.state(state);
-        let lifted = l.b.add([q[0], beta][x], before);
-        l.b.name(["lifted_alpha", "lifted_beta"][x], lifted);
+        let error = [q[0], beta][x];
+        let lifted = memory.map(|memory| {
+            let before = l.b.state(memory[x].0);
+            let lifted = l.b.add(error, before);
+            l.b.name(["lifted_alpha", "lifted_beta"][x], lifted)
+        });
         let zero = l.zero();
-        let falls = l.b.compare(Comparison::Less, lifted, zero);
+        let falls = l.b.compare(Comparison::Less, lifted.unwrap_or(error), zero);
         l.b.name(["alpha_falls", "beta_falls"][x], falls);
-        let (name, other) = [
-            ("band_alpha", "band_alpha_below"),
-            ("band_beta", "band_beta_below"),
-        ][x];
-        let half = engineering(options.band, "A");
-        let doc = format!("Half width of the band of {half} as a voltage");
-        let above = l.voltage(name, band, &doc);
-        let doc =
-            format!("Half width of the band of {half} and one word more, negative, as a voltage");
-        let below = l.voltage(other, -band - 1, &doc);
-        let memory = l.b.select(falls, below, above);
-        l.b.name(["memory_alpha", "memory_beta"][x], memory);
+        let memory = memory.map(|memory| next_memory(l, options, x, memory[x].1, falls));
         Axis { falls, memory }
     })
 }
 
-/// The vector that the switching table holds for sector, commutation and wishes.
+/// What axis `x`, 0 alpha or 1 beta, adds to its next error; `band` is half of it.
+fn next_memory(
+    l: &mut Lowering<'_>,
+    options: &PhccSpec,
+    x: usize,
+    band: i64,
+    falls: Value,
+) -> Value {
+    let (name, other) = [
+        ("band_alpha", "band_alpha_below"),
+        ("band_beta", "band_beta_below"),
+    ][x];
+    let half = engineering(options.band, "A");
+    let doc = format!("Half width of the band of {half} as a voltage");
+    let above = l.voltage(name, band, &doc);
+    let doc = format!("Half width of the band of {half} and one word more, negative, as a voltage");
+    let below = l.voltage(other, -band - 1, &doc);
+    let memory = l.b.select(falls, below, above);
+    l.b.name(["memory_alpha", "memory_beta"][x], memory)
+}
+
+/// The vector that the switching table holds for sector, commutation and wishes, as a number.
 fn look_up(
     l: &mut Lowering<'_>,
     options: &PhccSpec,
     front: &Front,
     [alpha, beta]: [Value; 2],
+    numbers: Numbers,
 ) -> Value {
     let sets = switching_table(options, l.spec.motor.emf_shape);
     // Direction unknown, forward, none, backward (the index wraps); then a set-point of 0 and more, and one below.
@@ -193,14 +243,24 @@ fn look_up(
     .flat_map(|&set| sets[PER_SET * set..][..PER_SET].as_chunks::<WISHES>().0)
     // A sign bit is 1 where an axis shall fall.
     .flat_map(|&[both_fall, beta_rises, alpha_rises, both_rise]| {
-        [both_rise, beta_rises, alpha_rises, both_fall]
+        let vectors = [both_rise, beta_rises, alpha_rises, both_fall];
+        match numbers {
+            Numbers::Choices(_) => {
+                std::array::from_fn(|wishes| vectors[wishes] * WISHES as i32 + wishes as i32)
+            }
+            _ => vectors,
+        }
     })
     .collect();
+    let (what, name) = match numbers {
+        Numbers::Choices(_) => ("Four times the vector, and the wishes,", "choice"),
+        _ => ("Vector", "vector"),
+    };
     let table = l.b.program.table(
         "switching",
         table,
         &[
-            "Vector by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,".to_owned(),
+            format!("{what} by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,"),
             "4 if it commutates, 2 if beta shall fall, 1 if alpha shall.".to_owned(),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
@@ -225,6 +285,6 @@ fn look_up(
         index = l.b.add(index, bits);
     }
     l.b.name("entry", index);
-    let vector = l.b.lookup(table, index);
-    l.b.name("vector", vector)
+    let number = l.b.lookup(table, index);
+    l.b.name(name, number)
 }

@@ -25,9 +25,6 @@ const PER_SECTOR: usize = 8;
 /// Entries of a set.
 pub const PER_SET: usize = 64;
 
-/// Entries of a sector and of what it commutates: rises and falls of two axes.
-pub const WISHES: usize = 4;
-
 /// What a set is designed for. Voltages in units of the bus.
 struct Design {
     /// EMF across the sector's pair at its centre, and the weight of a wish, in commutation.

@@ -29,6 +29,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                     EmfUse::None
                 },
                 integral: false,
+                memory: 0,
             },
         };
         let front = step.front(set_point);

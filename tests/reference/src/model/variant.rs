@@ -1,8 +1,8 @@
 //! Which steps and state words a variant has, for both models.
 
 use crate::spec::{
-    Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg, Reference,
-    Saturation, Spec, Switch,
+    Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg,
+    Reference, Saturation, Spec, Switch,
 };
 
 /// What follows from a specification's choice of controller and options.
@@ -18,6 +18,8 @@ pub struct Variant {
     pub emf: Option<EmfSource>,
     /// Section 9: what the past adds to the voltage is folded, the EMF held.
     pub held: Switch,
+    /// Section 9 of PHCC: what is due holds the memory of the wishes.
+    pub wishes_in_due: Switch,
     /// Section 7: a leg may be off, so commands are kept as terminal voltages.
     pub floating: bool,
     /// Section 7: the voltage of the period that starts now is known.
@@ -83,6 +85,8 @@ impl Variant {
             (emf, predicts) = (None, false);
         }
         let estimated = emf == Some(EmfSource::Estimated);
+        let is_phcc = matches!(spec.controller, Controller::Phcc(_));
+        let has_fixed_bus = spec.inverter.bus == Bus::Fixed;
         Self {
             options,
             rotor: emf == Some(EmfSource::Model)
@@ -92,6 +96,11 @@ impl Variant {
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
             held: if held { Switch::On } else { Switch::Off },
+            wishes_in_due: if held && is_phcc && has_fixed_bus {
+                Switch::On
+            } else {
+                Switch::Off
+            },
             floating,
             applied_now: options.delay == 1 && (predicts || estimated),
             modulated,
@@ -136,6 +145,11 @@ impl Variant {
     /// Section 9: what the past adds to the voltage is folded, the EMF held.
     pub fn holds(&self) -> bool {
         self.held == Switch::On
+    }
+
+    /// Section 9 of PHCC: what is due holds the memory of the wishes.
+    pub fn folds_wishes(&self) -> bool {
+        self.wishes_in_due == Switch::On
     }
 
     /// Section 8: what the modelled EMF lacks is integrated.

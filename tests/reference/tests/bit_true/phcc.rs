@@ -270,16 +270,9 @@ fn numbers_that_are_no_table_are_refused() {
     assert!(Spec::from_toml(&band).is_err());
 }
 
-/// The wishes of the step, by the words of the state; none of an axis that comes from rest.
+/// The wishes of the step; none of an axis that comes from rest.
 fn wishes(model: &BitTrue) -> [Option<bool>; 2] {
-    let names = model.state_names();
-    let mut words = vec![0; names.len()];
-    model.state_words(&mut words);
-    let [h_a, h_b] = words[words.len() - 2..] else {
-        panic!("two words")
-    };
-    assert!(names.ends_with(&["h_a", "h_b"]));
-    [h_a, h_b].map(|word| (word != 0).then_some(word > 0))
+    model.physical_state().rises
 }
 
 #[test]

@@ -291,7 +291,7 @@ impl Constants {
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (
                     Part::Hysteresis,
-                    matches!(spec.controller, Controller::Phcc(_)),
+                    matches!(spec.controller, Controller::Phcc(_)) && !variant.folds_wishes(),
                 ),
                 (Part::VectorMemory, variant.counts_changes == Switch::On),
                 (Part::Due, variant.holds()),

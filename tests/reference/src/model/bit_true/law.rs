@@ -6,7 +6,7 @@ mod divided;
 mod fcs_mpc;
 mod held;
 mod pdcc;
-mod phcc;
+pub mod phcc;
 mod pi_pwm;
 mod pulses;
 mod two_steps;

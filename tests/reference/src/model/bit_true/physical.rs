@@ -1,9 +1,10 @@
 //! What the bit-true model tells in physical units: none of its own arithmetic.
 
 use super::constants::Constants;
-use super::state::State;
+use super::law::phcc::in_due;
+use super::state::{Part, State};
 use super::{BitTrue, Signals};
-use crate::exact::pow2;
+use crate::exact::{both, pow2};
 use crate::model::trace::{Past, PhysicalState, Trace};
 use std::f64::consts::TAU;
 
@@ -62,6 +63,11 @@ impl State {
     /// The state in physical units.
     pub fn to_physical(self, k: &Constants, integral_ampere: f64) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
+        let mut due = self.past.due;
+        if !k.parts.has(Part::Hysteresis) {
+            let memory = in_due(self.hysteresis);
+            due = both(|x| due[x] - memory[x]);
+        }
         PhysicalState {
             supervisor: self.supervisor,
             timing: self.timing,
@@ -82,7 +88,7 @@ impl State {
                 .map(|word| (word != 0.0).then_some(word > 0.0)),
             vector_prev: self.vector_prev.0,
             past: Past {
-                due: volts(self.past.due),
+                due: volts(due),
                 later: volts(self.past.later),
             },
             speed_integral: self.speed_integral * integral_ampere,

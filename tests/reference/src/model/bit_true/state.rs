@@ -28,6 +28,7 @@ pub struct State {
     pub off_prev: usize,
     pub e_prev: [Word; 2],
     pub integral: [Word; 2],
+    /// `h_a`, `h_b`; where they are no words of their own, what is due holds them.
     pub hysteresis: [Word; 2],
     pub vector_prev: Vector,
     pub past: Past,

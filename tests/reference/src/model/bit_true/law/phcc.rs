@@ -2,7 +2,7 @@
 
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
-use crate::exact::{Coefficient, both, round_half_up, word};
+use crate::exact::{Coefficient, Word, both, floor_shift, round_half_up, word};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::switching::{self, Switching};
@@ -10,10 +10,20 @@ use crate::model::trace::Past;
 
 use crate::{Candidates, Error, Spec};
 
+/// Where the memory of the axes is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Memory {
+    /// `h_a`, `h_b`.
+    Words,
+    /// In what is due.
+    Due,
+}
+
 #[derive(Clone, Debug)]
 pub struct Phcc {
     delayed: bool,
     holds: bool,
+    memory: Memory,
     /// Vectors of pairs are allowed, which turn legs off.
     pairs: bool,
     k_hold: Coefficient,
@@ -36,6 +46,11 @@ impl Phcc {
         Ok(Self {
             delayed,
             holds,
+            memory: if scale.variant.folds_wishes() {
+                Memory::Due
+            } else {
+                Memory::Words
+            },
             pairs: options.candidates != Candidates::ThreePhase,
             k_hold: scale.only_if(!holds, "k_hold", scale.ohm * held / b)?,
             k_now: scale.only_if(holds, "k_now", -scale.ohm * (1.0 + a) / b)?,
@@ -62,11 +77,18 @@ impl Phcc {
         });
         // 10; sqrt(3) times the component across a is b less c, c being minus the sum of a and b.
         let [band_a, band_b] = self.bands;
-        let rises = [
-            q[0] + now.hysteresis[0] >= 0.0,
-            2.0 * q[1] + q[0] + now.hysteresis[1] >= 0.0,
-        ];
+        let [h_a, h_b] = match self.memory {
+            Memory::Words => now.hysteresis,
+            Memory::Due => [word(0.0); 2],
+        };
+        let lifted = [q[0] + h_a, 2.0 * q[1] + q[0] + h_b];
+        let rises = lifted.map(|error| error >= 0.0);
         let memory = |rises, band: f64| word(if rises { band } else { -band - 1.0 });
+        let hysteresis = [memory(rises[0], band_a), memory(rises[1], band_b)];
+        let folded = |hysteresis| match self.memory {
+            Memory::Words => [word(0.0); 2],
+            Memory::Due => in_due(hysteresis),
+        };
         let set = switching::Set::of(now.direction, now.set_point);
         let vector = self
             .switching
@@ -74,22 +96,30 @@ impl Phcc {
         // 11, 12
         let u = self.sixth.voltage(now, vector);
         let past = if self.holds {
+            let left = folded(hysteresis);
             Past {
-                due: both(|x| now.past.later[x] - u[x] + self.k_past.mul(now.i[x])),
+                due: both(|x| now.past.later[x] - u[x] + self.k_past.mul(now.i[x]) + left[x]),
                 later: u,
             }
         } else {
             now.past
         };
+        let before = folded(now.hysteresis);
         Decision {
-            u_unsat: q,
+            u_unsat: both(|x| q[x] - before[x]),
             u,
             reach: Reach::Inside,
             vector,
             command: whole::command(now, vector, self.pairs),
             integral: now.integral,
-            hysteresis: [memory(rises[0], band_a), memory(rises[1], band_b)],
+            hysteresis,
             past,
         }
     }
+}
+
+/// What the memory of the axes adds to the words that are due, phases a and b (section 12).
+#[inline]
+pub fn in_due([h_a, h_b]: [Word; 2]) -> [Word; 2] {
+    [h_a, floor_shift(h_b - h_a, 1)]
 }
