@@ -150,6 +150,10 @@ impl CurrentLoop<'_, '_> {
             &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
         );
         let command = command(l, vector, numbers);
+        l.b.stage(
+            "remember_vector",
+            &["What later steps need to know of the chosen vector."],
+        );
         let is_fixed = matches!(l.spec.inverter.bus, BusSource::Fixed);
         if let (Some(held), true) = (&front.held, is_fixed) {
             let left = tabled_left_over(l, self.options.word, held, (vector, numbers));

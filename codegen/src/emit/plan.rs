@@ -31,6 +31,8 @@ pub(super) struct Context<'a> {
     users: Vec<Vec<User>>,
     legs: BTreeSet<Value>,
     alarms: BTreeSet<Value>,
+    /// Values that no stage computes: they go out of the step another way.
+    left_out: BTreeSet<Value>,
     codes: BTreeMap<Value, Shape>,
 }
 
@@ -83,15 +85,21 @@ impl<'a> Context<'a> {
             users,
             legs,
             alarms: BTreeSet::new(),
+            left_out: BTreeSet::new(),
             codes,
         }
     }
 
     /// Likewise, of a path whose flags to leave by are looked at together, behind the last of them: flags that do
     /// nothing else are words, which take no comparison each. None where a stage on the way is guarded: what it does
-    /// is not for periods that are left.
-    pub(super) fn watched(program: &'a Program, function: &'a Function) -> Self {
+    /// is not for periods that are left. `left_out` are values that need no computing.
+    pub(super) fn watched(
+        program: &'a Program,
+        function: &'a Function,
+        left_out: &[Value],
+    ) -> Self {
         let mut context = Self::new(program, function);
+        context.left_out = left_out.iter().copied().collect();
         if context.leaves_once() {
             let only = |flag: &Value| context.users[flag.index()] == [User::Other];
             context.alarms = function.leave.iter().copied().filter(only).collect();
@@ -154,7 +162,7 @@ impl<'a> Context<'a> {
         let body: Vec<Value> = inside
             .clone()
             .map(|index| Value(index as u32))
-            .filter(|&value| !is_leaf(&function.node(value).op))
+            .filter(|value| !is_leaf(&function.node(*value).op) && !self.left_out.contains(value))
             .collect();
         let (mut outcomes, mut stores) = (vec![], vec![]);
         match &stage.guard {

@@ -1,6 +1,7 @@
 //! How tables lie in memory: alone, or side by side as the columns of rows that one index reads.
 
-use crate::ir::{Program, Table};
+use super::path::output;
+use crate::ir::{Function, Op, Program, Table, TableId, Value};
 
 /// The row that a table is a column of, where it has company there or its entries have a type of their own.
 pub(super) fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
@@ -17,6 +18,82 @@ pub(super) fn columns<'a>(
     tables.filter(move |table| table.row == Some(row))
 }
 
+/// A command that is looked up as a whole: columns of one row hold all that the legs do, and nothing else is done with
+/// what stands in them, so that they are one column, from which the command goes out as it is.
+#[derive(Clone, Debug)]
+pub(super) struct WholeCommand<'a> {
+    /// The row.
+    pub row: &'static str,
+    /// Where it is looked up.
+    pub index: Value,
+    /// Compare values and states of legs a, b, c.
+    pub columns: Vec<&'a Table>,
+    /// The entries.
+    pub entries: Vec<Value>,
+}
+
+impl<'a> WholeCommand<'a> {
+    /// Bytes of a command, and what it is aligned to.
+    const SIZE: usize = 8;
+
+    /// The one that a path of the step gives, if it does. (Where all legs are always pulsed compare values are as
+    /// quickly put together.)
+    pub(super) fn of(program: &'a Program, path: &Function) -> Option<Self> {
+        let outputs = [
+            "compare_a",
+            "compare_b",
+            "compare_c",
+            "leg_a",
+            "leg_b",
+            "leg_c",
+        ];
+        let mut place = None;
+        let (mut columns, mut entries, mut tables) = (vec![], vec![], vec![]);
+        for name in outputs {
+            let value = output(path, name)?;
+            let Op::Lookup { table, index } = path.node(value).op else {
+                return None;
+            };
+            let column = &program.tables[table.index()];
+            let row = row_of(program, column)?;
+            if *place.get_or_insert((row, index)) != (row, index) {
+                return None;
+            }
+            columns.push(column);
+            entries.push(value);
+            tables.push(table);
+        }
+        let (row, index) = place?;
+        let is_entry = |value: &Value| entries.contains(value);
+        let mut operands = path.nodes.iter().flat_map(|node| node.op.operands());
+        let mut kept = path.next_state.iter();
+        let is_used =
+            operands.any(|value| is_entry(&value)) || kept.any(|(_, value)| is_entry(value));
+        (!is_used && is_read_once(path, &tables)).then_some(Self {
+            row,
+            index,
+            columns,
+            entries,
+        })
+    }
+
+    /// Whether a table is a part of it.
+    pub(super) fn holds(&self, table: &Table) -> bool {
+        self.columns.iter().any(|column| column.name == table.name)
+    }
+}
+
+/// Whether a path looks up each of the tables, and that at one place.
+fn is_read_once(path: &Function, tables: &[TableId]) -> bool {
+    let read = path.nodes.iter().filter_map(|node| match node.op {
+        Op::Lookup { table, .. } => Some(table),
+        _ => None,
+    });
+    let read: Vec<TableId> = read.collect();
+    let times = |table: &TableId| read.iter().filter(|read| *read == table).count();
+    tables.iter().all(|table| times(table) == 1)
+}
+
 /// Bytes of the smallest elements that hold a table.
 pub(super) fn size(table: &Table) -> usize {
     match table.interval().bits() {
@@ -27,23 +104,41 @@ pub(super) fn size(table: &Table) -> usize {
     }
 }
 
-/// Bytes of a row as it is packed, its widest elements aligned.
-fn packed<'a>(columns: impl Iterator<Item = &'a Table>) -> usize {
-    let sizes: Vec<usize> = columns.map(size).collect();
-    let widest = sizes.iter().copied().max().unwrap_or(1);
-    sizes.iter().sum::<usize>().next_multiple_of(widest)
+/// Bytes of the fields of a row.
+fn fields(program: &Program, row: &'static str, whole: Option<&WholeCommand<'_>>) -> Vec<usize> {
+    let whole = whole.filter(|whole| whole.row == row);
+    let is_apart = |table: &&Table| whole.is_none_or(|whole| !whole.holds(table));
+    let apart = columns(program, row).filter(is_apart).map(size);
+    whole
+        .map(|_| WholeCommand::SIZE)
+        .into_iter()
+        .chain(apart)
+        .collect()
+}
+
+/// Bytes of a row as it is packed, its widest field aligned.
+fn packed(fields: &[usize]) -> usize {
+    let widest = fields.iter().copied().max().unwrap_or(1);
+    fields.iter().sum::<usize>().next_multiple_of(widest)
 }
 
 /// The alignment that makes a row as long as a power of two, where that takes no more than a word: its address is then
 /// a shift of the index.
-pub(super) fn padding<'a>(columns: impl Iterator<Item = &'a Table>) -> Option<usize> {
-    let size = packed(columns);
-    let whole = size.next_power_of_two();
-    (size < whole && whole <= size + 4).then_some(whole)
+pub(super) fn padding(
+    program: &Program,
+    row: &'static str,
+    whole: Option<&WholeCommand<'_>>,
+) -> Option<usize> {
+    let size = packed(&fields(program, row, whole));
+    let power = size.next_power_of_two();
+    (size < power && power <= size + 4).then_some(power)
 }
 
 /// Bytes of all tables of a program.
 pub(super) fn bytes(program: &Program) -> usize {
+    let paths = program.step.paths();
+    let whole = WholeCommand::of(program, &paths.normal);
+    let whole = whole.as_ref();
     let mut known = vec![];
     let mut sum = 0;
     for table in &program.tables {
@@ -52,7 +147,7 @@ pub(super) fn bytes(program: &Program) -> usize {
             Some(row) if known.contains(&row) => 0,
             Some(row) => {
                 known.push(row);
-                padding(columns(program, row)).unwrap_or_else(|| packed(columns(program, row)))
+                padding(program, row, whole).unwrap_or_else(|| packed(&fields(program, row, whole)))
             }
         };
         sum += one * table.values.len();

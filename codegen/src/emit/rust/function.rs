@@ -6,13 +6,15 @@ use super::super::path::{
     Kept, beside, kept, leaves_behind, names_read, output, params_read, writes,
 };
 use super::super::plan::{Context, StagePlan};
+use super::super::rows::WholeCommand;
 use super::super::signal::Shape;
 use super::expression::RustScope;
 use super::groups::array;
 use super::names::{docs, loaded, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
-use crate::ir::{Function, Paths, Program, Word};
+use super::tables::look_up_command;
+use crate::ir::{Function, Paths, Program, Value, Word};
 
 /// A function and the functions of its stages.
 pub(super) struct Emitted {
@@ -34,9 +36,15 @@ pub(super) struct Setter {
 
 /// The control step, `fn step(state, set-point, inputs) -> Legs`, and what takes over where it rests: there alone mode and
 /// fault change, so there they are published.
-pub(super) fn emit_step(program: &Program) -> Emitted {
-    let Paths { normal, exit } = program.step.paths();
-    let context = Context::watched(program, &normal);
+///
+/// A command that is looked up as a `whole` goes out from its row.
+pub(super) fn emit_step(
+    program: &Program,
+    Paths { normal, exit }: &Paths,
+    whole: Option<&WholeCommand<'_>>,
+) -> Emitted {
+    let entries = whole.map_or(&[] as &[Value], |whole| &whole.entries);
+    let context = Context::watched(program, normal, entries);
     let path = PathFunctions::new(&context, &[]);
     let exit = exit
         .as_ref()
@@ -48,14 +56,14 @@ pub(super) fn emit_step(program: &Program) -> Emitted {
         .iter()
         .flat_map(|exit| params_read(exit.context.function))
         .collect();
-    let words = param_pattern(program, &normal, &read);
+    let words = param_pattern(program, normal, &read);
     let inputs = normal.inputs.iter().map(|input| {
         let name = snake(&input.name);
         quote!(#name: Word)
     });
     let doc = docs(&normal.doc);
     let leave = exit.as_ref().map(PathFunctions::call_rest);
-    let (body, legs) = (path.body(leave.as_ref()), path.legs());
+    let (body, legs) = (path.body(leave.as_ref()), path.legs(whole));
     let main = quote! {
         #doc
         #[inline]
@@ -142,8 +150,11 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    fn legs(&self) -> Source {
+    fn legs(&self, whole: Option<&WholeCommand<'_>>) -> Source {
         let scope = self.scope();
+        if let Some(whole) = whole {
+            return look_up_command(whole, &scope.whole(whole.index));
+        }
         let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
             match output(self.context.function, name) {
                 None => quote!(0),

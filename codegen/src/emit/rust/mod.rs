@@ -21,6 +21,7 @@ extern crate proc_macro;
 
 pub use format::{format_rust, rustfmt};
 
+use super::rows::WholeCommand;
 use super::texts;
 use crate::at_once::at_once;
 use crate::interface::Interface;
@@ -95,7 +96,10 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         let behind = quote!(#(#setter_stages)* #state #drive_trait);
         (header, before, behind, docs(&interface.doc))
     };
-    let (step, (header, before, behind, docs)) = at_once(|| emit_step(program), around);
+    let paths = program.step.paths();
+    let whole = WholeCommand::of(program, &paths.normal);
+    let step = || emit_step(program, &paths, whole.as_ref());
+    let (step, (header, before, behind, docs)) = at_once(step, around);
     let (step_main, step_stages) = (&step.main, &step.stages);
     let body = quote! {
         #before
@@ -105,7 +109,7 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
     };
     let names = item_names(&body);
     let imports = imports(&names, interface, type_name);
-    let constants = constants(program, &names);
+    let constants = constants(program, whole.as_ref(), &names);
     RustText {
         type_name: type_name.to_owned(),
         head: quote!(#header #imports),
@@ -166,7 +170,7 @@ fn tokens(code: &Source) -> TokenStream {
 }
 
 /// The constants and tables that the body names.
-fn constants(program: &Program, names: &HashSet<&str>) -> Source {
+fn constants(program: &Program, whole: Option<&WholeCommand<'_>>, names: &HashSet<&str>) -> Source {
     let named = |name: &str| !name.is_empty() && names.contains(&*name.to_uppercase());
     let constants = program
         .constants
@@ -177,6 +181,6 @@ fn constants(program: &Program, names: &HashSet<&str>) -> Source {
             let raw = number(i64::from(constant.raw));
             quote!(#doc const #name: Word = Word(#raw);)
         });
-    let tables = emit_tables(program, named);
+    let tables = emit_tables(program, whole, named);
     quote!(#(#constants)* #tables)
 }

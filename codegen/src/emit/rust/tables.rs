@@ -3,9 +3,10 @@
 //! One address then leads to all entries of a row, where tables of their own would each need theirs.
 
 use super::expression::coded;
+use super::groups::array;
 use super::names::{camel, docs, number, screaming, snake};
 use super::source::{Source, quote};
-use crate::emit::rows::{columns, padding, row_of, size};
+use crate::emit::rows::{WholeCommand, columns, padding, row_of, size};
 use crate::emit::signal::Shape;
 use crate::ir::{Program, Table, TableId};
 
@@ -25,8 +26,19 @@ pub(super) fn look_up(program: &Program, id: TableId, index: &Source) -> Source 
     }
 }
 
-/// All tables of a program that its code names: those alone by `named`, those in rows all together.
-pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> Source {
+/// The command in the row at an index.
+pub(super) fn look_up_command(whole: &WholeCommand<'_>, index: &Source) -> Source {
+    let rows = rows(whole.row);
+    quote!(row(&#rows, #index).legs)
+}
+
+/// All tables of a program that its code names: those alone by `named`, those in rows all together, and of these in one
+/// column those that make a command.
+pub(super) fn emit_tables(
+    program: &Program,
+    whole: Option<&WholeCommand<'_>>,
+    named: impl Fn(&str) -> bool,
+) -> Source {
     let mut items = Source::new();
     let mut known = vec![];
     for table in &program.tables {
@@ -34,7 +46,7 @@ pub(super) fn emit_tables(program: &Program, named: impl Fn(&str) -> bool) -> So
             None if named(&table.name) => items.insert(&emit_table(table)),
             Some(row) if !known.contains(&row) && named(&rows(row).to_string()) => {
                 known.push(row);
-                items.insert(&emit_rows(program, row));
+                items.insert(&emit_rows(program, row, whole));
             }
             _ => {}
         }
@@ -55,34 +67,81 @@ fn field(row: &str, table: &Table) -> Source {
 }
 
 /// Whether the names of three fields or more all begin or all end with the same word.
-fn shares_a_word(program: &Program, row: &'static str) -> bool {
-    let names = columns(program, row).map(|table| field(row, table).to_string());
-    let names: Vec<String> = names.collect();
+fn share_a_word(names: &[String]) -> bool {
     let alike =
         |word: fn(&str) -> Option<&str>| names.iter().all(|name| word(name) == word(&names[0]));
     names.len() >= 3
         && (alike(|name| name.split('_').next()) || alike(|name| name.rsplit('_').next()))
 }
 
-fn emit_rows(program: &Program, row: &'static str) -> Source {
+/// One field of rows.
+struct Field {
+    name: Source,
+    doc: Source,
+    element: Source,
+    entries: Vec<Source>,
+}
+
+impl Field {
+    fn of_table(row: &str, table: &Table) -> Self {
+        let entries = table.values.iter().map(|&value| entry(table, value));
+        Self {
+            name: field(row, table),
+            doc: docs(&table.doc),
+            element: element(table),
+            entries: entries.collect(),
+        }
+    }
+
+    fn of_command(whole: &WholeCommand<'_>) -> Self {
+        let (compares, states) = whole.columns.split_at(3);
+        let entries = (0..compares[0].values.len()).map(|index| {
+            let [compares, states] = [compares, states].map(|tables| {
+                let entries = tables.iter().map(|table| entry(table, table.values[index]));
+                array(&entries.collect::<Vec<Source>>())
+            });
+            quote!(Legs::new(#compares, #states))
+        });
+        let of_a = compares[0].doc.first().map_or("", String::as_str);
+        Self {
+            name: Source::of("legs"),
+            doc: docs(&[of_a.replacen("Compare value of the leg", "Command of the legs", 1)]),
+            element: quote!(Legs),
+            entries: entries.collect(),
+        }
+    }
+}
+
+fn emit_rows(program: &Program, row: &'static str, whole: Option<&WholeCommand<'_>>) -> Source {
     let (name, rows) = (Source::of(format!("{}Row", camel(row))), rows(row));
-    let fields = columns(program, row).map(|table| {
-        let (field, doc, element) = (field(row, table), docs(&table.doc), element(table));
-        quote!(#doc #field: #element)
-    });
-    let count = columns(program, row).map(|table| table.values.len()).max();
+    let whole_here = whole.filter(|whole| whole.row == row);
+    let apart = columns(program, row)
+        .filter(|table| whole_here.is_none_or(|whole| !whole.holds(table)))
+        .map(|table| Field::of_table(row, table));
+    let all: Vec<Field> = whole_here
+        .map(Field::of_command)
+        .into_iter()
+        .chain(apart)
+        .collect();
+    let count = all.iter().map(|field| field.entries.len()).max();
     let count = count.unwrap_or(0);
+    let none = quote!(0);
     let entries = (0..count).map(|index| {
-        let fields = columns(program, row).map(|table| {
-            let value = table.values.get(index).copied().unwrap_or(0);
-            let (field, entry) = (field(row, table), entry(table, value));
-            quote!(#field: #entry)
+        let fields = all.iter().map(|field| {
+            let (name, entry) = (&field.name, field.entries.get(index).unwrap_or(&none));
+            quote!(#name: #entry)
         });
         quote!(#name { #(#fields),* })
     });
+    let fields = all.iter().map(
+        |Field {
+             name, doc, element, ..
+         }| quote!(#doc #name: #element),
+    );
+    let names: Vec<String> = all.iter().map(|field| field.name.to_string()).collect();
     let doc = docs(&[format!("What one {row} tells.")]);
-    let layout = padding(columns(program, row)).map(|bytes| quote!(#[repr(align(#bytes))]));
-    let alike = shares_a_word(program, row)
+    let layout = padding(program, row, whole).map(|bytes| quote!(#[repr(align(#bytes))]));
+    let alike = share_a_word(&names)
         .then(|| quote!(#[expect(clippy::struct_field_names, reason = "signals of three phases")]));
     let all = docs(&[format!("The rows of every {row}.")]);
     quote! {
