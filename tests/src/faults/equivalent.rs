@@ -289,24 +289,27 @@ pub const EQUIVALENT: &[Unnoticed] = &[
             PHCC_ESTUN,
         ],
         faults: &[(
-            &["follow_commutation: in left_while_flowing"],
+            &["follow_commutation: in commutation_goes_on"],
             &["-1 for 0"],
         )],
     },
     Unnoticed {
-        because: "a commutation of one sample left ends, looked at or not, and one that is looked at has two or more",
+        because: "a commutation that is followed has a sample left",
         drives: COMMUTATES,
-        faults: &[
-            (&["detect_commutation: in commutation_lasts"], &["0 for 1"]),
-            (
-                &["detect_commutation: commutation_lasts"],
-                &["another comparison"],
-            ),
-            (
-                &["follow_commutation: in left_while_flowing"],
-                &["limit left out", "1 for 0 (2)", "-1 for 0 (2)"],
-            ),
-        ],
+        faults: &[(
+            &["follow_commutation: in left_while_flowing"],
+            &["limit left out", "-1 for 0"],
+        )],
+    },
+    Unnoticed {
+        because: "any number but 0 says that a commutation goes on",
+        drives: &[HOVERBOARD, TEKNIC, FCS_PAPER, FCS_TEKNIC],
+        faults: &[(&["follow_commutation: in flowing"], &["2 for 1"])],
+    },
+    Unnoticed {
+        because: "of no sample none is left, looked at or not, and nothing else is asked of the commutation",
+        drives: &[FCS_HOVERBOARD, FCS_ESTUN],
+        faults: &[(&["detect_commutation: in commutation_lasts"], &["-1 for 0"])],
     },
     Unnoticed {
         because: "the least set-point but 0 makes more than 1",
