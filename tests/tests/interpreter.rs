@@ -8,18 +8,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::env;
 
 /// Steps of the paper's default drive of each kind.
-const DEFAULT_STEPS: u64 = 200_000;
+const DEFAULT_STEPS: u64 = 100_000;
 
 /// Steps of each element of the full product; the seeds differ, so all streams take part.
 const PRODUCT_STEPS: u64 = 500;
 
 /// Elements of a kind's product that a push compares; `HEXAGEN_WHOLE_PRODUCTS` in the environment takes all. That of
 /// FCS-MPC is longer.
-const MOST_OF_A_PRODUCT: usize = 10_000;
+const MOST_OF_A_PRODUCT: usize = 5_000;
 
 /// Drives of each library motor and kind, and steps of each of them.
 const SAMPLE: usize = 24;
-const SAMPLE_STEPS: u64 = 4_000;
+const SAMPLE_STEPS: u64 = 2_000;
 
 /// What became of many drives.
 #[derive(Debug, Default)]
