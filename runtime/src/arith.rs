@@ -18,7 +18,12 @@ pub use crate::word::Word;
 pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
     let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
     if cfg!(target_arch = "riscv32") {
-        // Without a carry flag the bit below the result costs less than a sum of 64 bits.
+        // The result and the bit below it are one upper word, where that leaves the coefficient, a constant then, in its own.
+        if shift == 32 && coefficient.0.unsigned_abs() < 1 << 30 {
+            let twice = i64::from(coefficient.0 << 1).wrapping_mul(i64::from(signal.0));
+            return (Word((twice >> 32) as i32) + 1) >> 1;
+        }
+        // Without a carry flag that bit costs less than a sum of 64 bits.
         return Word((product >> shift) as i32) + (product >> (shift - 1) & 1) as i32;
     }
     Word((product.wrapping_add(1 << (shift - 1)) >> shift) as i32)
