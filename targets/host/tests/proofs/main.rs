@@ -84,11 +84,11 @@ fn every_variant_of_the_paper_motor_is_proved() {
     }
 }
 
-/// 50 in a push; `HEXAGEN_RANDOM_MOTORS` says how many else.
+/// 25 in a push; `HEXAGEN_RANDOM_MOTORS` says how many else.
 #[test]
 fn random_motors_are_proved_or_refused() {
     let wanted = env::var("HEXAGEN_RANDOM_MOTORS").ok();
-    let wanted = wanted.map_or(50, |number| number.parse().expect("a number of motors"));
+    let wanted = wanted.map_or(25, |number| number.parse().expect("a number of motors"));
     let (mut proved, mut refused, mut failures) = (0, 0, vec![]);
     for seed in 0..wanted {
         let motor = RandomMotor::new(seed).toml();
