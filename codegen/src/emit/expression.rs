@@ -223,6 +223,10 @@ impl<'a> Scope<'a> {
                 signal,
                 shift,
             } => {
+                if let Some([half, shift]) = self.rounded_part(coefficient, signal, shift) {
+                    let half = E::Number(half as i32);
+                    return E::ShiftedRight(Box::new(sum(of(signal), half)), shift);
+                }
                 let rounds_narrow = self.rounds_narrow(coefficient, signal, shift);
                 let primitive = if rounds_narrow {
                     P::MulRoundNarrow
@@ -489,6 +493,19 @@ impl<'a> Scope<'a> {
     /// Every product of the two.
     fn products(&self, a: Value, b: Value) -> Interval {
         self.interval(a).corners(self.interval(b), |a, b| a * b)
+    }
+
+    /// Where the coefficient is a power of two, so that its product is a part of the signal: half of what one is there,
+    /// and the shift to it. (Compilers go through 64 bits otherwise.)
+    fn rounded_part(&self, coefficient: Value, signal: Value, shift: u32) -> Option<[u32; 2]> {
+        let raw = self.interval(coefficient);
+        let power = u32::try_from(raw.low)
+            .ok()
+            .filter(|low| low.is_power_of_two())?;
+        let part = shift.checked_sub(power.ilog2()).filter(|&part| part > 0)?;
+        let half = 1 << (part - 1);
+        let fits = raw.low == raw.high && self.interval(signal).high + half <= Interval::WORD.high;
+        fits.then_some([half as u32, part])
     }
 
     fn rounds_narrow(&self, a: Value, b: Value, shift: u32) -> bool {

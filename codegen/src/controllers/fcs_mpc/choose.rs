@@ -267,7 +267,7 @@ impl CurrentLoop<'_, '_> {
             factors.push([[offsets[off], aside], [bus, better.score]]);
         }
         let mut change = None;
-        let rival = match three_phase {
+        let mut rival = match three_phase {
             Some(three) if changes.is_some() => (three.vector, [bus, three.score]),
             Some(Candidate {
                 vector,
@@ -301,6 +301,9 @@ impl CurrentLoop<'_, '_> {
         }
         l.product_format("score", shift, "products of two voltages in scores");
         let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
+        let products = factors.iter_mut().flatten();
+        let products = products.chain([&mut rival.1]).chain(change.as_mut());
+        let shift = as_upper_words(l, products.collect(), shift);
         let mut best: Option<Candidate> = None;
         for (order, [first, second]) in factors.into_iter().enumerate() {
             let score = l.b.mul_add_floor(first, second, shift);
@@ -333,6 +336,21 @@ impl CurrentLoop<'_, '_> {
         let better = l.b.compare(Comparison::Less, best.score, score);
         l.b.select(better, best.vector, rival.0)
     }
+}
+
+/// Shifts the first factors so that what a `shift` takes of the products is their upper words, which take no shift of
+/// 64 bits; where one has no room for that, or products fit a word, nothing changes. Returns the shift that is left.
+fn as_upper_words(l: &mut Lowering<'_>, mut products: Vec<&mut [Value; 2]>, shift: u32) -> u32 {
+    let bits = |value: Value| l.b.interval(value).bits();
+    let room = 32_u32.saturating_sub(shift);
+    let is_long = products.iter().any(|&&mut [x, y]| bits(x) + bits(y) > 32);
+    if !is_long || products.iter().any(|&&mut [x, _]| bits(x) + room > 32) {
+        return shift;
+    }
+    for [first, _] in &mut products {
+        *first = l.b.shift_left(*first, room);
+    }
+    shift + room
 }
 
 impl OffLegs {
