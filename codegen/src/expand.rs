@@ -31,7 +31,7 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
         Ok((Generated { graph, interface }, warnings)) => {
             let tracking = input.motor_file.iter().map(track);
             let name = surface.name.to_string();
-            // A compiler reads this, and takes longer for a named constant than for three numbers.
+            // A documented item costs the compiler more than its value wherever it is used.
             let graph = graph.without_constant_names();
             let code = Part::Emission.timed(|| write_rust(&graph, &interface, &name));
             // Tokens of the text are the compiler's own work where this is a macro.
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn macro_and_build_script_emit_the_same() {
+    fn macro_and_build_script_differ_in_how_constants_are_written_alone() {
         let folder = std::env::temp_dir().join(format!("hexagen-same-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         std::fs::write(folder.join("hub.toml"), include_str!("example.toml"))

@@ -16,17 +16,25 @@ pub use crate::word::Word;
 #[inline(always)]
 #[must_use]
 pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
-    let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
     if cfg!(target_arch = "riscv32") {
-        // The result and the bit below it are one upper word, where that leaves the coefficient, a constant then, in its own.
-        if shift == 32 && coefficient.0.unsigned_abs() < 1 << 30 {
-            let twice = i64::from(coefficient.0 << 1).wrapping_mul(i64::from(signal.0));
-            return (Word((twice >> 32) as i32) + 1) >> 1;
-        }
-        // Without a carry flag that bit costs less than a sum of 64 bits.
-        return Word((product >> shift) as i32) + (product >> (shift - 1) & 1) as i32;
+        return mul_round_without_carry(coefficient, signal, shift);
     }
+    let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
     Word((product.wrapping_add(1 << (shift - 1)) >> shift) as i32)
+}
+
+/// [`mul_round`] for cores without a carry flag, where a sum of 64 bits takes long; `coefficient` is a constant there.
+#[doc(hidden)]
+#[inline(always)]
+#[must_use]
+pub fn mul_round_without_carry(coefficient: Word, signal: Word, shift: u32) -> Word {
+    // Where twice the coefficient fits a word, the upper word of its product is the result and the bit below it.
+    if shift == 32 && coefficient.0.unsigned_abs() < 1 << 30 {
+        let twice = i64::from(coefficient.0 << 1).wrapping_mul(i64::from(signal.0));
+        return (Word((twice >> 32) as i32) + 1) >> 1;
+    }
+    let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
+    Word((product >> shift) as i32) + (product >> (shift - 1) & 1) as i32
 }
 
 /// As [`mul_round`], for products that fit 32 bits together with their rounding. `shift` is 1 to 30.

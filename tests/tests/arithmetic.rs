@@ -2,7 +2,8 @@
 
 use hexagen::arith::{
     Word, angle_fraction, angle_index, divide, divide_narrow, exceeding, lookup, mul_add_floor,
-    mul_floor, mul_limited, mul_round, mul_round_narrow, select, turn_over,
+    mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry, select,
+    turn_over,
 };
 use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
 use proptest::prelude::*;
@@ -48,8 +49,35 @@ fn natural(bits: u32) -> impl Strategy<Value = i32> {
 
 const TABLE: [i16; 8] = [5, -3, 32767, -32768, 0, 1, 2, 3];
 
+/// Words at the ends of what a product takes, and any others.
+fn factor() -> impl Strategy<Value = i32> {
+    const ENDS: [i32; 8] = [
+        i32::MIN,
+        i32::MIN + 1,
+        -(1 << 30),
+        1 - (1 << 30),
+        (1 << 30) - 1,
+        1 << 30,
+        i32::MAX - 1,
+        i32::MAX,
+    ];
+    prop_oneof![prop::sample::select(&ENDS[..]), word(32)]
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn products_without_a_carry_flag(c in factor(), x in factor(), shift in 1..63_u32) {
+        for shift in [shift, 32] {
+            let product = i128::from(c) * i128::from(x);
+            let exact = (product + (1 << (shift - 1))) >> shift;
+            // The generator proves that results fit a word.
+            if let Ok(exact) = i32::try_from(exact) {
+                prop_assert_eq!(mul_round_without_carry(Word(c), Word(x), shift).0, exact);
+            }
+        }
+    }
 
     #[test]
     fn extremes_of_words_that_lie_near(x in word(31), y in word(31)) {

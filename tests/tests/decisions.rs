@@ -25,16 +25,19 @@ const STEPS: u64 = 1_000_000;
 const STRIDE: u64 = 60;
 
 /// Variants of the paper's motor; of the others, the kinds with their defaults.
-const VARIANTS: [&str; 5] = [
+const VARIANTS: [&str; 6] = [
     "fcs-mpc:candidates=all",
     "fcs-mpc:candidates=three_phase",
     "fcs-mpc:off_leg=nominal",
     "fcs-mpc:delay=0",
     "phcc:candidates=three_phase",
+    "phcc:candidates=three_phase,emf=held",
 ];
 
 /// Words of state that move the demanded voltage.
-const MOVERS: [&str; 4] = ["e_a_prev", "e_b_prev", "v_a_prev", "v_b_prev"];
+const MOVERS: [&str; 6] = [
+    "e_a_prev", "e_b_prev", "v_a_prev", "v_b_prev", "due_a", "due_b",
+];
 
 /// Current of phases a, b in sectors 1 to 6, in units of the set-point (0: sector unknown).
 const CORNER: [[f64; 2]; 7] = [

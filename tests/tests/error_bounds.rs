@@ -8,7 +8,7 @@ use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 
 /// Drives that together have every block of a step.
-const VARIANTS: [&str; 10] = [
+const VARIANTS: [&str; 11] = [
     "pdcc",
     "pdcc:emf=model,saturation=nearest,integral=on",
     "pdcc:modulation=pair,saturation=keep_angle,word=16",
@@ -18,6 +18,7 @@ const VARIANTS: [&str; 10] = [
     "fcs-mpc",
     "fcs-mpc:candidates=all,modulated=on",
     "phcc",
+    "phcc:candidates=three_phase,emf=held",
     "pdcc:speed_loop=on",
 ];
 

@@ -60,6 +60,7 @@ const VARIANTS: [(&str, &str); 14] = [
         "fcs-mpc:emf=model,switching_weight=0.3A,torque_weight=2",
     ),
     ("fcs-mpc.two-steps", "fcs-mpc:horizon=2,emf=model"),
+    ("phcc.held", "phcc:off_leg=nominal,emf=held"),
     ("integral", "pdcc:emf=model,integral=on"),
     ("pi-pwm.six-step", "pi-pwm:six_step=on"),
     ("pi-pwm.plain", "pi-pwm:feed_forward=off,bandwidth=700Hz"),

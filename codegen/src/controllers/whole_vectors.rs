@@ -144,6 +144,7 @@ impl CurrentLoop<'_, '_> {
         numbers: Numbers,
         mut remembered: Remembered,
     ) {
+        let is_tabled = self.tables_left_over();
         let l = &mut *self.lowering;
         l.b.stage(
             "drive_legs",
@@ -154,8 +155,7 @@ impl CurrentLoop<'_, '_> {
             "remember_vector",
             &["What later steps need to know of the chosen vector."],
         );
-        let is_fixed = matches!(l.spec.inverter.bus, BusSource::Fixed);
-        if let (Some(held), true) = (&front.held, is_fixed) {
+        if let (Some(held), true) = (&front.held, is_tabled) {
             let left = tabled_left_over(l, self.options.word, held, (vector, numbers));
             remembered.extend(self.fold(held, left));
             self.remember(front, &command, None, None, remembered);
@@ -251,6 +251,7 @@ fn tabled_left_over(
             "left",
             "Phase voltage of the vector less the memory of the wishes",
         ];
+        // Two for four sixths that are half a word off each; of b two bands and the half of their difference besides.
         let left = look_up_volts(l, texts, &left, 4, vector);
         for x in 0..2 {
             l.b.name(["left_a", "left_b"][x], left[x]);
@@ -302,8 +303,11 @@ fn command(l: &mut Lowering<'_>, vector: Value, numbers: Numbers) -> Command {
             return l.b.literal(0);
         }
         let name = ["leg_a", "leg_b", "leg_c"][x];
-        let doc = "State of the leg by vector: 0 pulsed, 1 low, 2 off.";
-        let table = over_vectors(l, numbers, name, doc, |legs| match legs[x] {
+        let doc = format!(
+            "State of the leg, 0 pulsed, 1 low, 2 off, {}",
+            numbers.meaning()
+        );
+        let table = over_vectors(l, numbers, name, &doc, |legs| match legs[x] {
             1 => 0,
             -1 => 1,
             _ => 2,

@@ -4,6 +4,7 @@
 //! stage and are read where they are used. All else is a result of the stage that computes it if
 //! something outside uses it.
 
+use super::rows::WholeCommand;
 use super::signal::{Shape, Signal};
 use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -92,14 +93,17 @@ impl<'a> Context<'a> {
 
     /// Likewise, of a path whose flags to leave by are looked at together, behind the last of them: flags that do
     /// nothing else are words, which take no comparison each. None where a stage on the way is guarded: what it does
-    /// is not for periods that are left. `left_out` are values that need no computing.
+    /// is not for periods that are left. A command that is looked up as a `whole` is no stage's.
     pub(super) fn watched(
         program: &'a Program,
         function: &'a Function,
-        left_out: &[Value],
+        whole: Option<&WholeCommand<'_>>,
     ) -> Self {
         let mut context = Self::new(program, function);
-        context.left_out = left_out.iter().copied().collect();
+        if let Some(whole) = whole {
+            context.left_out = whole.entries.iter().copied().collect();
+            context.users[whole.index.index()].push(User::Other);
+        }
         if context.leaves_once() {
             let only = |flag: &Value| context.users[flag.index()] == [User::Other];
             context.alarms = function.leave.iter().copied().filter(only).collect();
@@ -227,16 +231,18 @@ impl<'a> Context<'a> {
     }
 
     /// The state word that the guarded stage may store itself: the join is its next value, it keeps its value where
-    /// the stage does not run, and nothing reads the old value later.
+    /// the stage does not run, nothing reads the old value later, and no flag that is still to come leaves the path.
     fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
         let Op::State(kept) = self.function.node(otherwise).op else {
             return None;
         };
+        let mut leave = self.function.leave.iter();
+        let stays = leave.all(|flag| flag.index() < stage.first);
         let is_next = self.users[join.index()].contains(&User::NextState(kept));
         let joins = stage.guard.as_ref().map_or(0, |guard| guard.joins.len());
         let behind = stage.end + joins;
         let read_before = |user: &User| matches!(user, User::Node(index) if *index < behind);
-        (is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
+        (stays && is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
     }
 
     /// Whether a value is more than the next one of a state word.

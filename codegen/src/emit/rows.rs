@@ -1,7 +1,7 @@
 //! How tables lie in memory: alone, or side by side as the columns of rows that one index reads.
 
 use super::path::output;
-use crate::ir::{Function, Op, Program, Table, TableId, Value};
+use crate::ir::{Function, Op, Paths, Program, Table, TableId, Value};
 
 /// The row that a table is a column of, where it has company there or its entries have a type of their own.
 pub(super) fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
@@ -36,9 +36,10 @@ impl<'a> WholeCommand<'a> {
     /// Bytes of a command, and what it is aligned to.
     const SIZE: usize = 8;
 
-    /// The one that a path of the step gives, if it does. (Where all legs are always pulsed compare values are as
-    /// quickly put together.)
-    pub(super) fn of(program: &'a Program, path: &Function) -> Option<Self> {
+    /// The one that the normal path of the step gives, if it does. Where no leg is ever off there are no columns of
+    /// states, and the command is put together.
+    pub(super) fn of(program: &'a Program, paths: &Paths) -> Option<Self> {
+        let path = &paths.normal;
         let outputs = [
             "compare_a",
             "compare_b",
@@ -69,7 +70,12 @@ impl<'a> WholeCommand<'a> {
         let mut kept = path.next_state.iter();
         let is_used =
             operands.any(|value| is_entry(&value)) || kept.any(|(_, value)| is_entry(value));
-        (!is_used && is_read_once(path, &tables)).then_some(Self {
+        let mut elsewhere = program.setters.iter().chain(&paths.exit);
+        let is_alone = tables.iter().all(|&table| reads(path, table) == 1)
+            && elsewhere.all(|path| tables.iter().all(|&table| reads(path, table) == 0));
+        let count = columns.first()?.values.len();
+        let is_even = self::columns(program, row).all(|column| column.values.len() == count);
+        (!is_used && is_alone && is_even).then_some(Self {
             row,
             index,
             columns,
@@ -83,15 +89,14 @@ impl<'a> WholeCommand<'a> {
     }
 }
 
-/// Whether a path looks up each of the tables, and that at one place.
-fn is_read_once(path: &Function, tables: &[TableId]) -> bool {
-    let read = path.nodes.iter().filter_map(|node| match node.op {
-        Op::Lookup { table, .. } => Some(table),
-        _ => None,
-    });
-    let read: Vec<TableId> = read.collect();
-    let times = |table: &TableId| read.iter().filter(|read| *read == table).count();
-    tables.iter().all(|table| times(table) == 1)
+/// How often a function looks a table up.
+fn reads(function: &Function, sought: TableId) -> usize {
+    let is_sought = |op: &Op| matches!(op, Op::Lookup { table, .. } if *table == sought);
+    function
+        .nodes
+        .iter()
+        .filter(|node| is_sought(&node.op))
+        .count()
 }
 
 /// Bytes of the smallest elements that hold a table.
@@ -136,8 +141,7 @@ pub(super) fn padding(
 
 /// Bytes of all tables of a program.
 pub(super) fn bytes(program: &Program) -> usize {
-    let paths = program.step.paths();
-    let whole = WholeCommand::of(program, &paths.normal);
+    let whole = WholeCommand::of(program, &program.step.paths());
     let whole = whole.as_ref();
     let mut known = vec![];
     let mut sum = 0;

@@ -54,7 +54,8 @@ impl VerifiedGraph {
         &self.0
     }
 
-    /// The same program with nameless constants: like other values without a name, they stand where they are used.
+    /// The same program with nameless constants, for the text of a macro alone: like other values without a name, they
+    /// stand where they are used.
     pub(crate) fn without_constant_names(mut self) -> Self {
         for constant in &mut self.0.constants {
             constant.name.clear();

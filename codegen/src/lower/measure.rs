@@ -36,7 +36,7 @@ pub struct Hall {
     /// Sector of the last sample.
     pub sector_prev: Value,
     /// The state word of that.
-    pub word: StateId,
+    pub sector_prev_word: StateId,
     /// Flag: the sector is not the last sample's, which may have had none.
     pub changed: Value,
     /// Flag: the sector changed.
@@ -178,7 +178,7 @@ impl Lowering<'_> {
         Hall {
             sector,
             sector_prev,
-            word,
+            sector_prev_word: word,
             changed,
             edge,
         }

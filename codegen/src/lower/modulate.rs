@@ -50,7 +50,7 @@ pub struct OffLeg {
 pub struct PairModulation {
     /// Sector in force at the last sample, where that is not the sample's own.
     pub sector_prev: Option<StateId>,
-    /// Samples for which a commutation may still last.
+    /// Samples for which a commutation may last behind the last one.
     pub left: StateId,
 }
 
@@ -182,7 +182,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Samples left to a commutation before this one: those of `left`, or where `began` holds all of them.
+    /// Samples for which a commutation may last, this one included: those of `left`, or where `began` holds all of them.
     pub fn commutation_kept(&mut self, began: Value, left: Value, timeout: u32) -> Value {
         let whole = self.whole_commutation(timeout);
         let kept = self.b.select(began, whole, left);
@@ -241,7 +241,7 @@ impl Lowering<'_> {
         });
         self.b.stage(
             "detect_commutation",
-            &["Whether the last sample left any to this commutation."],
+            &["Whether a commutation begins, or may last on."],
         );
         let phase = self.b.lookup(phases, sector);
         self.b.name("outgoing_phase", phase);
@@ -281,17 +281,18 @@ impl Lowering<'_> {
         self.b.name("commutation_goes_on", goes_on);
         let one = self.b.literal(1);
         let less = self.b.sub(kept, one);
-        let over = self.zero();
-        let less = self.b.max(less, over);
-        let over = self.zero();
-        let followed = self.b.select(goes_on, less, over);
+        // The guard leaves no 0; intervals do not know of it.
+        let zero = self.zero();
+        let less = self.b.max(less, zero);
+        let zero = self.zero();
+        let followed = self.b.select(goes_on, less, zero);
         self.b.name("left_while_flowing", followed);
-        let one = self.b.literal(1);
-        let flowing = self.b.select(goes_on, one, over);
-        self.b.name("flowing", flowing);
+        let (one, zero) = (self.b.literal(1), self.zero());
+        let going_on = self.b.select(goes_on, one, zero);
+        self.b.name("commutating_now", going_on);
         let [left, word] = self.b.join([
             ("commutation_left_now", followed, none_left),
-            ("commutating", flowing, none),
+            ("commutating", going_on, none),
         ]);
         self.b
             .stage("find_commutation", &["Whether a commutation goes on."]);

@@ -150,7 +150,10 @@ impl Lowering<'_> {
             "sense_direction",
             hall.changed,
             true,
-            &["Which way the rotor turned at this edge: 1 to the next sector, -1 to the one before; a jump and the first sample change nothing."],
+            &[
+                "What a new sector brings: the direction of rotation, 1 to the next sector, -1 to the one before (a jump and the first",
+                "sample change nothing), and, where it is followed, a commutation that begins.",
+            ],
         );
         let seen = self.turned(hall, old).direction;
         let mut results = vec![
@@ -165,7 +168,7 @@ impl Lowering<'_> {
         }
         let joined = self.b.join_all(&results);
         self.b.set_state(direction, joined[0]);
-        self.b.set_state(hall.word, joined[1]);
+        self.b.set_state(hall.sector_prev_word, joined[1]);
         (joined[0], joined.get(2).copied())
     }
 

@@ -304,10 +304,10 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     Unnoticed {
         because: "any number but 0 says that a commutation goes on",
         drives: &[HOVERBOARD, TEKNIC, FCS_PAPER, FCS_TEKNIC],
-        faults: &[(&["follow_commutation: in flowing"], &["2 for 1"])],
+        faults: &[(&["follow_commutation: in commutating_now"], &["2 for 1"])],
     },
     Unnoticed {
-        because: "of no sample none is left, looked at or not, and nothing else is asked of the commutation",
+        because: "with no sample left the stage changes nothing, run or not, and nothing else is asked of the commutation",
         drives: &[FCS_HOVERBOARD, FCS_ESTUN],
         faults: &[(&["detect_commutation: in commutation_lasts"], &["-1 for 0"])],
     },

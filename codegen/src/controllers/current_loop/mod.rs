@@ -21,7 +21,7 @@ use crate::lower::{
     Scale,
 };
 use crate::scaling::Lowered;
-use crate::spec::{EmfSource, LoopOptions, Reference, Spec};
+use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
 
 /// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
 pub fn lower_with(
@@ -169,9 +169,10 @@ impl CurrentLoop<'_, '_> {
                 let (direction, kept) = l.sense_direction(word, hall, commutation);
                 (Some(direction), kept)
             }
+            // With an angle the edge is looked at in every period.
             (rotor, _, hall) => {
                 if let Some(hall) = hall {
-                    l.b.set_state(hall.word, hall.sector);
+                    l.b.set_state(hall.sector_prev_word, hall.sector);
                 }
                 (rotor.as_ref().map(|rotor| rotor.direction), None)
             }
@@ -190,14 +191,14 @@ impl CurrentLoop<'_, '_> {
                     let left = l.b.state(pair.left);
                     l.commutation_kept(began, left, timeout)
                 });
-                let (words, outgoing) = l.commutation(
+                let (commutation, outgoing) = l.commutation(
                     [sector, kept, direction, j],
                     pair.left,
                     &currents,
                     options.commutation_threshold,
                     timeout,
                 );
-                (Some(words), Some(outgoing))
+                (Some(commutation), Some(outgoing))
             }
             _ => (None, None),
         };
@@ -263,6 +264,11 @@ impl CurrentLoop<'_, '_> {
     /// Whether the law predicts with the EMF of the last period.
     fn holds_emf(&self) -> bool {
         self.needs.predicts() && self.options.emf == EmfSource::Held
+    }
+
+    /// Whether tables have what a whole vector leaves to later steps: with a fixed bus that is known beforehand.
+    pub fn tables_left_over(&self) -> bool {
+        self.holds_emf() && matches!(self.lowering.spec.inverter.bus, BusSource::Fixed)
     }
 
     /// Where an off leg's terminal sits.

@@ -17,7 +17,7 @@ pub struct Needs {
     pub emf: EmfUse,
     /// What the modelled EMF lacks, integrated.
     pub integral: bool,
-    /// The folded words for a memory of its own, of so many words of voltage at most; 0 without one.
+    /// Greatest magnitude of what the law itself adds to the folded words, words of voltage; 0 where it adds nothing.
     pub memory: i64,
 }
 

@@ -10,7 +10,7 @@ use crate::diagnostics::engineering;
 use crate::ir::{Comparison, Interval, StateId, Value};
 use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
-use crate::spec::{BusSource, EmfSource, PhccCandidates, PhccSpec, Spec};
+use crate::spec::{PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -18,10 +18,6 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
         let bands = [1.0, 3.0_f64.sqrt()]
             .map(|share| lowering.volts_word(share * design.k_di * options.band));
         let common = &options.common;
-        // With a fixed bus a table has what a vector leaves to the next error, and what its wishes leave goes into it.
-        let folds = common.emf == EmfSource::Held
-            && common.delay == 1
-            && matches!(spec.inverter.bus, BusSource::Fixed);
         let mut step = CurrentLoop {
             lowering,
             options: common,
@@ -35,9 +31,14 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
                     EmfUse::None
                 },
                 integral: false,
-                memory: if folds { bands[1] + 1 } else { 0 },
+                memory: 0,
             },
         };
+        // Where a table has what a vector leaves to the next error, what its wishes leave goes into that.
+        let folds = step.tables_left_over();
+        if folds {
+            step.needs.memory = bands[1] + 1;
+        }
         let front = step.front(set_point);
         let memory = (!folds).then(|| {
             [("h_a", bands[0]), ("h_b", bands[1])].map(|(name, band)| {
@@ -68,19 +69,20 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
     })
 }
 
-/// What wishes leave to the next errors of phases a and b, words of voltage: the memory of alpha, which is phase a, and
-/// what makes that of beta, twice phase b and phase a, together with it.
+/// What wishes add to the next errors of phases a and b, words of voltage: alpha's memory to a; to b half of what beta's
+/// exceeds that by, as beta is 2 b + a.
 fn folded_memory(bands: [i64; 2]) -> [[i64; 2]; WISHES] {
     std::array::from_fn(|wishes| {
-        let [alpha, beta] = [0, 1].map(|axis| {
-            if wishes >> axis & 1 == 1 {
-                -bands[axis] - 1
-            } else {
-                bands[axis]
-            }
-        });
-        [alpha, (beta - alpha) >> 1]
+        let falls = [0, 1].map(|axis| wishes >> axis & 1 == 1);
+        let [alpha, beta] = [0, 1].map(|axis| wish(bands[axis], falls[axis]));
+        // Not a word beyond the band, where the difference is odd.
+        [alpha, (beta - alpha + i64::from(falls[1])) >> 1]
     })
+}
+
+/// What an axis adds to its next error, words of voltage; `band` is half of it.
+fn wish(band: i64, falls: bool) -> i64 {
+    if falls { -band - 1 } else { band }
 }
 
 impl CurrentLoop<'_, '_> {
@@ -167,7 +169,7 @@ fn compare_with_bands(
     let folded: &[&str] = if memory.is_none() {
         &[
             "",
-            "What is due to an error has half the band of the last wish in it: no more than the sign is left to look at.",
+            "An error already holds the memory of the last wish, with what is due to it, so that its sign decides.",
         ]
     } else {
         &[]
@@ -215,9 +217,9 @@ fn next_memory(
     ][x];
     let half = engineering(options.band, "A");
     let doc = format!("Half width of the band of {half} as a voltage");
-    let above = l.voltage(name, band, &doc);
+    let above = l.voltage(name, wish(band, false), &doc);
     let doc = format!("Half width of the band of {half} and one word more, negative, as a voltage");
-    let below = l.voltage(other, -band - 1, &doc);
+    let below = l.voltage(other, wish(band, true), &doc);
     let memory = l.b.select(falls, below, above);
     l.b.name(["memory_alpha", "memory_beta"][x], memory)
 }
@@ -253,14 +255,17 @@ fn look_up(
     })
     .collect();
     let (what, name) = match numbers {
-        Numbers::Choices(_) => ("Four times the vector, and the wishes,", "choice"),
+        Numbers::Choices(_) => (
+            "4 vector + 2 if beta shall fall + 1 if alpha shall",
+            "choice",
+        ),
         _ => ("Vector", "vector"),
     };
     let table = l.b.program.table(
         "switching",
         table,
         &[
-            format!("{what} by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,"),
+            format!("{what}, by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,"),
             "4 if it commutates, 2 if beta shall fall, 1 if alpha shall.".to_owned(),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],

@@ -14,7 +14,7 @@ use super::names::{docs, loaded, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
 use super::tables::look_up_command;
-use crate::ir::{Function, Paths, Program, Value, Word};
+use crate::ir::{Function, Paths, Program, Word};
 
 /// A function and the functions of its stages.
 pub(super) struct Emitted {
@@ -43,8 +43,7 @@ pub(super) fn emit_step(
     Paths { normal, exit }: &Paths,
     whole: Option<&WholeCommand<'_>>,
 ) -> Emitted {
-    let entries = whole.map_or(&[] as &[Value], |whole| &whole.entries);
-    let context = Context::watched(program, normal, entries);
+    let context = Context::watched(program, normal, whole);
     let path = PathFunctions::new(&context, &[]);
     let exit = exit
         .as_ref()

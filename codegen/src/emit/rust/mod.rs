@@ -97,7 +97,7 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         (header, before, behind, docs(&interface.doc))
     };
     let paths = program.step.paths();
-    let whole = WholeCommand::of(program, &paths.normal);
+    let whole = WholeCommand::of(program, &paths);
     let step = || emit_step(program, &paths, whole.as_ref());
     let (step, (header, before, behind, docs)) = at_once(step, around);
     let (step_main, step_stages) = (&step.main, &step.stages);

@@ -118,27 +118,27 @@ fn emit_rows(program: &Program, row: &'static str, whole: Option<&WholeCommand<'
     let apart = columns(program, row)
         .filter(|table| whole_here.is_none_or(|whole| !whole.holds(table)))
         .map(|table| Field::of_table(row, table));
-    let all: Vec<Field> = whole_here
+    let every: Vec<Field> = whole_here
         .map(Field::of_command)
         .into_iter()
         .chain(apart)
         .collect();
-    let count = all.iter().map(|field| field.entries.len()).max();
+    let count = every.iter().map(|field| field.entries.len()).max();
     let count = count.unwrap_or(0);
     let none = quote!(0);
     let entries = (0..count).map(|index| {
-        let fields = all.iter().map(|field| {
+        let fields = every.iter().map(|field| {
             let (name, entry) = (&field.name, field.entries.get(index).unwrap_or(&none));
             quote!(#name: #entry)
         });
         quote!(#name { #(#fields),* })
     });
-    let fields = all.iter().map(
+    let fields = every.iter().map(
         |Field {
              name, doc, element, ..
          }| quote!(#doc #name: #element),
     );
-    let names: Vec<String> = all.iter().map(|field| field.name.to_string()).collect();
+    let names: Vec<String> = every.iter().map(|field| field.name.to_string()).collect();
     let doc = docs(&[format!("What one {row} tells.")]);
     let layout = padding(program, row, whole).map(|bytes| quote!(#[repr(align(#bytes))]));
     let alike = share_a_word(&names)

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::env;
 
 /// Variants that together have every block of a step.
-const VARIANTS: [&str; 15] = [
+const VARIANTS: [&str; 16] = [
     "pdcc",
     "pdcc:emf=model,saturation=nearest",
     "pdcc:emf=model,modulation=pair,saturation=keep_angle,advance=1.5",
@@ -32,6 +32,7 @@ const VARIANTS: [&str; 15] = [
     "fcs-mpc:candidates=all,modulated=on",
     "phcc",
     "phcc:word=16",
+    "phcc:off_leg=nominal,emf=held",
     "pdcc:speed_loop=on",
 ];
 

@@ -121,5 +121,6 @@ impl Phcc {
 /// What the memory of the axes adds to the words that are due, phases a and b (section 12).
 #[inline]
 pub fn in_due([h_a, h_b]: [Word; 2]) -> [Word; 2] {
-    [h_a, floor_shift(h_b - h_a, 1)]
+    let falls = word(if h_b < 0.0 { 1.0 } else { 0.0 });
+    [h_a, floor_shift(h_b - h_a + falls, 1)]
 }
