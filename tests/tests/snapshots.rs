@@ -30,7 +30,7 @@ const MOTORS_OF_KINDS: [&str; 2] = ["velineon-3500", "estun-emj-04apb22"];
 const MOTOR_WITH_INERTIA: &str = "hurst-long";
 
 /// Variants of the paper's motor: the name in the snapshot's file, and the options.
-const VARIANTS: [(&str, &str); 14] = [
+const VARIANTS: [(&str, &str); 15] = [
     ("pair", "pdcc:modulation=pair"),
     (
         "model-advance",
