@@ -131,6 +131,12 @@ fn run(program: &Program, seed: u64) -> f64 {
         for (_, result) in &function.next_state {
             most = most.max(share(bounds, *result, &values));
         }
+        // Errors are stated of a step that controls: what is known of its currents holds for no other.
+        let guards = function.stages.iter().flat_map(|stage| &stage.guard);
+        let mut exits = guards.filter(|guard| guard.exit);
+        if exits.any(|guard| holds(guard.condition, true)) {
+            continue;
+        }
         for quantity in &function.quantities {
             most = most.max(share(bounds, quantity.value, &values));
         }
