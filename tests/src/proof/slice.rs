@@ -144,6 +144,7 @@ impl<'p> Slice<'p> {
                 }
             }
             Op::MulFloor { a, b, shift } => {
+                let (a, shift) = self.unshifted(a, shift);
                 let (a, b) = (self.word(a, path)?, self.word(b, path)?);
                 path.product(&a, &b, shift)
             }
@@ -152,6 +153,13 @@ impl<'p> Slice<'p> {
                 second: [c, d],
                 shift,
             } => {
+                let (part, rest) = self.unshifted(a, shift);
+                let (other, same) = self.unshifted(c, shift);
+                let (a, c, shift) = if rest == same {
+                    (part, other, rest)
+                } else {
+                    (a, c, shift)
+                };
                 let [a, b, c, d] = [a, b, c, d].map(|factor| self.word(factor, path));
                 path.sum_of_products([[&a?, &b?], [&c?, &d?]], shift)
             }
@@ -218,6 +226,14 @@ impl<'p> Slice<'p> {
             | Op::Join { .. } => panic!("{op:?} is no part of a slice"),
         };
         Ok(Symbol::Word(word))
+    }
+
+    /// What a factor is a shift of, and the shift that is left to its product: floor(2^n x y / 2^s) is floor(x y / 2^(s - n)).
+    fn unshifted(&self, factor: Value, shift: u32) -> (Value, u32) {
+        match self.step().node(factor).op {
+            Op::ShiftLeft(whole, bits) if bits <= shift => (whole, shift - bits),
+            _ => (factor, shift),
+        }
     }
 
     fn compare(
