@@ -301,14 +301,9 @@ impl CurrentLoop<'_, '_> {
         }
         l.product_format("score", shift, "products of two voltages in scores");
         let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
-        // Against a three-phase vector ties are the rule, which the proof of the choice follows through the products as they are.
-        let shift = if three_phase.is_none() {
-            let products = factors.iter_mut().flatten();
-            let products = products.chain([&mut rival.1]).chain(change.as_mut());
-            as_upper_words(l, products.collect(), shift)
-        } else {
-            shift
-        };
+        let products = factors.iter_mut().flatten();
+        let products = products.chain([&mut rival.1]).chain(change.as_mut());
+        let shift = as_upper_words(l, products.collect(), shift);
         let mut best: Option<Candidate> = None;
         for (order, [first, second]) in factors.into_iter().enumerate() {
             let score = l.b.mul_add_floor(first, second, shift);
