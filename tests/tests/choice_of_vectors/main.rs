@@ -421,6 +421,9 @@ impl Subject {
         let mut key = format!("{candidates:?} {modulated} {horizon} {counts_changes} {tables:?}\n");
         // The proof takes the products' shift for a name; that it is the right one is seen here.
         let shift = format!(">> {})", self.shift);
+        // As upper words they have the rest of a word's bits before them; one or two are shifts of their own, too.
+        let room = 32_u32.checked_sub(self.shift).filter(|&room| room > 2);
+        let raised = room.map(|room| format!(" << {room}"));
         let mut is_inside = false;
         for line in text.lines() {
             if !line.starts_with("    ") {
@@ -428,6 +431,10 @@ impl Subject {
             } else if is_inside {
                 let line = line.split("  ;").next().unwrap_or_default();
                 let line = line.replace(&shift, ">> score)");
+                let line = match &raised {
+                    Some(raised) if line.ends_with(raised) => line.replace(raised, " << room"),
+                    _ => line,
+                };
                 for word in line.split(' ').filter(|word| !word.is_empty()) {
                     // Values without name are numbered over the whole step.
                     let parts = word.split_once('%').map(|(before, rest)| {
