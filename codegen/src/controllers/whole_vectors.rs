@@ -195,17 +195,18 @@ fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
         .collect()
 }
 
-/// Looks up phases a and b of a voltage of the chosen vector, in words, at most so many from the exact one; `doc` says
-/// what it is.
+/// Looks up phases a and b of a voltage of the chosen vector, in words, at most so many from the exact one, and names them;
+/// `meaning` says what it is.
 fn look_up_volts(
     l: &mut Lowering<'_>,
+    signals: [&str; 2],
     [name, meaning]: [&str; 2],
     volts: &Volts,
     within: u32,
     (vector, numbers): (Value, Numbers),
 ) -> [Value; 2] {
-    ["a", "b"].map(|phase| {
-        let x = usize::from(phase == "b");
+    [0, 1].map(|x| {
+        let phase = ["a", "b"][x];
         let values = volts.iter().map(|volts| volts[x] as i32).collect();
         let row = numbers.row();
         let doc = format!("{meaning}, by {row}, words of voltage.");
@@ -213,7 +214,8 @@ fn look_up_volts(
         let table = format!("{row}_{name}_{phase}");
         let table = l.b.program.rounded_table(&table, values, exact, &[doc]);
         l.b.program.put_in_row(table, row);
-        l.b.lookup(table, vector)
+        let entry = l.b.lookup(table, vector);
+        l.b.name(signals[x], entry)
     })
 }
 
@@ -252,10 +254,7 @@ fn tabled_left_over(
             "Phase voltage of the vector less the memory of the wishes",
         ];
         // Two for four sixths that are half a word off each; of b two bands and the half of their difference besides.
-        let left = look_up_volts(l, texts, &left, 4, vector);
-        for x in 0..2 {
-            l.b.name(["left_a", "left_b"][x], left[x]);
-        }
+        let left = look_up_volts(l, ["left_a", "left_b"], texts, &left, 4, vector);
         return LeftOver {
             left,
             ..held.unfaded(later)
@@ -271,16 +270,12 @@ fn tabled_left_over(
         "left",
         "What is left of the vector's voltage one period later, a v",
     ];
-    let left = look_up_volts(l, texts, &left, 3, vector);
+    let left = look_up_volts(l, ["left_a", "left_b"], texts, &left, 3, vector);
     let texts = [
         "both",
         "The vector's voltage and what is left of it one period later, (1 + a) v",
     ];
-    let both = look_up_volts(l, texts, &both, 5, vector);
-    for x in 0..2 {
-        l.b.name(["left_a", "left_b"][x], left[x]);
-        l.b.name(["both_a", "both_b"][x], both[x]);
-    }
+    let both = look_up_volts(l, ["both_a", "both_b"], texts, &both, 5, vector);
     LeftOver {
         left,
         both: Some(both),
@@ -353,12 +348,9 @@ fn voltage(
 
 /// The same from tables, where a sixth of the bus is `unit` words.
 fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: (Value, Numbers)) -> [Value; 2] {
+    let names = ["v_a_chosen", "v_b_chosen"];
     let texts = ["volts", "Phase voltage of the vector"];
-    let volts = look_up_volts(l, texts, &fixed_volts(vector.1, unit), 2, vector);
-    for x in 0..2 {
-        l.b.name(["v_a_chosen", "v_b_chosen"][x], volts[x]);
-    }
-    volts
+    look_up_volts(l, names, texts, &fixed_volts(vector.1, unit), 2, vector)
 }
 
 /// The terminals that the chosen vector drives, and which leg it turns off.
