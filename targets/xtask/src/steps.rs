@@ -290,10 +290,16 @@ pub fn run(steps: &[Step]) -> Result<(), String> {
         }
         println!("== {}: cargo {}", step.name, step.arguments.join(" "));
         let begin = Instant::now();
-        let status = Command::new(&cargo)
+        let mut command = Command::new(&cargo);
+        command
             .args(&step.arguments)
             .envs(step.environment.iter().copied())
-            .current_dir(root)
+            .current_dir(root);
+        if env::var_os("CI").is_some() {
+            // What is built once is built sooner, and on a third of the disk less, without notes for the next time.
+            command.env("CARGO_INCREMENTAL", "0");
+        }
+        let status = command
             .status()
             .map_err(|error| format!("cannot run cargo: {error}"))?;
         println!(
