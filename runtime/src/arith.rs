@@ -132,7 +132,7 @@ pub fn row<T, const N: usize>(rows: &[T; N], index: Word) -> &T {
     &rows[index.0 as usize & (N - 1)]
 }
 
-/// Not 0 where the magnitude of one of `x`, `y` and `sum`, which is `x + y`, is more than `limit`, which is not negative.
+/// Not 0 where the magnitude of one of `x`, `y` and `sum`, which is `x + y`, is more than `limit`, which is at least -1.
 ///
 /// Of `x`, `y` and `-sum`, which add up to 0, those above 0 add up to the largest magnitude of the three.
 #[inline(always)]

@@ -275,7 +275,7 @@ fn operations(sheet: &mut Sheet, program: &Program) {
             Cost::of_stage(step, stage),
         );
     }
-    let cost = PathCost::of_function(step);
+    let cost = PathCost::of_function(step, &program.tables);
     row_of_costs(sheet, "step, normal path", "", cost.normal);
     row_of_costs(sheet, "step, worst case", "", cost.worst);
     for setter in &program.setters {
@@ -283,7 +283,7 @@ fn operations(sheet: &mut Sheet, program: &Program) {
             sheet,
             &format!("`{}`", setter.name),
             "outside the step",
-            PathCost::of_function(setter).worst,
+            PathCost::of_function(setter, &program.tables).worst,
         );
     }
 }

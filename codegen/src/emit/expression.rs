@@ -385,7 +385,7 @@ impl<'a> Scope<'a> {
         alike.then_some(Expression::Call(Primitive::Exceeding, operands, None))
     }
 
-    /// The word and the limit whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
+    /// The word and the limit, at least -1, whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
     fn range_test(&self, above: Value, below: Value) -> Option<[Value; 2]> {
         let unnamed = |value: Value| {
             let node = self.node(value);
@@ -402,7 +402,7 @@ impl<'a> Scope<'a> {
         let is_limit = other == limit
             || matches!(self.node(limit).op, Op::Constant(_))
                 && self.node(other).op == self.node(limit).op;
-        (x == again && is_limit && self.interval(limit).low >= 0).then_some([x, limit])
+        (x == again && is_limit && self.interval(limit).low >= -1).then_some([x, limit])
     }
 
     /// Two words and the limit that the flags compare them with, `limit < x` and `limit < y`, where one comparison

@@ -62,15 +62,21 @@ pub(super) fn params_read(function: &Function) -> Vec<usize> {
     read.collect()
 }
 
-/// Names of the set-point words and of the inputs that a function reads.
-pub(super) fn names_read<'p>(program: &'p Program, function: &'p Function) -> Vec<&'p str> {
+/// Names of the set-point words that a function reads.
+pub(super) fn words_read<'p>(program: &'p Program, function: &Function) -> Vec<&'p str> {
     let words = params_read(function).into_iter();
-    let words = words.map(|index| program.params[index].name.as_str());
+    words
+        .map(|index| program.params[index].name.as_str())
+        .collect()
+}
+
+/// Names of the inputs that a function reads.
+pub(super) fn inputs_read(function: &Function) -> Vec<&str> {
     let inputs = function.nodes.iter().filter_map(|node| match node.op {
         Op::Input(n) => Some(function.inputs[n as usize].name.as_str()),
         _ => None,
     });
-    words.chain(inputs).collect()
+    inputs.collect()
 }
 
 /// What a path leaves behind.

@@ -141,7 +141,7 @@ pub(super) fn padding(
 
 /// Bytes of all tables of a program.
 pub(super) fn bytes(program: &Program) -> usize {
-    let whole = WholeCommand::of(program, &program.step.paths());
+    let whole = WholeCommand::of(program, &program.step.paths(&program.tables));
     let whole = whole.as_ref();
     let mut known = vec![];
     let mut sum = 0;

@@ -9,7 +9,7 @@ use crate::ir::{Input, Op, PathCost, Program};
 /// The header: the interface's, what a step costs, how far it is from the ideal one at most, and the
 /// specification that all of it was made from.
 pub(super) fn header(program: &Program, interface: &Interface) -> Vec<String> {
-    let cost = PathCost::of_function(&program.step);
+    let cost = PathCost::of_function(&program.step, &program.tables);
     let mut lines = interface.header.clone();
     if cost.worst.total() > 0 {
         lines.extend([

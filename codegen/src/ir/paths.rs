@@ -4,7 +4,7 @@
 //! valid), and operators that only guard against the contrary fall away. Both paths compute what the whole function
 //! computes, so the intervals that were verified for it hold for them.
 
-use super::graph::{Function, Guard};
+use super::graph::{Function, Guard, Table};
 use super::op::{Comparison, Kind, Op, Value};
 
 /// The paths of a function.
@@ -17,8 +17,8 @@ pub struct Paths {
 }
 
 impl Function {
-    /// Both paths.
-    pub fn paths(&self) -> Paths {
+    /// Both paths, of a function that looks up these tables.
+    pub fn paths(&self, tables: &[Table]) -> Paths {
         let is_exit = |guard: &Guard| guard.exit;
         let position = self
             .stages
@@ -30,8 +30,8 @@ impl Function {
                 exit: None,
             },
             Some(exit) => Paths {
-                normal: Path::new(self, exit, false).function(),
-                exit: Some(Path::new(self, exit, true).function()),
+                normal: Path::new(self, tables, exit, false).function(),
+                exit: Some(Path::new(self, tables, exit, true).function()),
             },
         }
     }
@@ -69,6 +69,7 @@ fn orders(how: Comparison, holds: bool) -> Orders {
 /// A function on its way to one of its paths.
 struct Path<'f> {
     whole: &'f Function,
+    tables: &'f [Table],
     result: Function,
     exit: usize,
     taken: bool,
@@ -78,18 +79,22 @@ struct Path<'f> {
     known: Vec<Option<bool>>,
     /// Pairs of words of which the order is known here.
     compared: Vec<(Value, Value, Orders)>,
+    /// Flags that say nothing beside the one that they are combined with.
+    told: Vec<Value>,
 }
 
 impl<'f> Path<'f> {
-    fn new(whole: &'f Function, exit: usize, taken: bool) -> Self {
+    fn new(whole: &'f Function, tables: &'f [Table], exit: usize, taken: bool) -> Self {
         Self {
             whole,
+            tables,
             result: whole.clone(),
             exit,
             taken,
             alias: (0..whole.nodes.len() as u32).map(Value).collect(),
             known: vec![None; whole.nodes.len()],
             compared: vec![],
+            told: vec![],
         }
     }
 
@@ -98,6 +103,8 @@ impl<'f> Path<'f> {
         let condition = exit.guard.as_ref().map(|guard| guard.condition);
         let flags = condition.and_then(|flag| self.whole.disjuncts(flag));
         let flags = flags.unwrap_or_default();
+        let told = flags.iter().filter_map(|&flag| self.told_by_other(flag));
+        self.told = told.collect();
         for (number, stage) in self.whole.stages.iter().enumerate() {
             for index in stage.first..stage.end {
                 self.simplify(index);
@@ -106,7 +113,8 @@ impl<'f> Path<'f> {
             // What a stage checks is known behind it.
             if !self.taken {
                 let inside = |flag: &&Value| (stage.first..stage.end).contains(&flag.index());
-                for &flag in flags.iter().filter(inside) {
+                let told = self.told.clone();
+                for &flag in flags.iter().chain(&told).filter(inside) {
                     self.assume(flag, false);
                 }
             }
@@ -121,7 +129,7 @@ impl<'f> Path<'f> {
         // Errors are stated for the whole function.
         path.quantities.clear();
         if !self.taken {
-            path.leave = flags;
+            path.leave = flags.iter().map(|flag| alias[flag.index()]).collect();
         }
         self.result.prune();
         self.result
@@ -186,6 +194,9 @@ impl<'f> Path<'f> {
             (Some(_), Some(_)) => self.known[value.index()] = Some(!absorbing),
             (Some(_), None) => self.replace(value, flags[1]),
             (None, Some(_)) => self.replace(value, flags[0]),
+            (None, None) if self.told.contains(&flags[1]) && absorbing => {
+                self.replace(value, flags[0]);
+            }
             (None, None) => {}
         }
     }
@@ -208,6 +219,43 @@ impl<'f> Path<'f> {
         if heir.name.is_empty() && !matches!(heir.op, Op::Constant(_) | Op::Literal(_)) {
             heir.name = name;
         }
+    }
+
+    /// The second of the flags that `flag` combines, where the first holds wherever it does: the second says that a
+    /// table's entry is some number; the first that a magnitude is above a level from the same row, and there such a
+    /// level is below all magnitudes.
+    fn told_by_other(&self, flag: Value) -> Option<Value> {
+        let op = |value: Value| self.whole.node(value).op;
+        let entry = |value: Value| match op(value) {
+            Op::Lookup { table, index } => Some((&self.tables[table.index()].values, index)),
+            _ => None,
+        };
+        let Op::Or(first, second) = op(flag) else {
+            return None;
+        };
+        let (mut above, mut below) = (first, second);
+        while let Op::Or(a, b) = op(above) {
+            (above, below) = (a, b);
+        }
+        let (
+            Op::Compare(Comparison::Equal, code, number),
+            Op::Compare(Comparison::Less, level, x),
+            Op::Compare(Comparison::Less, again, lower),
+        ) = (op(second), op(above), op(below))
+        else {
+            return None;
+        };
+        let ((codes, index), (levels, same)) = (entry(code)?, entry(level)?);
+        let Op::Literal(number) = op(number) else {
+            return None;
+        };
+        let is_below = |(&code, &level): (&i32, &i32)| code != number || level < 0;
+        let is_told = again == x
+            && op(lower) == Op::Neg(level)
+            && index == same
+            && codes.len() == levels.len()
+            && codes.iter().zip(levels).all(is_below);
+        is_told.then_some(second)
     }
 
     fn assume(&mut self, flag: Value, holds: bool) {

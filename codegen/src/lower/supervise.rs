@@ -80,23 +80,20 @@ impl Lowering<'_> {
     ) -> Rest {
         self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
         let mode = self.b.state(words.mode);
-        let trip = self.ampere_word(self.spec.inverter.trip_current);
-        let level = engineering(self.spec.inverter.trip_current, "A");
-        let doc = format!("Trip level of the phase currents: {level}, words of current.");
+        let level = self.trip_level(sample);
         // Phase c is told by its negative.
         let [i_a, i_b, _] = currents.phases;
         let sum = self.b.add(i_a, i_b);
         self.b.name("i_sum", sum);
         let [a, b, c] = [i_a, i_b, sum].map(|current| {
-            let high = self.number("i_trip", trip, &doc);
-            let above = self.b.compare(Comparison::Less, high, current);
-            let high = self.number("i_trip", trip, &doc);
-            let low = self.b.neg(high);
+            let above = self.b.compare(Comparison::Less, level, current);
+            let low = self.b.neg(level);
             let below = self.b.compare(Comparison::Less, current, low);
             self.b.or(above, below)
         });
         let pair = self.b.or(a, b);
-        let over_current = self.b.or(pair, c);
+        let exceeds = self.b.or(pair, c);
+        let over_current = self.b.or(exceeds, sample.no_hall);
         self.b.name("over_current", over_current);
         let zero = self.zero();
         let sequencing = self.b.compare(Comparison::NotEqual, mode, zero);
@@ -112,11 +109,10 @@ impl Lowering<'_> {
             "find_rest",
             &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
         );
-        let unknown = match sample.out_of_range {
-            Some(out_of_range) => self.b.or(out_of_range, sample.no_hall),
-            None => sample.no_hall,
+        let any = match sample.out_of_range {
+            Some(out_of_range) => self.b.or(out_of_range, motor_fault),
+            None => motor_fault,
         };
-        let any = self.b.or(unknown, motor_fault);
         self.b.name("faulty", any);
         let rests = self.b.or(any, sequencing);
         self.b.name("resting", rests);
@@ -128,6 +124,20 @@ impl Lowering<'_> {
             mode,
             faulty: any,
         }
+    }
+
+    /// The trip level, by Hall code: an invalid one allows no current.
+    fn trip_level(&mut self, sample: &Sample) -> Value {
+        let trip = self.ampere_word(self.spec.inverter.trip_current);
+        let codes = &self.spec.motor.hall_codes;
+        let is_valid = |code: u8| codes.iter().any(|&known| known & 7 == code);
+        let levels = (0..8).map(|code| if is_valid(code) { trip as i32 } else { -1 });
+        let level = engineering(self.spec.inverter.trip_current, "A");
+        let levels = self.b.program.column("hall", "trip", levels.collect(), &[format!(
+            "Trip level of the phase currents: {level}, words of current; -1, which every current is above, for the codes that cannot be."
+        )]);
+        let level = self.b.lookup(levels, sample.hall);
+        self.b.name("i_trip", level)
     }
 
     fn stalled(
@@ -312,9 +322,9 @@ impl Lowering<'_> {
             &["Trips the drive and keeps the first cause until reset."],
         );
         let (hall, stall) = (self.b.literal(3), self.b.literal(4));
-        let mut cause = self.b.select(sample.no_hall, hall, stall);
         let code = self.b.literal(2);
-        cause = self.b.select(over_current, code, cause);
+        let mut cause = self.b.select(over_current, code, stall);
+        cause = self.b.select(sample.no_hall, hall, cause);
         let at_end = self.at_end(sample.adc);
         let code = self.b.literal(1);
         cause = self.b.select(at_end, code, cause);

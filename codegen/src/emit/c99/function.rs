@@ -2,7 +2,8 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, StageCode as _, beside, kept, leaves_behind, names_read, output, params_read, writes,
+    Kept, StageCode as _, beside, inputs_read, kept, leaves_behind, output, params_read,
+    words_read, writes,
 };
 use super::super::plan::{Context, StagePlan};
 use super::super::set_point::shared;
@@ -16,7 +17,7 @@ use std::fmt::Write as _;
 
 /// The static functions of a step: its stages, what takes over where it rests, and the step itself.
 pub(super) fn emit_step(program: &Program, names: &Names) -> String {
-    let Paths { normal, exit } = program.step.paths();
+    let Paths { normal, exit } = program.step.paths(&program.tables);
     let context = Context::new(program, &normal);
     let path = PathFunctions::new(&context, names, &[]);
     let exit = exit.as_ref().map(|exit| Context::new(program, exit));
@@ -79,11 +80,9 @@ impl<'a> PathFunctions<'a> {
 
     /// Names of the set-point words and inputs that it reads.
     fn arguments(&self) -> Vec<String> {
-        let names = names_read(self.context.program, self.context.function);
-        names
-            .into_iter()
-            .map(|name| self.names.local(name))
-            .collect()
+        let words = words_read(self.context.program, self.context.function).into_iter();
+        let names = words.chain(inputs_read(self.context.function));
+        names.map(|name| self.names.local(name)).collect()
     }
 
     /// The statement that leaves the step for this path.

@@ -3,7 +3,7 @@
 use super::super::expression::Scope;
 use super::super::path::StageCode as _;
 use super::super::path::{
-    Kept, beside, kept, leaves_behind, names_read, output, params_read, writes,
+    Kept, beside, inputs_read, kept, leaves_behind, output, params_read, words_read, writes,
 };
 use super::super::plan::{Context, StagePlan};
 use super::super::rows::WholeCommand;
@@ -100,37 +100,62 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    /// Names of the set-point words and inputs that it reads.
-    fn arguments(&self) -> Vec<Source> {
-        let names = names_read(self.context.program, self.context.function);
-        names.into_iter().map(snake).collect()
-    }
-
-    /// The statements that leave the step for this path, and tell those who hold the set-point.
+    /// The statement that leaves the step for this path: what it hands over fits the registers that carry arguments,
+    /// so that the compiler can end the step with a jump.
     fn call_rest(&self) -> Source {
-        let arguments = self.arguments();
-        quote! {
-            let legs = rest(state, #(#arguments),*);
-            set_point.status.store(state.status());
-            return legs;
-        }
+        let inputs = self.inputs().into_iter().map(|pair| match pair.as_slice() {
+            [only] => quote!(#only),
+            both => quote!([#(#both.to_u16()),*]),
+        });
+        let words = self.words();
+        quote!(return rest(state, set_point, #(#inputs,)* #(#words),*);)
     }
 
-    /// This path as a function of its own. No leg pulses at rest, and all are alike.
+    /// This path as a function of its own, which publishes what the drive is doing from here on. No leg pulses at
+    /// rest, and all are alike.
     fn rest(&self) -> Source {
-        let arguments = self.arguments();
+        let words = self.words();
+        let (mut parameters, mut widened) = (vec![], vec![]);
+        for pair in self.inputs() {
+            match pair.as_slice() {
+                [only] => parameters.push(quote!(#only: Word)),
+                both => {
+                    let both = array(both);
+                    parameters.push(quote!(#both: [u16; 2]));
+                    widened.push(quote!(let #both = #both.map(Word::from);));
+                }
+            }
+        }
         let (body, stages) = (self.body(None), self.definitions());
         let leg = self.leg("leg_a");
         quote! {
-            /// One control period without current control, in start-up or with a fault: what all legs do.
+            /// One control period without current control, in start-up or with a fault: what all legs do. Publishes
+            /// what the drive is doing from here on.
             #[cold]
             #[inline(never)]
-            fn rest(state: &mut State, #(#arguments: Word),*) -> Legs {
+            fn rest(state: &mut State, set_point: &SetPoint, #(#parameters,)* #(#words: Word),*) -> Legs {
+                #(#widened)*
                 #body
+                set_point.status.store(state.status());
                 Legs::at_rest(#leg)
             }
             #stages
         }
+    }
+
+    /// Names of the set-point words that it reads.
+    fn words(&self) -> Vec<Source> {
+        let names = words_read(self.context.program, self.context.function);
+        names.into_iter().map(snake).collect()
+    }
+
+    /// Names of the inputs that it reads, by twos: an input is a halfword, and two share a register.
+    fn inputs(&self) -> Vec<Vec<Source>> {
+        let names: Vec<Source> = inputs_read(self.context.function)
+            .into_iter()
+            .map(snake)
+            .collect();
+        names.chunks(2).map(<[Source]>::to_vec).collect()
     }
 
     /// What is seen behind the stages: old state words that go out of the step are read under their names before

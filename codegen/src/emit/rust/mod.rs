@@ -96,7 +96,7 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         let behind = quote!(#(#setter_stages)* #state #drive_trait);
         (header, before, behind, docs(&interface.doc))
     };
-    let paths = program.step.paths();
+    let paths = program.step.paths(&program.tables);
     let whole = WholeCommand::of(program, &paths);
     let step = || emit_step(program, &paths, whole.as_ref());
     let (step, (header, before, behind, docs)) = at_once(step, around);

@@ -25,7 +25,7 @@ pub(super) const HELPERS: [&str; 14] = [
 ];
 
 /// What else a local name would hide: names that the emitted functions use themselves.
-const RESERVED: [&str; 3] = ["rest", "state", "step"];
+const RESERVED: [&str; 4] = ["rest", "set_point", "state", "step"];
 
 /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind
 /// it where that name is taken.

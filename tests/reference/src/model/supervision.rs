@@ -163,10 +163,10 @@ impl Supervisor {
             .any(|&adc| adc == 0.0 || adc >= limits.adc_max)
         {
             Fault::AdcRange
-        } else if i_max > limits.i_trip {
-            Fault::OverCurrent
         } else if seen.code == 0 {
             Fault::Hall
+        } else if i_max > limits.i_trip {
+            Fault::OverCurrent
         } else if limits.stall_periods > 0.0 && self.stall_count == limits.stall_periods {
             Fault::Stall
         } else {
