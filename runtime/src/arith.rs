@@ -69,16 +69,60 @@ pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
 }
 
 /// `min(floor(numerator 2^shift / denominator), limit)`, numerator not negative, denominator at least
-/// 1, limit not negative. `shift` is 0 to 31. Divides 64 bits: for paths off the normal one.
+/// 1, limit not negative. `shift` is 0 to 31. For paths off the normal one.
 #[inline(always)]
 #[must_use]
 pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
+    if cfg!(not(target_pointer_width = "64")) {
+        return divide_by_digits(numerator, denominator, limit, shift);
+    }
     // The proven lower limit, repeated where the compiler sees it: no division by zero to check. Where
     // it does not look, `checked_div` has no panic path either.
     let denominator = denominator.0.max(1) as u64;
     let numerator = (numerator.0 as u32 as u64) << shift;
     let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32 as u64) as i32)
+}
+
+/// [`divide`] for cores that divide 32 bits, where their library takes hundreds of instructions for 64: two digits of 16
+/// bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D).
+#[doc(hidden)]
+#[inline(always)]
+#[must_use]
+pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
+    let denominator = denominator.0.max(1) as u32;
+    let numerator = (numerator.0 as u32 as u64) << shift;
+    if (numerator >> 32) as u32 >= denominator {
+        // The quotient is 2^32 or more.
+        return limit;
+    }
+    let zeros = denominator.leading_zeros();
+    let (dividend, divisor) = (numerator << zeros, denominator << zeros);
+    let (high, rest) = divide_digit((dividend >> 32) as u32, (dividend >> 16) as u16, divisor);
+    let (low, _) = divide_digit(rest, dividend as u16, divisor);
+    let quotient = high << 16 | low;
+    Word(quotient.min(limit.0 as u32) as i32)
+}
+
+/// Quotient, below 2^16, and rest of `above 2^16 + next` and a divisor above `above` with its highest bit set.
+#[inline(always)]
+fn divide_digit(above: u32, next: u16, divisor: u32) -> (u32, u32) {
+    // What is known of the divisor, repeated where the compiler sees it.
+    let (top, bottom) = (divisor >> 16 | 0x8000, divisor & 0xffff);
+    // By the divisor's upper half alone the digit is up to two too large.
+    let mut digit = above.checked_div(top).unwrap_or(0);
+    let mut rest = above.wrapping_sub(digit.wrapping_mul(top));
+    let is_too_large =
+        |digit: u32, rest: u32| digit.wrapping_mul(bottom) > (rest << 16 | u32::from(next));
+    if is_too_large(digit, rest) {
+        digit = digit.wrapping_sub(1);
+        rest = rest.wrapping_add(top);
+        if rest >> 16 == 0 && is_too_large(digit, rest) {
+            digit = digit.wrapping_sub(1);
+        }
+    }
+    let whole = above << 16 | u32::from(next);
+    (digit, whole.wrapping_sub(digit.wrapping_mul(divisor)))
 }
 
 /// As [`divide`], where the shifted numerator fits 32 unsigned bits: one UDIV where the core has it.

@@ -20,7 +20,7 @@ pub struct States<'a> {
     names: &'a [&'static str],
     /// Proven intervals of the state words.
     ranges: Vec<(i32, i32)>,
-    /// Constants of the program.
+    /// Constants of the program, and the trip level.
     constants: Vec<i32>,
     comparisons: Comparisons,
     /// Least and greatest sum of calibration samples that is good enough.
@@ -51,14 +51,15 @@ impl<'a> States<'a> {
     ) -> Self {
         let inverter = &spec.inverter;
         let words = program.states.iter();
-        let constants = program.constants.iter();
+        let constants = program.constants.iter().map(|constant| constant.raw);
+        let trip = (inverter.trip_current / inverter.adc_gain.abs()) as i64;
         Self {
             random: Rng::with_seed(seed),
             names,
             ranges: words
                 .map(|word| (word.interval.low as i32, word.interval.high as i32))
                 .collect(),
-            constants: constants.map(|constant| constant.raw).collect(),
+            constants: constants.chain([(trip << count_bits) as i32]).collect(),
             comparisons: Comparisons::of(program),
             calibration: ["calibration_sum_least", "calibration_sum_most"].map(|name| {
                 let mut constants = program.constants.iter();
@@ -68,7 +69,7 @@ impl<'a> States<'a> {
             count_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
             inverted: inverter.adc_gain < 0.0,
-            trip: (inverter.trip_current / inverter.adc_gain.abs()) as i64,
+            trip,
             codes: spec.motor.hall_codes,
             age_max: inverter.age_max,
             ticks: inverter.ticks as i32,

@@ -1,9 +1,9 @@
 //! The integer primitives of emitted code against the meaning of the IR's operators.
 
 use hexagen::arith::{
-    Word, angle_fraction, angle_index, divide, divide_narrow, exceeding, lookup, mul_add_floor,
-    mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry, select,
-    turn_over,
+    Word, angle_fraction, angle_index, divide, divide_by_digits, divide_narrow, exceeding, lookup,
+    mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry,
+    select, turn_over,
 };
 use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
 use proptest::prelude::*;
@@ -139,9 +139,19 @@ proptest! {
         let intervals = [Interval::new(0, i64::from(i32::MAX)), Interval::new(1, i64::from(i32::MAX)), Interval::new(0, 1 << 30)];
         let expected = interpreted(&intervals, &[n, d, limit], &[0], |b, x, _| b.divide(x[0], shift, x[1], x[2]));
         prop_assert_eq!(divide(Word(n), Word(d), Word(limit), shift).0, expected);
+        prop_assert_eq!(divide_by_digits(Word(n), Word(d), Word(limit), shift).0, expected);
         if i64::from(n) << shift <= i64::from(u32::MAX) {
             prop_assert_eq!(divide_narrow(Word(n), Word(d), Word(limit), shift).0, expected);
         }
+    }
+
+    #[test]
+    fn quotients_whose_first_digit_is_corrected(low in 0_i32..1 << 15, high in 1_i32 << 14..1 << 15, less in 0_i32..16, shift in 0_u32..=31) {
+        // A divisor whose lower half is large beside its upper one, and a numerator just below it.
+        let d = high << 16 | 0x8000 | low;
+        let n = (d - 1 - less).max(0);
+        let exact = ((i64::from(n) << shift) / i64::from(d)) as i32;
+        prop_assert_eq!(divide_by_digits(Word(n), Word(d), Word(i32::MAX), shift).0, exact);
     }
 
     #[test]

@@ -41,6 +41,14 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         ],
     },
     Unnoticed {
+        because: "an invalid Hall code is an alarm by itself, too, which the normal path leaves to the level of its row",
+        drives: ALL,
+        faults: &[
+            (&["trip[0]", "trip[7]"], &["one more"]),
+            (&["detect_faults: over_current"], &["second left out"]),
+        ],
+    },
+    Unnoticed {
         because: "without stall time-out there is no fourth fault to tell",
         drives: &[
             PAPER,

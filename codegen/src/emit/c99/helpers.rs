@@ -16,7 +16,7 @@ pub(super) struct Helper {
 }
 
 /// All, each behind those that it calls.
-pub(super) const HELPERS: [Helper; 22] = [
+pub(super) const HELPERS: [Helper; 23] = [
     Helper {
         name: "exceeds",
         text: "\
@@ -191,16 +191,72 @@ static inline int32_t mul_limited(int32_t a, int32_t b, int32_t limit)
 ",
     },
     Helper {
+        name: "divide_digit",
+        text: "\
+/**
+ * Quotient, below 2^16, of above 2^16 + next and a divisor above `above` with its highest bit set; `above` becomes the
+ * rest.
+ */
+static inline uint32_t divide_digit(uint32_t *above, uint32_t next, uint32_t divisor)
+{
+    const uint32_t top = divisor >> 16;
+    const uint32_t bottom = divisor & UINT32_C(0xffff);
+    /* By the divisor's upper half alone the digit is up to two too large. */
+    uint32_t digit = *above / top;
+    uint32_t rest = *above - digit * top;
+    if (digit * bottom > ((rest << 16) | next)) {
+        digit -= 1U;
+        rest += top;
+        if ((rest >> 16) == 0U && digit * bottom > ((rest << 16) | next)) {
+            digit -= 1U;
+        }
+    }
+    *above = ((*above << 16) | next) - digit * divisor;
+    return digit;
+}
+",
+    },
+    Helper {
         name: "divide",
         text: "\
 /**
  * min(floor(numerator 2^shift / denominator), limit) for a numerator and a limit that are not negative, and a
- * denominator of at least 1. Divides 64 bits: for paths off the normal one.
+ * denominator of at least 1: two digits of 16 bits (Knuth's algorithm D), for a library takes hundreds of instructions
+ * to divide 64 bits. For paths off the normal one.
  */
 static inline int32_t divide(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
 {
-    const uint64_t quotient = ((uint64_t)numerator << shift) / (uint64_t)denominator;
-    return (quotient < (uint64_t)limit) ? (int32_t)quotient : limit;
+    uint64_t dividend = (uint64_t)numerator << shift;
+    uint32_t divisor = (uint32_t)denominator;
+    uint32_t rest;
+    uint32_t quotient;
+    if ((dividend >> 32) >= divisor) {
+        return limit;
+    }
+    if (divisor < UINT32_C(0x10000)) {
+        divisor <<= 16;
+        dividend <<= 16;
+    }
+    if (divisor < UINT32_C(0x1000000)) {
+        divisor <<= 8;
+        dividend <<= 8;
+    }
+    if (divisor < UINT32_C(0x10000000)) {
+        divisor <<= 4;
+        dividend <<= 4;
+    }
+    if (divisor < UINT32_C(0x40000000)) {
+        divisor <<= 2;
+        dividend <<= 2;
+    }
+    if (divisor < UINT32_C(0x80000000)) {
+        divisor <<= 1;
+        dividend <<= 1;
+    }
+    rest = (uint32_t)(dividend >> 32);
+    quotient = divide_digit(&rest, (uint32_t)(dividend >> 16) & UINT32_C(0xffff), divisor) << 16;
+    quotient |= divide_digit(&rest, (uint32_t)dividend & UINT32_C(0xffff), divisor);
+    return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
 }
 ",
     },
