@@ -120,9 +120,8 @@ impl<'a> PathFunctions<'a> {
             match pair.as_slice() {
                 [only] => parameters.push(quote!(#only: Word)),
                 both => {
-                    let both = array(both);
-                    parameters.push(quote!(#both: [u16; 2]));
-                    widened.push(quote!(let #both = #both.map(Word::from);));
+                    parameters.push(quote!([#(#both),*]: [u16; 2]));
+                    widened.push(quote!(let [#(#both),*] = [#(Word::from(#both)),*];));
                 }
             }
         }
