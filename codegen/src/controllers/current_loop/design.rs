@@ -19,7 +19,8 @@ pub struct LoopDesign {
     pub k_hold: f64,
     /// 1 - a.
     pub k_decay: f64,
-    /// Largest believed current change per period, ampere: twice what the largest bus can do.
+    /// Largest believed current change per period, ampere: twice what the largest bus can do, up to the next power of two
+    /// of ADC counts, at which a saturating instruction limits.
     pub di_max: f64,
     /// Largest believed zero-sum phase EMF, volt.
     pub e_limit: f64,
@@ -50,14 +51,16 @@ impl LoopDesign {
         let hold = plant.pole.powi(if options.delay == 1 { 2 } else { 1 });
         let (shape, electrical) = (motor.emf_shape, f64::from(motor.pole_pairs) * inverter.t_s);
         let line = shape.quasi_square_factor() * motor.emf_constant;
-        let adc_span = f64::from((1_u32 << inverter.adc_bits) - 1) * inverter.adc_gain.abs();
+        let count = inverter.adc_gain.abs();
+        let span = f64::from((1_u32 << inverter.adc_bits) - 1);
+        let possible = plant.gain * 4.0 / 3.0 * inverter.greatest_bus() / count;
         Self {
             plant,
             k_di,
             k_r: (1.0 - plant.pole) / plant.gain,
             k_hold: k_di * hold,
             k_decay: 1.0 - plant.pole,
-            di_max: (2.0 * adc_span).min(2.0 * plant.gain * 4.0 / 3.0 * inverter.greatest_bus()),
+            di_max: (2.0 * possible.min(span)).log2().ceil().exp2() * count,
             e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
             slope: match shape {
                 EmfShape::Sinusoidal => electrical / (3f64.sqrt() * line),

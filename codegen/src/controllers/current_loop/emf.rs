@@ -7,9 +7,7 @@
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EMF_INTEGRAL_SHARE};
 use crate::ir::{Comparison, Value};
-use crate::lower::{
-    Coefficient, Currents, Lowering, ModelledEmf, Rotor, product_bound, round_down,
-};
+use crate::lower::{Coefficient, Currents, Lowering, ModelledEmf, Rotor, product_bound};
 use crate::spec::EmfSource;
 
 /// EMF of phases a and b over the target period and over the present one.
@@ -93,8 +91,9 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    fn di_max(&self) -> i64 {
-        round_down(self.design.di_max * self.lowering.scale.current()) as i64
+    /// The least change of current that is not believed, words of current: a power of two.
+    fn di_limit(&self) -> i64 {
+        self.lowering.ampere_word(self.design.di_max)
     }
 
     fn sight(&mut self) -> Sight {
@@ -113,7 +112,7 @@ impl CurrentLoop<'_, '_> {
 
     /// The EMF of phase `x`, 0 or 1, that the period shows which just ended, added to the open stage.
     fn see_emf(&mut self, words: &Words, currents: &Currents, sight: Sight, x: usize) -> Value {
-        let di_max = self.di_max();
+        let limit = self.di_limit();
         let l = &mut *self.lowering;
         let (Some(i_prev), Some(v_prev)) = (words.i_prev, words.v_prev) else {
             return currents.phases[x];
@@ -122,8 +121,8 @@ impl CurrentLoop<'_, '_> {
         let change = l.b.sub(currents.phases[x], previous);
         let doc = "Limit of the change of current in one period that is believed";
         let (low, high) = (
-            l.current("di_min", -di_max, doc),
-            l.current("di_max", di_max, doc),
+            l.current("di_min", -limit, doc),
+            l.current("di_max", limit - 1, doc),
         );
         let change = l.b.clamp(change, low, high);
         l.b.name(["di_a", "di_b"][x], change);

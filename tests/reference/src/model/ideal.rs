@@ -14,7 +14,7 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Observation, Period};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::Variant;
-use crate::emf_motion::EmfMotion;
+use crate::emf_motion::{EmfMotion, greatest_change};
 use crate::emf_shape::THIRD;
 use crate::{
     BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec, Switch,
@@ -122,8 +122,10 @@ impl Ideal {
             bus_sense,
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,
-            di_max: (2.0 * limits.adc_max * gain.abs())
-                .min(2.0 * phase.b * 4.0 / 3.0 * inverter.v_bus_max()?),
+            di_max: gain.abs()
+                * greatest_change(
+                    (phase.b * 4.0 / 3.0 * inverter.v_bus_max()? / gain.abs()).min(limits.adc_max),
+                ),
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
             motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,

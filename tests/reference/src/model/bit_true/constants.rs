@@ -2,7 +2,7 @@
 
 use super::state::{Part, Parts};
 use super::tables::Table;
-use crate::emf_motion::EmfMotion;
+use crate::emf_motion::{EmfMotion, greatest_change};
 use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
@@ -41,7 +41,7 @@ pub struct Constants {
     pub v_bus_nominal: f64,
     pub i_trip: f64,
     pub i_comm: f64,
-    pub di_max: f64,
+    pub di_limit: f64,
     pub i_max_bits: f64,
     pub t_max_bits: f64,
     pub comm_samples: f64,
@@ -310,9 +310,8 @@ impl Constants {
             v_bus_nominal: timer_period * two_v,
             i_trip: round_half_up(inverter.trip_current / g * two_i),
             i_comm: round_half_up(end.threshold / g * two_i),
-            di_max: floor_constant(
-                (2.0 * adc_max).min(2.0 * b * 4.0 / 3.0 * inverter.v_bus_max()? / g) * two_i,
-            ),
+            di_limit: greatest_change((b * 4.0 / 3.0 * inverter.v_bus_max()? / g).min(adc_max))
+                * two_i,
             i_max_bits,
             t_max_bits,
             comm_samples: f64::from(end.timeout) + 1.0,

@@ -10,7 +10,7 @@ use crate::model::sector::OUT_PHASE;
 fn seen(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
     let State { i_prev, v_prev, .. } = state;
     both(|x| {
-        let d = within(i[x] - i_prev[x], -k.di_max, k.di_max);
+        let d = within(i[x] - i_prev[x], -k.di_limit, k.di_limit - 1.0);
         v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
     })
 }
