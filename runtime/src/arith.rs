@@ -1,10 +1,10 @@
 //! The integer primitives of emitted code, besides the operators of [`Word`].
 //!
-//! Each is exact and branch-free, contains no loop and no float, no panic path from `opt-level = 1`
-//! on, and divides only where its name says so. Shifts and segments are literals in emitted code. The
-//! generator proves that every result fits its word; the `_narrow` forms are chosen where the product
-//! (or dividend) itself fits 32 bits, which saves a 64-bit product on small cores. On a Cortex-M4
-//! `mul_round(c, x, 32)` is one SMMULR.
+//! Each is exact, contains no loop and no float, no panic path from `opt-level = 1` on, and divides only
+//! where its name says so. Coefficients, shifts and segments are constants in emitted code; with those none
+//! has a branch, but for [`divide`] on cores of 32 bits. The generator proves that every result fits its
+//! word; the `_narrow` forms are chosen where the product (or dividend) itself fits 32 bits, which saves a
+//! 64-bit product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
 #![expect(
     clippy::inline_always,
     reason = "each is a handful of instructions, and firmware is debugged unoptimised, too"

@@ -33,7 +33,7 @@ const STEPS: u64 = 200_000;
 /// Drive (place in the list), fault, and why it changes no output and no state.
 const EQUIVALENT: &[(usize, &str, &str)] = &[(
     2,
-    "table entry one more: SHAPE_ROWS[124].c0",
+    "table entry one more: SHAPE_ROWS[122].c2",
     "the table has 96 entries, padded to a power of two",
 )];
 

@@ -342,7 +342,8 @@ pub const EQUIVALENT: &[Unnoticed] = &[
         faults: &[
             (&["di_min"], &["one more", "one less"]),
             (&["di_max"], &["one less", "one more"]),
-            (&["di_min", "di_max"], &["bit 4", "bit 9"]),
+            (&["di_min"], &["bit 5", "bit 10", "bit 14"]),
+            (&["di_max"], &["bit 4", "bit 9"]),
             (
                 &["estimate_emf: di_a", "estimate_emf: di_b"],
                 &["lower limit left out", "upper limit left out"],
@@ -351,17 +352,17 @@ pub const EQUIVALENT: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
-        drives: &[FCS_PAPER],
+        drives: &[PAPER, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER, PI_TEKNIC],
         faults: &[(&["di_min"], &["one more"]), (&["di_max"], &["one less"])],
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
-        drives: &[PAPER, HOVERBOARD, FCS_PAPER, FCS_TEKNIC, PHCC_PAPER],
-        faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
+        drives: &[HOVERBOARD],
+        faults: &[(&["di_min"], &["one more"])],
     },
     Unnoticed {
         because: "the product at the limit rounds to the same",
-        drives: &[PI_TEKNIC],
+        drives: &[HOVERBOARD, FCS_PAPER],
         faults: &[(&["di_min"], &["one less"]), (&["di_max"], &["one more"])],
     },
     Unnoticed {

@@ -318,6 +318,16 @@ pub const RARE: &[Unnoticed] = &[
         faults: &[(&["nearest_pair: in a_below_c"], &["-1 for 0"])],
     },
     Unnoticed {
+        because: "differs only where a current is a word above the trip level under one Hall code",
+        drives: ALL,
+        faults: &[(&["trip[1..7]"], &["one more"])],
+    },
+    Unnoticed {
+        because: "moves a voltage by its last digit, which changes the choice next to a tie only",
+        drives: &[FCS_TEKNIC],
+        faults: &[(&["k_hold"], &["one less"])],
+    },
+    Unnoticed {
         because: "differs only where the spread is half the bus to the last bit",
         drives: &[FCS_TEKNIC],
         faults: &[(
@@ -330,7 +340,11 @@ pub const RARE: &[Unnoticed] = &[
         drives: &[FCS_TEKNIC],
         faults: &[(
             &["nearest_vector: in vector_three"],
-            &["another comparison", "another comparison (4)"],
+            &[
+                "another comparison",
+                "another comparison (4)",
+                "another comparison (5)",
+            ],
         )],
     },
     Unnoticed {

@@ -100,8 +100,8 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    /// The statement that leaves the step for this path: what it hands over fits the registers that carry arguments,
-    /// so that the compiler can end the step with a jump.
+    /// The statement that leaves the step for this path. Where what it hands over fits the registers that carry
+    /// arguments, as it does without set-point words, the compiler ends the step with a jump.
     fn call_rest(&self) -> Source {
         let inputs = self.inputs().into_iter().map(|pair| match pair.as_slice() {
             [only] => quote!(#only),
