@@ -51,8 +51,8 @@ impl Lowering<'_> {
         self.b.stage(
             "read_sample",
             &[
-                "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more; what lies",
-                "above the trip level is told by that) and an invalid Hall code (000, 111) trip the drive.",
+                "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more) and an invalid",
+                "Hall code (000, 111) trip the drive. What lies above the trip level is told by that.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));

@@ -78,7 +78,10 @@ impl Lowering<'_> {
         hall: Option<&Hall>,
         set_point: Value,
     ) -> Rest {
-        self.b.stage("detect_faults", &["Whether anything forbids to drive the motor, and whether the start-up sequence is running."]);
+        self.b.stage("detect_faults", &[
+            "Whether anything forbids to drive the motor, and whether the start-up sequence is running. Under an invalid Hall code",
+            "any current is above the trip level.",
+        ]);
         let mode = self.b.state(words.mode);
         let level = self.trip_level(sample);
         // Phase c is told by its negative.
