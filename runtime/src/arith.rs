@@ -2,7 +2,7 @@
 //!
 //! Each is exact, contains no loop and no float, no panic path from `opt-level = 1` on, and divides only
 //! where its name says so. Coefficients, shifts and segments are constants in emitted code; with those none
-//! has a branch, but for [`divide`] on cores of 32 bits. The generator proves that every result fits its
+//! asks for a branch, but [`divide`] on cores of 32 bits. The generator proves that every result fits its
 //! word; the `_narrow` forms are chosen where the product (or dividend) itself fits 32 bits, which saves a
 //! 64-bit product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
 #![expect(
@@ -97,7 +97,11 @@ pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: 
         return limit;
     }
     let zeros = denominator.leading_zeros();
-    let (dividend, divisor) = (numerator << zeros, denominator << zeros);
+    // `zeros` is at most 31; a plain shift by a variable is checked where nothing is optimised.
+    let (dividend, divisor) = (
+        numerator.wrapping_shl(zeros),
+        denominator.wrapping_shl(zeros),
+    );
     let (high, rest) = divide_digit((dividend >> 32) as u32, (dividend >> 16) as u16, divisor);
     let (low, _) = divide_digit(rest, dividend as u16, divisor);
     let quotient = high << 16 | low;

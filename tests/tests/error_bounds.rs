@@ -23,9 +23,6 @@ const VARIANTS: [&str; 11] = [
     "pdcc:speed_loop=on",
 ];
 
-/// Bits of the motor's converters.
-const ADC_BITS: u32 = 12;
-
 /// Steps per drive.
 const STEPS: u32 = 3_000;
 
@@ -50,11 +47,11 @@ fn word(random: &mut Rng, Interval { low, high }: Interval) -> i64 {
 }
 
 /// A word for an input, a set-point or a state word: such that most steps run.
-fn draw(random: &mut Rng, node: &Node) -> i64 {
+fn draw(random: &mut Rng, node: &Node, adc_bits: u32) -> i64 {
     let anything = random.u8(..8) == 0;
     match node.name.as_str() {
         "mode" if !anything => i64::from(Mode::Run as i32),
-        "adc_a" | "adc_b" if !anything => random.i64(0..1 << ADC_BITS),
+        "adc_a" | "adc_b" if !anything => random.i64(0..1 << adc_bits),
         _ => word(random, node.interval),
     }
 }
@@ -89,7 +86,7 @@ fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
 
 /// Largest share of a bound that an error took up, over all values of all steps. What a step says of the current is
 /// looked at where it controls any.
-fn run(program: &Program, seed: u64) -> f64 {
+fn run(program: &Program, adc_bits: u32, seed: u64) -> f64 {
     let function = &program.step;
     let exits = function
         .stages
@@ -120,7 +117,7 @@ fn run(program: &Program, seed: u64) -> f64 {
             values[value.index()] = match (node.op, x) {
                 (Op::Join { taken, otherwise }, _) => at(taken).or(at(otherwise)),
                 (Op::Input(_) | Op::Param(_) | Op::State(_), _) => {
-                    let word = draw(&mut random, node);
+                    let word = draw(&mut random, node, adc_bits);
                     Some((word, word as f64))
                 }
                 (Op::Constant(id), _) => {
@@ -197,7 +194,7 @@ fn no_value_is_further_from_the_ideal_one_than_its_bound() {
                 .iter()
                 .any(|node| node.kind == Kind::Word)
         );
-        let most = run(program, 1);
+        let most = run(program, spec.inverter.adc_bits, 1);
         println!("{variant}: {most:.3} of the bound at most");
         assert!(most <= 1.0, "{variant}: {most} of the bound");
         // A bound that nothing comes near would say nothing; that of a reference by table is the table's own misfit,

@@ -78,6 +78,10 @@ fn impossible_hall_codes_trip() {
         let mut drive = Guarded::new();
         assert_eq!(drive.step(ZERO, ZERO, hall), Legs::OFF);
         assert_eq!(drive.fault(), Fault::Hall);
+        // Beside an over-current, too.
+        let mut drive = Guarded::new();
+        assert_eq!(drive.step(ZERO + 1946, ZERO, hall), Legs::OFF);
+        assert_eq!(drive.fault(), Fault::Hall);
     }
 }
 

@@ -197,7 +197,7 @@ fn header(spec: &Spec, design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
         ),
         (
             "largest believed change of current",
-            engineering(design.di_max, "A"),
+            engineering(design.di_limit, "A"),
         ),
         (
             "one ADC count of current, g",

@@ -301,7 +301,7 @@ impl<'a> Scope<'a> {
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),
             Op::Or(a, b) => {
-                if let Some([x, limit]) = self.range_test(a, b) {
+                if let Some([x, limit]) = self.range_test(a, b, 0) {
                     call(P::Exceeds, &[x, limit], None)
                 } else if let Some(([x, y, limit], _)) = self.either_above(a, b) {
                     E::binary(O::Greater, E::binary(O::BitOr, of(x), of(y)), of(limit))
@@ -369,7 +369,7 @@ impl<'a> Scope<'a> {
             } if name.is_empty() => Some((*a, *b)),
             _ => None,
         };
-        let test = |value: Value| either(value).and_then(|(a, b)| self.range_test(a, b));
+        let test = |value: Value| either(value).and_then(|(a, b)| self.range_test(a, b, -1));
         let (first, second) = either(two)?;
         let ([x, limit], [y, again], [sum, last]) = (test(first)?, test(second)?, test(third)?);
         let is_limit = |other: Value| self.node(other).op == self.node(limit).op;
@@ -385,8 +385,8 @@ impl<'a> Scope<'a> {
         alike.then_some(Expression::Call(Primitive::Exceeding, operands, None))
     }
 
-    /// The word and the limit, at least -1, whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
-    fn range_test(&self, above: Value, below: Value) -> Option<[Value; 2]> {
+    /// The word and the limit, at least `least`, whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
+    fn range_test(&self, above: Value, below: Value, least: i64) -> Option<[Value; 2]> {
         let unnamed = |value: Value| {
             let node = self.node(value);
             node.name.is_empty().then_some(node.op)
@@ -402,7 +402,7 @@ impl<'a> Scope<'a> {
         let is_limit = other == limit
             || matches!(self.node(limit).op, Op::Constant(_))
                 && self.node(other).op == self.node(limit).op;
-        (x == again && is_limit && self.interval(limit).low >= -1).then_some([x, limit])
+        (x == again && is_limit && self.interval(limit).low >= least).then_some([x, limit])
     }
 
     /// Two words and the limit that the flags compare them with, `limit < x` and `limit < y`, where one comparison

@@ -1,8 +1,10 @@
 //! The two ways through a function that has an exit: what it computes where the exit is taken, and where not.
 //!
 //! Where the exit's flags do not hold, what they say is known behind them (a count lies inside its range, a code is
-//! valid), and operators that only guard against the contrary fall away. Both paths compute what the whole function
-//! computes, so the intervals that were verified for it hold for them.
+//! valid), and operators that only guard against the contrary fall away. A path that is gone to its end computes what
+//! the whole function computes, so the intervals that were verified for it hold there. The normal path is left where the
+//! last flag is known; what it has computed up to there under a false assumption is thrown away, and no operator fails on
+//! any word.
 
 use super::graph::{Function, Guard, Table};
 use super::op::{Comparison, Kind, Op, Value};
@@ -51,6 +53,19 @@ impl Function {
             None => (!node.name.is_empty()).then(|| vec![flag]),
         }
     }
+
+    /// The disjunctions of the flags that [`Self::disjuncts`] finds, themselves left out.
+    fn disjunctions(&self, flag: Value) -> Vec<Value> {
+        match self.node(flag).op {
+            Op::Or(a, b) if self.disjuncts(a).is_some() && self.disjuncts(b).is_some() => {
+                let mut all = self.disjunctions(a);
+                all.extend(self.disjunctions(b));
+                all.push(flag);
+                all
+            }
+            _ => vec![],
+        }
+    }
 }
 
 /// What is known of the order of two words: whether the first may be less, equal, greater.
@@ -79,8 +94,8 @@ struct Path<'f> {
     known: Vec<Option<bool>>,
     /// Pairs of words of which the order is known here.
     compared: Vec<(Value, Value, Orders)>,
-    /// Flags that say nothing beside the one that they are combined with.
-    told: Vec<Value>,
+    /// Disjunctions, and the second of the flags that each combines, which says nothing beside the first.
+    told: Vec<(Value, Value)>,
 }
 
 impl<'f> Path<'f> {
@@ -103,8 +118,11 @@ impl<'f> Path<'f> {
         let condition = exit.guard.as_ref().map(|guard| guard.condition);
         let flags = condition.and_then(|flag| self.whole.disjuncts(flag));
         let flags = flags.unwrap_or_default();
-        let told = flags.iter().filter_map(|&flag| self.told_by_other(flag));
-        self.told = told.collect();
+        let told = |&flag: &Value| Some((flag, self.told_by_other(flag)?));
+        self.told = flags.iter().filter_map(told).collect();
+        let mut assumed: Vec<Value> = self.told.iter().map(|&(_, flag)| flag).collect();
+        assumed.extend(condition.map_or(vec![], |flag| self.whole.disjunctions(flag)));
+        assumed.extend(&flags);
         for (number, stage) in self.whole.stages.iter().enumerate() {
             for index in stage.first..stage.end {
                 self.simplify(index);
@@ -113,8 +131,7 @@ impl<'f> Path<'f> {
             // What a stage checks is known behind it.
             if !self.taken {
                 let inside = |flag: &&Value| (stage.first..stage.end).contains(&flag.index());
-                let told = self.told.clone();
-                for &flag in flags.iter().chain(&told).filter(inside) {
+                for &flag in assumed.iter().filter(inside) {
                     self.assume(flag, false);
                 }
             }
@@ -194,7 +211,7 @@ impl<'f> Path<'f> {
             (Some(_), Some(_)) => self.known[value.index()] = Some(!absorbing),
             (Some(_), None) => self.replace(value, flags[1]),
             (None, Some(_)) => self.replace(value, flags[0]),
-            (None, None) if self.told.contains(&flags[1]) && absorbing => {
+            (None, None) if self.told.iter().any(|&(either, _)| either == value) => {
                 self.replace(value, flags[0]);
             }
             (None, None) => {}

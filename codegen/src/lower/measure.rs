@@ -52,7 +52,7 @@ impl Lowering<'_> {
             "read_sample",
             &[
                 "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more) and an invalid",
-                "Hall code (000, 111) trip the drive. What lies above the trip level is told by that.",
+                "Hall code (000, 111) trip the drive. Counts that say a current above the trip level are not looked at here.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));

@@ -113,10 +113,12 @@ impl Lowering<'_> {
             &["Whether the drive rests: something is wrong, or it is starting up or tripped."],
         );
         let any = match sample.out_of_range {
-            Some(out_of_range) => self.b.or(out_of_range, motor_fault),
+            Some(out_of_range) => {
+                let any = self.b.or(out_of_range, motor_fault);
+                self.b.name("faulty", any)
+            }
             None => motor_fault,
         };
-        self.b.name("faulty", any);
         let rests = self.b.or(any, sequencing);
         self.b.name("resting", rests);
         let fault = self.b.state(words.fault);

@@ -100,8 +100,8 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         "malloc",
         "memcpy",
     ];
-    let divide = ["divide_digit", "divide_narrow", "turn_over"];
-    let divisions = ["divide", "divide_narrow", "turn_over"];
+    let dividing_helpers = ["divide_digit", "divide_narrow", "turn_over"];
+    let called_by_stages = ["divide", "divide_narrow", "turn_over"];
     let (mut drives, mut dividing) = (0, 0);
     for drive in library() {
         let generated = &drive.generated;
@@ -120,11 +120,11 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
                 .rsplit('\n')
                 .find(|line| line.contains('('))
                 .unwrap_or_default();
-            let is_helper = divide
+            let is_helper = dividing_helpers
                 .iter()
                 .any(|helper| name.contains(&format!(" {helper}(")));
             assert_eq!(body.contains(" / "), is_helper, "{}: {name}", drive.motor);
-            if divisions
+            if called_by_stages
                 .iter()
                 .any(|helper| body.contains(&format!("{helper}(")))
             {

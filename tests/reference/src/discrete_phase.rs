@@ -34,3 +34,9 @@ impl DiscretePhase {
         }
     }
 }
+
+/// The limit of the believed change of current, ADC counts, of which so many are possible in one period: a power of two, at
+/// least twice as many.
+pub fn di_limit(possible: f64) -> f64 {
+    (2.0 * possible).log2().ceil().exp2()
+}

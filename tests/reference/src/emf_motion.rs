@@ -49,8 +49,3 @@ impl EmfMotion {
         })
     }
 }
-
-/// The change of current from which on none is believed, ADC counts: a power of two, at least twice what is possible.
-pub fn greatest_change(possible: f64) -> f64 {
-    (2.0 * possible).log2().ceil().exp2()
-}

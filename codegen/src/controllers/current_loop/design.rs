@@ -19,9 +19,9 @@ pub struct LoopDesign {
     pub k_hold: f64,
     /// 1 - a.
     pub k_decay: f64,
-    /// Largest believed current change per period, ampere: twice what the largest bus can do, up to the next power of two
-    /// of ADC counts, at which a saturating instruction limits.
-    pub di_max: f64,
+    /// Limit of the believed current change per period, ampere: twice what the largest bus can do or the converters can say,
+    /// up to the next power of two of ADC counts, at which a saturating instruction limits.
+    pub di_limit: f64,
     /// Largest believed zero-sum phase EMF, volt.
     pub e_limit: f64,
     /// How far an estimated EMF moves in one period, per product of two line EMFs, 1/V.
@@ -60,7 +60,7 @@ impl LoopDesign {
             k_r: (1.0 - plant.pole) / plant.gain,
             k_hold: k_di * hold,
             k_decay: 1.0 - plant.pole,
-            di_max: (2.0 * possible.min(span)).log2().ceil().exp2() * count,
+            di_limit: (2.0 * possible.min(span)).log2().ceil().exp2() * count,
             e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
             slope: match shape {
                 EmfShape::Sinusoidal => electrical / (3f64.sqrt() * line),

@@ -91,9 +91,9 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// The least change of current that is not believed, words of current: a power of two.
+    /// The limit of the believed change of current, words of current: a power of two.
     fn di_limit(&self) -> i64 {
-        self.lowering.ampere_word(self.design.di_max)
+        self.lowering.ampere_word(self.design.di_limit)
     }
 
     fn sight(&mut self) -> Sight {
@@ -225,7 +225,7 @@ impl CurrentLoop<'_, '_> {
                 "EMF of the period that just ended: seen is e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form),",
                 "of which the estimate takes over a share.",
                 "",
-                "v is the voltage really applied; a change of current larger than the bus can cause is not believed.",
+                "v is the voltage really applied; a change of current of several times what the bus can cause is not believed.",
             ],
         );
         [0, 1].map(|x| {

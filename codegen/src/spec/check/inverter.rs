@@ -371,8 +371,8 @@ fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut
     count
 }
 
-/// The greatest level of at most eight significant bits, in ADC counts, that is not above `current`: cores compare with
-/// such a number without loading it first.
+/// The greatest level of at most eight significant bits, in ADC counts, that is not above `current`: a number that every
+/// word length and every scale of current has exactly.
 fn short_level(current: f64, gain: f64) -> f64 {
     // A level that is as short as that but for its rounding to a floating-point number is that level.
     let counts = current / gain * (1.0 + 1e-12);

@@ -14,7 +14,8 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Observation, Period};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::Variant;
-use crate::emf_motion::{EmfMotion, greatest_change};
+use crate::discrete_phase::di_limit;
+use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
     BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec, Switch,
@@ -75,7 +76,7 @@ pub struct Ideal {
     bus_sense: Option<BusSense>,
     bus_count_max: f64,
     timer_period: u16,
-    di_max: f64,
+    di_limit: f64,
     e_max: f64,
     motion: EmfMotion,
     /// The largest bus voltage.
@@ -122,8 +123,8 @@ impl Ideal {
             bus_sense,
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,
-            di_max: gain.abs()
-                * greatest_change(
+            di_limit: gain.abs()
+                * di_limit(
                     (phase.b * 4.0 / 3.0 * inverter.v_bus_max()? / gain.abs()).min(limits.adc_max),
                 ),
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,

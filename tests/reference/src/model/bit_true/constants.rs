@@ -2,7 +2,8 @@
 
 use super::state::{Part, Parts};
 use super::tables::Table;
-use crate::emf_motion::{EmfMotion, greatest_change};
+use crate::discrete_phase::di_limit;
+use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
@@ -310,8 +311,7 @@ impl Constants {
             v_bus_nominal: timer_period * two_v,
             i_trip: round_half_up(inverter.trip_current / g * two_i),
             i_comm: round_half_up(end.threshold / g * two_i),
-            di_limit: greatest_change((b * 4.0 / 3.0 * inverter.v_bus_max()? / g).min(adc_max))
-                * two_i,
+            di_limit: di_limit((b * 4.0 / 3.0 * inverter.v_bus_max()? / g).min(adc_max)) * two_i,
             i_max_bits,
             t_max_bits,
             comm_samples: f64::from(end.timeout) + 1.0,

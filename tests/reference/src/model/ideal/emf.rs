@@ -39,7 +39,7 @@ impl Ideal {
     /// What the period shows of its EMF that ends with the currents `i` of phases a, b: v - (i - a i_prev)/b.
     pub(super) fn emf_seen(&self, i: [f64; 2]) -> Vector2<f64> {
         let [pa, pb] = self.state.i_prev;
-        let change = |now: f64, before: f64| (now - before).clamp(-self.di_max, self.di_max);
+        let change = |now: f64, before: f64| (now - before).clamp(-self.di_limit, self.di_limit);
         let d = from_ab(change(i[0], pa), change(i[1], pb));
         let i_prev = from_ab(pa, pb);
         let DiscretePhase { a, b } = self.phase;
