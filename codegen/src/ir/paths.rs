@@ -140,7 +140,9 @@ impl<'f> Path<'f> {
         let path = &mut self.result;
         let results = path.outputs.iter_mut().map(|(_, value)| value);
         let words = path.next_state.iter_mut().map(|(_, value)| value);
-        for value in results.chain(words) {
+        let guards = path.stages.iter_mut().flat_map(|stage| &mut stage.guard);
+        let conditions = guards.map(|guard| &mut guard.condition);
+        for value in results.chain(words).chain(conditions) {
             *value = alias[value.index()];
         }
         // Errors are stated for the whole function.
