@@ -34,7 +34,7 @@ fn firmware() -> String {
     for (number, controller) in CONTROLLERS.iter().enumerate() {
         let name = format!("Drive{number}");
         let mut toml = toml.replace("[inverter]\n", &format!("[inverter]\n{BUS}"));
-        if number % 2 == 1 {
+        if number % 2 == 0 {
             // No count is beyond the range.
             toml = toml.replace("adc_bits = 12", "adc_bits = 16");
         }
