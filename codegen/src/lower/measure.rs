@@ -80,14 +80,11 @@ impl Lowering<'_> {
             Interval::new(0, 255),
             "Hall code, Ha in bit 2; sectors and forward direction in the type's documentation.",
         );
-        let mut sectors = vec![0; 8];
-        for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
-            sectors[usize::from(code & 7)] = sector;
-        }
+        let sectors = self.hall_sectors();
         let decode = self.b.program.column(
             "hall",
             "hall_sector",
-            sectors,
+            sectors.to_vec(),
             &["Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.".to_owned()],
         );
         let sector = self.b.lookup(decode, hall);
@@ -102,6 +99,15 @@ impl Lowering<'_> {
             out_of_range,
             no_hall,
         }
+    }
+
+    /// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+    pub(super) fn hall_sectors(&self) -> [i32; 8] {
+        let mut sectors = [0; 8];
+        for (sector, &code) in (1..).zip(&self.spec.motor.hall_codes) {
+            sectors[usize::from(code & 7)] = sector;
+        }
+        sectors
     }
 
     /// Whether a converter at an end of its range says a current above the trip level, whatever its offset.

@@ -133,12 +133,11 @@ impl Lowering<'_> {
 
     /// The trip level, by Hall code: an invalid one allows no current.
     fn trip_level(&mut self, sample: &Sample) -> Value {
-        let trip = self.ampere_word(self.spec.inverter.trip_current);
-        let codes = &self.spec.motor.hall_codes;
-        let is_valid = |code: u8| codes.iter().any(|&known| known & 7 == code);
-        let levels = (0..8).map(|code| if is_valid(code) { trip as i32 } else { -1 });
+        let trip = self.ampere_word(self.spec.inverter.trip_current) as i32;
+        let sectors = self.hall_sectors();
+        let levels = sectors.map(|sector| if sector == 0 { -1 } else { trip });
         let level = engineering(self.spec.inverter.trip_current, "A");
-        let levels = self.b.program.column("hall", "trip", levels.collect(), &[format!(
+        let levels = self.b.program.column("hall", "trip", levels.to_vec(), &[format!(
             "Trip level of the phase currents: {level}, words of current; -1, which every current is above, for the codes that cannot be."
         )]);
         let level = self.b.lookup(levels, sample.hall);

@@ -1,6 +1,7 @@
 //! The discretised plant i(k+1) = a i(k) + b (v(k) - e(k)) of one phase (`hexagen::conventions`).
 
-use crate::spec::{Discretisation, Spec};
+use crate::Error;
+use crate::spec::{Discretisation, Inverter, Spec};
 
 /// Coefficients of the discretised phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,10 +34,15 @@ impl DiscretePhase {
             },
         }
     }
-}
 
-/// The limit of the believed change of current, ADC counts, of which so many are possible in one period: a power of two, at
-/// least twice as many.
-pub fn di_limit(possible: f64) -> f64 {
-    (2.0 * possible).log2().ceil().exp2()
+    /// The limit of the believed change of current in one period, ADC counts: a power of two, at least twice what the
+    /// largest bus can do or the converters can say.
+    ///
+    /// # Errors
+    /// When the specification of the bus is inconsistent.
+    pub fn di_limit(&self, inverter: &Inverter) -> Result<f64, Error> {
+        let span = f64::from((1_u32 << inverter.adc_bits) - 1);
+        let possible = self.b * 4.0 / 3.0 * inverter.v_bus_max()? / inverter.adc_gain.abs();
+        Ok((2.0 * possible.min(span)).log2().ceil().exp2())
+    }
 }

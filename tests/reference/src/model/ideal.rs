@@ -14,7 +14,6 @@ use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Observation, Period};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::Variant;
-use crate::discrete_phase::di_limit;
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
@@ -123,10 +122,7 @@ impl Ideal {
             bus_sense,
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,
-            di_limit: gain.abs()
-                * di_limit(
-                    (phase.b * 4.0 / 3.0 * inverter.v_bus_max()? / gain.abs()).min(limits.adc_max),
-                ),
+            di_limit: phase.di_limit(inverter)? * gain.abs(),
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
             motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,

@@ -2,7 +2,6 @@
 
 use super::state::{Part, Parts};
 use super::tables::Table;
-use crate::discrete_phase::di_limit;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
@@ -194,7 +193,7 @@ impl Constants {
         let Scale {
             formats,
             variant,
-            phase: DiscretePhase { b, .. },
+            phase: phase @ DiscretePhase { b, .. },
             resistance,
             g,
             w,
@@ -216,7 +215,6 @@ impl Constants {
         let (estimated, filtered) = (variant.estimated(), variant.filtered());
         let advanced = rotor && options.advance > 0.0;
         let gain = reference_gain(spec);
-        let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
         let bus = match inverter.bus_sense()? {
             None => None,
             Some(sense) => Some(BusWords {
@@ -311,7 +309,7 @@ impl Constants {
             v_bus_nominal: timer_period * two_v,
             i_trip: round_half_up(inverter.trip_current / g * two_i),
             i_comm: round_half_up(end.threshold / g * two_i),
-            di_limit: di_limit((b * 4.0 / 3.0 * inverter.v_bus_max()? / g).min(adc_max)) * two_i,
+            di_limit: phase.di_limit(inverter)? * two_i,
             i_max_bits,
             t_max_bits,
             comm_samples: f64::from(end.timeout) + 1.0,
