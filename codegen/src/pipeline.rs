@@ -4,7 +4,7 @@ use crate::at_once::at_once;
 use crate::controllers::current_loop::{LinearLoop, LoopDesign};
 use crate::controllers::{
     StableRange, accuracy_constants, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm,
-    wide_words,
+    trust_in_estimate, wide_words,
 };
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
@@ -124,6 +124,18 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
         && phcc.table == SwitchingTable::Printed
     {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
+    }
+    // Round numbers put motors right on the limit.
+    if let Some(trust) = trust_in_estimate(spec)
+        && trust.turn > trust.limit * (1.0 + 1e-9)
+    {
+        warnings.push(catalogue::estimate_turns_too_far(
+            origins.at("controller.emf"),
+            &origins.given("controller.emf", "estimated"),
+            [trust.turn, trust.limit],
+            spec.inverter.t_s,
+            trust.filtered,
+        ));
     }
     warnings
 }
@@ -376,6 +388,51 @@ kind = "pdcc"
             }
         }
         assert!(generated > 200, "{generated}");
+    }
+
+    #[test]
+    fn an_estimate_that_turns_too_far_is_warned_of() {
+        let sine = MOTOR
+            .replace("trapezoidal", "sinusoidal")
+            .replace("rated_torque = \"3.3 Nm\"\n", "");
+        let slow = sine.replace("f_pwm = \"20 kHz\"", "f_pwm = \"4 kHz\"");
+        let told = |motor: &str, variant: &str| {
+            let mut ast = parse_toml(motor, "motor.toml").expect("the motor parses");
+            apply_variant(&mut ast, variant).expect("the variant parses");
+            let (spec, origins) = check(&ast).expect("it passes the checks");
+            let warnings = super::warnings(&spec, &origins);
+            warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        for variant in ["pdcc", "fcs-mpc", "phcc", "pi-pwm"] {
+            assert_eq!(told(MOTOR, variant), [""; 0], "the paper's with {variant}");
+            assert_eq!(told(&sine, variant), [""; 0], "a sine with {variant}");
+        }
+        for variant in [
+            "pdcc:emf=model",
+            "pdcc:emf=held",
+            "pi-pwm:feed_forward=off",
+            "phcc:delay=0",
+        ] {
+            assert_eq!(told(&slow, variant), [""; 0], "{variant}");
+        }
+        for (motor, variant, told_of) in [
+            (
+                &slow,
+                "pdcc",
+                "warning[HX0602]: `emf`: estimated (default), of an EMF that turns by 12 electrical degrees in a control period at rated speed; beyond 9 the torque may be more than 5 % off; choose `emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most 187.5 us",
+            ),
+            (
+                &sine,
+                "pdcc:emf_filter=0.01",
+                "beyond 1.146 the estimate no longer follows; choose a greater `emf_filter`, `emf: model`",
+            ),
+        ] {
+            let told = told(motor, variant);
+            assert!(
+                matches!(&told[..], [one] if one.contains(told_of)),
+                "{told:?}"
+            );
+        }
     }
 
     fn of(variant: &str) -> super::Generated {

@@ -125,6 +125,25 @@ fn a_warning_is_told_unless_it_is_allowed() {
 }
 
 #[test]
+fn an_estimate_that_turns_too_far_is_told_unless_it_is_allowed() {
+    let folder = std::env::temp_dir().join(format!("hexagen-turn-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    let slow = include_str!("../example.toml").replace("\"20 kHz\"", "\"4 kHz\"");
+    fs::write(folder.join("hub.toml"), slow).expect("a motor file");
+    let builder = Builder::new().root(&folder).out_dir(&folder);
+    let builder = builder.motor("hub.toml").controller("pdcc");
+    let told = builder.clone().generate();
+    let allowed = builder.allow("HX0602").generate();
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    let told = told.expect("a warning is no error").remove(0).warnings;
+    assert!(
+        matches!(&told[..], [one] if one.contains("warning[HX0602]: `emf`: ")),
+        "{told:?}"
+    );
+    assert!(allowed.expect("generates").remove(0).warnings.is_empty());
+}
+
+#[test]
 fn c99_is_written_by_type() {
     let folder = std::env::temp_dir().join(format!("hexagen-c99-{}", std::process::id()));
     fs::create_dir_all(&folder).expect("a temporary folder");

@@ -12,12 +12,14 @@ pub mod pdcc;
 pub mod phcc;
 pub mod pi_pwm;
 mod start;
+mod trust;
 mod whole_vectors;
 mod word_choice;
 
 pub use accuracy::accuracy_constants;
 pub use current_loop::StableRange;
 pub use interface::{Law, interface};
+pub use trust::{Trust, trust_in_estimate};
 pub use word_choice::{narrow_words, wide_words};
 
 use crate::spec::{ControllerSpec, Spec};

@@ -1,16 +1,33 @@
 //! How fast the rotor may turn when control begins, so that no current trips the drive.
 
-use super::current_loop::LoopDesign;
+use super::current_loop::{LinearLoop, LoopDesign};
+use super::pdcc::DeadbeatLoop;
+use super::pi_pwm::PiLoop;
 use crate::design::emf::zero_sum_shape;
-use crate::spec::{ControllerSpec, EmfSource, Spec};
-use std::f64::consts::TAU;
+use crate::spec::{ControllerSpec, EmfShape, EmfSource, PhccCandidates, Spec, SwitchingTable};
+use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Angles at which the EMF is looked at.
-const ANGLES: u32 = 720;
+/// Where a turn exceeds so many times the share that the filter lets in, an estimate, which is moved on at the speed that
+/// its own length tells, can stay behind the EMF for good. Of a sine w^2/f^2 = (1 + r)/(r^2 (1 - r)) has a solution r
+/// below 1, for r of the EMF's length, from 3.33 on; trapezoids were simulated.
+fn loses(shape: EmfShape) -> f64 {
+    match shape {
+        EmfShape::Sinusoidal => 10.0 / 3.0,
+        EmfShape::Trapezoidal { .. } => 1.1,
+    }
+}
 
-/// A proportional regulator that meets an EMF that it learns late, or not at all, overshoots what it settles at
-/// by this factor.
-const OVERSHOOT: f64 = 1.3;
+/// Greatest lack of such an estimate, of the EMF: it swings past its rest. (Without moving on it is at most 1; found by
+/// iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and turns up to 30 degrees.)
+const LACK: f64 = 1.17;
+
+/// Part of the bus that the line EMF has where a derived switching table without floating legs was designed: with more,
+/// the vectors that it chooses no longer move the current as they should.
+const TABLE_EMF: f64 = 0.75;
+
+/// Part of the bus that leaves room for a PI regulator whose integral has to stand for an EMF that its estimate lost:
+/// that overshoots, and past the bus it pulls the voltage along an EMF that is not there.
+const INTEGRATED_EMF: f64 = 0.85;
 
 /// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
 pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
@@ -20,31 +37,81 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 
 /// Greatest speed of the rotor, mechanical rad/s, at which control may begin with set-point 0 without a trip.
 ///
-/// The first command finds no EMF: none was estimated yet, and the Hall sensors have told no speed. So the
-/// EMF, at most z k_phase omega (z the peak of the shape's zero-sum part), moves a current by b z k_phase omega
-/// per period, until the command that knows it, or the current, takes effect. What a controller of whole
-/// vectors adds of its own is the step of one vector.
+/// The first command finds no EMF: none was estimated yet, and the Hall sensors have told no speed. What is found out
+/// of it later only helps, if it ever is: a slow filter loses an EMF that turns faster than it follows. So the current
+/// is what the closed loop lets an EMF drive that appears at once, and turns: of prediction without knowledge, one period
+/// of it before the sample that shows it and, with a delay, one more. The inverter can hold that current where its lowest
+/// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
+/// whole vectors add the step of one vector, modulated the greatest distance from what two vectors reach. A speed loop
+/// brakes as soon as it knows the speed, a sector later at the earliest, with what is left of the EMF then. Samples lie
+/// where the ripple of pulses crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let angles = (0..ANGLES).map(|n| f64::from(n) * TAU / f64::from(ANGLES));
-    let peak = angles
-        .map(|angle| zero_sum_shape(motor.emf_shape, angle).abs())
-        .fold(0.0, f64::max);
+    let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
+    let most = (inverter.lowest_bus() / line).min(inverter.maximum_speed);
+    let turn = most * f64::from(motor.pole_pairs) * inverter.t_s;
+    let filter = options.emf_filter;
+    let estimates = options.emf == EmfSource::Estimated;
+    let loses = estimates && turn > loses(motor.emf_shape) * filter;
+    let kept = match &spec.controller {
+        // What a table that is given does says no derivation.
+        ControllerSpec::Phcc(phcc) if phcc.table != SwitchingTable::Derived => 0.0,
+        ControllerSpec::Phcc(phcc) if phcc.candidates == PhccCandidates::ThreePhase => TABLE_EMF,
+        ControllerSpec::PiPwm(pi) if pi.feed_forward && loses => INTEGRATED_EMF,
+        _ => 1.0,
+    };
+    let met = most.min(kept * inverter.lowest_bus() / line);
     let periods = f64::from(options.delay + 1);
-    let vector = design.plant.gain * 2.0 / 3.0 * inverter.v_bus;
+    let vector = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
     let (per_volt, own) = match &spec.controller {
-        ControllerSpec::Pdcc(_) => (design.plant.gain * periods, 0.0),
+        ControllerSpec::Pdcc(options) => {
+            let linear = DeadbeatLoop { options, design };
+            (linear.greatest_response(spec, turn), 0.0)
+        }
+        // The centre of a triangle of vectors lies so far from its edges.
+        ControllerSpec::FcsMpc(fcs) if fcs.modulated => {
+            (design.plant.gain * periods, vector / 12_f64.sqrt())
+        }
         ControllerSpec::FcsMpc(_) => (design.plant.gain * periods, vector),
         ControllerSpec::Phcc(phcc) => (design.plant.gain * periods, vector + phcc.band),
-        ControllerSpec::PiPwm(pi) => {
-            let settled = OVERSHOOT / pi.proportional_gain(motor);
-            let at_once = design.plant.gain * periods;
-            let knows =
-                pi.feed_forward && options.emf == EmfSource::Estimated && options.emf_filter >= 1.0;
-            (if knows { at_once } else { settled.max(at_once) }, 0.0)
+        ControllerSpec::PiPwm(options) => {
+            let linear = PiLoop {
+                options,
+                design,
+                spec,
+            };
+            (linear.greatest_response(spec, turn), 0.0)
         }
     };
-    let room = (inverter.trip_current - own).max(0.0);
-    room / (peak * motor.emf_constant * per_volt)
+    let per_volt = if loses { LACK * per_volt } else { per_volt };
+    // The third phase's current is the sum of two, each half a count off.
+    let room = (inverter.trip_current - inverter.adc_gain.abs() - own).max(0.0);
+    let room = if options.speed.is_some() && estimates {
+        let left = if loses {
+            1.0
+        } else {
+            (1.0 - filter).powf(FRAC_PI_3 / turn)
+        };
+        room.min((room - inverter.max_current).max(0.0) / left.max(f64::EPSILON))
+    } else {
+        room
+    };
+    let peak = peak(motor.emf_shape) * motor.emf_constant;
+    (room / (peak * per_volt)).min(met)
+}
+
+/// Peak of the part of a phase's unit EMF that drives current.
+fn peak(shape: EmfShape) -> f64 {
+    match shape {
+        EmfShape::Sinusoidal => 1.0,
+        // Made of straight lines, it peaks at the end of a ramp of one of the phases.
+        EmfShape::Trapezoidal { flat_top_deg } => {
+            let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
+            let crossings = (0..6).map(|n| f64::from(n) * FRAC_PI_3);
+            let ends = crossings.flat_map(|angle| [angle - ramp, angle + ramp]);
+            ends.map(|angle| zero_sum_shape(shape, angle).abs())
+                .fold(0.0, f64::max)
+        }
+    }
 }

@@ -135,6 +135,8 @@ codes! {
     WordTooNarrow = 504,
     /// A switching table that is known to lose the current.
     SwitchingTableLosesCurrent = 601,
+    /// The EMF turns further in a control period than its estimate is moved on rightly.
+    EstimateTurnsTooFar = 602,
     /// The generator broke one of its own invariants.
     Internal = 901,
 }

@@ -175,6 +175,14 @@ pub struct InverterSpec {
 }
 
 impl InverterSpec {
+    /// The lowest bus voltage that the controller reckons with, volt.
+    pub fn lowest_bus(&self) -> f64 {
+        match self.bus {
+            BusSource::Fixed => self.v_bus,
+            BusSource::Measured { min, .. } => min,
+        }
+    }
+
     /// The greatest bus voltage that the controller reckons with, volt.
     pub fn greatest_bus(&self) -> f64 {
         match self.bus {

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI};
 pub struct EmfMotion {
     /// The EMF turns (a sine); otherwise the off phase's EMF goes from one flat top to the other.
     pub turns: bool,
-    /// c: motion in one period per product of two line EMFs, 1/V.
+    /// c: motion in one period per product of two line EMFs, 1/V; of a sine, turn over sqrt(3) per line EMF.
     pub per_product: f64,
     /// Line EMF from which on the motion no longer grows, volt.
     pub line_limit: f64,
@@ -37,10 +37,10 @@ impl EmfMotion {
             2.0 / 3.0 * shape.unit(FRAC_PI_6) / h / (PI / 3.0)
         };
         let kept = 1.0 - spec.loop_options().emf_filter;
-        let turn_max = if kept > 0.0 {
-            ((kept.powi(-2) - 1.0) / 2.0).sqrt().min(0.5)
-        } else {
-            0.5
+        let turn_max = match (kept > 0.0, turns) {
+            (false, _) => 0.5,
+            (true, true) => (8.0 / 5.0 * (1.0 - kept) / kept).sqrt().sqrt().min(0.5),
+            (true, false) => ((kept.powi(-2) - 1.0) / 2.0).sqrt().min(0.5),
         };
         Ok(Self {
             turns,

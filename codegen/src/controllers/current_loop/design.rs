@@ -24,17 +24,24 @@ pub struct LoopDesign {
     pub di_limit: f64,
     /// Largest believed zero-sum phase EMF, volt.
     pub e_limit: f64,
-    /// How far an estimated EMF moves in one period, per product of two line EMFs, 1/V.
+    /// How far an estimated EMF moves in one period, per product of two line EMFs, 1/V; of a sine, the tangent of its
+    /// turn over sqrt(3), per line EMF.
     pub slope: f64,
     /// Line EMF from which on that motion no longer grows, volt.
     pub line_limit: f64,
 }
 
 /// Largest angle per period, radian, by which an estimate that takes over the share `filter` of what is seen
-/// is moved on: the linearised motion lets an error grow by sqrt(1 + 2 angle^2), and what remains of it must shrink.
-fn greatest_turn(filter: f64) -> f64 {
-    let growth = 1.0 / (1.0 - filter).powi(2);
-    ((growth - 1.0) / 2.0).sqrt().min(0.5)
+/// is moved on: what remains of an error must shrink. The linearised motion of a trapezoid lets it grow by
+/// sqrt(1 + 2 angle^2). A sine that turns to second order becomes longer by angle^4/8, an error of its length, which
+/// tells the speed too, by 5/8 angle^4.
+fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
+    let growth = 1.0 / (1.0 - filter);
+    let turn = match shape {
+        EmfShape::Sinusoidal => (1.6 * (growth - 1.0)).powf(0.25),
+        EmfShape::Trapezoidal { .. } => ((growth.powi(2) - 1.0) / 2.0).sqrt(),
+    };
+    turn.min(0.5)
 }
 
 impl LoopDesign {
@@ -69,7 +76,7 @@ impl LoopDesign {
                     2.0 / PI * shape.at(FRAC_PI_6) * turn
                 }
             },
-            line_limit: line * greatest_turn(options.emf_filter) / electrical,
+            line_limit: line * greatest_turn(shape, options.emf_filter) / electrical,
         }
     }
 

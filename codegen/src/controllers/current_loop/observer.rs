@@ -27,18 +27,23 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// `k_slope`: what the upper word of a product of two line EMFs, both shifted, is worth in words of voltage.
+    /// `k_slope`: what the upper word of the square of a shifted line EMF is worth in words of voltage; of a sine, what
+    /// a shifted line EMF is worth as a turn.
     fn slope_value(&self, range: LineRange) -> f64 {
         let word = 1.0 / self.lowering.scale.voltage();
         self.design.slope * word * f64::from(self.slope_exponent(range)).exp2()
     }
 
     fn slope_exponent(&self, range: LineRange) -> i32 {
-        self.options.word as i32 - 2 * range.shift
+        let factors = match self.lowering.spec.motor.emf_shape {
+            EmfShape::Sinusoidal => 1,
+            EmfShape::Trapezoidal { .. } => 2,
+        };
+        self.options.word as i32 - factors * range.shift
     }
 
-    /// Largest motion of a phase EMF over one period, words of voltage.
-    pub(super) fn motion_bound(&self) -> i64 {
+    /// Largest motion over one period of a phase EMF of at most `e`, words of voltage.
+    pub(super) fn motion_bound(&self, e: i64) -> i64 {
         let (range, word) = (self.line_range(), self.options.word);
         let factor = if range.shift < 0 {
             (range.limit >> -range.shift) + 1
@@ -46,12 +51,16 @@ impl CurrentLoop<'_, '_> {
             range.limit << range.shift
         };
         // A negative product is rounded away from zero.
-        let product = ((factor * factor) >> word) + 1;
-        let product = match self.lowering.spec.motor.emf_shape {
-            EmfShape::Sinusoidal => product,
-            EmfShape::Trapezoidal { .. } => 2 * product,
-        };
-        product_bound(self.slope_value(range), word, product)
+        let upper = |a: i64, b: i64| ((i128::from(a) * i128::from(b)) >> word) as i64 + 1;
+        let moved = |factor: i64| product_bound(self.slope_value(range), word, factor);
+        match self.lowering.spec.motor.emf_shape {
+            EmfShape::Sinusoidal => {
+                let turn = moved(factor);
+                let across = upper(turn, 3 * e);
+                across + upper(turn, 3 * across) / 2 + 1
+            }
+            EmfShape::Trapezoidal { .. } => moved(2 * upper(factor, factor)),
+        }
     }
 
     /// The estimate `e` of the period that just ended, moved on to the target period and to the present one.
@@ -63,24 +72,28 @@ impl CurrentLoop<'_, '_> {
         let delayed = self.options.delay == 1;
         let doc = match shape {
             EmfShape::Sinusoidal => {
-                "Moves the estimate on by a period and more: a sinusoidal EMF turns, at right angles to itself."
+                "Moves the estimate on by a period and more: a sinusoidal EMF turns, e + w e_across - w^2/2 e."
             }
             EmfShape::Trapezoidal { .. } => {
                 "Moves the estimate on by a period and more: the EMF of the sector's off phase goes from one flat top to the other."
             }
         };
+        let [doc_of_slope, unit] = match shape {
+            EmfShape::Sinusoidal => [
+                "Turn of the EMF in one period over sqrt(3), per line EMF.",
+                "upper words per shifted line",
+            ],
+            EmfShape::Trapezoidal { .. } => [
+                "Motion of the EMF in one period, per product of two line EMFs.",
+                "words of voltage per upper word of the product, both lines shifted",
+            ],
+        };
         let slope = self.lowering.scaled_coefficient(
             "k_slope",
             value,
             self.options.word,
-            [
-                "Motion of the EMF in one period, per product of two line EMFs.",
-                &format!("c = {:.4e} 1/V", self.design.slope),
-            ],
-            [
-                &format!("c w 2^({exponent} - f_v)"),
-                "words of voltage per upper word of the product, both lines shifted",
-            ],
+            [doc_of_slope, &format!("c = {:.4e} 1/V", self.design.slope)],
+            [&format!("c w 2^({exponent} - f_v)"), unit],
         );
         self.lowering.b.stage(
             "move_emf",
@@ -95,22 +108,29 @@ impl CurrentLoop<'_, '_> {
         let parts = [0, 1].map(|x| l.b.mul(lines[x], e[x], 0));
         let line = l.b.add(parts[0], parts[1]);
         let speed = self.shifted_line(["e_line", "e_line_factor"], line, range);
-        let motion = match shape {
-            EmfShape::Sinusoidal => self.turning(slope, speed, e, range),
-            EmfShape::Trapezoidal { .. } => self.ramping(slope, speed, lines),
+        let [once, twice] = match shape {
+            EmfShape::Sinusoidal => self.turning(slope, speed, e, delayed),
+            EmfShape::Trapezoidal { .. } => {
+                let motion = self.ramping(slope, speed, lines);
+                [motion, motion]
+            }
         };
         let l = &mut *self.lowering;
-        let mut ahead = |e: [Value; 2], names: [&str; 2]| {
+        let mut ahead = |e: [Value; 2], motion: [Value; 2], names: [&str; 2]| {
             [0, 1].map(|x| {
                 let moved = l.b.add(e[x], motion[x]);
                 l.b.name(names[x], moved)
             })
         };
         if delayed {
-            let present = ahead(e, ["e_a_now", "e_b_now"]);
-            (ahead(present, ["e_a", "e_b"]), present)
+            let present = ahead(e, once, ["e_a_now", "e_b_now"]);
+            let before = match shape {
+                EmfShape::Sinusoidal => e,
+                EmfShape::Trapezoidal { .. } => present,
+            };
+            (ahead(before, twice, ["e_a", "e_b"]), present)
         } else {
-            let present = ahead(e, ["e_a", "e_b"]);
+            let present = ahead(e, once, ["e_a", "e_b"]);
             (present, present)
         }
     }
@@ -167,31 +187,49 @@ impl CurrentLoop<'_, '_> {
         [l.b.name("motion_a", motion_a), l.b.name("motion_b", with_b)]
     }
 
-    /// At right angles to the EMF: the line EMF of the two other phases, at the speed.
+    /// Motions of a sine over one period, and over two where the target is the second one. At right angles to itself
+    /// alone it would grow in length by half the turn's square, again in every period that the estimate is fed back:
+    /// the motion turns by half as well. Over two periods that counts four times.
     fn turning(
         &mut self,
         slope: Coefficient,
         speed: Value,
         e: [Value; 2],
-        range: LineRange,
-    ) -> [Value; 2] {
+        delayed: bool,
+    ) -> [[Value; 2]; 2] {
+        let turn = self.lowering.times(slope, speed);
+        self.lowering.b.name("e_turn", turn);
+        let across = self.turned(turn, e, ["e_across_a", "e_across_b"]);
+        let bend = self.turned(turn, across, ["bend_a", "bend_b"]);
+        let b = &mut self.lowering.b;
+        let once = [0, 1].map(|x| {
+            let half = b.shift_right(bend[x], 1);
+            let motion = b.add(across[x], half);
+            b.name(["motion_a", "motion_b"][x], motion)
+        });
+        if !delayed {
+            return [once, once];
+        }
+        let twice = [0, 1].map(|x| {
+            let half = b.add(across[x], bend[x]);
+            let motion = b.shift_left(half, 1);
+            b.name(["motion_twice_a", "motion_twice_b"][x], motion)
+        });
+        [once, twice]
+    }
+
+    /// At right angles to `e`, by the turn: sqrt(3) times a phase's voltage across is that between the two others.
+    fn turned(&mut self, turn: Value, e: [Value; 2], names: [&str; 2]) -> [Value; 2] {
         let word = self.options.word;
         let b = &mut self.lowering.b;
         let twice_b = b.shift_left(e[1], 1);
-        let across = b.add(e[0], twice_b);
-        let across_a = b.neg(across);
+        let sum = b.add(e[0], twice_b);
+        let line_a = b.neg(sum);
         let twice_a = b.shift_left(e[0], 1);
-        let across_b = b.add(twice_a, e[1]);
-        let names = [
-            ["e_across_a", "across_a_factor"],
-            ["e_across_b", "across_b_factor"],
-        ];
+        let line_b = b.add(twice_a, e[1]);
         [0, 1].map(|x| {
-            let factor = self.shifted_line(names[x], [across_a, across_b][x], range);
-            let l = &mut *self.lowering;
-            let product = l.b.mul_floor(speed, factor, word);
-            let motion = l.times(slope, product);
-            l.b.name(["motion_a", "motion_b"][x], motion)
+            let turned = b.mul_floor(turn, [line_a, line_b][x], word);
+            b.name(names[x], turned)
         })
     }
 }

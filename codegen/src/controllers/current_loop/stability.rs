@@ -43,6 +43,37 @@ pub trait LinearLoop {
             .fold(0.0, f64::max)
     }
 
+    /// Greatest current per volt, A/V, that an EMF drives which meets a loop at rest at once and turns from then on by
+    /// up to `turn` radian a period, on the motor as it is stated.
+    fn greatest_response(&self, spec: &Spec, turn: f64) -> f64 {
+        let real = real_plant(spec, 1.0, 1.0);
+        // The current after one period of a volt, from which any other EMF's is summed.
+        let mut state = DVector::zeros(self.order());
+        state[0] = real.gain;
+        let (mut currents, mut greatest) = (vec![], 0.0_f64);
+        while state.amax() > OVER * greatest && currents.len() < LONGEST {
+            greatest = greatest.max(state.amax());
+            currents.push(state[0]);
+            state = self.advance(real, &state);
+        }
+        let peak = |turn: f64| {
+            // Seen from the EMF: each period's share stands one turn further back.
+            let (sin, cos) = turn.sin_cos();
+            let (mut along, mut across) = (1.0, 0.0);
+            let (mut facing, mut lagging) = (0.0_f64, 0.0_f64);
+            let mut most = 0.0_f64;
+            for current in &currents {
+                facing += along * current;
+                lagging += across * current;
+                (along, across) = (along * cos - across * sin, along * sin + across * cos);
+                most = most.max(facing.hypot(lagging));
+            }
+            most
+        };
+        let turns = (0..=TURNS).map(|n| turn * f64::from(n) / f64::from(TURNS));
+        turns.map(peak).fold(0.0, f64::max)
+    }
+
     /// The ranges of true over stated R and L within which the loop is stable, one off at a time,
     /// searched from 0.1 to 10.
     fn stable_range(&self, spec: &Spec) -> StableRange {
@@ -56,6 +87,15 @@ pub trait LinearLoop {
         }
     }
 }
+
+/// Speeds from 0 on at which a turning EMF is tried.
+const TURNS: u32 = 8;
+
+/// Part of its greatest value below which a decaying response counts as over.
+const OVER: f64 = 0.004;
+
+/// Longest response that is followed, periods.
+const LONGEST: usize = 1000;
 
 /// The plant with `resistance_ratio` and `inductance_ratio` times the motor's R and L. It is physical whatever the
 /// model's discretisation: its own is exact.

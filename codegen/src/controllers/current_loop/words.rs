@@ -80,7 +80,13 @@ impl CurrentLoop<'_, '_> {
         let holds = self.holds_emf();
         // What a period shows of its EMF takes part.
         let sees = estimated || needs.integral;
-        let e_expected = self.e_bound() + if estimated { self.motion_bound() } else { 0 };
+        let e_bound = self.e_bound();
+        let moves = if estimated {
+            self.motion_bound(e_bound)
+        } else {
+            0
+        };
+        let e_expected = e_bound + moves;
         let l = &mut *self.lowering;
         let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;

@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::structure::did_you_mean;
-use crate::diagnostics::{Code, Diagnostic, Location, engineering, list};
+use crate::diagnostics::{Code, Diagnostic, Location, engineering, list, significant};
 
 /// A controller that does not exist.
 pub fn unknown_controller(at: &Location, given: &str, available: &[&str]) -> Diagnostic {
@@ -138,6 +138,31 @@ pub fn printed_table(at: &Location) -> Diagnostic {
         Code::SwitchingTableLosesCurrent,
         at,
         "`table`: the printed row of sector 1, turned through the sectors, loses the current until the drive trips; it is there for study, write `derived` for a drive",
+    )
+}
+
+/// An EMF that turns by `turn` in a period of `t_s` seconds, more than the estimate `given` stands, `limit`; angles in
+/// electrical degrees. `filtered`: the filter limits it.
+pub fn estimate_turns_too_far(
+    at: &Location,
+    given: &str,
+    [turn, limit]: [f64; 2],
+    t_s: f64,
+    filtered: bool,
+) -> Diagnostic {
+    let [turned, limited] = [turn, limit].map(significant);
+    let (consequence, remedy) = if filtered {
+        ("the estimate no longer follows", "a greater `emf_filter`, ")
+    } else {
+        ("the torque may be more than 5 % off", "")
+    };
+    let period = engineering(t_s * limit / turn, "s");
+    Diagnostic::new(
+        Code::EstimateTurnsTooFar,
+        at,
+        format!(
+            "`emf`: {given}, of an EMF that turns by {turned} electrical degrees in a control period at rated speed; beyond {limited} {consequence}; choose {remedy}`emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
+        ),
     )
 }
 

@@ -78,6 +78,7 @@ fn other_stages() -> BTreeSet<Code> {
         Code::Unstable,
         Code::WordTooNarrow,
         Code::SwitchingTableLosesCurrent,
+        Code::EstimateTurnsTooFar,
         Code::Internal,
     ]
     .into()

@@ -297,9 +297,8 @@ impl Ideal {
                 if self.variant.unseen() {
                     e = self.with_floated(&e, sector_eff);
                 }
-                let motion = self.emf_motion(&e, sector);
-                let present = e + motion;
-                (if delayed { present + motion } else { present }, present)
+                let [present, target] = self.moved_on(&e, sector);
+                (if delayed { target } else { present }, present)
             }
             Some(EmfSource::Model) => {
                 let start = theta + f64::from(self.variant.options.delay) * step_angle;

@@ -110,9 +110,9 @@ impl Uniform {
             let e = q.round(e_prev[x] + q.product(self.filter, news));
             e.clamp(-self.v_largest, self.v_largest)
         });
-        let motion = self.motion(corner, e_past);
-        let e_now = both(&|x| q.round(e_past[x] + motion[x]));
-        let e = both(&|x| q.round(e_now[x] + motion[x]));
+        let [once, twice] = self.motions(corner, e_past);
+        let e_now = both(&|x| q.round(e_past[x] + once[x]));
+        let e = both(&|x| q.round(e_past[x] + twice[x]));
         let i_ref = q.round(set_point);
         both(&|x| {
             let wanted = q.product(self.k, corner[x] * i_ref);
@@ -123,22 +123,27 @@ impl Uniform {
         })
     }
 
-    /// Motion of the EMF in one period. Its coefficient is smaller than any number of a format that holds voltages, so
-    /// here, in favour of the format, only the result is rounded.
-    fn motion(&self, [p, q]: [f64; 2], [e_a, e_b]: [f64; 2]) -> [f64; 2] {
+    /// Motions of the EMF in one period and in two. Their coefficient is smaller than any number of a format that holds
+    /// voltages, so here, in favour of the format, only the results are rounded.
+    fn motions(&self, [p, q]: [f64; 2], [e_a, e_b]: [f64; 2]) -> [[f64; 2]; 2] {
         let limit = self.motion.line_limit.min(self.v_largest);
-        let held = |line: f64| line.clamp(-limit, limit);
         let [line_a, line_b] = [2.0 * p + q, p + 2.0 * q];
-        let line = held(line_a * e_a + line_b * e_b);
-        let motion = if self.motion.turns {
-            [
-                line * held(-(e_a + 2.0 * e_b)),
-                line * held(2.0 * e_a + e_b),
-            ]
+        let line = (line_a * e_a + line_b * e_b).clamp(-limit, limit);
+        let turn = self.motion.per_product * line;
+        let rounded = |volts: [f64; 2]| volts.map(|volts| self.format.round(volts));
+        if self.motion.turns {
+            [1.0, 2.0].map(|periods| {
+                let turn = periods * turn;
+                // The axes of a and b are not at right angles: across and back is -3 times the way.
+                rounded([
+                    -turn * (e_a + 2.0 * e_b) - 1.5 * turn * turn * e_a,
+                    turn * (2.0 * e_a + e_b) - 1.5 * turn * turn * e_b,
+                ])
+            })
         } else {
-            [-line_b * line * line, line_a * line * line]
-        };
-        motion.map(|product| self.format.round(self.motion.per_product * product))
+            let once = rounded([-line_b * line * turn, line_a * line * turn]);
+            [once, once.map(|volts| 2.0 * volts)]
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use hexagen::{Format, Rounding};
 use hexagen_reference::{
-    Candidates, Controller, DiscretePhase, EmfSource, FcsMpc, FormatTable, Modulation, Reference,
-    Spec, Switch,
+    Candidates, Controller, DiscretePhase, EmfShapeKind, EmfSource, FcsMpc, FormatTable,
+    Modulation, Reference, Spec, Switch,
 };
 use std::f64::consts::TAU;
 
@@ -285,8 +285,13 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let bus = inverter.v_bus_max().expect("a bus");
     let turn = f64::from(motor.pole_pairs) * inverter.t_s / (1.6 * motor.emf_constant);
     let ohm = g / w * 2f64.powi(f_v - f_i);
-    // A turn takes two line EMFs of the bus at most, as factors of 31 bits or a little more than 30.
-    let slope = turn * w / scale * 4.0 * (bus / w * scale).powi(2) / 2f64.powi(30);
+    // A turn takes a line EMF of twice the bus at most, as a factor of 31 bits or a little more than 30; a ramp takes two.
+    let slope = match motor.emf_shape {
+        EmfShapeKind::Sinusoidal => turn * 4.0 * bus,
+        EmfShapeKind::Trapezoidal => {
+            turn * w / scale * 4.0 * (bus / w * scale).powi(2) / 2f64.powi(30)
+        }
+    };
     let shift = |value: f64| (30 - value.log2().ceil() as i32).clamp(0, 62);
     let e_max = 2.0 * motor.emf_constant * inverter.omega_max / w * scale;
     let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w * 1.6;

@@ -54,7 +54,7 @@ pub struct Constants {
     pub line_scale: f64,
     /// -q, where q is.
     pub line_shift: u32,
-    /// Products of two line EMFs, of which the upper word counts.
+    /// Products of two line EMFs, or of a turn and one, of which the upper word counts.
     pub line_product: Shift,
     pub emf_turns: bool,
     pub filtered: bool,
@@ -265,7 +265,8 @@ impl Constants {
             .rev()
             .find(|&q| line_max * pow2(q) < pow2(word - 1))
             .unwrap_or(0);
-        let slope = motion.per_product * w / two_v * pow2(word - 2 * q);
+        let factors = if motion.turns { 1 } else { 2 };
+        let slope = motion.per_product * w / two_v * pow2(word - factors * q);
         Ok(Self {
             parts: Parts::new(&[
                 (

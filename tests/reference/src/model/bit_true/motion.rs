@@ -1,7 +1,7 @@
 //! An estimated EMF moved on (section 8).
 
 use super::constants::Constants;
-use crate::exact::{Word, floor_shift, here, within};
+use crate::exact::{Word, floor_shift, halve, here, within};
 use crate::model::sector::{CORNER_A, CORNER_B};
 
 /// The estimate `e` of the period that just ended, in the target period and in the present one.
@@ -16,18 +16,27 @@ pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [Word; 2]) -> ([Wor
     let [p, q] = [CORNER_A[sector], CORNER_B[sector]];
     let [line_a, line_b] = [2.0 * p + q, p + 2.0 * q];
     let y = factor(line_a * e[0] + line_b * e[1]);
-    let motion = if k.emf_turns {
-        [
-            k.k_slope.mul(product(y, factor(-(e[0] + 2.0 * e[1])))),
-            k.k_slope.mul(product(y, factor(2.0 * e[0] + e[1]))),
-        ]
-    } else {
-        let square = product(y, y);
-        [
-            -k.k_slope.mul(line_b * square),
-            k.k_slope.mul(line_a * square),
-        ]
-    };
+    if k.emf_turns {
+        let turn = k.k_slope.mul(y);
+        let [across_a, across_b] = [
+            product(turn, -(e[0] + 2.0 * e[1])),
+            product(turn, 2.0 * e[0] + e[1]),
+        ];
+        let [bend_a, bend_b] = [
+            product(turn, -(across_a + 2.0 * across_b)),
+            product(turn, 2.0 * across_a + across_b),
+        ];
+        let once = [across_a + halve(bend_a), across_b + halve(bend_b)];
+        let twice = [2.0 * (across_a + bend_a), 2.0 * (across_b + bend_b)];
+        let present = moved(e, once);
+        let target = if delayed { moved(e, twice) } else { present };
+        return (target, present);
+    }
+    let square = product(y, y);
+    let motion = [
+        -k.k_slope.mul(line_b * square),
+        k.k_slope.mul(line_a * square),
+    ];
     let present = moved(e, motion);
     let target = if delayed {
         moved(present, motion)

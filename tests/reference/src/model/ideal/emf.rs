@@ -52,16 +52,15 @@ impl Ideal {
         e.clamp(-self.v_largest, self.v_largest)
     }
 
-    /// By how much an estimated EMF moves in one period (section 8): round its circle, or along the side of
-    /// its hexagon that belongs to the sector. The pair's EMF tells the speed.
-    pub(super) fn emf_motion(&self, e: &Vector2<f64>, sector: usize) -> Vector2<f64> {
+    /// An estimated EMF one and two periods later (section 8): round its circle, to second order, or along the side
+    /// of its hexagon that belongs to the sector. The pair's EMF tells the speed.
+    pub(super) fn moved_on(&self, e: &Vector2<f64>, sector: usize) -> [Vector2<f64>; 2] {
         let EmfMotion {
             turns,
             per_product,
             line_limit,
         } = self.motion;
         let limit = line_limit.min(self.v_largest);
-        let [a, b, c]: [f64; 3] = phases(e).into();
         let pair = Vector3::new(
             sector::CORNER_A[sector],
             sector::CORNER_B[sector],
@@ -69,12 +68,16 @@ impl Ideal {
         );
         let line = pair.dot(&phases(e)).clamp(-limit, limit);
         if turns {
-            let [across_a, across_b] = [c - b, a - c].map(|line| line.clamp(-limit, limit));
-            from_ab(across_a, across_b) * (per_product * line)
+            let angle = 3_f64.sqrt() * per_product * line;
+            let across = Vector2::new(-e.y, e.x);
+            [1.0, 2.0]
+                .map(|periods| periods * angle)
+                .map(|angle| e * (1.0 - angle * angle / 2.0) + across * angle)
         } else {
             // Both of the pair against the off phase, whose sign is that of the corner across.
             let [p, q, r]: [f64; 3] = pair.into();
-            from_ab(r - q, p - r) * (per_product * line * line)
+            let motion = from_ab(r - q, p - r) * (per_product * line * line);
+            [e + motion, e + 2.0 * motion]
         }
     }
 

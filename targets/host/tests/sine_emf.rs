@@ -1,0 +1,32 @@
+//! An estimated sine keeps its length as it is moved on from period to period: the torque is the one that is asked for.
+
+use hexagen_host::closed_loop::mean_torque;
+use hexagen_host::engine::{Model, MotorSource, plant_of, prepare, run_of};
+
+/// Part of the torque that may be missing: a quasi-square reference comes up to a period late.
+const LOST: f64 = 0.08;
+
+/// Part that may be too much.
+const GAINED: f64 = 0.03;
+
+#[test]
+fn an_estimated_sine_makes_the_torque_that_is_asked_for() {
+    let motor = MotorSource::of_library("br2804-1700kv").expect("is in the library");
+    let mut wrong = vec![];
+    for variant in ["pdcc", "pdcc:word=16", "pdcc:delay=0", "pdcc:emf_filter=1"] {
+        let drive = prepare(&motor, Some(variant)).expect("generates");
+        let (plant, demand) = (plant_of(&drive.spec), drive.demand());
+        // 3.1, 9.5 and 12.6 electrical degrees per period.
+        for rpm in [3000.0_f64, 9000.0, 12000.0] {
+            let run = run_of(&drive.spec, rpm.to_radians() * 6.0, demand);
+            let maker = drive.maker(Model::Fixed, drive.set_point(demand));
+            let (torque, tripped) = mean_torque(&plant, &run, &maker).expect("runs");
+            let share = torque / demand;
+            println!("{variant} at {rpm} rpm: {share:.3}");
+            if tripped.is_some() || !(1.0 - LOST..1.0 + GAINED).contains(&share) {
+                wrong.push(format!("{variant} at {rpm} rpm: {share:.3} {tripped:?}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
