@@ -78,6 +78,8 @@ fn other_stages() -> BTreeSet<Code> {
         Code::Unstable,
         Code::WordTooNarrow,
         Code::SwitchingTableLosesCurrent,
+        Code::TripFarAbove,
+        Code::SwingAboveTrip,
         Code::Internal,
     ]
     .into()
