@@ -148,7 +148,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     let measured_bus = is(&ast.inverter, "v_bus", "measured");
     let exemplary = exemplary_interface();
     let mut constants = exemplary.constants;
-    constants.retain(|constant| timer_capture || constant.name != "HALL_TICKS_PER_PERIOD");
+    constants.retain(|constant| timer_capture || constant.name != "HALL_TIMER_HZ");
     let interface = Interface {
         constants,
         type_name: surface.name.to_string(),

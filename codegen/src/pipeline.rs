@@ -137,6 +137,55 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
             trust.filtered,
         ));
     }
+    warnings.extend(warn_of_trip(spec, origins));
+    warnings
+}
+
+/// A written trip level is taken for a slip from this multiple of the largest set-point's peak on.
+const TRIP_GIVEN: f64 = 3.0;
+/// The trip level by default, unless the vectors of the controller force more.
+const TRIP_BY_DEFAULT: f64 = 2.0;
+
+/// A trip level that protects little, or that PHCC may reach in health.
+fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
+    const TRIP: &str = "inverter.trip_current";
+    const MAX: &str = "inverter.max_current";
+    let (drive, inverter) = (spec.drive(), &spec.inverter);
+    let (trip, peak) = (inverter.trip_current, drive.peak());
+    let mut warnings = vec![];
+    let (most, why) = if origins.is_given(TRIP) {
+        (TRIP_GIVEN * peak, "unless this is meant".to_owned())
+    } else {
+        let why = format!(
+            "as the vectors of {} move the current by up to {} in a period, which a shorter one makes less of",
+            spec.controller.kind(),
+            engineering(drive.stride(1.0), "A")
+        );
+        // Rounded up to a count.
+        (TRIP_BY_DEFAULT * peak + inverter.adc_gain.abs(), why)
+    };
+    if trip > most * (1.0 + 1e-9) {
+        let given = origins.given(TRIP, &engineering(trip, "A"));
+        let levels = [peak, TRIP_BY_DEFAULT * peak];
+        let at = origins.at(TRIP);
+        warnings.push(catalogue::trip_far_above(
+            at,
+            &given,
+            trip / peak,
+            levels,
+            &why,
+        ));
+    }
+    let swing = drive.swing();
+    let loses = matches!(&spec.controller, ControllerSpec::Phcc(phcc) if phcc.table == SwitchingTable::Printed);
+    if swing > trip && !loses {
+        let given = origins.given(MAX, &engineering(inverter.max_current, "A"));
+        warnings.push(catalogue::swing_above_trip(
+            origins.at(MAX),
+            &given,
+            [swing, trip],
+        ));
+    }
     warnings
 }
 
@@ -151,7 +200,7 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
             spec.controller.kind(),
             stride,
             motor.rated_current,
-            inverter.t_s * motor.rated_current / stride,
+            LoopDesign::longest_period(spec, design.plant.gain * motor.rated_current / stride),
         ));
     }
 }
@@ -164,7 +213,7 @@ fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut 
     let miss = design.plant.gain * side / 12_f64.sqrt();
     if miss > motor.rated_current {
         let at = origins.at("controller.modulated");
-        let t_s = inverter.t_s * motor.rated_current / miss;
+        let t_s = LoopDesign::longest_period(spec, design.plant.gain * motor.rated_current / miss);
         errors.push(catalogue::vectors_too_coarse(
             at,
             miss,

@@ -282,7 +282,14 @@ const LOOSE: &[Row] = &[
         "stall_timeout",
         &[
             ("none", &[]),
-            ("100ms", &[("inverter", "stall_timeout", "\"100 ms\"")]),
+            // And, where a timer tells the edges, a clock whose ticks do not divide the period.
+            (
+                "100ms",
+                &[
+                    ("inverter", "stall_timeout", "\"100 ms\""),
+                    ("inverter", "hall_timer_clock", "\"505 kHz\""),
+                ],
+            ),
         ],
     ),
     (

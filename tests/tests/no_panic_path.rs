@@ -14,7 +14,7 @@ use std::process::Command;
 const CONTROLLERS: [&str; 7] = [
     "pdcc:saturation=torque_priority",
     "pdcc:word=16,saturation=keep_angle",
-    "pdcc:modulation=pair,emf=model,reference=proportional,saturation=nearest",
+    "pdcc:modulation=pair,emf=model,saturation=nearest",
     "fcs-mpc:candidates=all",
     "phcc",
     "pi-pwm",

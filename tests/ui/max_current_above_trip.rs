@@ -20,6 +20,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
             max_current: 39 A,
+            trip_current: 38 A,
         },
         controller: pdcc,
     }

@@ -18,7 +18,8 @@ controller! {
             f_pwm: 20 kHz,
             timer_clock: 72 MHz,
             adc_bits: 12,
-            adc_range: 22 A,
+            adc_range: 40 A,
+            trip_current: 21 A,
         },
         controller: pdcc { reference: proportional },
     }

@@ -5,7 +5,7 @@ use super::current_loop::{LoopDesign, StableRange};
 use super::operation;
 use super::start::start_rpm;
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
-use crate::diagnostics::{engineering, percent, rpm, significant};
+use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::interface::{Interface, PublicConstant, PublicValue};
 use crate::scaling::Scaled;
 use crate::spec::controller::common::OPTIONS;
@@ -86,8 +86,9 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
             rpm(motor.rated_speed),
         ),
         format!(
-            "Inverter: {} bus, period {}, timer of {} counts, {}-bit ADC with {} per count, trip at {}.",
+            "Inverter: {} bus, PWM of {} (period {}, timer of {} counts), {}-bit ADC with {} per count, trip at {}.",
             engineering(inverter.v_bus, "V"),
+            frequency(1.0 / inverter.t_s),
             engineering(inverter.t_s, "s"),
             inverter.timer_period,
             inverter.adc_bits,
@@ -315,7 +316,7 @@ fn constants(
     let text = |low_high: (f64, f64)| PublicValue::Text(ratios(low_high));
     let mut list = vec![
         integer("POLE_PAIRS", "u32", i64::from(motor.pole_pairs), "Pole pairs."),
-        integer("T_S_NS", "u32", (inverter.t_s * 1e9).round() as i64, "Control period, ns."),
+        integer("T_S_NS", "u32", (inverter.t_s * 1e9).round() as i64, "Control period, rounded to ns."),
         integer("TIMER_PERIOD", "u16", i64::from(inverter.timer_period), "Compare value of 100 % duty: top of the centre-aligned timer."),
         integer("ADC_BITS", "u32", i64::from(inverter.adc_bits), "Bits of the phase-current converters."),
         fixed("ADC_GAIN", inverter.adc_gain, "A", if inverter.adc_gain < 0.0 { "Current into the motor per ADC count, negative because counts fall with it" } else { "Current into the motor per ADC count" }),
@@ -380,13 +381,14 @@ fn constants(
         ]);
     }
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
-        let clock = operation::capture_clock(ticks, inverter.t_s);
-        let doc = format!("Ticks of `hall_ticks` per control period: a capture clock of {clock}.");
         list.push(integer(
-            "HALL_TICKS_PER_PERIOD",
-            "u16",
-            i64::from(ticks),
-            &doc,
+            "HALL_TIMER_HZ",
+            "u32",
+            (ticks / inverter.t_s).round() as i64,
+            &format!(
+                "Clock of the Hall capture timer that counts `hall_ticks`, Hz: {} ticks in a control period.",
+                significant(ticks)
+            ),
         ));
     }
     list

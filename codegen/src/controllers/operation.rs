@@ -3,7 +3,7 @@
 use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
-use crate::diagnostics::engineering;
+use crate::diagnostics::{engineering, frequency, significant};
 use crate::spec::{BusSource, HallCapture, Spec};
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: the phase into which the current flows, and that out of which.
@@ -49,18 +49,13 @@ pub fn wiring(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
         lines.extend([
             String::new(),
-            format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {}, which are {ticks} ticks", capture_clock(ticks, inverter.t_s)),
-            "(`HALL_TICKS_PER_PERIOD`) in a control period; the count stops at 65535. With `hall` it is one snapshot: latch both in the".to_owned(),
+            format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {} (`HALL_TIMER_HZ`), {} ticks", frequency(ticks / inverter.t_s), significant(ticks)),
+            "in a control period; the count stops at 65535. With `hall` it is one snapshot: latch both in the".to_owned(),
             "capture interrupt, or read the ticks, the code, and the ticks again, until the second count is not below the first. A pair that an".to_owned(),
             "edge tore apart is noticed where it contradicts the last period; the angle then goes by the time that was to be expected.".to_owned(),
         ]);
     }
     lines
-}
-
-/// The clock that counts `ticks` in a period, with its unit.
-pub fn capture_clock(ticks: u32, t_s: f64) -> String {
-    engineering(f64::from(ticks) / t_s, "Hz")
 }
 
 /// What a new drive does, and what to call first.

@@ -31,6 +31,14 @@ impl DiscretePlant {
         }
     }
 
+    /// The period, in seconds, at which a plant of this resistance and inductance has the `gain`, ampere per volt.
+    pub fn period_of(method: Discretisation, resistance: f64, inductance: f64, gain: f64) -> f64 {
+        match method {
+            Discretisation::Exact => -(-resistance * gain).ln_1p() * inductance / resistance,
+            Discretisation::Euler => gain * inductance,
+        }
+    }
+
     /// K = 1/b, volt per ampere: the voltage over one period that changes the current by 1 A.
     pub fn stiffness(self) -> f64 {
         1.0 / self.gain

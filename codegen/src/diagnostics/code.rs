@@ -91,7 +91,7 @@ codes! {
     TripAboveAdcRange = 306,
     /// The largest set-point reaches the trip current.
     MaxCurrentAboveTrip = 307,
-    /// Timer clock and PWM frequency give no timer period.
+    /// Timer clock and PWM frequency give too few or too many timer counts.
     TimerPeriod = 308,
     /// The Hall capture timer does not fit the control period.
     HallTimer = 309,
@@ -109,6 +109,8 @@ codes! {
     DeadTime = 315,
     /// The ADC offset leaves no room.
     AdcOffset = 316,
+    /// A converter's count is too much of what it measures.
+    AdcTooCoarse = 317,
     /// A controller that does not exist.
     UnknownController = 401,
     /// An option of a controller that does not exist in this version.
@@ -137,6 +139,10 @@ codes! {
     SwitchingTableLosesCurrent = 601,
     /// The EMF turns further in a control period than its estimate is moved on rightly.
     EstimateTurnsTooFar = 602,
+    /// The trip current is far above what the drive is for.
+    TripFarAbove = 610,
+    /// Hysteresis control may reach the trip current in health.
+    SwingAboveTrip = 611,
     /// The generator broke one of its own invariants.
     Internal = 901,
 }

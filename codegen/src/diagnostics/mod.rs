@@ -15,7 +15,10 @@ mod render;
 pub use code::Code;
 pub use collector::{Collector, Diagnostics};
 pub use location::Location;
-pub use number::{engineering, list, percent, rpm, significant};
+pub use number::{
+    at_least, at_most, engineering, frequency, list, percent, rpm, rpm_at_least, rpm_at_most,
+    significant,
+};
 
 /// One error: its kind, its text and the places that take part in it.
 #[derive(Clone, Debug)]

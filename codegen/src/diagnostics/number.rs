@@ -61,6 +61,58 @@ pub fn engineering(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", significant(value / 10f64.powi(step)))
 }
 
+/// A frequency with nine digits, so that what is said of a timer is what it does.
+pub fn frequency(hertz: f64) -> String {
+    let (scale, unit) = match hertz {
+        f if f >= 1e9 => (1e9, "GHz"),
+        f if f >= 1e6 => (1e6, "MHz"),
+        f if f >= 1e3 => (1e3, "kHz"),
+        _ => (1.0, "Hz"),
+    };
+    let scaled = hertz / scale;
+    let digits = 8 - scaled.log10().floor().clamp(0.0, 8.0) as usize;
+    format!("{} {unit}", trim_zeros(&format!("{scaled:.digits$}")))
+}
+
+/// A greatest value, to be shown: rounded down to the four digits that are shown, so that it is accepted.
+pub fn at_most(limit: f64) -> f64 {
+    to_four_digits(limit, f64::floor)
+}
+
+/// A least value, to be shown: rounded up to the four digits that are shown, so that it is accepted.
+pub fn at_least(limit: f64) -> f64 {
+    to_four_digits(limit, f64::ceil)
+}
+
+fn to_four_digits(limit: f64, round: fn(f64) -> f64) -> f64 {
+    if limit == 0.0 || !limit.is_finite() {
+        return limit;
+    }
+    let exponent = 3 - limit.abs().log10().floor() as i32;
+    let scaled = limit * 10_f64.powi(exponent);
+    // A limit of four digits but for its rounding to a floating-point number is that number.
+    let whole = if (scaled - scaled.round()).abs() <= 1e-6 {
+        scaled.round()
+    } else {
+        round(scaled)
+    };
+    whole / 10_f64.powi(exponent)
+}
+
+/// A greatest speed in rad/s as revolutions per minute, rounded down.
+pub fn rpm_at_most(omega: f64) -> String {
+    format!("{} rpm", significant(at_most(in_rpm(omega))))
+}
+
+/// A least speed in rad/s as revolutions per minute, rounded up.
+pub fn rpm_at_least(omega: f64) -> String {
+    format!("{} rpm", significant(at_least(in_rpm(omega))))
+}
+
+fn in_rpm(omega: f64) -> f64 {
+    omega * 30.0 / std::f64::consts::PI
+}
+
 /// A ratio in percent, e.g. `30 %`.
 pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio))
@@ -68,7 +120,7 @@ pub fn percent(ratio: f64) -> String {
 
 /// An angular speed in rad/s as revolutions per minute.
 pub fn rpm(omega: f64) -> String {
-    format!("{} rpm", significant(omega * 30.0 / std::f64::consts::PI))
+    format!("{} rpm", significant(in_rpm(omega)))
 }
 
 /// Words in backticks: `` `a`, `b` or `c` ``.
@@ -86,7 +138,9 @@ pub fn list<S: AsRef<str>>(words: &[S], last: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{engineering, list, percent, rpm, significant};
+    use super::{
+        at_least, at_most, engineering, frequency, list, percent, rpm, rpm_at_most, significant,
+    };
 
     #[test]
     fn four_significant_digits() {
@@ -118,6 +172,29 @@ mod tests {
         ] {
             assert_eq!(engineering(value, unit), text);
         }
+    }
+
+    #[test]
+    fn limits_are_rounded_to_the_accepted_side() {
+        for (limit, most, least) in [
+            (123_456.0, 123_400.0, 123_500.0),
+            (0.010_016_5, 0.010_01, 0.010_02),
+            (49_999.999_999_99, 50_000.0, 50_000.0),
+            (50_000.000_000_01, 50_000.0, 50_000.0),
+            (-1.000_6, -1.001, -1.0),
+            (0.0, 0.0, 0.0),
+        ] {
+            assert_eq!((at_most(limit), at_least(limit)), (most, least));
+        }
+        assert_eq!(rpm_at_most(209.5), "2000 rpm");
+        assert_eq!(rpm(209.5), "2001 rpm");
+    }
+
+    #[test]
+    fn frequencies_are_exact() {
+        assert_eq!(frequency(20e3), "20 kHz");
+        assert_eq!(frequency(170e6 / 5666.0), "30.0035298 kHz");
+        assert_eq!(frequency(100.0), "100 Hz");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::Lowering;
 use super::measure::Hall;
 use super::number::round_half_up;
+use crate::diagnostics::significant;
 use crate::interface::Rounding;
 use crate::ir::{Comparison, Exact, Interval, Real, StateId, Value};
 use crate::spec::HallCapture;
@@ -16,6 +17,38 @@ const SECTOR_ORIGIN: i64 = 357_913_942;
 /// So many sixths of a turn.
 fn sixth_turn(share: f64) -> Exact {
     Exact::Number(Real::of(f64::from(32).exp2() / 6.0 * share))
+}
+
+/// Ticks of the edge timer in a control period.
+#[derive(Clone, Copy, Debug)]
+struct PeriodTicks {
+    exact: f64,
+    /// Whole ticks, rounded down: counts that go up by them are never ahead of the timer.
+    whole: i64,
+    /// What six intervals, each counted with a period of whole ticks, lack in a turn; 0 where all ticks are whole.
+    turn_rest: i64,
+}
+
+impl PeriodTicks {
+    fn of(capture: HallCapture) -> Self {
+        let exact = capture.ticks_per_period();
+        Self {
+            exact,
+            whole: exact.floor() as i64,
+            turn_rest: (6.0 * exact.fract() + 0.5).floor() as i64,
+        }
+    }
+
+    fn doc(self) -> String {
+        if self.exact.fract() == 0.0 {
+            "Ticks per control period.".to_owned()
+        } else {
+            format!(
+                "Whole ticks per control period, of {}.",
+                significant(self.exact)
+            )
+        }
+    }
 }
 
 /// State words of the rotor tracker.
@@ -66,6 +99,7 @@ impl Lowering<'_> {
     pub fn rotor_words(&mut self) -> RotorWords {
         let age_max = i64::from(self.spec.age_max());
         let rev_min = i64::from(self.spec.rev_min());
+        let rest = PeriodTicks::of(self.spec.inverter.hall_capture).turn_rest;
         let direction = self.direction_word();
         let age = Interval::new(0, age_max + 1);
         let interval = Interval::new(1, age_max);
@@ -92,7 +126,7 @@ impl Lowering<'_> {
         let rev = self.state(
             "rev",
             6,
-            Interval::new(6, 6 * age_max),
+            Interval::new(6, 6 * age_max + rest),
             "Ticks of the last six intervals: one electrical turn.",
         );
         let omega_max = ((1 << 32) - 1) / rev_min;
@@ -176,7 +210,7 @@ impl Lowering<'_> {
     pub fn track_rotor(&mut self, words: RotorWords, hall: &Hall) -> Rotor {
         let spec = self.spec;
         let age_max = i64::from(spec.age_max());
-        let ticks_per_period = i64::from(spec.inverter.hall_capture.ticks_per_period());
+        let ticks = PeriodTicks::of(spec.inverter.hall_capture);
         let age_doc = "Ticks of 60 electrical degrees at the least speed that counts as turning.";
         self.format(
             "omega",
@@ -194,7 +228,7 @@ impl Lowering<'_> {
         };
         self.b.stage("age_edge", &[doc]);
         let age_prev = self.b.state(words.age_prev);
-        let period = self.number("ticks", ticks_per_period, "Ticks per control period.");
+        let period = self.number("ticks", ticks.whole, &ticks.doc());
         let age_before = self.b.add(age_prev, period);
         self.b.name("age_before", age_before);
         let old = self.b.state(words.direction);
@@ -210,21 +244,21 @@ impl Lowering<'_> {
                 self.b.select(hall.edge, one, older)
             }
             HallCapture::Timer { .. } => {
-                let ticks = self.b.input(
+                let counted = self.b.input(
                     "hall_ticks",
                     Interval::new(0, i64::from(u16::MAX)),
-                    "Ticks from the last Hall edge to this sample, `HALL_TICKS_PER_PERIOD` in a period, stopping at 65535; one snapshot with `hall`.",
+                    "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, stopping at 65535; one snapshot with `hall`.",
                 );
                 // Code and ticks that are read on either side of an edge contradict each other.
                 let recent = self.number(
                     "ticks_recent",
-                    2 * ticks_per_period,
+                    (2.0 * ticks.exact).floor() as i64,
                     "Ticks since an edge that the last two samples can have seen.",
                 );
-                let stale = self.b.compare(Comparison::Less, recent, ticks);
+                let stale = self.b.compare(Comparison::Less, recent, counted);
                 let zero = self.zero();
-                let since_edge = self.b.select(stale, zero, ticks);
-                let older = self.b.max(ticks, age_before);
+                let since_edge = self.b.select(stale, zero, counted);
+                let older = self.b.max(counted, age_before);
                 let since = self.b.select(hall.edge, since_edge, older);
                 let limit = self.number("age_limit", age_max + 1, "Ages are counted no further.");
                 self.b.min(since, limit)
@@ -289,6 +323,11 @@ impl Lowering<'_> {
         for &term in &taken[1..] {
             sum = self.b.add(sum, term);
         }
+        if ticks.turn_rest > 0 {
+            let doc = "Ticks that six intervals lack in a turn, each counted with whole ticks per control period.";
+            let rest = self.number("turn_rest", ticks.turn_rest, doc);
+            sum = self.b.add(sum, rest);
+        }
         self.b.name("rev_seen", sum);
         let least = self.number(
             "rev_min",
@@ -331,7 +370,7 @@ impl Lowering<'_> {
     ) -> Rotor {
         let spec = self.spec;
         let age_max = i64::from(spec.age_max());
-        let ticks = i64::from(spec.inverter.hall_capture.ticks_per_period());
+        let ticks = PeriodTicks::of(spec.inverter.hall_capture);
         self.b.stage(
             "interpolate_angle",
             &[
@@ -403,14 +442,30 @@ impl Lowering<'_> {
         let start = self.b.lookup(table, hall.sector);
         let theta = self.b.angle_add(start, inside);
         self.b.name("theta", theta);
-        let period = self.number("ticks", ticks, "Ticks per control period.");
-        let limit = self.rounded_number(
-            "turn_max",
-            SIXTH / 2,
-            sixth_turn(0.5),
-            "Largest angle per period that is believed: 30 degrees.",
-        );
-        let turn = self.b.mul_limited(omega, period, limit);
+        let limit = |l: &mut Self| {
+            l.rounded_number(
+                "turn_max",
+                SIXTH / 2,
+                sixth_turn(0.5),
+                "Largest angle per period that is believed: 30 degrees.",
+            )
+        };
+        let turn = if ticks.exact.fract() == 0.0 {
+            let period = self.number("ticks", ticks.whole, &ticks.doc());
+            let limit = limit(self);
+            self.b.mul_limited(omega, period, limit)
+        } else {
+            let period = self.coefficient(
+                "k_ticks",
+                ticks.exact,
+                32,
+                "Ticks per control period, with their fraction.",
+                &format!("clock Ts = {}", significant(ticks.exact)),
+            );
+            let turn = self.times(period, omega);
+            let limit = limit(self);
+            self.b.min(turn, limit)
+        };
         self.b.name("turn", turn);
         let back = self.b.neg(turn);
         let step_angle = self.b.select(forward, turn, back);

@@ -15,8 +15,7 @@ const TRACKING_LOG2: u32 = 2;
 
 /// The mechanical speed of one word of `omega`, rad/s.
 pub(super) fn speed_word(spec: &Spec) -> f64 {
-    let ticks = f64::from(spec.inverter.hall_capture.ticks_per_period());
-    let tick = spec.inverter.t_s / ticks;
+    let tick = spec.inverter.t_s / spec.inverter.hall_capture.ticks_per_period();
     TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
 }
 

@@ -47,7 +47,7 @@ impl Spec {
     }
 
     fn ticks_per_second(&self) -> f64 {
-        f64::from(self.inverter.hall_capture.ticks_per_period()) / self.inverter.t_s
+        self.inverter.hall_capture.ticks_per_period() / self.inverter.t_s
     }
 }
 
@@ -113,22 +113,22 @@ pub enum BusSource {
 }
 
 /// How rotor position reaches the controller between Hall edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HallCapture {
     /// Edges are seen at sampling instants only.
     Sampled,
-    /// A timer tells the ticks since the last edge; so many ticks make one period.
+    /// A timer tells the whole ticks since the last edge.
     Timer {
-        /// Timer ticks per control period.
-        ticks: u32,
+        /// Timer ticks per control period, 2 to 65535, whole or not.
+        ticks: f64,
     },
 }
 
 impl HallCapture {
     /// Ticks of time since an edge per control period; half periods where edges are sampled.
-    pub fn ticks_per_period(self) -> u32 {
+    pub fn ticks_per_period(self) -> f64 {
         match self {
-            Self::Sampled => 2,
+            Self::Sampled => 2.0,
             Self::Timer { ticks } => ticks,
         }
     }
@@ -141,7 +141,7 @@ pub struct InverterSpec {
     pub v_bus: f64,
     /// Fixed or measured.
     pub bus: BusSource,
-    /// Control period = PWM period, second.
+    /// Control period = PWM period, second: that of the timer's whole counts where its clock is given.
     pub t_s: f64,
     /// Counts of the centre-aligned timer from 0 to its top: a compare value of this many counts
     /// is 100 % duty.
@@ -183,6 +183,11 @@ impl InverterSpec {
         }
     }
 
+    /// The longest period of whole timer counts that is not longer than `limit`, second.
+    pub fn period_within(&self, limit: f64) -> f64 {
+        period_within(limit, self.t_s, self.timer_period)
+    }
+
     /// The greatest bus voltage that the controller reckons with, volt.
     pub fn greatest_bus(&self) -> f64 {
         match self.bus {
@@ -190,4 +195,10 @@ impl InverterSpec {
             BusSource::Measured { max, .. } => max,
         }
     }
+}
+
+/// The longest period of whole counts that is not longer than `limit`, of a timer that counts to `timer_period` in `t_s`.
+pub(super) fn period_within(limit: f64, t_s: f64, timer_period: u32) -> f64 {
+    let count = t_s / f64::from(timer_period);
+    (limit / count * (1.0 + 1e-9)).floor() * count
 }

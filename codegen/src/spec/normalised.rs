@@ -272,7 +272,7 @@ mod tests {
                 offset_tolerance: 102,
                 trip_current: 38.0,
                 max_current: 20.0,
-                hall_capture: HallCapture::Timer { ticks: 50 },
+                hall_capture: HallCapture::Timer { ticks: 37.5 },
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,
                 stall_periods: 0,
@@ -325,9 +325,9 @@ offset_tolerance = 102
 trip_current = 38.0
 max_current = 20.0
 hall_capture = "timer"
-ticks = 50
-age_max = 65449
-rev_min = 5002
+ticks = 37.5
+age_max = 49087
+rev_min = 3751
 omega_max = 314.0
 stall_periods = 0
 calibration_log2 = 8

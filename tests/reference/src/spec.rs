@@ -98,8 +98,8 @@ pub struct Inverter {
     pub dead_time: f64,
     /// How Hall edges are timed.
     pub hall_capture: HallCapture,
-    /// Timer ticks per control period (2 when the edges are sampled).
-    pub ticks: u32,
+    /// Timer ticks per control period, whole or not (2 when the edges are sampled).
+    pub ticks: f64,
     /// Ticks of 60 electrical degrees at the least speed with a valid angle.
     pub age_max: u32,
     /// Ticks of an electrical turn at the greatest speed.
@@ -218,7 +218,6 @@ impl Spec {
             ("motor.pole_pairs", motor.pole_pairs, 1, 1000),
             ("inverter.timer_period", inverter.timer_period, 1, 65_535),
             ("inverter.adc_bits", inverter.adc_bits, 1, 16),
-            ("inverter.ticks", inverter.ticks, 1, 65_535),
             ("inverter.age_max", inverter.age_max, 1, 65_534),
             ("inverter.rev_min", inverter.rev_min, 1, u32::MAX),
             (
@@ -236,6 +235,13 @@ impl Spec {
                     "outside the range of the hardware or of the method",
                 ));
             }
+        }
+        if !(1.0..=65_535.0).contains(&inverter.ticks) {
+            return Err(Error::field(
+                "inverter.ticks",
+                inverter.ticks,
+                "expected 1 to 65535",
+            ));
         }
         if !(0.0..=2.0).contains(&options.advance) {
             return Err(Error::field(

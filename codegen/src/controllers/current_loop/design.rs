@@ -45,6 +45,13 @@ fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
 }
 
 impl LoopDesign {
+    /// The longest period of whole timer counts in which the plant's gain b is not above `gain`, second.
+    pub fn longest_period(spec: &Spec, gain: f64) -> f64 {
+        let (motor, method) = (&spec.motor, spec.controller.common().discretisation);
+        let limit = DiscretePlant::period_of(method, motor.resistance, motor.inductance, gain);
+        spec.inverter.period_within(limit)
+    }
+
     /// Designs the law for a checked specification.
     pub fn new(spec: &Spec, options: &LoopOptions) -> Self {
         let (motor, inverter) = (&spec.motor, &spec.inverter);

@@ -2,7 +2,9 @@
 
 use super::Part;
 use super::structure::did_you_mean;
-use crate::diagnostics::{Code, Diagnostic, Location, engineering, list, significant};
+use crate::diagnostics::{
+    Code, Diagnostic, Location, at_least, at_most, engineering, list, significant,
+};
 
 /// A controller that does not exist.
 pub fn unknown_controller(at: &Location, given: &str, available: &[&str]) -> Diagnostic {
@@ -60,8 +62,8 @@ pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
     )
 }
 
-/// One vector moves the current by `stride` ampere in a period; `t_s`: the period at which it would be
-/// the `rated` current.
+/// One vector moves the current by `stride` ampere in a period; `t_s`: the longest period of whole timer counts in
+/// which it is not more than the `rated` current.
 pub fn vector_too_strong(
     at: &Location,
     kind: &str,
@@ -78,14 +80,14 @@ pub fn vector_too_strong(
              modulator divides the period",
             engineering(stride, "A"),
             engineering(rated, "A"),
-            engineering(t_s, "s"),
-            engineering(1.0 / t_s, "Hz"),
+            engineering(at_most(t_s), "s"),
+            engineering(at_least(1.0 / t_s), "Hz"),
         ),
     )
 }
 
-/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the period at which
-/// it would be the `rated` current.
+/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the longest period of whole
+/// timer counts in which it is not more than the `rated` current.
 pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,
@@ -96,8 +98,8 @@ pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Dia
              modulator reaches every voltage",
             engineering(miss, "A"),
             engineering(rated, "A"),
-            engineering(t_s, "s"),
-            engineering(1.0 / t_s, "Hz"),
+            engineering(at_most(t_s), "s"),
+            engineering(at_least(1.0 / t_s), "Hz"),
         ),
     )
 }
@@ -117,6 +119,16 @@ pub fn option_without_effect(
         format!("`{option}`: {given} has no effect with `{other}`: {why}; remove one of the two"),
     )
     .with_note(other_at, format!("`{other}`"))
+}
+
+/// A reference of three phase currents where only a pair of phases is switched.
+pub fn proportional_pair(at: &Location, modulation: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::DependentField,
+        at,
+        "`reference`: proportional asks for currents in all three phases, but `modulation: pair` turns one leg off outside of commutations: on motors of both EMF shapes the torque falls 7 to 8 % short with a ripple of 30 to 34 %; choose `modulation: three_phase` or `reference: quasi_square`",
+    )
+    .with_note(modulation, "`modulation: pair`")
 }
 
 /// A hysteresis band that is as wide as the current.

@@ -1,6 +1,9 @@
 //! Texts about motor and inverter values that do not fit together.
 
-use crate::diagnostics::{Code, Diagnostic, Location, engineering, percent, rpm, significant};
+use crate::diagnostics::{
+    Code, Diagnostic, Location, at_least, at_most, engineering, frequency, percent, rpm_at_least,
+    rpm_at_most, significant,
+};
 
 /// A field that takes part in a contradiction: where it stands and how it was written.
 #[derive(Clone, Debug)]
@@ -41,15 +44,16 @@ pub fn implausible_emf(at: &Location, given: &str, phase: f64, low: f64, high: f
     )
 }
 
-/// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second.
+/// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest period of whole
+/// timer counts that is accepted, second.
 pub fn period_too_long(
     period: &Part,
     resistance: &Part,
     inductance: &Part,
     t_s: f64,
     time_constant: f64,
+    longest: f64,
 ) -> Diagnostic {
-    let longest = 0.5 * time_constant;
     with_parts(
         Diagnostic::new(
             Code::PeriodTooLong,
@@ -61,8 +65,8 @@ pub fn period_too_long(
                 engineering(t_s, "s"),
                 engineering(time_constant, "s"),
                 significant(t_s / time_constant),
-                engineering(longest, "s"),
-                engineering(1.0 / longest, "Hz"),
+                engineering(at_most(longest), "s"),
+                engineering(at_least(1.0 / longest), "Hz"),
             ),
         ),
         &[resistance, inductance],
@@ -88,11 +92,11 @@ pub fn bus_too_low(
     remedy: BusRemedy,
 ) -> Diagnostic {
     let remedy = match remedy {
-        BusRemedy::Speed(reachable) => format!("lower `rated_speed` below {}", rpm(reachable)),
+        BusRemedy::Speed(reachable) => format!("lower `rated_speed` to {}", rpm_at_most(reachable)),
         BusRemedy::Current(reachable) => {
             format!(
                 "lower `rated_current` below {}",
-                engineering(reachable, "A")
+                engineering(at_most(reachable), "A")
             )
         }
     };
@@ -101,14 +105,14 @@ pub fn bus_too_low(
             Code::BusTooLow,
             &bus.location,
             format!(
-                "`bus_voltage`: {}, but {} at {} take {}: an EMF of {} line to line and 2 R I = {}; raise the bus above {}, {remedy}, or check the bases of `back_emf` ({}) and `resistance` ({})",
+                "`bus_voltage`: {}, but {} at {} take {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `back_emf` ({}) and `resistance` ({})",
                 bus.given,
                 current.quoted(),
                 speed.quoted(),
                 engineering(emf + drop, "V"),
                 engineering(emf, "V"),
                 engineering(drop, "V"),
-                engineering(emf + drop, "V"),
+                engineering(at_least(emf + drop), "V"),
                 back_emf.given,
                 resistance.given,
             ),
@@ -204,7 +208,7 @@ pub fn adc_range_too_small(range: &Part, rated: &Part, reach: f64) -> Diagnostic
                 "`{}`: {} measures up to {}, below the rated current of {}; widen the range or lower `rated_current`",
                 range.field,
                 range.given,
-                engineering(reach, "A"),
+                engineering(at_most(reach), "A"),
                 rated.given,
             ),
         ),
@@ -221,7 +225,7 @@ pub fn trip_above_adc_range(trip: &Part, range: &Part, reach: f64) -> Diagnostic
             format!(
                 "`trip_current`: {}, but the current sensors measure up to {} only; lower it or widen `{}`",
                 trip.given,
-                engineering(reach, "A"),
+                engineering(at_most(reach), "A"),
                 range.field,
             ),
         ),
@@ -239,7 +243,7 @@ pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic 
             format!(
                 "`max_current`: {} makes phase currents of up to {}, above the trip current of {}; lower it, or raise `trip_current`",
                 max.given,
-                engineering(peak, "A"),
+                engineering(at_least(peak), "A"),
                 trip.given,
             ),
         ),
@@ -247,8 +251,126 @@ pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic 
     )
 }
 
-/// Timer clock and PWM frequency give no timer period from 100 to 65535; `counts` is what they
-/// give; `clock`, `f_pwm` in hertz.
+/// Hysteresis control reaches the trip current in health. `reach`: greatest phase current, ampere; `band`: half width of
+/// the bands, `stride`: greatest change of a current in `periods` periods, ampere.
+pub fn hysteresis_reaches_trip(
+    max: &Part,
+    trip: &Part,
+    reach: f64,
+    [band, stride]: [f64; 2],
+    periods: u32,
+) -> Diagnostic {
+    let duration = if periods == 1 {
+        "a period".to_owned()
+    } else {
+        format!("{periods} periods")
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::MaxCurrentAboveTrip,
+            &max.location,
+            format!(
+                "`max_current`: {} makes phase currents of up to {} with phcc: a band of {} and the {} by which one vector moves the current in {duration} come on top, above the trip current of {}; lower it, shorten the control period, or raise `trip_current`, for which `adc_range` must have room",
+                max.given,
+                engineering(at_least(reach), "A"),
+                engineering(band, "A"),
+                engineering(stride, "A"),
+                trip.given,
+            ),
+        ),
+        &[trip],
+    )
+}
+
+/// The largest set-point is too few ADC counts; `given`, `count` (one of them) in ampere.
+pub fn max_current_below_counts(
+    max: &Part,
+    range: &Part,
+    given: f64,
+    count: f64,
+    least: f64,
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::AdcTooCoarse,
+            &max.location,
+            format!(
+                "`max_current`: {} is {} counts of {} of the current sensors, below {least}, where half a count is 5 % of it; narrow `{}`, raise `adc_bits`, or give at least {}",
+                max.given,
+                significant(given / count),
+                engineering(count, "A"),
+                range.field,
+                engineering(at_least(least * count), "A"),
+            ),
+        ),
+        &[range],
+    )
+}
+
+/// A count of the bus converter is too much of the nominal voltage. `count` in volt, `share` of the nominal voltage and
+/// the `most` allowed; `range`: the widest range that these `bits` allow, volt.
+pub fn bus_resolution(
+    range: &Part,
+    nominal: &Part,
+    [count, share, most]: [f64; 3],
+    widest: f64,
+    bits: u32,
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::AdcTooCoarse,
+            &range.location,
+            format!(
+                "`bus_adc_range`: {} in {bits} bits is {} a count, {} of `bus_voltage` {}, and the motor's voltages are off by half of that; at most {} are allowed: narrow the range to {} or raise `bus_adc_bits`",
+                range.given,
+                engineering(count, "V"),
+                percent(share),
+                nominal.given,
+                percent(most),
+                engineering(at_most(widest), "V"),
+            ),
+        ),
+        &[nominal],
+    )
+}
+
+/// The trip current is far above what the drive is for. `given` as written or by default, `times` the largest set-point's
+/// peak; `why`: a clause.
+pub fn trip_far_above(
+    at: &Location,
+    given: &str,
+    times: f64,
+    [peak, twice]: [f64; 2],
+    why: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::TripFarAbove,
+        at,
+        format!(
+            "`trip_current`: {given} is {} times the {} of the largest set-point, so that a fault may make as much before the drive trips, {why}; about {} is usual",
+            significant(times),
+            engineering(peak, "A"),
+            engineering(twice, "A"),
+        ),
+    )
+}
+
+/// PHCC trips in the commutations of slow rotation. `trip`: the trip current; `swing`: the current that it reaches,
+/// ampere.
+pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Diagnostic {
+    Diagnostic::new(
+        Code::SwingAboveTrip,
+        at,
+        format!(
+            "`max_current`: {max} makes phcc reach about {} in the commutations of a rotor that turns slowly, above the trip current of {}: such a drive may trip in health; lower `max_current` or widen `adc_range`",
+            engineering(swing, "A"),
+            engineering(trip, "A"),
+        ),
+    )
+}
+
+/// Timer clock and PWM frequency give no timer period from 100 to 65535, rounded to whole counts; `counts` is
+/// what they give; `clock`, `f_pwm` in hertz.
 pub fn timer_period(
     timer: &Part,
     period: &Part,
@@ -257,12 +379,10 @@ pub fn timer_period(
     f_pwm: f64,
 ) -> Diagnostic {
     let whole = counts.round().clamp(100.0, 65535.0);
-    let problem = if counts < 99.5 {
-        "below 100, too coarse"
-    } else if counts > 65535.5 {
-        "above 65535, the end of a 16-bit timer"
+    let problem = if counts < whole {
+        "below 100, from which on the nearest whole number of counts is within 0.5 % of every frequency"
     } else {
-        "not a whole number"
+        "above 65535, the end of a 16-bit timer"
     };
     with_parts(
         Diagnostic::new(
@@ -275,42 +395,20 @@ pub fn timer_period(
                 significant(counts),
                 engineering(f_pwm, "Hz"),
                 significant(whole),
-                exact(clock / (2.0 * whole)),
-                exact(2.0 * f_pwm * whole),
+                frequency(clock / (2.0 * whole)),
+                frequency(2.0 * f_pwm * whole),
             ),
         ),
         &[period],
     )
 }
 
-/// Nine digits, so that the advice can be followed literally.
-fn exact(frequency: f64) -> String {
-    let (scale, unit) = match frequency {
-        f if f >= 1e9 => (1e9, "GHz"),
-        f if f >= 1e6 => (1e6, "MHz"),
-        f if f >= 1e3 => (1e3, "kHz"),
-        _ => (1.0, "Hz"),
-    };
-    let scaled = frequency / scale;
-    let digits = 8 - scaled.log10().floor().clamp(0.0, 8.0) as usize;
-    let text = format!("{scaled:.digits$}");
-    let text = if digits > 0 {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    format!("{text} {unit}")
-}
-
-/// The Hall capture timer's ticks per control period are no whole number from 2 to 65535.
+/// The Hall capture timer's ticks per control period lie outside 2 to 65535.
 pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnostic {
-    let whole = ticks.round().clamp(2.0, 65535.0);
-    let problem = if ticks < 1.5 {
-        "below 2"
-    } else if ticks > 65535.5 {
-        "above 65535"
+    let (problem, limit) = if ticks < 2.0 {
+        ("below 2", 2.0)
     } else {
-        "not a whole number"
+        ("above 65535", 65535.0)
     };
     with_parts(
         Diagnostic::new(
@@ -321,7 +419,7 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
                 clock.given,
                 significant(ticks),
                 engineering(t_s, "s"),
-                exact(whole / t_s),
+                frequency(limit / t_s),
             ),
         ),
         &[period],
@@ -336,8 +434,8 @@ pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -
         || ", or lengthen the control period".to_owned(),
         |clock| {
             format!(
-                ", or lower `hall_timer_clock` below {}",
-                engineering(clock, "Hz")
+                ", or lower `hall_timer_clock` to {}",
+                engineering(at_most(clock), "Hz")
             )
         },
     );
@@ -345,10 +443,10 @@ pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -
         Code::MinimumSpeed,
         &speed.location,
         format!(
-            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; raise the speed above {}{slower}",
+            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; raise the speed to {}{slower}",
             speed.given,
             significant(ticks.round()),
-            rpm(least),
+            rpm_at_least(least),
         ),
     )
 }
@@ -385,8 +483,8 @@ pub fn too_few_periods(
                 "`maximum_speed`: {} leaves {} control periods in an electrical turn, below 6; lower it to {} or raise `f_pwm` to {}",
                 speed.given,
                 significant(periods),
-                rpm(fastest),
-                engineering(f_pwm, "Hz"),
+                rpm_at_most(fastest),
+                engineering(at_least(f_pwm), "Hz"),
             ),
         ),
         &[period],
@@ -431,7 +529,7 @@ pub fn threshold_below_count(threshold: &Part, count: f64) -> Diagnostic {
         format!(
             "`commutation_threshold`: {} is below one ADC count of {}; raise it above the noise of the current measurement",
             threshold.given,
-            engineering(count, "A"),
+            engineering(at_least(count), "A"),
         ),
     )
 }
@@ -442,10 +540,10 @@ pub fn dead_time(dead_time: &Part, t_s: f64) -> Diagnostic {
         Code::DeadTime,
         &dead_time.location,
         format!(
-            "`dead_time`: {} exceeds a tenth of the control period of {}; shorten it below {} or lengthen the period",
+            "`dead_time`: {} exceeds a tenth of the control period of {}; shorten it to {} or lengthen the period",
             dead_time.given,
             engineering(t_s, "s"),
-            engineering(t_s / 10.0, "s"),
+            engineering(at_most(t_s / 10.0), "s"),
         ),
     )
 }

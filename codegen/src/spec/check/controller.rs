@@ -115,7 +115,7 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
     known
 }
 
-/// Sampled edges by default; a capture timer needs a clock that divides the control period.
+/// Sampled edges by default; a capture timer needs a clock of at least two ticks in a control period.
 fn read_capture(
     reader: &Reader,
     inverter: &Inverter,
@@ -148,11 +148,11 @@ fn read_capture(
     };
     let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
     let ticks = clock.si * t_s;
-    let whole = (ticks - ticks.round()).abs() <= 1e-6 * ticks.max(1.0);
-    if whole && (2.0..=65535.0).contains(&ticks.round()) {
-        return Some(HallCapture::Timer {
-            ticks: ticks.round() as u32,
-        });
+    // Whole but for the rounding of decimal units is whole.
+    let is_whole = (ticks - ticks.round()).abs() <= 1e-6 * ticks.max(1.0);
+    let ticks = if is_whole { ticks.round() } else { ticks };
+    if (2.0..=65535.0).contains(&ticks) {
+        return Some(HallCapture::Timer { ticks });
     }
     errors.push(catalogue::hall_timer(&clock.part, &period.part, ticks, t_s));
     None

@@ -2,11 +2,12 @@
 
 use super::motor::Motor;
 use super::reader::{Given, Reader};
-use super::relations;
+use super::{currents, relations};
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, engineering, rpm};
+use crate::diagnostics::{Collector, at_least, at_most, engineering, rpm};
+use crate::spec::model::period_within;
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, ControllerSpec, HallCapture, InverterSpec, Reference};
+use crate::spec::{BusSource, ControllerSpec, HallCapture, InverterSpec};
 
 /// The inverter as far as it could be read.
 pub(super) struct Inverter<'a> {
@@ -14,6 +15,7 @@ pub(super) struct Inverter<'a> {
     pub bus: Option<BusSource>,
     /// `f_pwm` or `sampling_time` as written.
     pub period: Option<Given<'a>>,
+    /// The control period: that of the timer's whole counts where its clock is given, else as written, second.
     pub t_s: Option<f64>,
     pub timer_period: Option<u32>,
     pub dead_time: Option<Given<'a>>,
@@ -49,6 +51,10 @@ pub(super) struct Adc {
 /// Tolerance of a calibrated offset where none is given, share of the range to either side.
 const OFFSET_TOLERANCE: f64 = 0.05;
 
+/// Coarsest count of a measured bus over its nominal voltage. The controller's voltages are shares of the bus that is
+/// measured: half a count off is then less than the 1 % of a voltage divider's resistors.
+const COARSEST_BUS: f64 = 0.01;
+
 /// Pre-charge time where none is given, second.
 const PRECHARGE: f64 = 1e-3;
 
@@ -61,12 +67,8 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
     let bus = read_bus(reader, v_bus.as_ref(), errors);
     let f_pwm = reader.plain_quantity(errors, "f_pwm");
     let sampling_time = reader.plain_quantity(errors, "sampling_time");
-    let t_s = f_pwm
-        .as_ref()
-        .map(|given| 1.0 / given.si)
-        .or(sampling_time.as_ref().map(|given| given.si));
     let period = f_pwm.or(sampling_time);
-    let timer_period = read_timer_period(reader, period.as_ref(), errors);
+    let (timer_period, t_s) = read_timer(reader, period.as_ref(), errors);
     Inverter {
         v_bus,
         bus,
@@ -149,47 +151,59 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
             &high_part,
         ));
     }
+    let gain = range.si / f64::from(1_u32 << adc_bits);
+    if gain > COARSEST_BUS * nominal.si * (1.0 + 1e-9) {
+        let full = f64::from(1_u32 << adc_bits);
+        errors.push(catalogue::bus_resolution(
+            &range.part,
+            &nominal.part,
+            [gain, gain / nominal.si, COARSEST_BUS],
+            COARSEST_BUS * nominal.si * full,
+            adc_bits,
+        ));
+    }
     Some(BusSource::Measured {
-        gain: range.si / f64::from(1_u32 << adc_bits),
+        gain,
         adc_bits,
         min: low,
         max: high,
     })
 }
 
-/// Counts of the centre-aligned timer: clock/(2 f_pwm), a whole number.
-fn read_timer_period(
+/// Counts of the centre-aligned timer, the nearest whole number to clock/(2 f_pwm), and the control period that they
+/// make, 2 counts/clock: from 100 counts on within 0.5 % of the one that was asked for. Where the counts are given in
+/// place of the clock, the period is the one that was asked for.
+fn read_timer(
     reader: &Reader,
     period: Option<&Given>,
     errors: &mut Collector,
-) -> Option<u32> {
+) -> (Option<u32>, Option<f64>) {
     let given = reader.integer(errors, "timer_period");
     let clock = reader.plain_quantity(errors, "timer_clock");
-    if given.is_some() {
-        return given;
-    }
-    let (clock, period) = (clock?, period?);
-    let f_pwm = match period.dimension {
-        Some(Dimension::Frequency) => period.si,
-        _ => 1.0 / period.si,
+    let Some(period) = period else {
+        return (given, None);
     };
-    let counts = clock.si / (2.0 * f_pwm);
-    if is_whole(counts) && (100.0..=65535.0).contains(&counts.round()) {
-        return Some(counts.round() as u32);
+    let asked = match period.dimension {
+        Some(Dimension::Frequency) => 1.0 / period.si,
+        _ => period.si,
+    };
+    let (None, Some(clock)) = (given, clock) else {
+        return (given, Some(asked));
+    };
+    let counts = clock.si * asked / 2.0;
+    // 100 but for the rounding of decimal units.
+    if !(100.0 - 1e-6..=65535.0 + 1e-6).contains(&counts) {
+        errors.push(catalogue::timer_period(
+            &clock.part,
+            &period.part,
+            counts,
+            clock.si,
+            1.0 / asked,
+        ));
+        return (None, Some(asked));
     }
-    errors.push(catalogue::timer_period(
-        &clock.part,
-        &period.part,
-        counts,
-        clock.si,
-        f_pwm,
-    ));
-    None
-}
-
-/// Whole but for the rounding of decimal units.
-fn is_whole(value: f64) -> bool {
-    (value - value.round()).abs() <= 1e-6 * value.abs().max(1.0)
+    let counts = counts.round();
+    (Some(counts as u32), Some(2.0 * counts / clock.si))
 }
 
 fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
@@ -227,6 +241,11 @@ fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
     })
 }
 
+/// Greatest distance of a calibrated offset where none is given, counts of a converter of `full` counts.
+pub(super) fn usual_tolerance(full: u32) -> f64 {
+    (OFFSET_TOLERANCE * f64::from(full / 2)).round()
+}
+
 /// Whole counts; by default 5 % of the range to either side.
 fn read_offset_tolerance(
     reader: &Reader,
@@ -235,15 +254,13 @@ fn read_offset_tolerance(
     errors: &mut Collector,
 ) -> Option<u32> {
     let most = full / 4;
-    let half_range = f64::from(full / 2);
     let given = reader.plain_quantity(errors, "offset_tolerance");
     if given.is_none() && reader.field("offset_tolerance").is_some() {
         return None;
     }
     let counts = given
         .as_ref()
-        .map_or(OFFSET_TOLERANCE * half_range, |given| given.si / gain)
-        .round();
+        .map_or(usual_tolerance(full), |given| (given.si / gain).round());
     if let Some(given) = &given
         && !(1.0..=f64::from(most)).contains(&counts)
     {
@@ -251,10 +268,10 @@ fn read_offset_tolerance(
             &given.part.location,
             "offset_tolerance",
             &given.part.given,
-            &format!("{}, one ADC count", engineering(gain, "A")),
+            &format!("{}, one ADC count", engineering(at_least(gain), "A")),
             &format!(
                 "{}, half of the range",
-                engineering(gain * f64::from(most), "A")
+                engineering(at_most(gain * f64::from(most)), "A")
             ),
         ));
         return None;
@@ -278,6 +295,16 @@ fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
     samples.ilog2()
 }
 
+impl Inverter<'_> {
+    /// The longest period of whole timer counts that is not longer than `limit`; `limit` where the timer is not known.
+    pub fn period_within(&self, limit: f64) -> f64 {
+        match (self.t_s, self.timer_period) {
+            (Some(t_s), Some(timer_period)) => period_within(limit, t_s, timer_period),
+            _ => limit,
+        }
+    }
+}
+
 /// Fills in the defaults that depend on motor and controller and checks what follows from them.
 /// None if something is missing or in error.
 pub(super) fn finish(
@@ -291,7 +318,7 @@ pub(super) fn finish(
     let adc = inverter.adc.as_ref();
     let rated = motor.rated_current.as_ref();
     let currents =
-        adc.and_then(|adc| finish_currents(reader, inverter, adc, motor, controller, errors));
+        adc.and_then(|adc| currents::finish(reader, inverter, adc, motor, controller, errors));
     let speeds = motor.rated_speed.as_ref().map(|rated| {
         let minimum = inverter
             .minimum_speed
@@ -359,7 +386,7 @@ fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut
     let count = periods(time, t_s);
     if count > 65535 {
         let part = reader.part("precharge", || engineering(time, "s"));
-        let longest = engineering(65535.0 * t_s, "s");
+        let longest = engineering(at_most(65535.0 * t_s), "s");
         errors.push(catalogue::out_of_limits(
             &part.location,
             "precharge",
@@ -369,68 +396,4 @@ fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut
         ));
     }
     count
-}
-
-/// The greatest level of at most eight significant bits, in ADC counts, that is not above `current`: a number that every
-/// word length and every scale of current has exactly.
-fn short_level(current: f64, gain: f64) -> f64 {
-    // A level that is as short as that but for its rounding to a floating-point number is that level.
-    let counts = current / gain * (1.0 + 1e-12);
-    let unit = (counts.log2().floor() - 7.0).exp2();
-    (counts / unit).floor() * unit * gain
-}
-
-/// Trip current and largest set-point: by default 95 % of the converters' range and the rated
-/// current.
-fn finish_currents(
-    reader: &Reader,
-    inverter: &Inverter,
-    adc: &Adc,
-    motor: &Motor,
-    controller: Option<&ControllerSpec>,
-    errors: &mut Collector,
-) -> Option<(f64, f64)> {
-    let trip = inverter
-        .trip_current
-        .as_ref()
-        .map_or(0.95 * adc.reach, |given| given.si);
-    let trip_part = reader.part("trip_current", || engineering(trip, "A"));
-    // The topmost count is the last one that the converter can show.
-    let shown = adc.reach - adc.gain;
-    if trip > shown * (1.0 + 1e-9) {
-        errors.push(catalogue::trip_above_adc_range(
-            &trip_part, &adc.part, shown,
-        ));
-        return None;
-    }
-    let trip = short_level(trip, adc.gain);
-    let rated = motor.rated_current.as_ref()?;
-    if adc.reach < rated.si {
-        errors.push(catalogue::adc_range_too_small(
-            &adc.part,
-            &rated.part,
-            adc.reach,
-        ));
-        return None;
-    }
-    let max = inverter
-        .max_current
-        .as_ref()
-        .map_or(rated.si, |given| given.si);
-    let max_part = reader.part("max_current", || engineering(max, "A"));
-    let peak = max
-        * match (controller, motor.emf_shape) {
-            (Some(controller), Some(shape))
-                if controller.common().reference == Reference::Proportional =>
-            {
-                shape.proportional_peak()
-            }
-            _ => 1.0,
-        };
-    if peak > trip * (1.0 + 1e-9) {
-        errors.push(catalogue::max_current_above_trip(
-            &max_part, &trip_part, peak,
-        ));
-    }
-    Some((trip, max))
 }

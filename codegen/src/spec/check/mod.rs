@@ -5,6 +5,7 @@
 
 mod consistency;
 mod controller;
+mod currents;
 mod inverter;
 mod motor;
 mod origins;

@@ -61,6 +61,11 @@ impl Origins {
             .unwrap_or(&self.name)
     }
 
+    /// Whether the field was written.
+    pub fn is_given(&self, path: &str) -> bool {
+        self.fields.contains_key(path)
+    }
+
     /// The field's value as written, or `default` marked as one.
     pub fn given(&self, path: &str, default: &str) -> String {
         self.fields.get(path).map_or_else(

@@ -45,6 +45,7 @@ fn check_period(
             &inductance,
             t_s,
             time_constant,
+            inverter.period_within(GREATEST_DECAY * time_constant),
         ));
     }
     Some(())
@@ -113,7 +114,7 @@ pub(super) fn check_speeds(
     let periods = TAU / (maximum * pole_pairs * t_s);
     if periods < LEAST_PERIODS * (1.0 - 1e-9) {
         let fastest = maximum * periods / LEAST_PERIODS;
-        let f_pwm = LEAST_PERIODS / (periods * t_s);
+        let f_pwm = 1.0 / inverter.period_within(t_s * periods / LEAST_PERIODS);
         errors.push(catalogue::too_few_periods(
             maximum_part,
             &period.part,
@@ -122,7 +123,7 @@ pub(super) fn check_speeds(
             f_pwm,
         ));
     }
-    let per_second = f64::from(capture?.ticks_per_period()) / t_s;
+    let per_second = capture?.ticks_per_period() / t_s;
     let ticks = per_second * FRAC_PI_3 / (minimum * pole_pairs);
     if ticks > GREATEST_AGE {
         let least = minimum * ticks / GREATEST_AGE;

@@ -1,7 +1,7 @@
 //! Options that all controllers share, and how they are read.
 
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, engineering};
+use crate::diagnostics::{Collector, at_most, engineering};
 use crate::spec::check::reader::Reader;
 use crate::spec::schema::{self, Rule};
 use crate::spec::units::Dimension as D;
@@ -322,7 +322,7 @@ fn read_speed_loop(
             "10 mHz",
             &format!(
                 "{}, an eighth of the electrical turns per second at rated speed",
-                engineering(frequency / 8.0, "Hz")
+                engineering(at_most(frequency / 8.0), "Hz")
             ),
         ));
     }

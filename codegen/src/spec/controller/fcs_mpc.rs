@@ -4,7 +4,7 @@ use super::common::{
     EmfSource, LoopOptions, Surroundings, read_common, refuse, refuse_commutation,
 };
 use super::off_leg::{OffLegModel, read_off_leg};
-use crate::diagnostics::{Collector, catalogue, engineering};
+use crate::diagnostics::{Collector, at_most, catalogue, engineering};
 use crate::spec::check::reader::Reader;
 
 /// The vectors among which the controller chooses.
@@ -123,7 +123,8 @@ fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     }
 }
 
-/// Less than what a vector moves the current by in a period, 2/3 v_bus Ts/L: from there on no vector would follow another.
+/// At most what a vector moves the current by in a period, 2/3 v_bus Ts/L, rounded down: beyond it no vector would follow
+/// another.
 fn read_switching_weight(
     reader: &Reader,
     surroundings: &Surroundings,
@@ -138,8 +139,8 @@ fn read_switching_weight(
         surroundings.t_s,
         surroundings.inductance,
     ) {
-        let stride = 2.0 / 3.0 * v_bus * t_s / inductance;
-        if given.si >= stride {
+        let stride = at_most(2.0 / 3.0 * v_bus * t_s / inductance);
+        if given.si > stride {
             errors.push(catalogue::out_of_limits(
                 &given.part.location,
                 OPTION,

@@ -1,8 +1,8 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
 use super::common::{
-    EmfSource, LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
-    read_saturation, refuse, refuse_commutation,
+    EmfSource, LimitRule, LoopOptions, Reference, Surroundings, read_common,
+    read_dead_time_compensation, read_saturation, refuse, refuse_commutation,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
@@ -49,6 +49,16 @@ pub(crate) fn check_options(
     if common.emf == EmfSource::Held && modulation == Modulation::Pair {
         let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`";
         refuse(reader, "emf", ["modulation", "pair"], why, errors);
+    }
+    if common.reference == Reference::Proportional
+        && modulation == Modulation::Pair
+        && let (Some(reference), Some(cause)) =
+            (reader.field("reference"), reader.field("modulation"))
+    {
+        errors.push(catalogue::proportional_pair(
+            &reference.location,
+            &cause.location,
+        ));
     }
     Some(PdccSpec {
         modulation,

@@ -79,6 +79,8 @@ fn other_stages() -> BTreeSet<Code> {
         Code::WordTooNarrow,
         Code::SwitchingTableLosesCurrent,
         Code::EstimateTurnsTooFar,
+        Code::TripFarAbove,
+        Code::SwingAboveTrip,
         Code::Internal,
     ]
     .into()

@@ -71,7 +71,7 @@ fn changes_of_a_complete_file() {
         (
             "135 mohm",
             "1.5 ohm",
-            "motors/hub.toml:11:15: error[HX0302]: `bus_voltage`: 48 V, but `rated_current` 20 A at `rated_speed` 2000 rpm take 94.52 V: an EMF of 34.52 V line to line and 2 R I = 60 V; raise the bus above 94.52 V, lower `rated_current` below 16 A, or check the bases of `back_emf` (0.1648 V/(rad/s) line_to_line peak) and `resistance` (1.5 ohm per_phase)\nmotors/hub.toml:9:15: note: `rated_speed` 2000 rpm\nmotors/hub.toml:8:17: note: `rated_current` 20 A\nmotors/hub.toml:6:12: note: `back_emf` 0.1648 V/(rad/s) line_to_line peak\nmotors/hub.toml:3:14: note: `resistance` 1.5 ohm per_phase",
+            "motors/hub.toml:11:15: error[HX0302]: `bus_voltage`: 48 V, but `rated_current` 20 A at `rated_speed` 2000 rpm take 94.52 V: an EMF of 34.52 V line to line and 2 R I = 60 V; raise the bus to 94.52 V, lower `rated_current` below 16 A, or check the bases of `back_emf` (0.1648 V/(rad/s) line_to_line peak) and `resistance` (1.5 ohm per_phase)\nmotors/hub.toml:9:15: note: `rated_speed` 2000 rpm\nmotors/hub.toml:8:17: note: `rated_current` 20 A\nmotors/hub.toml:6:12: note: `back_emf` 0.1648 V/(rad/s) line_to_line peak\nmotors/hub.toml:3:14: note: `resistance` 1.5 ohm per_phase",
         ),
         (
             "pole_pairs = 4",

@@ -3,4 +3,5 @@
 mod diagnostics_macro;
 mod diagnostics_toml;
 mod front_ends;
+mod inverter;
 mod motors;

@@ -163,9 +163,11 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
     };
     let pole_pairs = f64::from(plant.pole_pairs);
     let most = 60.0 / (LEAST_PERIODS_PER_TURN * plant.t_s * pole_pairs);
-    if rpm.abs() > most {
+    // The greatest speed itself, which the message gives, is accepted in spite of its rounding.
+    if rpm.abs() > most * (1.0 + 1e-9) {
         return Err(Failure::Argument(format!(
-            "{name} {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {most:.0} rpm"
+            "{name} {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {} rpm",
+            (most * (1.0 + 1e-9)).floor()
         )));
     }
     let (settling, measured) = run.periods(plant);

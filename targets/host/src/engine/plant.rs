@@ -27,7 +27,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
             amperes_per_count: inverter.adc_gain,
             offset: f64::from(inverter.adc_offset),
         }; 2],
-        hall_ticks_per_period: f64::from(inverter.hall_capture.ticks_per_period()),
+        hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
         hall_codes: motor.hall_codes,
         hall_error_deg: [0.0; 3],
         mechanics: None,

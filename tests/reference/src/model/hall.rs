@@ -1,5 +1,6 @@
 //! Timing of Hall edges (section 4 of the semantics): age of the last edge, length of the last
-//! turn, and when they stop being trustworthy. Ticks are whole numbers, so nothing is rounded.
+//! turn, and when they stop being trustworthy. Ages are whole ticks; of a period with a fraction of a tick the whole ones
+//! are counted, and a turn is made up for the rest.
 
 use super::sector::HallEvent;
 use crate::exact::{Word, word};
@@ -9,7 +10,12 @@ use crate::spec::{HallCapture, Inverter, Spec};
 #[derive(Clone, Copy, Debug)]
 pub struct HallClock {
     pub timer: bool,
+    /// Ticks per control period.
+    pub period: f64,
+    /// TICKS: those of them that are whole.
     pub ticks: f64,
+    /// TURN_REST.
+    pub turn_rest: f64,
     pub age_max: f64,
     pub rev_min: f64,
 }
@@ -25,7 +31,9 @@ impl HallClock {
         } = spec.inverter;
         Self {
             timer: hall_capture == HallCapture::Timer,
-            ticks: f64::from(ticks),
+            period: ticks,
+            ticks: ticks.floor(),
+            turn_rest: (6.0 * ticks.fract() + 0.5).floor(),
             age_max: f64::from(age_max),
             rev_min: f64::from(rev_min),
         }
@@ -84,7 +92,7 @@ impl HallTiming {
     ) {
         let age_before = self.age_prev + clock.ticks;
         let since = match (clock.timer, event.edge) {
-            (true, true) if hall_ticks > 2.0 * clock.ticks => word(0.0),
+            (true, true) if hall_ticks > (2.0 * clock.period).floor() => word(0.0),
             (true, true) => hall_ticks,
             (true, false) => hall_ticks.max(age_before),
             (false, true) => word(1.0),
@@ -108,7 +116,7 @@ impl HallTiming {
             } else {
                 1
             };
-            self.rev = self.intervals.iter().sum();
+            self.rev = self.intervals.iter().sum::<Word>() + clock.turn_rest;
         }
         if age > clock.age_max || (self.edges == 2 && 3.0 * age > self.rev) {
             self.edges = 0;

@@ -432,7 +432,7 @@ impl Ideal {
         let timing = &self.state.timing;
         let omega = self.electrical_speed();
         let progress = (omega * timing.age_prev).min(SECTOR_END);
-        let step_angle = timing.direction * (omega * self.clock.ticks).min(FRAC_PI_6);
+        let step_angle = timing.direction * (omega * self.clock.period).min(FRAC_PI_6);
         let in_sector = if timing.edges != 2 {
             FRAC_PI_6
         } else if timing.direction > 0.0 {

@@ -72,9 +72,9 @@ pub struct Stimulus {
     pending: Legs,
     sector: usize,
     /// Ticks since the last Hall edge.
-    age: u32,
+    age: f64,
     codes: [u8; 6],
-    ticks: u32,
+    ticks: f64,
     age_max: u32,
     adc_max: i32,
     gain: f64,
@@ -107,7 +107,7 @@ impl Stimulus {
             delay: spec.loop_options().delay,
             pending: Legs::OFF,
             sector: 0,
-            age: 0,
+            age: 0.0,
             codes: spec.motor.hall_codes,
             ticks: inverter.ticks,
             age_max: inverter.age_max,
@@ -274,7 +274,7 @@ impl Stimulus {
     /// Hall code and ticks of a rotor that goes anywhere.
     fn wandering_hall(&mut self) -> (u8, u16) {
         let dice = self.random.u32(..);
-        self.age = self.age.saturating_add(self.ticks).min(65_535);
+        self.age = (self.age + self.ticks).min(65_535.0);
         let before = self.sector;
         match dice & 0xff {
             0..=47 => self.sector = (self.sector + 1) % 6,
@@ -283,7 +283,7 @@ impl Stimulus {
             _ => {}
         }
         if self.sector != before {
-            self.age = (dice >> 8) % (self.ticks + 1);
+            self.age = f64::from((dice >> 8) % (self.ticks as u32 + 1));
         }
         let ticks = match dice >> 24 {
             0..=3 => self.random.u16(..),
@@ -340,9 +340,9 @@ impl Stimulus {
         // Placement jitter of about a degree makes edges come and go at low speed.
         let jitter = f64::from(dice >> 20) * (1.0 / 4096.0) - 0.5;
         let sector = self.motor.sector(jitter * (1.0 / 180.0));
-        self.age = self.age.saturating_add(self.ticks).min(65_535);
+        self.age = (self.age + self.ticks).min(65_535.0);
         if sector != self.sector {
-            self.age = (((dice >> 4) & 0xff) * self.ticks) >> 8;
+            self.age = f64::from((dice >> 4) & 0xff) * self.ticks / 256.0;
         }
         self.sector = sector;
         let noise = [(dice & 3) as i32 - 1, ((dice >> 2) & 3) as i32 - 1];

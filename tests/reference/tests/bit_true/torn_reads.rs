@@ -39,7 +39,7 @@ fn run(variant: &Variant, late: Late) -> Vec<[f64; 2]> {
             Late::Code => [second, first],
             Late::Ticks => [first, second],
         };
-        let since = (ticks - sector(ticks) * SECTOR) * f64::from(inverter.ticks);
+        let since = (ticks - sector(ticks) * SECTOR) * inverter.ticks;
         model.step(&Sample {
             adc_a: inverter.adc_offset as u16,
             adc_b: inverter.adc_offset as u16,

@@ -97,8 +97,7 @@ impl Plant {
         } else {
             sextants.floor() + 1.0 - sextants
         };
-        let ticks =
-            since * FRAC_PI_3 / self.omega_e.abs() / inverter.t_s * f64::from(inverter.ticks);
+        let ticks = since * FRAC_PI_3 / self.omega_e.abs() / inverter.t_s * inverter.ticks;
         Sample {
             adc_a: adc(self.i[0]),
             adc_b: adc(self.i[1]),

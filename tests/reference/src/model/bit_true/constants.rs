@@ -68,6 +68,8 @@ pub struct Constants {
     pub k_set: Coefficient,
     pub k_torque: Coefficient,
     pub k_advance: Coefficient,
+    /// Ticks per period, where they are not whole.
+    pub k_ticks: Option<Coefficient>,
     pub ratio_bits: u32,
     pub scale_bits: u32,
     pub emf_product: Shift,
@@ -341,6 +343,11 @@ impl Constants {
                 two_v * gain / w / motor.torque_constant / 65_536.0,
             )?,
             k_advance: scale.only_if(advanced, "k_advance", options.advance)?,
+            k_ticks: if rotor && inverter.ticks.fract() != 0.0 {
+                Some(scale.coefficient("k_ticks", inverter.ticks)?)
+            } else {
+                None
+            },
             // Only pulses narrower than the period depend on the measured bus.
             ratio_bits: scale.bits_if(bus.is_some() && variant.pulsed(), "ratio")?,
             scale_bits: scale.bits_if(saturation == Some(Saturation::KeepAngle), "scale")?,

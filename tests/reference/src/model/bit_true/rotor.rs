@@ -49,7 +49,11 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
         state.omega
     };
     let progress = lesser(omega * timing.age_prev, SIXTH - 1.0);
-    let turn = lesser(omega * clock.ticks, HALF_SIXTH);
+    let turn = match k.k_ticks {
+        None => omega * clock.ticks,
+        Some(k_ticks) => k_ticks.mul(omega),
+    };
+    let turn = lesser(turn, HALF_SIXTH);
     let step = timing.direction * turn;
     let in_sector = if !turning {
         word(HALF_SIXTH)

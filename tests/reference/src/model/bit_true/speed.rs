@@ -32,7 +32,7 @@ impl Regulator {
         }
         let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
         let bandwidth = TAU * options.speed_bandwidth;
-        let tick = inverter.t_s / f64::from(inverter.ticks);
+        let tick = inverter.t_s / inverter.ticks;
         let word = TAU / (pow2(32) * tick * f64::from(motor.pole_pairs));
         let gain = bandwidth * options.inertia / motor.torque_constant;
         let stiffness = reference_gain(spec);

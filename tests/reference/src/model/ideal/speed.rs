@@ -24,7 +24,7 @@ impl SpeedLoop {
         options.has_speed_loop().then(|| Self {
             gain: bandwidth * options.inertia / motor.torque_constant,
             share: bandwidth * inverter.t_s / 4.0,
-            per_tick: f64::from(inverter.ticks) / inverter.t_s / f64::from(motor.pole_pairs),
+            per_tick: inverter.ticks / inverter.t_s / f64::from(motor.pole_pairs),
             greatest: inverter.omega_max,
             max_current: inverter.max_current,
         })

@@ -19,9 +19,9 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
-            hall_timer_clock: 1.01 MHz,
+            trip_current: 30 A,
         },
-        controller: pdcc { hall_capture: timer },
+        controller: phcc,
     }
 }
 

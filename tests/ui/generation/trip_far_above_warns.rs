@@ -15,10 +15,12 @@ controller! {
         },
         inverter: {
             bus_voltage: 48 V,
-            f_pwm: 21 kHz,
+            f_pwm: 20 kHz,
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            trip_current: 39 A,
+            max_current: 2 A,
         },
         controller: pdcc,
     }

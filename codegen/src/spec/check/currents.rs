@@ -1,0 +1,154 @@
+//! Trip level and largest set-point against each other, the converters and the controller.
+
+use super::inverter::{Adc, Inverter, usual_tolerance};
+use super::motor::Motor;
+use super::reader::Reader;
+use crate::diagnostics::catalogue;
+use crate::diagnostics::{Collector, engineering};
+use crate::spec::ControllerSpec;
+use crate::spec::health::Drive;
+
+/// The default trip level over the largest set-point: room for what a current overshoots by, and little enough for
+/// switches and magnets that were chosen for the motor.
+const TRIP: f64 = 2.0;
+
+/// Room above what whole vectors reach where that is more than twice the largest set-point.
+const ROOM: f64 = 1.05;
+
+/// Least counts of the largest set-point: half a count of error is 5 % of it then.
+const LEAST_COUNTS: f64 = 10.0;
+
+/// The levels as far as they are known without the controller's options.
+struct Levels {
+    /// The topmost count is the last one that the converter can show.
+    shown: f64,
+    max: f64,
+}
+
+/// Trip current and largest set-point, which is the rated current by default.
+pub(super) fn finish(
+    reader: &Reader,
+    inverter: &Inverter,
+    adc: &Adc,
+    motor: &Motor,
+    controller: Option<&ControllerSpec>,
+    errors: &mut Collector,
+) -> Option<(f64, f64)> {
+    let levels = read(reader, inverter, adc, motor, errors)?;
+    let drive = Drive {
+        controller: controller?,
+        emf_shape: motor.emf_shape?,
+        resistance: motor.resistance?,
+        inductance: motor.inductance?,
+        v_bus: inverter.v_bus.as_ref()?.si,
+        t_s: inverter.t_s?,
+        max_current: levels.max,
+    };
+    let trip = inverter
+        .trip_current
+        .as_ref()
+        .map_or_else(|| default_trip(&drive, adc, levels.shown), |given| given.si);
+    check_health(
+        reader,
+        &drive,
+        motor.rated_current.as_ref()?.si,
+        trip,
+        errors,
+    );
+    Some((whole_counts(trip, adc.gain, f64::floor), levels.max))
+}
+
+/// The largest set-point, and what the converters show, against the rating and the trip level where that is written.
+fn read(
+    reader: &Reader,
+    inverter: &Inverter,
+    adc: &Adc,
+    motor: &Motor,
+    errors: &mut Collector,
+) -> Option<Levels> {
+    let shown = adc.reach - adc.gain;
+    if let Some(trip) = &inverter.trip_current
+        && trip.si > shown * (1.0 + 1e-9)
+    {
+        errors.push(catalogue::trip_above_adc_range(
+            &trip.part, &adc.part, shown,
+        ));
+        return None;
+    }
+    let rated = motor.rated_current.as_ref()?;
+    if adc.reach < rated.si {
+        errors.push(catalogue::adc_range_too_small(
+            &adc.part,
+            &rated.part,
+            adc.reach,
+        ));
+        return None;
+    }
+    let max = inverter
+        .max_current
+        .as_ref()
+        .map_or(rated.si, |given| given.si);
+    if max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9) {
+        let part = reader.part("max_current", || engineering(max, "A"));
+        errors.push(catalogue::max_current_below_counts(
+            &part,
+            &adc.part,
+            max,
+            adc.gain,
+            LEAST_COUNTS,
+        ));
+        return None;
+    }
+    Some(Levels { shown, max })
+}
+
+/// Twice the largest set-point, or what whole vectors need where that is more; as far as it is below what a converter at
+/// an end of its range says with the offsets that are usual, but not below what the drive reaches in health.
+fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
+    let (peak, reach) = (drive.peak(), drive.reach());
+    let vectors = if reach > peak {
+        ROOM * reach.max(drive.swing())
+    } else {
+        0.0
+    };
+    let ends = adc.reach - (usual_tolerance(1 << adc.bits) + 1.0) * adc.gain;
+    let most = (ends - adc.gain).max(reach.min(shown));
+    let trip = (TRIP * drive.max_current).max(vectors).min(most);
+    whole_counts(trip, adc.gain, f64::ceil).min(shown)
+}
+
+/// A level of so many ADC counts: one that is whole but for its rounding to a floating-point number is that one.
+fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
+    let counts = current / gain;
+    let whole = if (counts - counts.round()).abs() <= 1e-6 {
+        counts.round()
+    } else {
+        round(counts)
+    };
+    whole * gain
+}
+
+/// Accepted: a trip level that neither the reference nor the vectors of a drive in health reach. A band or a vector that
+/// takes the current by more than the `rated` one is refused as such.
+fn check_health(reader: &Reader, drive: &Drive, rated: f64, trip: f64, errors: &mut Collector) {
+    let (peak, reach) = (drive.peak(), drive.reach());
+    let max_part = reader.part("max_current", || engineering(drive.max_current, "A"));
+    let trip_part = reader.part("trip_current", || engineering(trip, "A"));
+    if peak > trip * (1.0 + 1e-9) {
+        errors.push(catalogue::max_current_above_trip(
+            &max_part, &trip_part, peak,
+        ));
+    } else if let ControllerSpec::Phcc(phcc) = drive.controller
+        && phcc.band.max(drive.stride(1.0)) < rated
+        && reach > trip * (1.0 + 1e-9)
+    {
+        let periods = 1 + phcc.common.delay;
+        errors.push(catalogue::hysteresis_reaches_trip(
+            &max_part,
+            &trip_part,
+            reach,
+            [phcc.band, drive.stride(f64::from(periods))],
+            periods,
+        ));
+    }
+}

@@ -1,0 +1,245 @@
+//! The inverter's numbers: periods of whole counts, ticks with fractions, trip levels, and limits that hold.
+
+use crate::diagnostics::Code;
+use crate::pipeline::{generate, warnings};
+use crate::spec::{HallCapture, Origins, Spec, check, parse_toml};
+
+const MOTOR: &str = r#"[motor]
+pole_pairs = 4
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.1648 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A"
+rated_speed = "2000 rpm"
+[inverter]
+bus_voltage = "48 V"
+adc_bits = 12
+"#;
+
+const TIMER: &str = "f_pwm = \"20 kHz\"\ntimer_clock = \"72 MHz\"\n";
+
+fn try_check(inverter: &str, controller: &str) -> Result<(Spec, Origins), String> {
+    let text = format!("{MOTOR}{inverter}\n[controller]\n{controller}\n");
+    parse_toml(&text, "m.toml")
+        .and_then(|ast| check(&ast))
+        .map_err(|errors| errors.to_string())
+}
+
+fn checked(inverter: &str, controller: &str) -> (Spec, Origins) {
+    try_check(inverter, controller).unwrap_or_else(|errors| panic!("{inverter}: {errors}"))
+}
+
+#[test]
+fn the_control_period_is_that_of_whole_timer_counts() {
+    for (clock, asked, counts) in [
+        ("170 MHz", "f_pwm = \"30 kHz\"", 2833),
+        ("170 MHz", "sampling_time = \"33.35 us\"", 2835),
+        ("72 MHz", "f_pwm = \"20 kHz\"", 1800),
+        ("72 MHz", "sampling_time = \"50 us\"", 1800),
+        ("4.02 MHz", "f_pwm = \"20 kHz\"", 101),
+    ] {
+        let inverter = format!("{asked}\ntimer_clock = \"{clock}\"\nadc_range = \"40 A\"\n");
+        let (spec, _) = checked(&inverter, "kind = \"pdcc\"");
+        let hertz: f64 = clock.trim_end_matches(" MHz").parse().expect("a number");
+        assert_eq!(spec.inverter.timer_period, counts, "{inverter}");
+        let t_s = 2.0 * f64::from(counts) / (hertz * 1e6);
+        assert_eq!(spec.inverter.t_s, t_s, "{inverter}");
+        assert!(spec.to_toml().contains(&format!("t_s = {t_s:?}\n")));
+    }
+    let (spec, origins) = checked(
+        "f_pwm = \"30 kHz\"\ntimer_clock = \"170 MHz\"\nadc_range = \"40 A\"\n",
+        "kind = \"pdcc\"",
+    );
+    let interface = generate(&spec, &origins).expect("generates").interface;
+    assert!(
+        interface
+            .doc
+            .join("\n")
+            .contains("PWM of 30.0035298 kHz (period 33.33 us, timer of 2833 counts)")
+    );
+    // Counts in place of the clock leave the period as it is asked for.
+    let (spec, _) = checked(
+        "f_pwm = \"30 kHz\"\ntimer_period = 2833\nadc_range = \"40 A\"\n",
+        "kind = \"pdcc\"",
+    );
+    assert_eq!(spec.inverter.t_s, 1.0 / 30e3);
+}
+
+/// Every clock that is accepted makes a frequency within 0.5 % of the one that is asked for.
+#[test]
+fn the_real_frequency_is_within_half_a_percent() {
+    let (mut accepted, mut refused) = (0, 0);
+    for hertz in (3_900_000..8_100_000).step_by(7_300) {
+        let inverter =
+            format!("f_pwm = \"20 kHz\"\ntimer_clock = \"{hertz} Hz\"\nadc_range = \"40 A\"\n");
+        match try_check(&inverter, "kind = \"pdcc\"") {
+            Ok((spec, _)) => {
+                assert!((spec.inverter.t_s * 20e3 - 1.0).abs() <= 0.005, "{hertz}");
+                accepted += 1;
+            }
+            Err(errors) => {
+                assert!(errors.contains("error[HX0308]"), "{errors}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(accepted > 500 && refused > 10, "{accepted} {refused}");
+}
+
+#[test]
+fn edge_ticks_may_be_fractions_of_the_period() {
+    for (f_pwm, clock, ticks) in [
+        ("16 kHz", "1 MHz", 62.5),
+        ("20 kHz", "1 MHz", 50.0),
+        ("20 kHz", "50 kHz", 2.5),
+    ] {
+        let inverter = format!(
+            "f_pwm = \"{f_pwm}\"\ntimer_clock = \"72 MHz\"\nhall_timer_clock = \"{clock}\"\nadc_range = \"40 A\"\n"
+        );
+        let (spec, origins) = checked(
+            &inverter,
+            "kind = \"pdcc\"\nhall_capture = \"timer\"\nemf = \"model\"",
+        );
+        assert_eq!(spec.inverter.hall_capture, HallCapture::Timer { ticks });
+        assert!(spec.to_toml().contains(&format!("\nticks = {ticks:?}\n")));
+        let program = generate(&spec, &origins).expect("generates").graph;
+        let constants = &program.program().constants;
+        let has = |name: &str| constants.iter().any(|constant| constant.name == name);
+        assert_eq!(has("k_ticks"), ticks.fract() != 0.0, "{clock}");
+        assert_eq!(has("turn_rest"), ticks.fract() != 0.0, "{clock}");
+    }
+}
+
+/// Range, field and controller; trip level by default, and the codes of the warnings.
+#[test]
+fn the_trip_level_follows_from_the_largest_set_point() {
+    for (range, field, controller, trip, codes) in [
+        ("100 A", "", "pdcc", 40.0, &[][..]),
+        ("400 A", "max_current = \"3.3 A\"\n", "pdcc", 6.6, &[]),
+        ("40 A", "", "pdcc", 37.968_75, &[]),
+        ("40 A", "max_current = \"38.5 A\"\n", "pdcc", 38.5, &[]),
+        (
+            "100 A",
+            "trip_current = \"61 A\"\n",
+            "pdcc",
+            61.0,
+            &[Code::TripFarAbove],
+        ),
+        ("100 A", "trip_current = \"59 A\"\n", "pdcc", 59.0, &[]),
+        ("100 A", "max_current = \"10 A\"\n", "fcs-mpc", 20.0, &[]),
+        (
+            "100 A",
+            "max_current = \"5 A\"\n",
+            "fcs-mpc",
+            12.78,
+            &[Code::TripFarAbove],
+        ),
+        (
+            "100 A",
+            "max_current = \"5 A\"\n",
+            "phcc",
+            20.79,
+            &[Code::TripFarAbove],
+        ),
+        ("40 A", "max_current = \"20 A\"\n", "phcc", 37.968_75, &[]),
+        (
+            "40 A",
+            "max_current = \"22 A\"\n",
+            "phcc",
+            37.968_75,
+            &[Code::SwingAboveTrip],
+        ),
+    ] {
+        let inverter = format!("{TIMER}adc_range = \"{range}\"\n{field}");
+        let (spec, origins) = checked(&inverter, &format!("kind = \"{controller}\""));
+        let count = spec.inverter.adc_gain;
+        let found = spec.inverter.trip_current;
+        assert!((found - trip).abs() <= count, "{inverter}: {found}");
+        let counts = found / count;
+        assert!(
+            (counts - counts.round()).abs() < 1e-6,
+            "{inverter}: {counts}"
+        );
+        let told: Vec<Code> = warnings(&spec, &origins)
+            .iter()
+            .map(|warning| warning.code)
+            .collect();
+        assert_eq!(told, codes, "{inverter} {controller}");
+    }
+}
+
+/// What a message says is enough is accepted: the message's code, the field, and the word in front of the limit.
+#[test]
+fn limits_in_messages_are_accepted() {
+    let mut followed = 0;
+    for clock in ["72 MHz", "170 MHz", "5.37 MHz"] {
+        for (code, field, given, before, controller) in [
+            (
+                "HX0312",
+                "maximum_speed",
+                "190000 rpm",
+                "lower it to ",
+                "pdcc",
+            ),
+            ("HX0312", "f_pwm", "1.7 kHz", "raise `f_pwm` to ", "pdcc"),
+            ("HX0301", "f_pwm", "600 Hz", "`f_pwm` of at least ", "pdcc"),
+            ("HX0406", "f_pwm", "3 kHz", "(`f_pwm`: ", "phcc"),
+            ("HX0406", "f_pwm", "3.1 kHz", "(`f_pwm`: ", "fcs-mpc"),
+            ("HX0315", "dead_time", "10 us", "shorten it to ", "pdcc"),
+            (
+                "HX0310",
+                "minimum_speed",
+                "0.02 rpm",
+                "raise the speed to ",
+                "pdcc",
+            ),
+            ("HX0317", "max_current", "17 mA", "at least ", "pdcc"),
+            (
+                "HX0317",
+                "bus_adc_range",
+                "333 V",
+                "narrow the range to ",
+                "pdcc",
+            ),
+        ] {
+            let base = |value: &str| {
+                let mut text = format!("timer_clock = \"{clock}\"\nadc_range = \"77.7 A\"\n");
+                if field != "f_pwm" {
+                    text += "f_pwm = \"23.3 kHz\"\n";
+                }
+                if field == "bus_adc_range" {
+                    text += "v_bus = \"measured\"\nbus_adc_bits = 8\n";
+                }
+                if code == "HX0312" && field == "f_pwm" {
+                    text += "maximum_speed = \"9000 rpm\"\n";
+                }
+                text + &format!("{field} = \"{value}\"\n")
+            };
+            let errors =
+                |value: &str| match try_check(&base(value), &format!("kind = \"{controller}\"")) {
+                    Err(errors) => errors,
+                    Ok((spec, origins)) => match generate(&spec, &origins) {
+                        Err(errors) => errors.to_string(),
+                        Ok(_) => String::new(),
+                    },
+                };
+            let first = errors(given);
+            let Some(message) = first.lines().find(|line| line.contains(code)) else {
+                panic!("{clock} {field} {given}: {first}")
+            };
+            let limit = message.rsplit(before).next().unwrap_or_default();
+            let mut words = limit.split([' ', ',', ';', ')']);
+            let limit = [words.next(), words.next()].map(Option::unwrap_or_default);
+            let limit = limit.join(" ");
+            let then = errors(&limit);
+            assert!(
+                !then.contains(code),
+                "{clock} {field} {limit}: {then}\n{message}"
+            );
+            followed += 1;
+        }
+    }
+    assert_eq!(followed, 27);
+}
