@@ -8,6 +8,7 @@ mod controller;
 mod inverter;
 mod motor;
 mod origins;
+mod other_names;
 pub(crate) mod reader;
 mod relations;
 

@@ -4,3 +4,4 @@ mod diagnostics_macro;
 mod diagnostics_toml;
 mod front_ends;
 mod motors;
+mod spelling;
