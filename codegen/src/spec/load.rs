@@ -10,15 +10,29 @@ use std::path::Path;
 /// Messages name the relative path only. `at`: where the path was written.
 ///
 /// # Errors
-/// If the path is absolute, the file cannot be read or is no TOML.
+/// If the path is absolute, the file cannot be read, is not UTF-8 or is no TOML.
 pub fn load_motor_file(root: &Path, relative: &str, at: &Location) -> Result<SpecAst, Diagnostics> {
     if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
     }
-    let text = std::fs::read_to_string(root.join(relative)).map_err(|error| {
+    let bytes = std::fs::read(root.join(relative)).map_err(|error| {
         catalogue::unreadable_motor_file(at, relative, &error.kind().to_string())
     })?;
-    parse_toml(&text, relative)
+    parse_toml(&motor_text(bytes, relative)?, relative)
+}
+
+/// The text of a motor file; `file_name` is used in messages.
+///
+/// # Errors
+/// If the bytes are not UTF-8.
+pub fn motor_text(bytes: Vec<u8>, file_name: &str) -> Result<String, Diagnostics> {
+    String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        let bytes = error.as_bytes();
+        let before = String::from_utf8_lossy(&bytes[..offset]);
+        let at = Location::in_file(file_name, &before, offset);
+        catalogue::motor_file_is_no_text(&at, bytes[offset], offset).into()
+    })
 }
 
 /// Whether a path names a place outside of the crate's folder by itself, on any system.

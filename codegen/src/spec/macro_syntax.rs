@@ -193,13 +193,9 @@ impl Entry {
         };
         let head = &self.tokens[..1];
         if value.is_empty() {
-            return Err(catalogue::syntax(
-                &location(head),
-                &format!(
-                    "`{name}` has no value; write for example `{name}: {}`",
-                    schema::example(&name.to_string())
-                ),
-            ));
+            let name = name.to_string();
+            let examples = schema::examples(&name, &[]);
+            return Err(catalogue::missing_value(&location(head), &name, &examples));
         }
         // `a: 1 ohm b: 2 H`: the comma in between was forgotten.
         if let Some(colon) = value.iter().position(|token| is_punct(token, ':')) {

@@ -30,8 +30,8 @@ pub use controller::{
     SpeedLoop, SwitchingTable,
 };
 pub(crate) use load::is_absolute;
-pub use load::load_motor_file;
+pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
 pub use model::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 pub use toml_syntax::parse_toml;
-pub use variant::apply_variant;
+pub use variant::{apply_variant, variant_of};

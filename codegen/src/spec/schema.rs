@@ -3,6 +3,7 @@
 //! The limits keep out slips of unit and decimal point; they are wider than any motor that this
 //! crate is made for. The reference table for users is the documentation of [`crate::spec`].
 
+use super::ast::Basis;
 use super::controller::common::OPTIONS;
 use super::units::Dimension as D;
 
@@ -231,6 +232,40 @@ pub(crate) fn dimensions(name: &str) -> &'static [D] {
 /// An example of the field's value.
 pub(crate) fn example(name: &str) -> &'static str {
     find(name).map_or("20 A", |rule| rule.example)
+}
+
+/// Examples of the field's value, one for each basis that it may have: none is put into the mouth
+/// of a user who did not name it. `named`: the basis words of the value as given.
+pub(crate) fn examples(name: &str, named: &[Basis]) -> Vec<String> {
+    let example = example(name);
+    let references = references(name);
+    let Some((own, _)) = references
+        .iter()
+        .find(|(basis, _)| example.contains(basis.word()))
+    else {
+        return vec![example.to_owned()];
+    };
+    let is_named = references.iter().any(|(basis, _)| named.contains(basis));
+    references
+        .iter()
+        .filter(|(basis, _)| !is_named || named.contains(basis))
+        .map(|(basis, _)| example.replace(own.word(), basis.word()))
+        .collect()
+}
+
+/// What the field's value can refer to, and what that means; empty where there is no choice.
+pub(crate) fn references(name: &str) -> &'static [(Basis, &'static str)] {
+    match name {
+        "resistance" | "inductance" => &[
+            (Basis::PerPhase, "of one winding"),
+            (Basis::LineToLine, "between two terminals"),
+        ],
+        "back_emf" => &[
+            (Basis::Phase, "of one phase"),
+            (Basis::LineToLine, "between two terminals"),
+        ],
+        _ => &[],
+    }
 }
 
 /// The section that has a field of this name.

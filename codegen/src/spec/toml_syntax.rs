@@ -5,7 +5,7 @@
 //! data sheet lacks; `[source]` free text. Every place is kept as file, line and column.
 
 use super::ast::{Field, Name, Section, SpecAst, Value};
-use super::value::{no_text, parse_value, plain_number, unreadable};
+use super::value::{free_text, no_text, parse_value, plain_number, unreadable};
 use super::{load, schema};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
 use std::ops::Range;
@@ -44,11 +44,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             "inverter" => file.read_fields(&mut ast.inverter, at, table),
             "controller" => file.read_fields(&mut ast.controller, at, table),
             "assumed" => file.read_assumed(&mut ast, table),
-            "source" => ast.source.extend(
-                table
-                    .iter()
-                    .filter_map(|(key, item)| Some((key.to_owned(), item.as_str()?.to_owned()))),
-            ),
+            "source" => file.read_source(&mut ast, table),
             _ => ast.unknown_section(&at, name, &SECTIONS),
         }
     }
@@ -99,10 +95,22 @@ impl File<'_> {
             section.fields.push(Field {
                 name: name.to_owned(),
                 name_location: self.key(table.key(name), item),
-                value: read_value(name, item, &location),
+                value: self.read_value(name, item, &location),
                 location,
                 assumed: None,
             });
+        }
+    }
+
+    fn read_source(&self, ast: &mut SpecAst, table: &dyn TableLike) {
+        for (key, item) in table.iter() {
+            let Some(text) = item.as_str() else {
+                continue;
+            };
+            match free_text(key, text, &self.span(item.span())) {
+                Ok(text) => ast.source.push((key.to_owned(), text)),
+                Err(error) => ast.malformed.push(error),
+            }
         }
     }
 
@@ -149,21 +157,23 @@ impl File<'_> {
         let value = table.and_then(|table| table.get("value"));
         let reason = table
             .and_then(|table| table.get("reason"))
-            .and_then(Item::as_str);
-        let (Some(value), Some(reason)) = (value, reason) else {
-            return Err(catalogue::assumption(
-                &name_location,
-                name,
-                schema::example(name),
-            ));
+            .and_then(|reason| Some((reason.as_str()?, self.span(reason.span()))));
+        let (Some(value), Some((reason, reason_location))) = (value, reason) else {
+            let given = value.or(Some(item)).and_then(Item::as_str);
+            let values = given.map_or_else(
+                || schema::examples(name, &[]),
+                |given| vec![given.to_owned()],
+            );
+            return Err(catalogue::assumption(&name_location, name, &values));
         };
+        let reason = free_text(name, reason, &reason_location)?;
         let location = self.span(value.span());
         Ok(Field {
             name: name.to_owned(),
             name_location,
-            value: read_value(name, value, &location),
+            value: self.read_value(name, value, &location),
             location,
-            assumed: Some(reason.to_owned()),
+            assumed: Some(reason),
         })
     }
 
@@ -218,40 +228,44 @@ impl File<'_> {
         }
         None
     }
-}
 
-fn read_value(field: &str, item: &Item, at: &Location) -> Value {
-    let unreadable = |given: &str| {
-        if schema::is_text(field) {
-            no_text(field, given, at)
-        } else {
-            unreadable(field, given, at)
+    fn read_value(&self, field: &str, item: &Item, at: &Location) -> Value {
+        let unreadable = |given: &str| {
+            if schema::is_text(field) {
+                no_text(field, given, at)
+            } else {
+                unreadable(field, given, at)
+            }
+        };
+        match item.as_value() {
+            Some(toml_edit::Value::String(text)) => parse_value(field, text.value(), at),
+            // As written: of all that TOML takes for a number, decimal ones pass.
+            Some(number @ (toml_edit::Value::Integer(_) | toml_edit::Value::Float(_))) => {
+                plain_number(field, self.written(number), at)
+            }
+            Some(toml_edit::Value::Boolean(flag)) if !schema::is_text(field) => {
+                Value::Word(flag.value().to_string())
+            }
+            Some(array @ toml_edit::Value::Array(list)) if !schema::is_text(field) => {
+                let numbers: Option<Vec<i64>> = list
+                    .iter()
+                    .map(|number| {
+                        let is_decimal = self.written(number).parse() == Ok(number.as_integer()?);
+                        number.as_integer().filter(|_| is_decimal)
+                    })
+                    .collect();
+                numbers.map_or_else(|| unreadable(self.written(array)), Value::Integers)
+            }
+            Some(other) => unreadable(self.written(other)),
+            None => unreadable("a table"),
         }
-    };
-    match item.as_value() {
-        Some(toml_edit::Value::String(text)) => parse_value(field, text.value(), at),
-        Some(toml_edit::Value::Integer(number)) => {
-            plain_number(field, &number.value().to_string(), at)
-        }
-        Some(toml_edit::Value::Float(number)) => {
-            let digits = number
-                .as_repr()
-                .and_then(|repr| repr.as_raw().as_str())
-                .map(str::to_owned);
-            plain_number(
-                field,
-                &digits.unwrap_or_else(|| format!("{:?}", number.value())),
-                at,
-            )
-        }
-        Some(toml_edit::Value::Boolean(flag)) if !schema::is_text(field) => {
-            Value::Word(flag.value().to_string())
-        }
-        Some(toml_edit::Value::Array(list)) if !schema::is_text(field) => {
-            let numbers: Option<Vec<i64>> = list.iter().map(toml_edit::Value::as_integer).collect();
-            numbers.map_or_else(|| unreadable(list.to_string().trim()), Value::Integers)
-        }
-        Some(other) => unreadable(other.to_string().trim()),
-        None => unreadable("a table"),
+    }
+
+    /// A value as it stands in the file.
+    fn written(&self, value: &toml_edit::Value) -> &str {
+        value
+            .span()
+            .and_then(|range| self.text.get(range))
+            .unwrap_or_default()
     }
 }

@@ -18,9 +18,26 @@ enum Lexeme {
 /// Reads the value of `field` (for its example in messages) from `text`.
 pub(super) fn parse_value(field: &str, text: &str, at: &Location) -> Value {
     if schema::is_text(field) {
-        return Value::Text(text.split_whitespace().collect::<Vec<_>>().join(" "));
+        return match free_text(field, text, at) {
+            Ok(text) => Value::Text(text),
+            Err(error) => Value::Malformed(Box::new(error)),
+        };
     }
     read(field, text, at).unwrap_or_else(|error| Value::Malformed(Box::new(error)))
+}
+
+/// Free text in one line. Texts become comments of emitted code: what compilers refuse there is
+/// refused here, where it was written. These are control characters, and those that turn the
+/// direction of writing (rustc's lint `text_direction_codepoint_in_literal`).
+pub(super) fn free_text(field: &str, text: &str, at: &Location) -> Result<String, Diagnostic> {
+    let is_forbidden = |c: char| {
+        matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+            || (c.is_control() && !c.is_whitespace())
+    };
+    match (1..).zip(text.chars()).find(|(_, c)| is_forbidden(*c)) {
+        Some((position, c)) => Err(catalogue::forbidden_character(at, field, c, position)),
+        None => Ok(text.split_whitespace().collect::<Vec<_>>().join(" ")),
+    }
 }
 
 /// A number of the given digits without unit.
@@ -41,9 +58,9 @@ pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
 
 /// Something else where the field takes text.
 pub(super) fn no_text(field: &str, given: &str, at: &Location) -> Value {
-    let example = schema::example(field);
+    let examples = schema::examples(field, &[]);
     Value::Malformed(Box::new(catalogue::wrong_kind(
-        at, field, given, "text", example,
+        at, field, given, "text", &examples,
     )))
 }
 
@@ -59,10 +76,13 @@ fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
         all => ("", all),
     };
     match unsigned {
+        [Lexeme::Number(zero), Lexeme::Word(word), ..] if is_based(zero, word) => {
+            Err(malformed(field, text, at))
+        }
         [Lexeme::Number(digits), rest @ ..] => {
             let digits = format!("{sign}{digits}");
             let value = number(&digits).ok_or_else(|| malformed(field, text, at))?;
-            let (unit, basis) = read_unit(field, &digits, rest, at)?;
+            let (unit, basis) = read_unit(field, text, &digits, rest, at)?;
             Ok(Value::Number(Number {
                 digits,
                 value,
@@ -81,10 +101,25 @@ fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
 }
 
 fn malformed(field: &str, text: &str, at: &Location) -> Diagnostic {
-    catalogue::malformed_value(at, field, text, schema::example(field))
+    catalogue::malformed_value(at, field, text, &schema::examples(field, &[]))
 }
 
+/// Whether a number is of another base than ten, such as `0x1F`.
+fn is_based(zero: &str, word: &str) -> bool {
+    let digits = word.strip_prefix(['x', 'X', 'o', 'O', 'b', 'B']);
+    zero == "0" && digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_hexdigit()))
+}
+
+/// The value of a decimal number; an underscore stands between two digits.
 fn number(digits: &str) -> Option<f64> {
+    let groups: Vec<&str> = digits.split('_').collect();
+    let is_between_digits = |pair: &[&str]| {
+        pair[0].ends_with(|c: char| c.is_ascii_digit())
+            && pair[1].starts_with(|c: char| c.is_ascii_digit())
+    };
+    if !groups.windows(2).all(is_between_digits) {
+        return None;
+    }
     digits
         .replace('_', "")
         .parse()
@@ -142,48 +177,188 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Unit and basis words behind a number.
+/// Unit and basis words behind a number: the longest unit that there is, then words alone.
 fn read_unit(
     field: &str,
+    text: &str,
     digits: &str,
     lexemes: &[Lexeme],
     at: &Location,
 ) -> Result<(Option<Unit>, Vec<Basis>), Diagnostic> {
-    let mut basis = Vec::new();
-    let mut symbol = String::new();
+    let given = |lexemes: &[Lexeme]| format!("{digits} {}", spelt(lexemes));
+    if let Some(signs) = stray_signs(lexemes) {
+        let examples = schema::examples(field, &named(lexemes));
+        return Err(catalogue::stray_signs(at, field, text, &signs, &examples));
+    }
+    let longest = (1..=lexemes.len())
+        .rev()
+        .find_map(|end| Some((unit_of(&lexemes[..end])?, &lexemes[end..])));
+    let (unit, rest) = longest.map_or((None, lexemes), |(unit, rest)| (Some(unit), rest));
+    if let Some(basis) = rest.iter().map(basis_of).collect() {
+        return Ok((unit, basis));
+    }
+    let takes_basis = !schema::references(field).is_empty();
+    if unit.is_some() && takes_basis && rest.iter().all(is_part_of_word) {
+        let (word, remedy) = basis_remedy(field, rest);
+        return Err(catalogue::unknown_basis(
+            at,
+            field,
+            &given(lexemes),
+            &word,
+            &remedy,
+        ));
+    }
+    let end = lexemes
+        .iter()
+        .rposition(|lexeme| basis_of(lexeme).is_none())
+        .map_or(0, |last| last + 1);
+    let symbol = spelt(&lexemes[..end]);
+    let nearest = Unit::nearest(&symbol, schema::dimensions(field));
+    let examples = schema::examples(field, &named(lexemes));
+    Err(catalogue::unknown_unit(
+        at,
+        field,
+        &given(&lexemes[..end]),
+        &symbol,
+        nearest,
+        &examples,
+    ))
+}
+
+/// The first signs that mean nothing where they stand: a product's stands between two words, a
+/// power's before its number, a hyphen within a word.
+fn stray_signs(lexemes: &[Lexeme]) -> Option<String> {
+    let is_word = |lexeme: Option<&Lexeme>| matches!(lexeme, Some(Lexeme::Word(_)));
+    let is_factor =
+        |lexeme: Option<&Lexeme>| is_word(lexeme) && lexeme.and_then(basis_of).is_none();
+    let is_number = |lexeme: Option<&Lexeme>| matches!(lexeme, Some(Lexeme::Number(_)));
+    let first = lexemes.iter().enumerate().position(|(index, lexeme)| {
+        let before = index.checked_sub(1).and_then(|before| lexemes.get(before));
+        let after = lexemes.get(index + 1);
+        match lexeme {
+            Lexeme::Symbol('*' | '·') => {
+                !(is_word(before) || is_number(before)) || !is_factor(after)
+            }
+            Lexeme::Symbol('^') => !is_word(before) || !is_number(after),
+            Lexeme::Symbol('-') => !is_word(before) || !is_word(after),
+            Lexeme::Symbol(sign) => !matches!(sign, '/' | '(' | ')' | '%' | '°'),
+            Lexeme::Word(_) | Lexeme::Number(_) => false,
+        }
+    })?;
+    let signs = lexemes[first..].iter().map_while(|lexeme| match lexeme {
+        Lexeme::Symbol(sign) => Some(*sign),
+        _ => None,
+    });
+    Some(signs.collect())
+}
+
+/// The unit that these lexemes are as a whole.
+fn unit_of(lexemes: &[Lexeme]) -> Option<Unit> {
+    match lexemes.last() {
+        Some(Lexeme::Symbol('*' | '·' | '^')) => None,
+        _ => Unit::from_symbol(&spelt(lexemes)),
+    }
+}
+
+/// A unit's spelling: products with a space, powers without a caret.
+fn spelt(lexemes: &[Lexeme]) -> String {
+    let kept: Vec<Lexeme> = lexemes
+        .iter()
+        .filter(|lexeme| !matches!(lexeme, Lexeme::Symbol('*' | '·' | '^')))
+        .cloned()
+        .collect();
+    written(&kept)
+}
+
+/// The lexemes as text, with spaces between words alone.
+fn written(lexemes: &[Lexeme]) -> String {
+    let mut text = String::new();
     let mut after_word = false;
     for lexeme in lexemes {
-        let word = match lexeme {
-            Lexeme::Word(word) => word.as_str(),
-            Lexeme::Number(digits) => digits.as_str(),
-            // Products may be written with a sign, powers with a caret.
-            Lexeme::Symbol('*' | '·' | '^') => continue,
-            Lexeme::Symbol(sign) => {
-                symbol.push(*sign);
-                after_word = false;
-                continue;
+        match lexeme {
+            Lexeme::Symbol(sign) => text.push(*sign),
+            Lexeme::Number(digits) => text.push_str(digits),
+            Lexeme::Word(word) => {
+                if after_word {
+                    text.push(' ');
+                }
+                text.push_str(word);
             }
-        };
-        if let Some(found) = Basis::ALL.into_iter().find(|basis| basis.word() == word) {
-            basis.push(found);
-            continue;
         }
-        let power = word.starts_with(|c: char| c.is_ascii_digit());
-        if after_word && !power {
-            symbol.push(' ');
-        }
-        symbol.push_str(word);
-        after_word = true;
+        after_word = !matches!(lexeme, Lexeme::Symbol(_));
     }
-    if symbol.is_empty() {
-        return Ok((None, basis));
+    text
+}
+
+fn basis_of(lexeme: &Lexeme) -> Option<Basis> {
+    match lexeme {
+        Lexeme::Word(word) => Basis::ALL.into_iter().find(|basis| basis.word() == word),
+        _ => None,
     }
-    let unit = Unit::from_symbol(&symbol).ok_or_else(|| {
-        let given = format!("{digits} {symbol}");
-        let nearest = Unit::nearest(&symbol, schema::dimensions(field));
-        catalogue::unknown_unit(at, field, &given, &symbol, nearest, schema::example(field))
-    })?;
-    Ok((Some(unit), basis))
+}
+
+/// The basis words among the lexemes.
+fn named(lexemes: &[Lexeme]) -> Vec<Basis> {
+    lexemes.iter().filter_map(basis_of).collect()
+}
+
+fn is_part_of_word(lexeme: &Lexeme) -> bool {
+    matches!(lexeme, Lexeme::Word(_) | Lexeme::Symbol('-'))
+}
+
+/// Other words for a value between two terminals, letters alone.
+const BETWEEN_TERMINALS: [&str; 12] = [
+    "line",
+    "lineline",
+    "linetoline",
+    "ll",
+    "ltol",
+    "phasephase",
+    "phasetophase",
+    "terminal",
+    "terminals",
+    "terminalterminal",
+    "terminaltoterminal",
+    "leadtolead",
+];
+
+/// What is unknown of the words behind a unit, and what to write: the basis that they are another
+/// word for, or the choice.
+fn basis_remedy(field: &str, lexemes: &[Lexeme]) -> (String, String) {
+    let spelt_without = |left_out: fn(Basis) -> bool| {
+        let kept = lexemes
+            .iter()
+            .filter(|lexeme| !basis_of(lexeme).is_some_and(left_out));
+        written(&kept.cloned().collect::<Vec<_>>())
+    };
+    let references = schema::references(field);
+    let whole = spelt_without(|basis| matches!(basis, Basis::Peak | Basis::Rms));
+    let letters: String = whole
+        .chars()
+        .filter(|c| c.is_alphanumeric())
+        .flat_map(char::to_lowercase)
+        .collect();
+    let meant = if BETWEEN_TERMINALS.contains(&letters.as_str()) {
+        Some(Basis::LineToLine)
+    } else if letters == "perphase" {
+        references.first().map(|(basis, _)| *basis)
+    } else {
+        None
+    };
+    if let Some(basis) = meant {
+        return (whole, format!("did you mean `{}`?", basis.word()));
+    }
+    let words: Vec<(&str, &str)> = references
+        .iter()
+        .map(|(basis, meaning)| (basis.word(), *meaning))
+        .collect();
+    let mut remedy = format!("say {}", catalogue::with_meanings(&words));
+    if field == "back_emf" {
+        remedy.push_str(", with `peak` (the amplitude)");
+    }
+    let unknown = spelt_without(|_| true);
+    let has_letters = unknown.contains(char::is_alphanumeric);
+    (if has_letters { unknown } else { whole }, remedy)
 }
 
 /// `[1, 5, 4, 6, 2, 3]` without its brackets; a comma behind the last one is fine.
@@ -263,11 +438,11 @@ mod tests {
         for (text, message) in [
             (
                 "",
-                "`resistance`: cannot read ``; write it like `135 mohm per_phase`",
+                "`resistance`: cannot read ``; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
             ),
             (
                 "star delta",
-                "`resistance`: cannot read `star delta`; write it like `135 mohm per_phase`",
+                "`resistance`: cannot read `star delta`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
             ),
             (
                 "135 mOhm",
@@ -275,11 +450,11 @@ mod tests {
             ),
             (
                 "1e999 ohm",
-                "`resistance`: cannot read `1e999 ohm`; write it like `135 mohm per_phase`",
+                "`resistance`: cannot read `1e999 ohm`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
             ),
             (
                 "[1, x]",
-                "`resistance`: cannot read `[1, x]`; write it like `135 mohm per_phase`",
+                "`resistance`: cannot read `[1, x]`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
             ),
         ] {
             match parse("resistance", text) {

@@ -53,3 +53,52 @@ pub fn apply_variant(ast: &mut SpecAst, variant: &str) -> Result<(), Diagnostics
     ast.controller.overlay_controller(section);
     Ok(())
 }
+
+/// The controller of `ast` with its options as [`apply_variant`] takes them, in the order in which
+/// they were written. The 48 numbers of a switching table are shown, but no variant can give them.
+pub fn variant_of(ast: &SpecAst) -> String {
+    let written = |field: &Field| {
+        let value = field.value.to_string();
+        value.split_whitespace().collect::<String>()
+    };
+    let (kinds, options): (Vec<&Field>, Vec<&Field>) = ast
+        .controller
+        .fields
+        .iter()
+        .partition(|field| field.name == "kind");
+    let kind = kinds.first().map_or_else(String::new, |kind| written(kind));
+    let options: Vec<String> = options
+        .iter()
+        .map(|option| format!("{}={}", option.name, written(option)))
+        .collect();
+    if options.is_empty() {
+        kind
+    } else {
+        format!("{kind}:{}", options.join(","))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{apply_variant, variant_of};
+    use crate::spec::parse_toml;
+
+    #[test]
+    fn a_controller_is_named_as_it_is_given() {
+        for variant in [
+            "pdcc",
+            "pdcc:saturation=nearest,emf=model,advance=1.5",
+            "pi-pwm:bandwidth=800Hz,integral_time=0.5ms,word=16",
+        ] {
+            let mut ast = parse_toml("", "hub.toml").expect("is TOML");
+            apply_variant(&mut ast, variant).expect("is a variant");
+            assert_eq!(variant_of(&ast), variant);
+        }
+        let file = "[controller]\nkind = \"pi-pwm\"\nbandwidth = \"800 Hz\"\nword = 16\n";
+        let mut ast = parse_toml(file, "hub.toml").expect("is TOML");
+        assert_eq!(variant_of(&ast), "pi-pwm:bandwidth=800Hz,word=16");
+        // Options that a variant does not name stay those of the file.
+        apply_variant(&mut ast, "pi-pwm:word=32").expect("is a variant");
+        assert_eq!(variant_of(&ast), "pi-pwm:bandwidth=800Hz,word=32");
+    }
+}

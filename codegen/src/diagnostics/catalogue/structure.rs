@@ -29,13 +29,18 @@ pub fn not_a_section(at: &Location, name: &str) -> Diagnostic {
     )
 }
 
-/// An assumed value without value or reason.
-pub fn assumption(at: &Location, field: &str, example: &str) -> Diagnostic {
+/// An assumed value without value or reason; `values` are examples of the value.
+pub fn assumption(at: &Location, field: &str, values: &[String]) -> Diagnostic {
+    let examples: Vec<String> = values
+        .iter()
+        .map(|value| format!("{{ value = \"{value}\", reason = \"not in the data sheet\" }}"))
+        .collect();
     Diagnostic::new(
         Code::MalformedValue,
         at,
         format!(
-            "`{field}`: an assumption needs a value and a reason; write it like `{{ value = \"{example}\", reason = \"not in the data sheet\" }}`"
+            "`{field}`: an assumption needs a value and a reason; write it like {}",
+            list(&examples, "or")
         ),
     )
 }
@@ -50,6 +55,15 @@ pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -
         Code::UnknownField,
         at,
         format!("`{section}` has no field `{name}`{advice}"),
+    )
+}
+
+/// A name of data sheets for what a field takes in its own way; `remedy` is a clause.
+pub fn other_name(at: &Location, section: &str, name: &str, remedy: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownField,
+        at,
+        format!("`{section}` has no field `{name}`; {remedy}"),
     )
 }
 
@@ -73,12 +87,36 @@ pub fn duplicate_field(at: &Location, first: &Location, name: &str) -> Diagnosti
 }
 
 /// A field without default is missing.
-pub fn missing_field(at: &Location, section: &str, name: &str, example: &str) -> Diagnostic {
+pub fn missing_field(at: &Location, section: &str, name: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(
         Code::MissingField,
         at,
-        format!("`{section}` lacks the field `{name}`; add it, for example `{name}: {example}`"),
+        format!(
+            "`{section}` lacks the field `{name}`; add it, for example {}",
+            assignments(name, examples)
+        ),
     )
+}
+
+/// A field without its value.
+pub fn missing_value(at: &Location, name: &str, examples: &[String]) -> Diagnostic {
+    Diagnostic::new(
+        Code::Syntax,
+        at,
+        format!(
+            "`{name}` has no value; write for example {}",
+            assignments(name, examples)
+        ),
+    )
+}
+
+/// `` `name: a` or `name: b` ``.
+fn assignments(name: &str, values: &[String]) -> String {
+    let all: Vec<String> = values
+        .iter()
+        .map(|value| format!("{name}: {value}"))
+        .collect();
+    list(&all, "or")
 }
 
 /// None of several alternative fields is given.
@@ -151,6 +189,15 @@ pub fn unreadable_motor_file(at: &Location, path: &str, why: &str) -> Diagnostic
         format!(
             "`motor`: the file {path:?} cannot be read ({why}); give a path relative to the crate's Cargo.toml"
         ),
+    )
+}
+
+/// A motor file's bytes are no text; `offset` is that of the first byte that is none, from 0.
+pub fn motor_file_is_no_text(at: &Location, byte: u8, offset: usize) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        format!("the motor file is not UTF-8: byte {offset} is 0x{byte:02X}; save it as UTF-8"),
     )
 }
 

@@ -4,11 +4,59 @@ use super::structure::did_you_mean;
 use crate::diagnostics::{Code, Diagnostic, Location, list};
 
 /// A value that cannot be read.
-pub fn malformed_value(at: &Location, field: &str, given: &str, example: &str) -> Diagnostic {
+pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(
         Code::MalformedValue,
         at,
-        format!("`{field}`: cannot read `{given}`; write it like `{example}`"),
+        format!("`{field}`: cannot read `{given}`; {}", like(examples)),
+    )
+}
+
+/// Signs in a value that mean nothing where they stand.
+pub fn stray_signs(
+    at: &Location,
+    field: &str,
+    given: &str,
+    signs: &str,
+    examples: &[String],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::MalformedValue,
+        at,
+        format!(
+            "`{field}`: cannot read `{signs}` in `{given}`; {}",
+            like(examples)
+        ),
+    )
+}
+
+/// A character that no text may have: compilers refuse it in the comments that texts become.
+/// `position`: in the text, from 1.
+pub fn forbidden_character(
+    at: &Location,
+    field: &str,
+    character: char,
+    position: usize,
+) -> Diagnostic {
+    let name = match character {
+        '\u{202a}' => "left-to-right embedding",
+        '\u{202b}' => "right-to-left embedding",
+        '\u{202c}' => "pop directional formatting",
+        '\u{202d}' => "left-to-right override",
+        '\u{202e}' => "right-to-left override",
+        '\u{2066}' => "left-to-right isolate",
+        '\u{2067}' => "right-to-left isolate",
+        '\u{2068}' => "first strong isolate",
+        '\u{2069}' => "pop directional isolate",
+        _ => "a control character",
+    };
+    Diagnostic::new(
+        Code::MalformedValue,
+        at,
+        format!(
+            "`{field}`: character {position} of the text is U+{:04X} ({name}), which compilers refuse in comments; remove it",
+            u32::from(character)
+        ),
     )
 }
 
@@ -19,10 +67,10 @@ pub fn unknown_unit(
     given: &str,
     unit: &str,
     nearest: Option<&str>,
-    example: &str,
+    examples: &[String],
 ) -> Diagnostic {
     let advice = nearest.map_or_else(
-        || format!("write it like `{example}`"),
+        || like(examples),
         |symbol| format!("did you mean `{symbol}`?"),
     );
     Diagnostic::new(
@@ -39,21 +87,24 @@ pub fn wrong_dimension(
     given: &str,
     got: &str,
     wanted: &str,
-    example: &str,
+    examples: &[String],
 ) -> Diagnostic {
     Diagnostic::new(
         Code::WrongDimension,
         at,
-        format!("`{field}`: {given} is {got}, but {wanted} is wanted; write it like `{example}`"),
+        format!(
+            "`{field}`: {given} is {got}, but {wanted} is wanted; {}",
+            like(examples)
+        ),
     )
 }
 
 /// A number without unit.
-pub fn missing_unit(at: &Location, field: &str, given: &str, example: &str) -> Diagnostic {
+pub fn missing_unit(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(
         Code::MissingUnit,
         at,
-        format!("`{field}`: {given} has no unit; write it like `{example}`"),
+        format!("`{field}`: {given} has no unit; {}", like(examples)),
     )
 }
 
@@ -66,21 +117,35 @@ pub fn unwanted_unit(at: &Location, field: &str, given: &str, plain: &str) -> Di
     )
 }
 
-/// A value without its basis; `wanted` names the words, `example` shows them with the value.
+/// A value without its basis; `forms` are the value with each basis that it may have, and what that means.
 pub fn missing_basis(
     at: &Location,
     field: &str,
     given: &str,
-    wanted: &[&str],
-    example: &str,
+    forms: &[(String, &str)],
 ) -> Diagnostic {
     Diagnostic::new(
         Code::MissingBasis,
         at,
         format!(
-            "`{field}`: {given} does not say its basis; add {}, for example `{example}`",
-            list(wanted, "or"),
+            "`{field}`: {given} does not say its basis; write {}",
+            with_meanings(forms)
         ),
+    )
+}
+
+/// A word behind the unit that says no basis; `remedy` is a clause.
+pub fn unknown_basis(
+    at: &Location,
+    field: &str,
+    given: &str,
+    word: &str,
+    remedy: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownWord,
+        at,
+        format!("`{field}`: {given} has the unknown word `{word}`; {remedy}"),
     )
 }
 
@@ -118,12 +183,15 @@ pub fn wrong_kind(
     field: &str,
     given: &str,
     wanted: &str,
-    example: &str,
+    examples: &[String],
 ) -> Diagnostic {
     Diagnostic::new(
         Code::WrongKind,
         at,
-        format!("`{field}`: {given}, but {wanted} is wanted; write it like `{example}`"),
+        format!(
+            "`{field}`: {given}, but {wanted} is wanted; {}",
+            like(examples)
+        ),
     )
 }
 
@@ -137,11 +205,11 @@ pub fn not_positive(at: &Location, field: &str, given: &str, low: &str, high: &s
 }
 
 /// Zero or negative where a positive value is wanted, without stated limits.
-pub fn not_above_zero(at: &Location, field: &str, given: &str, example: &str) -> Diagnostic {
+pub fn not_above_zero(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(
         Code::NotPositive,
         at,
-        format!("`{field}`: {given} is not above zero; write it like `{example}`"),
+        format!("`{field}`: {given} is not above zero; {}", like(examples)),
     )
 }
 
@@ -199,4 +267,18 @@ pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
             "`hall_codes`: {given}: {why}; give the codes of sectors 1 to 6, each of 1 to 6 once and one bit apart, for example `[1, 5, 4, 6, 2, 3]`"
         ),
     )
+}
+
+/// How a value is written, by examples.
+fn like(examples: &[String]) -> String {
+    format!("write it like {}", list(examples, "or"))
+}
+
+/// `` `a` (what a means) or `b` (what b means) ``.
+pub(crate) fn with_meanings<S: AsRef<str>>(words: &[(S, &str)]) -> String {
+    let explained: Vec<String> = words
+        .iter()
+        .map(|(word, meaning)| format!("`{}` ({meaning})", word.as_ref()))
+        .collect();
+    explained.join(" or ")
 }

@@ -9,6 +9,7 @@ mod currents;
 mod inverter;
 mod motor;
 mod origins;
+mod other_names;
 pub(crate) mod reader;
 mod relations;
 

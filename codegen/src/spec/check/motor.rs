@@ -1,8 +1,9 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
 use super::reader::{Given, Reader};
-use crate::diagnostics::{Collector, catalogue};
+use crate::diagnostics::{Collector, catalogue, list};
 use crate::spec::ast::Basis;
+use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{EmfShape, MotorSpec};
 
@@ -132,9 +133,11 @@ fn read_winding_value(
             Winding::Delta => Some(given.si / 3.0),
         },
         [] => {
-            let words = ["per_phase", "line_to_line"];
-            let example = format!("{text} per_phase");
-            errors.push(catalogue::missing_basis(at, name, text, &words, &example));
+            let forms: Vec<(String, &str)> = schema::references(name)
+                .iter()
+                .map(|(basis, meaning)| (format!("{text} {}", basis.word()), *meaning))
+                .collect();
+            errors.push(catalogue::missing_basis(at, name, text, &forms));
             None
         }
         [.., last] => {
@@ -178,6 +181,7 @@ fn read_back_emf<'a>(
     let (at, text) = (&given.part.location, &given.part.given);
     let unit = given.number.unit?;
     let has = |basis: Basis| given.basis.contains(&basis);
+    let line_stated = has(Basis::Phase) || has(Basis::LineToLine);
     let mut refuse = |basis: Basis, remedy: &str| {
         errors.push(catalogue::wrong_basis(
             at,
@@ -199,16 +203,16 @@ fn read_back_emf<'a>(
     }
     if has(Basis::Rms) {
         let peak = crate::diagnostics::significant(given.number.value * 2f64.sqrt());
-        let line = if has(Basis::Phase) {
-            "phase"
-        } else {
-            "line_to_line"
-        };
+        let forms: Vec<String> = [Basis::Phase, Basis::LineToLine]
+            .into_iter()
+            .filter(|&basis| has(basis) || !line_stated)
+            .map(|basis| format!("{peak} {} {} peak", unit.symbol, basis.word()))
+            .collect();
         return refuse(
             Basis::Rms,
             &format!(
-                "give the peak; for a sinusoidal EMF it is sqrt(2) times as much, `{peak} {} {line} peak`",
-                unit.symbol
+                "give the peak; for a sinusoidal EMF it is sqrt(2) times as much, {}",
+                list(&forms, "or")
             ),
         );
     }
@@ -216,13 +220,13 @@ fn read_back_emf<'a>(
         Dimension::SpeedConstant if has(Basis::Phase) => {
             return refuse(
                 Basis::Phase,
-                "a speed constant refers to the line-to-line peak; write `line_to_line peak`",
+                "a speed constant refers to the line-to-line peak; give V/krpm with `phase peak` instead",
             );
         }
         Dimension::FluxLinkage if has(Basis::LineToLine) => {
             return refuse(
                 Basis::LineToLine,
-                "a flux linkage refers to the phase peak; write `phase peak`, or give V/krpm",
+                "a flux linkage refers to the phase peak; give V/krpm with `line_to_line peak` instead",
             );
         }
         Dimension::FluxLinkage if winding == Some(Winding::Delta) => {
@@ -232,27 +236,19 @@ fn read_back_emf<'a>(
         Dimension::SpeedConstant | Dimension::FluxLinkage => return Some(given),
         _ => {}
     }
-    let line_stated = has(Basis::Phase) || has(Basis::LineToLine);
     if line_stated && has(Basis::Peak) {
         return Some(given);
     }
-    let plain = format!("{} {}", given.number.digits, unit.symbol);
-    let (words, example): (&[&str], String) = if line_stated {
-        (&["peak"], format!("{text} peak"))
-    } else if has(Basis::Peak) {
-        (
-            &["phase", "line_to_line"],
-            format!("{plain} line_to_line peak"),
-        )
+    let forms: Vec<(String, &str)> = if line_stated {
+        vec![(format!("{text} peak"), "the amplitude")]
     } else {
-        (
-            &["phase peak", "line_to_line peak"],
-            format!("{plain} line_to_line peak"),
-        )
+        let plain = format!("{} {}", given.number.digits, unit.symbol);
+        schema::references("back_emf")
+            .iter()
+            .map(|(basis, meaning)| (format!("{plain} {} peak", basis.word()), *meaning))
+            .collect()
     };
-    errors.push(catalogue::missing_basis(
-        at, "back_emf", text, words, &example,
-    ));
+    errors.push(catalogue::missing_basis(at, "back_emf", text, &forms));
     None
 }
 
@@ -348,7 +344,9 @@ fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
         .collect();
     let mut sorted = codes.clone();
     sorted.sort_unstable();
-    let problem = if list.len() != 6 {
+    let problem = if let Some(code) = list.iter().find(|code| !(1..=6).contains(*code)) {
+        Some(format!("{code} lies outside 1 to 6"))
+    } else if list.len() != 6 {
         Some(format!("{} codes instead of 6", list.len()))
     } else if sorted != [1, 2, 3, 4, 5, 6] {
         Some("not each of 1 to 6 once".to_owned())

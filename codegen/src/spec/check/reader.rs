@@ -1,6 +1,7 @@
 //! Typed access to the fields of a section: reports what is wrong with a single field, and hands
 //! out values in SI units.
 
+use super::other_names;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, engineering, percent, rpm, significant};
 use crate::spec::ast::{Basis, Field, Number, Section, Value};
@@ -87,6 +88,8 @@ impl<'a> Reader<'a> {
                     &field.name,
                     right,
                 ));
+            } else if let Some(remedy) = self.remedy(field) {
+                errors.push(catalogue::other_name(at, self.name, &field.name, &remedy));
             } else if !elsewhere(field, errors) {
                 errors.push(catalogue::unknown_field(at, self.name, &field.name, &known));
             }
@@ -101,7 +104,7 @@ impl<'a> Reader<'a> {
                     &self.at,
                     self.name,
                     name,
-                    schema::example(name),
+                    &schema::examples(name, &[]),
                 ));
             }
         }
@@ -138,8 +141,17 @@ impl<'a> Reader<'a> {
         let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
         self.section.fields.iter().any(|field| {
             !known.contains(&field.name.as_str())
-                && catalogue::nearest(&field.name, &known) == Some(name)
+                && other_names::meant(&field.name)
+                    .or_else(|| catalogue::nearest(&field.name, &known))
+                    == Some(name)
         })
+    }
+
+    /// What to write for a field of this section that stands under another name.
+    fn remedy(&self, field: &Field) -> Option<String> {
+        let meant = other_names::meant(&field.name)?;
+        let is_here = self.rules.iter().any(|rule| rule.name == meant);
+        is_here.then(|| other_names::remedy(meant, field))
     }
 
     /// The field of this name, if it was written.
@@ -197,9 +209,8 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             other => {
                 let given = other.to_string();
-                let error =
-                    catalogue::wrong_kind(&field.location, name, &given, wanted, rule.example);
-                errors.push(error);
+                let (at, examples) = (&field.location, schema::examples(name, &[]));
+                errors.push(catalogue::wrong_kind(at, name, &given, wanted, &examples));
                 None
             }
         }
@@ -216,19 +227,19 @@ impl<'a> Reader<'a> {
         else {
             return None;
         };
-        let (at, text, example) = (
+        let (at, text, examples) = (
             &given.part.location,
             &given.part.given,
-            schema::example(name),
+            schema::examples(name, given.basis),
         );
         let Some(dimension) = given.dimension else {
-            errors.push(catalogue::missing_unit(at, name, text, example));
+            errors.push(catalogue::missing_unit(at, name, text, &examples));
             return None;
         };
         if !dimensions.contains(&dimension) {
             let (got, wanted) = (dimension.name(), dimensions[0].name());
             errors.push(catalogue::wrong_dimension(
-                at, name, text, got, wanted, example,
+                at, name, text, got, wanted, &examples,
             ));
             return None;
         }
@@ -258,9 +269,9 @@ impl<'a> Reader<'a> {
             && !matches!(dimension, Dimension::Time | Dimension::Periods)
         {
             let wanted = "a time or a number of periods";
-            let (got, example) = (dimension.name(), schema::example(name));
+            let (got, examples) = (dimension.name(), schema::examples(name, &[]));
             errors.push(catalogue::wrong_dimension(
-                at, name, text, got, wanted, example,
+                at, name, text, got, wanted, &examples,
             ));
             return None;
         }
@@ -293,17 +304,17 @@ impl<'a> Reader<'a> {
             return None;
         }
         if given.number.digits.contains(['.', 'e', 'E']) {
-            let (at, text, example) = (
+            let (at, text, examples) = (
                 &given.part.location,
                 &given.part.given,
-                schema::example(name),
+                schema::examples(name, &[]),
             );
             errors.push(catalogue::wrong_kind(
                 at,
                 name,
                 text,
                 "a whole number",
-                example,
+                &examples,
             ));
             return None;
         }
@@ -352,7 +363,7 @@ impl<'a> Reader<'a> {
         errors: &mut Collector,
         name: &'static str,
     ) -> Option<(&'a [i64], Part)> {
-        let (field, rule) = self.rule(name)?;
+        let (field, _) = self.rule(name)?;
         let part = Part {
             field: name,
             given: field.value.to_string(),
@@ -363,9 +374,14 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             _ => {
                 let wanted = "a list of whole numbers";
-                let error =
-                    catalogue::wrong_kind(&part.location, name, &part.given, wanted, rule.example);
-                errors.push(error);
+                let (at, examples) = (&part.location, schema::examples(name, &[]));
+                errors.push(catalogue::wrong_kind(
+                    at,
+                    name,
+                    &part.given,
+                    wanted,
+                    &examples,
+                ));
                 None
             }
         }
@@ -424,7 +440,7 @@ fn within(
         } else if bounded {
             catalogue::out_of_range(at, name, text, &low_text, &high_text)
         } else {
-            catalogue::not_above_zero(at, name, text, schema::example(name))
+            catalogue::not_above_zero(at, name, text, &schema::examples(name, given.basis))
         };
         errors.push(error);
         return false;

@@ -76,7 +76,7 @@ fn changes_of_a_complete_file() {
         (
             "pole_pairs = 4",
             "pole_pairs = 4.0e0\ninductance_tolerance = 0.1",
-            "motors/hub.toml:2:14: error[HX0208]: `pole_pairs`: 4.0, but a whole number is wanted; write it like `4`\nmotors/hub.toml:3:24: error[HX0204]: `inductance_tolerance`: 0.1 has no unit; write it like `10 %`",
+            "motors/hub.toml:2:14: error[HX0208]: `pole_pairs`: 4.0e0, but a whole number is wanted; write it like `4`\nmotors/hub.toml:3:24: error[HX0204]: `inductance_tolerance`: 0.1 has no unit; write it like `10 %`",
         ),
         (
             "pole_pairs = 4",

@@ -5,3 +5,4 @@ mod diagnostics_toml;
 mod front_ends;
 mod inverter;
 mod motors;
+mod spelling;

@@ -21,7 +21,7 @@ pub enum Failure {
     Specification(String),
     /// No such motor.
     #[error("error: {0}")]
-    Motor(#[from] SourceError),
+    Motor(SourceError),
     /// A plant option is out of range.
     #[error("error: {0}")]
     Plant(#[from] PlantError),
@@ -48,6 +48,15 @@ pub enum Failure {
     /// The report's page cannot be made.
     #[error("error: {0}")]
     Report(#[from] ReportError),
+}
+
+impl From<SourceError> for Failure {
+    fn from(error: SourceError) -> Self {
+        match error {
+            SourceError::Encoding(diagnostic) => Self::Specification(diagnostic),
+            unknown @ SourceError::Unknown { .. } => Self::Motor(unknown),
+        }
+    }
 }
 
 impl From<Diagnostics> for Failure {

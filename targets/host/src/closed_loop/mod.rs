@@ -16,7 +16,9 @@ mod trip;
 pub use allowance::{POINTS, RELATIVE, share_of_allowance};
 pub use harmonics::amplitudes;
 pub use limit::{HELD, LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
-pub use measure::{Aim, Measurement, RunOptions, STARTS, mean_torque, measure, record};
+pub use measure::{
+    Aim, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
+};
 pub use merits::{Merits, merits};
 pub use swing::Swing;
 pub use trace::{PeriodRow, Trace, quasi_square};

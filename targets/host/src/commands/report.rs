@@ -43,7 +43,8 @@ pub struct Options {
 /// Everything the report shows. A folder that the page is meant for is tried before the long work.
 ///
 /// # Errors
-/// No such motor, diagnostics of its own controller, or a folder that cannot be written into.
+/// No such motor, diagnostics of its own controller or of all variants, or a folder that cannot be
+/// written into.
 pub fn collect(
     options: &Options,
     folder: Option<&Path>,
@@ -53,7 +54,7 @@ pub fn collect(
     let own = motor.prepare_for_torque(None)?;
     let is_paper = motor.source.name == PAPER_MOTOR;
     let mut notes = Vec::new();
-    let planned = plan(&motor, is_paper, &mut notes);
+    let planned = plan(&motor, is_paper, &mut notes)?;
     if let Some(folder) = folder {
         report::prepare_folder(folder)?;
     }
@@ -62,11 +63,11 @@ pub fn collect(
     }
 
     notes.extend(planned.iter().filter_map(|row| {
-        let (torque, rated) = (row.reach()?, row.timer.rated_torque());
+        let (torque, rated) = (row.reach()?, row.best().rated_torque());
         Some(format!(
             "{}: its set-point is limited to max_current = {} A, which gives {} Nm with this reference, {:.0} % of the demand; it is measured at that torque, its limit, too.",
             row.row.label,
-            significant(row.timer.spec.inverter.max_current, 3),
+            significant(row.best().spec.inverter.max_current, 3),
             significant(torque, 3),
             100.0 * torque / rated,
         ))
@@ -74,7 +75,7 @@ pub fn collect(
 
     let drives: Vec<Prepared> = planned
         .iter()
-        .flat_map(|row| [row.timer.clone(), row.sampled.clone()])
+        .flat_map(|row| row.drives.iter().map(|(_, drive)| drive.clone()))
         .chain([own.clone()])
         .collect();
     let progress = bar(VERIFY_STEPS * drives.len() as u64, "comparing bit for bit");
@@ -120,9 +121,19 @@ pub fn collect(
     Ok((data, checked))
 }
 
-/// The rows of the table, each prepared with both captures; what does not generate is a note.
-fn plan(motor: &SelectedMotor, is_paper: bool, notes: &mut Vec<String>) -> Vec<Planned> {
-    let mut planned = Vec::new();
+/// The rows of the table, each prepared with the captures that the motor's file allows; what does
+/// not generate is a note.
+///
+/// # Errors
+/// When nothing generates: all reasons.
+fn plan(
+    motor: &SelectedMotor,
+    is_paper: bool,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Planned>, Failure> {
+    let (mut planned, mut refused) = (Vec::new(), Vec::new());
+    // Reasons why a capture is left out, and the rows that they are about.
+    let mut left_out: Vec<(&str, String, Vec<&str>)> = Vec::new();
     for row in design_table() {
         // The paper's Euler steps suit its motor; the exact discretisation suits all.
         let timer = if is_paper {
@@ -131,19 +142,62 @@ fn plan(motor: &SelectedMotor, is_paper: bool, notes: &mut Vec<String>) -> Vec<P
             row.variant.replace("discretisation=euler,", "")
         };
         let sampled = timer.replace("hall_capture=timer", "hall_capture=sampled");
-        match (motor.prepare(Some(&timer)), motor.prepare(Some(&sampled))) {
-            (Ok(timer), Ok(sampled)) => planned.push(Planned {
-                row,
-                timer,
-                sampled,
-                is_expected: is_paper,
-            }),
-            (Err(failure), _) | (_, Err(failure)) => {
-                notes.push(format!("{}: {failure}", row.label));
+        let made = [
+            (Capture::Timer, "timer", timer),
+            (Capture::Sampled, "sampled", sampled),
+        ]
+        .map(|(capture, word, variant)| (capture, word, motor.prepare(Some(&variant))));
+        let generates = made.iter().any(|(_, _, drive)| drive.is_ok());
+        let mut drives = Vec::new();
+        for (capture, word, drive) in made {
+            match drive {
+                Ok(drive) => drives.push((capture, drive)),
+                Err(failure) if generates => {
+                    let reason = without_place(&failure.to_string());
+                    match left_out
+                        .iter_mut()
+                        .find(|(w, r, _)| (*w, &*r) == (word, &reason))
+                    {
+                        Some((_, _, rows)) => rows.push(row.label),
+                        None => left_out.push((word, reason, vec![row.label])),
+                    }
+                }
+                // One reason suffices, of the capture that asks for less.
+                Err(failure) if capture == Capture::Sampled => {
+                    refused.push(format!("{}: {failure}", row.label));
+                }
+                Err(_) => {}
             }
         }
+        if !drives.is_empty() {
+            planned.push(Planned {
+                row,
+                drives,
+                is_expected: is_paper,
+            });
+        }
     }
-    planned
+    if planned.is_empty() {
+        return Err(Failure::Specification(refused.join("\n")));
+    }
+    notes.extend(refused);
+    notes.extend(left_out.into_iter().map(|(word, reason, rows)| {
+        let rows = if rows.len() == planned.len() {
+            "any row".to_owned()
+        } else {
+            rows.join("; ")
+        };
+        format!("No run with `hall_capture={word}` of {rows}: {reason}")
+    }));
+    Ok(planned)
+}
+
+/// A diagnostic without the variant that it is about and its column.
+fn without_place(diagnostic: &str) -> String {
+    match diagnostic.find("error[") {
+        Some(start) => diagnostic[start..].to_owned(),
+        None => diagnostic.to_owned(),
+    }
 }
 
 /// Errors of single steps of every kind of controller at every word length; a word length that is refused is a note.
@@ -157,16 +211,16 @@ fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSe
         }
         for (word, drive) in made {
             match drive {
-                Ok(drive) => drives.push((kind, word, drive)),
+                Ok(drive) => drives.push((word, drive)),
                 Err(failure) => notes.push(format!("{kind}, {word} bits: {failure}")),
             }
         }
     }
-    let seen = drives.par_iter().map(|(kind, word, drive)| {
+    let seen = drives.par_iter().map(|(word, drive)| {
         let measured = at_speeds(drive, &PlantArguments::default())?;
         let (one_step, counts) = one_step(drive, measured.iter().map(|(_, both)| both));
         Ok(ErrorsSeen {
-            controller: (*kind).to_owned(),
+            controller: without_word(&drive.variant, *word),
             word: *word,
             snr_db: one_step.snr_db,
             largest_v: one_step.largest_v,
@@ -176,6 +230,13 @@ fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSe
         })
     });
     seen.collect()
+}
+
+/// A variant without its word length, which is its last option.
+fn without_word(variant: &str, word: u32) -> String {
+    let option = format!("word={word}");
+    let kept = variant.strip_suffix(&option).unwrap_or(variant);
+    kept.trim_end_matches([',', ':']).to_owned()
 }
 
 fn verification(checked: &[Checked]) -> Verification {
@@ -338,5 +399,45 @@ fn figure(judged: &Judged, decimals: usize) -> String {
             format!("{measured} * ({expected})")
         }
         _ => measured,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Capture, PAPER_MOTOR, PlantArguments, SelectedMotor, plan};
+    use crate::report::design_table;
+
+    fn paper_motor() -> SelectedMotor {
+        SelectedMotor::find(PAPER_MOTOR, &PlantArguments::default()).expect("is in the library")
+    }
+
+    #[test]
+    fn a_motor_without_edge_timer_has_all_rows_with_sampled_edges_and_the_reason() {
+        let mut motor = paper_motor();
+        let fields = &mut motor.ast.inverter.fields;
+        fields.retain(|field| field.name != "hall_timer_clock");
+        let mut notes = Vec::new();
+        let planned = plan(&motor, false, &mut notes).expect("rows");
+        assert_eq!(planned.len(), design_table().len());
+        for row in &planned {
+            let captures: Vec<Capture> = row.drives.iter().map(|(capture, _)| *capture).collect();
+            assert_eq!(captures, [Capture::Sampled], "{}", row.row.label);
+        }
+        let run = planned[0].run(false).expect("runs").runs;
+        assert_eq!(run.len(), 2);
+        assert_eq!(
+            notes,
+            [
+                "No run with `hall_capture=timer` of any row: error[HX0111]: `hall_capture: timer` needs the field `hall_timer_clock`; add it, for example `hall_timer_clock: 1 MHz`"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_motor_that_nothing_generates_for_is_an_error_and_no_empty_page() {
+        let mut motor = paper_motor();
+        motor.ast.motor.fields.clear();
+        let failure = plan(&motor, false, &mut Vec::new()).expect_err("no rows");
+        assert!(failure.to_string().contains("`pole_pairs`"), "{failure}");
     }
 }

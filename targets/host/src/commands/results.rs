@@ -20,15 +20,14 @@ use std::f64::consts::TAU;
 /// Speeds of the result table, in parts of rated speed.
 pub const SPEEDS: [f64; 2] = [0.2, 0.75];
 
-/// One row of the table before it runs: the same variant with both ways of reading Hall edges.
+/// One row of the table before it runs: the same variant with each way of reading Hall edges.
 #[derive(Debug)]
 pub struct Planned {
     /// The row of the design document.
     pub row: DesignRow,
-    /// Drive with captured edges.
-    pub timer: Prepared,
-    /// Drive with sampled edges.
-    pub sampled: Prepared,
+    /// A drive for each way of reading Hall edges that the motor's file allows, the best first;
+    /// one at least.
+    pub drives: Vec<(Capture, Prepared)>,
     /// Whether the design document's figures are about this motor.
     pub is_expected: bool,
 }
@@ -81,22 +80,27 @@ impl Planned {
     /// # Errors
     /// A plant parameter out of range.
     pub fn run(&self, shows_texts: bool) -> Result<Variant, Failure> {
-        let captures = [Capture::Timer, Capture::Sampled];
-        let measured = captures
+        let measured = self
+            .drives
             .par_iter()
-            .map(|capture| AtSpeeds::measure(self.drive(*capture)))
+            .map(|(_, drive)| AtSpeeds::measure(drive))
             .collect::<Result<Vec<_>, _>>()?;
-        let runs = self
-            .lines()
-            .par_iter()
-            .map(|line| {
-                let of_capture = captures.iter().position(|capture| *capture == line.capture);
-                line.run(&measured[of_capture.unwrap_or(0)].merits(line.model))
+        let lines: Vec<(Line, &AtSpeeds)> = self
+            .drives
+            .iter()
+            .zip(&measured)
+            .flat_map(|((capture, drive), at)| {
+                [Model::Fixed, Model::Ideal].map(|model| (self.line(model, *capture, drive), at))
             })
+            .collect();
+        let runs = lines
+            .par_iter()
+            .map(|(line, at)| line.run(&at.merits(line.model)))
             .collect::<Result<Vec<_>, _>>()?;
-        let drive = &self.timer;
+        let drive = self.best();
         let rpm = SPEEDS.map(|part| part * drive.rated_rpm());
-        let same_words = captures.iter().zip(&measured).flat_map(|(capture, at)| {
+        let same_words = self.drives.iter().zip(&measured);
+        let same_words = same_words.flat_map(|((capture, _), at)| {
             rpm.iter().zip(&at.both).map(|(rpm, both)| SameWords {
                 capture: *capture,
                 rpm: *rpm,
@@ -110,16 +114,16 @@ impl Planned {
             .and_then(|run| run.limit.as_ref())
             .map(|limit| limit.curve.clone())
             .unwrap_or_default();
-        let by_timer = measured.into_iter().next().map(|at| at.both);
-        let by_timer = by_timer.unwrap_or_default();
-        let signal_errors = signal_errors(drive, &by_timer);
-        let records = rpm.into_iter().zip(by_timer).filter_map(|(rpm, both)| {
+        let of_best = measured.into_iter().next().map(|at| at.both);
+        let of_best = of_best.unwrap_or_default();
+        let signal_errors = signal_errors(drive, &of_best);
+        let records = rpm.into_iter().zip(of_best).filter_map(|(rpm, both)| {
             let trace = both.fixed.traces.into_iter().next()?;
             Some(Record { rpm, trace })
         });
         Ok(Variant {
             label: self.row.label.to_owned(),
-            variant: self.timer.variant.clone(),
+            variant: drive.variant.clone(),
             chooses_vectors: !drive.spec.controller.modulates(),
             runs,
             records: records.filter(|_| self.row.is_plotted).collect(),
@@ -134,34 +138,26 @@ impl Planned {
 
     /// The torque that the row is measured at, where its set-point cannot ask for the rated one.
     pub fn reach(&self) -> Option<f64> {
-        let demand = self.timer.demand();
-        (demand < self.timer.rated_torque() * (1.0 - 1e-9)).then_some(demand)
+        let (demand, rated) = (self.best().demand(), self.best().rated_torque());
+        (demand < rated * (1.0 - 1e-9)).then_some(demand)
     }
 
-    fn drive(&self, capture: Capture) -> &Prepared {
-        match capture {
-            Capture::Timer => &self.timer,
-            Capture::Sampled => &self.sampled,
-        }
+    /// The drive with the best way of reading Hall edges.
+    pub fn best(&self) -> &Prepared {
+        &self.drives[0].1
     }
 
-    fn lines(&self) -> Vec<Line<'_>> {
-        let timer = self.is_expected.then(|| self.row.timer.clone());
-        let sampled = self.row.sampled.clone().filter(|_| self.is_expected);
-        [
-            (Model::Fixed, Capture::Timer, timer),
-            (Model::Ideal, Capture::Timer, None),
-            (Model::Fixed, Capture::Sampled, sampled),
-            (Model::Ideal, Capture::Sampled, None),
-        ]
-        .into_iter()
-        .map(|(model, capture, expected)| Line {
-            drive: self.drive(capture),
+    fn line<'p>(&self, model: Model, capture: Capture, drive: &'p Prepared) -> Line<'p> {
+        let expected = match capture {
+            Capture::Timer => Some(self.row.timer.clone()),
+            Capture::Sampled => self.row.sampled.clone(),
+        };
+        Line {
+            drive,
             model,
             capture,
-            expected,
-        })
-        .collect()
+            expected: expected.filter(|_| self.is_expected && model == Model::Fixed),
+        }
     }
 }
 

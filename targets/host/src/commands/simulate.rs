@@ -4,7 +4,7 @@ use crate::cli::{
     Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
     warn, write_file,
 };
-use crate::closed_loop::{Aim, Measurement, Merits, RunOptions, Trip, measure};
+use crate::closed_loop::{Aim, MOST_RECORDED, Measurement, Merits, RunOptions, Trip, measure};
 use crate::engine::{EngineKind, Model, Prepared};
 use crate::plant::PlantParams;
 use clap::Args;
@@ -149,7 +149,7 @@ fn mean_rpm(measured: &Measurement) -> f64 {
     rows().map(|row| row.omega_m).sum::<f64>() / rows().count() as f64 * 60.0 / TAU
 }
 
-/// Most control periods of a run: their record takes a few hundred megabytes.
+/// Most control periods of a run, settling included: minutes.
 const MOST_PERIODS: usize = 2_000_000;
 
 /// Fewest control periods of an electrical turn: one per sector.
@@ -172,7 +172,7 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
     }
     let (settling, measured) = run.periods(plant);
     let periods = settling.saturating_add(measured);
-    if periods <= MOST_PERIODS {
+    if periods <= MOST_PERIODS && measured <= MOST_RECORDED {
         return Ok(());
     }
     if let Some(aim) = run
@@ -184,10 +184,11 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
             aim.within
         )));
     }
-    let least = rpm.abs() * periods as f64 / MOST_PERIODS as f64;
+    let least = rpm.abs() * measured as f64 / MOST_RECORDED as f64;
     Err(Failure::Argument(format!(
-        "{name} {rpm}: its electrical turns take {:.0} s; give 0 or at least {} rpm",
-        periods as f64 * plant.t_s,
+        "{name} {rpm}: an electrical turn takes {:.0} s, and a record holds {:.1} s; give 0 or at least {} rpm",
+        measured as f64 * plant.t_s,
+        MOST_RECORDED as f64 * plant.t_s,
         significant(least * 1.01, 3)
     )))
 }

@@ -14,6 +14,9 @@ use std::time::Instant;
 /// Steps of one run from rest; a longer check is many runs with seeds of their own.
 const RUN: u64 = 1 << 19;
 
+/// Most steps of a check: hours on one core.
+const MOST_STEPS: u64 = 100_000_000_000;
+
 /// Options of `verify`.
 #[derive(Args, Clone, Debug)]
 pub struct Options {
@@ -23,8 +26,8 @@ pub struct Options {
     /// Controller variant, or `all` [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
-    /// Steps per motor and controller
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
+    /// Steps per motor and controller, at most 1e11
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_hyphen_values = true, value_parser = parse_steps)]
     pub steps: u64,
     /// Seed of the inputs
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -35,6 +38,15 @@ pub struct Options {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+fn parse_steps(text: &str) -> Result<u64, String> {
+    let steps = text.parse().ok();
+    steps
+        .filter(|steps| (1..=MOST_STEPS).contains(steps))
+        .ok_or_else(|| {
+            format!("give a whole number from 1 to {MOST_STEPS}; more steps are further runs, each with a --seed of its own")
+        })
 }
 
 /// A language that drives are emitted in.

@@ -1,6 +1,7 @@
 //! Motors as the user names them: a TOML file or a motor of the library.
 
 use super::built_in::{Library, library};
+use hexagen_codegen::spec::motor_text;
 use std::path::{Path, PathBuf};
 
 /// The TOML text of a motor, and what to call it.
@@ -27,20 +28,24 @@ pub enum SourceError {
         /// The most similar name of the library.
         nearest: Option<String>,
     },
+    /// A file that is not UTF-8: the diagnostic, rendered.
+    #[error("{0}")]
+    Encoding(String),
 }
 
 impl MotorSource {
     /// The motor of a path or of a name of the library. A file of the name wins.
     ///
     /// # Errors
-    /// When there is none of either.
+    /// When there is none of either, or the file is no text.
     pub fn find(given: &str) -> Result<Self, SourceError> {
         let path = PathBuf::from(given);
-        match std::fs::read_to_string(&path) {
-            Ok(text) => Ok(Self {
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok(Self {
                 name: stem(&path),
                 file: given.to_owned(),
-                text,
+                text: motor_text(bytes, given)
+                    .map_err(|error| SourceError::Encoding(error.to_string()))?,
             }),
             Err(error) => Self::of_library(given.trim_end_matches(".toml")).ok_or_else(|| {
                 let names = library().iter().map(|motor| motor.name);

@@ -8,7 +8,9 @@ use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::interface::{self, Interface};
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
-use hexagen_codegen::spec::{BusSource, Spec, SpecAst, apply_variant, check, parse_toml};
+use hexagen_codegen::spec::{
+    BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
+};
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +20,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Prepared {
     /// Short name of the motor.
     pub motor: String,
-    /// The variant as given; the kind alone for the controller of the motor's file.
+    /// The controller with the options that were written, in the variant or in the motor's file.
     pub variant: String,
     /// The checked specification.
     pub spec: Spec,
@@ -81,7 +83,7 @@ pub fn prepare_ast(
     })?;
     Ok(Prepared {
         motor: motor.to_owned(),
-        variant: variant.unwrap_or("pdcc").to_owned(),
+        variant: variant_of(&ast),
         built_in: built_in(&generated.interface.spec_toml),
         spec,
         generated,

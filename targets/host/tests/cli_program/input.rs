@@ -76,6 +76,19 @@ fn errors_in_a_file_are_told_with_file_line_and_column() {
     check("", &["error[HX"]);
 }
 
+#[test]
+fn a_file_that_is_no_text_is_told_with_its_byte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml");
+    // "é" of an editor that saves in Latin-1.
+    fs::write(&path, b"[motor]\n# caf\xe9\n").expect("can be written");
+    let path = path.to_str().expect("a plain path");
+    for command in ["generate", "verify", "limit"] {
+        let place = format!("{path}:2:6: error[HX0108]");
+        run([command, path]).assert_bad_input(&[&place, "not UTF-8: byte 13 is 0xE9"]);
+    }
+}
+
 /// The paper's motor as text, as a user would copy it.
 fn cli_text() -> String {
     let path = concat!(
@@ -241,6 +254,14 @@ fn options_out_of_range_or_at_odds_are_told() {
         (&["limit", PAPER, "--torque", "0"], "--torque 0"),
         (&["limit", PAPER, "--inertia", "1"], "--inertia"),
         (&["verify", PAPER, "--steps", "0"], "--steps"),
+        (
+            &["verify", PAPER, "--steps", "18446744073709551615"],
+            "give a whole number from 1 to 100000000000",
+        ),
+        (
+            &["verify", PAPER, "--steps", "100000000001"],
+            "give a whole number from 1 to 100000000000",
+        ),
         (&["report", "unheard-of"], "unheard-of"),
     ] {
         run(arguments).assert_bad_input(&[text]);

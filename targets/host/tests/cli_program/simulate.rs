@@ -1,7 +1,10 @@
 //! `hexagen simulate` and `limit`: keys, columns, models, signs and plant options.
 
 use crate::support::{PAPER, keys, number, run};
+use hexagen_host::closed_loop::{MOST_RECORDED, RunOptions};
+use hexagen_host::engine::{MotorSource, plant_of, prepare};
 use serde_json::Value;
+use std::f64::consts::TAU;
 
 const MERITS: [&str; 14] = [
     "mean_torque_nm",
@@ -308,4 +311,65 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
     let said = run(["simulate", PAPER, "--rpm", "1500", "--scale-l", "0.1"]);
     assert_eq!(said.code, 1);
     assert!(said.stdout.contains("| mean torque"), "{}", said.stdout);
+}
+
+/// A motor file's controller is the one that is named, with the options that the file gives it; so
+/// are those that a variant of the same kind leaves as they are.
+#[test]
+fn the_controller_of_a_motor_file_is_named_by_what_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml");
+    let library = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../motors/trivedi-keshri-660w.toml"
+    );
+    let text = std::fs::read_to_string(library).expect("the library is there");
+    let named = |kind: &str, variant: Option<&str>| {
+        let own = text.replace("kind = \"pdcc\"", kind);
+        assert_ne!(own, text, "the library's file has the default");
+        std::fs::write(&path, own).expect("can be written");
+        let path = path.to_str().expect("a plain path");
+        let arguments = [
+            "simulate",
+            path,
+            "--rpm",
+            "1500",
+            "--start-angle",
+            "0.1",
+            "--json",
+        ];
+        let variant = variant.map_or(vec![], |variant| vec!["--controller", variant]);
+        let result = run(arguments.into_iter().chain(variant)).json();
+        result["controller"].as_str().expect("a name").to_owned()
+    };
+    let nearest = "kind = \"pdcc\"\nsaturation = \"nearest\"";
+    assert_eq!(named(nearest, None), "pdcc:saturation=nearest");
+    assert_eq!(
+        named(nearest, Some("pdcc:emf=model")),
+        "pdcc:saturation=nearest,emf=model"
+    );
+    assert_eq!(named(nearest, Some("phcc")), "phcc");
+    let slow = "kind = \"pi-pwm\"\nbandwidth = \"600 Hz\"";
+    assert_eq!(named(slow, None), "pi-pwm:bandwidth=600Hz");
+}
+
+#[test]
+fn records_of_slow_runs_are_bounded_and_hold_whole_turns() {
+    let motor = MotorSource::of_library(PAPER).expect("is in the library");
+    let plant = plant_of(&prepare(&motor, None).expect("generates").spec);
+    for (rpm, turns) in [
+        (1500.0, 6.0),
+        (7.2, 6.0),
+        (7.1, 5.0),
+        (2.5, 2.0),
+        (1.25, 1.0),
+    ] {
+        let (settling, measured) = RunOptions::new(rpm * TAU / 60.0, 20.0).periods(&plant);
+        let turn = 60.0 / (rpm * 4.0 * plant.t_s);
+        assert_eq!(measured, (turns * turn).round() as usize, "{rpm}");
+        assert!(measured <= MOST_RECORDED, "{rpm}: {measured}");
+        assert!(settling as f64 >= 2.0 * turn, "{rpm}: {settling}");
+    }
+    let (_, at_rest) = RunOptions::new(0.0, 20.0).periods(&plant);
+    assert_eq!(at_rest, 1000);
 }

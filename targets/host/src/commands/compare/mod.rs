@@ -156,9 +156,12 @@ pub fn collect(
             let Some(controller) = with_word(variant, word) else {
                 continue;
             };
-            let (refused, accuracy) = match motor.prepare(Some(&controller)) {
-                Ok(drive) => (None, Some(accuracy(&drive, plant)?)),
-                Err(failure) => (Some(failure.to_string()), None),
+            let (controller, refused, accuracy) = match motor.prepare(Some(&controller)) {
+                Ok(drive) => {
+                    let accuracy = accuracy(&drive, plant)?;
+                    (drive.variant, None, Some(accuracy))
+                }
+                Err(failure) => (controller, Some(failure.to_string()), None),
             };
             rows.push(Row {
                 controller,

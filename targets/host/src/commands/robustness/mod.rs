@@ -143,16 +143,19 @@ impl Sheet {
 
     /// One controller under all disturbances.
     fn column(&self, drives: &Drives) -> Column {
-        let controller = drives.variant.to_owned();
         let places: Vec<(&Disturbance, f64)> = self.places().collect();
-        if let Some((_, Err(reason))) = drives.by_bits.first() {
-            self.progress.inc(places.len() as u64);
-            return Column {
-                controller,
-                refused: Some(reason.clone()),
-                cells: Vec::new(),
-            };
-        }
+        let controller = match drives.by_bits.first() {
+            Some((_, Ok(drive))) => drive.variant.clone(),
+            Some((_, Err(reason))) => {
+                self.progress.inc(places.len() as u64);
+                return Column {
+                    controller: drives.variant.to_owned(),
+                    refused: Some(reason.clone()),
+                    cells: Vec::new(),
+                };
+            }
+            None => drives.variant.to_owned(),
+        };
         let measured: Vec<Result<Measured, String>> = places
             .par_iter()
             .map(|(Disturbance { plant, .. }, rpm)| {

@@ -46,7 +46,7 @@ pub fn section(data: &ReportData) -> Markup {
                                         @if !variant.variant.is_empty() {
                                             br;
                                             // How Hall edges are read stands in a column of its own.
-                                            (variant_text(&variant.variant.replace(",hall_capture=timer", "")))
+                                            (variant_text(&without_capture(&variant.variant)))
                                         }
                                     }
                                 }
@@ -61,6 +61,12 @@ pub fn section(data: &ReportData) -> Markup {
         }
         @for note in &data.notes { p { (prose(note)) } }
     }
+}
+
+fn without_capture(variant: &str) -> String {
+    variant
+        .replace(",hall_capture=timer", "")
+        .replace(",hall_capture=sampled", "")
 }
 
 fn head(data: &ReportData) -> Markup {

@@ -1,0 +1,356 @@
+//! What may stand in a value, and the remedies for what may not: none turns a number into another
+//! quantity, and none puts a basis into the mouth of a user who did not name it.
+
+use crate::diagnostics::Location;
+use crate::spec::{check, load_motor_file, parse_macro, parse_toml};
+
+const COMPLETE: &str = r#"[motor]
+pole_pairs = 4
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.1648 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A"
+rated_speed = "2000 rpm"
+[inverter]
+bus_voltage = "48 V"
+f_pwm = "20 kHz"
+timer_clock = "72 MHz"
+adc_bits = 12
+adc_range = "40 A"
+[controller]
+kind = "pdcc"
+"#;
+
+fn errors(text: &str) -> String {
+    match parse_toml(text, "hub.toml").and_then(|ast| check(&ast)) {
+        Ok(_) => "no error".to_owned(),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+/// Errors after a change of the complete file.
+#[track_caller]
+fn changed(old: &str, new: &str) -> String {
+    assert!(COMPLETE.contains(old), "{old}");
+    errors(&COMPLETE.replacen(old, new, 1))
+}
+
+/// Errors of the fields of a motor in the macro.
+fn in_macro(fields: &str) -> String {
+    let call = format!("pub Hub {{ motor: {{ {fields} }}, inverter: {{}}, controller: pdcc }}");
+    let input = parse_macro(call.parse().expect("lexes")).expect("has the shape of a call");
+    check(&input.ast).expect_err("lacks fields").to_string()
+}
+
+#[test]
+fn stray_signs_are_no_part_of_a_quantity() {
+    for (value, message) in [
+        (
+            "20 ^^**\u{b7} A",
+            "cannot read `^^**\u{b7}` in `20 ^^**\u{b7} A`; write it like `20 A`",
+        ),
+        (
+            "20 A ^",
+            "cannot read `^` in `20 A ^`; write it like `20 A`",
+        ),
+        (
+            "20 A *",
+            "cannot read `*` in `20 A *`; write it like `20 A`",
+        ),
+        (
+            "20 * A!",
+            "cannot read `*` in `20 * A!`; write it like `20 A`",
+        ),
+        ("20 $A", "cannot read `$` in `20 $A`; write it like `20 A`"),
+        ("2__0 A", "cannot read `2__0 A`; write it like `20 A`"),
+        ("20_ A", "cannot read `20_ A`; write it like `20 A`"),
+    ] {
+        let told = changed("\"20 A\"", &format!("\"{value}\""));
+        assert_eq!(
+            told,
+            format!("hub.toml:8:17: error[HX0201]: `rated_current`: {message}"),
+            "{value}"
+        );
+    }
+    assert_eq!(
+        changed("135 mohm per_phase", "135 mohm * per_phase"),
+        "hub.toml:3:14: error[HX0201]: `resistance`: cannot read `*` in `135 mohm * per_phase`; write it like `135 mohm per_phase`"
+    );
+    // A product and a power that are written out are units.
+    assert_eq!(
+        changed("rated_speed", "inertia = \"2.4e-6 kg*m^2\"\nrated_speed"),
+        "no error"
+    );
+}
+
+#[test]
+fn numbers_are_decimal() {
+    for (old, new, message) in [
+        (
+            "adc_bits = 12",
+            "adc_bits = 0xc",
+            "hub.toml:14:12: error[HX0201]: `adc_bits`: cannot read `0xc`; write it like `12`",
+        ),
+        (
+            "adc_bits = 12",
+            "adc_bits = 0b1100",
+            "hub.toml:14:12: error[HX0201]: `adc_bits`: cannot read `0b1100`; write it like `12`",
+        ),
+        (
+            "adc_bits = 12",
+            "adc_bits = 0o14",
+            "hub.toml:14:12: error[HX0201]: `adc_bits`: cannot read `0o14`; write it like `12`",
+        ),
+        (
+            "adc_bits = 12",
+            "adc_bits = \"0xc\"",
+            "hub.toml:14:12: error[HX0201]: `adc_bits`: cannot read `0xc`; write it like `12`",
+        ),
+        ("adc_bits = 12", "adc_bits = 1_2", "no error"),
+        ("adc_bits = 12", "adc_bits = +12", "no error"),
+        (
+            "pole_pairs = 4\n",
+            "pole_pairs = 4\nhall_codes = [0x1, 5, 4, 6, 2, 3]\n",
+            "hub.toml:3:14: error[HX0201]: `hall_codes`: cannot read `[0x1, 5, 4, 6, 2, 3]`; write it like `[1, 5, 4, 6, 2, 3]`",
+        ),
+        (
+            "pole_pairs = 4\n",
+            "pole_pairs = 4\nhall_codes = [1, 5, 4, 6, 2, 3]\n",
+            "no error",
+        ),
+    ] {
+        assert_eq!(changed(old, new), message, "{new}");
+    }
+    let told = in_macro("hall_codes: [0b001, 0b101, 4, 6, 2, 3], pole_pairs: 0xc");
+    for text in [
+        "cannot read `[0b001 , 0b101 , 4 , 6 , 2 , 3]`",
+        "cannot read `0xc`",
+    ] {
+        assert!(told.contains(text), "{told}");
+    }
+}
+
+#[test]
+fn hall_codes_beyond_the_range_are_named() {
+    for (codes, code) in [
+        ("[9, 5, 4, 6, 2, 3]", "9"),
+        ("[1, 5, 4, 6, 2, 11]", "11"),
+        ("[1, 5, 4, 6, 2, 3, 7]", "7"),
+        ("[257, 5, 4, 6, 2, 3]", "257"),
+        ("[0, 5, 4, 6, 2, 3]", "0"),
+    ] {
+        let message = format!(
+            "`hall_codes`: {codes}: {code} lies outside 1 to 6; give the codes of sectors 1 to 6, each of 1 to 6 once and one bit apart, for example `[1, 5, 4, 6, 2, 3]`"
+        );
+        let told = changed(
+            "pole_pairs = 4\n",
+            &format!("pole_pairs = 4\nhall_codes = {codes}\n"),
+        );
+        assert_eq!(told, format!("hub.toml:3:14: error[HX0211]: {message}"));
+        let told = in_macro(&format!("hall_codes: {codes}"));
+        assert!(told.contains(&message), "{told}");
+    }
+}
+
+/// Characters of each place where a text stands.
+#[test]
+fn characters_that_compilers_refuse_in_comments_are_refused_here() {
+    let directions = ('\u{202a}'..='\u{202e}').chain('\u{2066}'..='\u{2069}');
+    let controls = ['\0', '\u{8}', '\u{1b}', '\u{7f}', '\u{9b}'];
+    for c in directions.chain(controls) {
+        let code = format!("U+{:04X}", u32::from(c));
+        let escaped = format!("\\u{:04X}", u32::from(c));
+        let told = changed(
+            "[motor]\n",
+            &format!("[motor]\ndescription = \"Hub {escaped}\"\n"),
+        );
+        let message = format!(
+            "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is {code} ("
+        );
+        assert!(told.starts_with(&message), "{told}");
+        let told = changed(
+            "[controller]",
+            &format!("[source]\ntext = \"{escaped}\"\n[controller]"),
+        );
+        assert!(
+            told.contains("`text`: character 1") && told.contains(&code),
+            "{told}"
+        );
+        let reason = format!(
+            "[assumed.motor]\ninertia = {{ value = \"1e-5 kg m2\", reason = \"x{escaped}\" }}\n[controller]"
+        );
+        let told = changed("[controller]", &reason);
+        assert!(
+            told.contains("`inertia`: character 2") && told.contains(&code),
+            "{told}"
+        );
+        let told = in_macro(&format!("description: \"Hub \\u{{{:x}}}\"", u32::from(c)));
+        assert!(
+            told.contains("`description`: character 5") && told.contains(&code),
+            "{told}"
+        );
+    }
+    // Lines and other scripts are text.
+    assert_eq!(
+        changed(
+            "[motor]\n",
+            "[motor]\ndescription = \"\"\"Nabe\n\t\u{5d0}\u{3a9} */ ??/ \\\\\"\"\"\n"
+        ),
+        "no error"
+    );
+    assert_eq!(
+        changed("[motor]\n", "[motor]\ndescription = \"Hub \\u202E\"\n"),
+        "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is U+202E (right-to-left override), which compilers refuse in comments; remove it"
+    );
+}
+
+#[test]
+fn bytes_that_are_no_text_are_told_with_their_place() {
+    let folder = std::env::temp_dir().join(format!("hexagen-bytes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    // "é" of an editor that saves in Latin-1.
+    std::fs::write(folder.join("hub.toml"), b"[motor]\n# caf\xe9\n").expect("a file");
+    let at = Location::in_file("macro", "", 0);
+    let told = load_motor_file(&folder, "hub.toml", &at);
+    std::fs::remove_dir_all(&folder).expect("the folder is ours");
+    assert_eq!(
+        told.expect_err("is Latin-1").to_string(),
+        "hub.toml:2:6: error[HX0108]: the motor file is not UTF-8: byte 13 is 0xE9; save it as UTF-8"
+    );
+}
+
+const BOTH: &str = "`135 mohm per_phase` or `135 mohm line_to_line`";
+const CHOICE: &str = "say `per_phase` (of one winding) or `line_to_line` (between two terminals)";
+
+#[test]
+fn no_remedy_offers_a_basis_that_was_not_named() {
+    let line = "did you mean `line_to_line`?".to_owned();
+    for (value, remedy) in [
+        ("135 mohm phase_to_phase", line.clone()),
+        ("135 mohm phase-to-phase", line.clone()),
+        ("135 mohm phase-phase", line.clone()),
+        ("135 mohm phase to phase", line.clone()),
+        ("135 mohm terminal", line.clone()),
+        ("135 mohm terminal-to-terminal", line.clone()),
+        ("135 mohm line-line", line.clone()),
+        ("135 mohm line-to-line", line.clone()),
+        ("135 mohm line to line", line.clone()),
+        ("135 mohm Line_To_Line", line.clone()),
+        ("135 mohm l-l", line.clone()),
+        ("135 mohm per-phase", "did you mean `per_phase`?".to_owned()),
+        ("135 mohm per phase", "did you mean `per_phase`?".to_owned()),
+        ("135 mohm typical", CHOICE.to_owned()),
+        ("135 mohm line_to_neutral", CHOICE.to_owned()),
+        (
+            "135 mohm",
+            "write `135 mohm per_phase` (of one winding) or `135 mohm line_to_line` (between two terminals)".to_owned(),
+        ),
+        ("0.135", format!("write it like {BOTH}")),
+        ("0.135 line_to_line", "write it like `135 mohm line_to_line`".to_owned()),
+        ("135 furlong terminal", format!("write it like {BOTH}")),
+        ("135 furlong line_to_line", "write it like `135 mohm line_to_line`".to_owned()),
+        ("135 mH line_to_line", "write it like `135 mohm line_to_line`".to_owned()),
+        ("135 mH", format!("write it like {BOTH}")),
+        ("135 mohm!", format!("write it like {BOTH}")),
+        ("0x87 mohm", format!("write it like {BOTH}")),
+        ("small", format!("write it like {BOTH}")),
+    ] {
+        let told = changed("135 mohm per_phase", value);
+        assert!(told.ends_with(&format!("; {remedy}")), "{value}: {told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
+    for (value, remedy) in [
+        ("17.3 V/krpm line-to-line peak", line.clone()),
+        ("17.3 V/krpm terminal peak", line),
+        ("17.3 V/krpm per phase peak", "did you mean `phase`?".to_owned()),
+        (
+            "17.3 V/krpm pk",
+            "say `phase` (of one phase) or `line_to_line` (between two terminals), with `peak` (the amplitude)".to_owned(),
+        ),
+        (
+            "12.2 V/krpm rms",
+            "give the peak; for a sinusoidal EMF it is sqrt(2) times as much, `17.25 V/krpm phase peak` or `17.25 V/krpm line_to_line peak`".to_owned(),
+        ),
+        (
+            "17.3 V/krpm phase",
+            "write `17.3 V/krpm phase peak` (the amplitude)".to_owned(),
+        ),
+        (
+            "550 rpm/V phase",
+            "a speed constant refers to the line-to-line peak; give V/krpm with `phase peak` instead".to_owned(),
+        ),
+        (
+            "0.02 Wb line_to_line",
+            "a flux linkage refers to the phase peak; give V/krpm with `line_to_line peak` instead".to_owned(),
+        ),
+    ] {
+        let told = changed("0.1648 V/(rad/s) line_to_line peak", value);
+        assert!(told.ends_with(&format!("; {remedy}")), "{value}: {told}");
+    }
+    let told = changed("resistance = \"135 mohm per_phase\"\n", "");
+    assert!(
+        told.ends_with("add it, for example `resistance: 135 mohm per_phase` or `resistance: 135 mohm line_to_line`"),
+        "{told}"
+    );
+    let assumed = "[assumed.motor]\nresistance = \"135 mohm line_to_line\"\n[inverter]";
+    let told = changed("[inverter]", assumed);
+    assert!(
+        told.contains("write it like `{ value = \"135 mohm line_to_line\", reason = "),
+        "{told}"
+    );
+}
+
+#[test]
+fn names_of_data_sheets_lead_to_the_field_and_its_number() {
+    for (fields, message) in [
+        (
+            "poles = 8",
+            "`motor` has no field `poles`; write `pole_pairs: 4`, half of the poles",
+        ),
+        (
+            "poles = 7",
+            "`motor` has no field `poles`; write `pole_pairs`, half of the poles",
+        ),
+        (
+            "Pole_Count = \"8\"",
+            "`motor` has no field `Pole_Count`; write `pole_pairs: 4`, half of the poles",
+        ),
+    ] {
+        let told = changed("pole_pairs = 4", fields);
+        assert_eq!(told, format!("hub.toml:2:1: error[HX0103]: {message}"));
+    }
+    let over = "speed over the line-to-line peak of the EMF";
+    for (name, value, remedy) in [
+        (
+            "speed_constant",
+            "550 rpm/V",
+            format!("write `back_emf: 550 rpm/V`: {over}"),
+        ),
+        (
+            "speed_constant",
+            "550 rpm/V line_to_line peak",
+            format!("write `back_emf: 550 rpm/V line_to_line peak`: {over}"),
+        ),
+        (
+            "kv",
+            "550",
+            format!("write `back_emf` with the unit `rpm/V`: {over}"),
+        ),
+        (
+            "emf_constant",
+            "0.1648 V/(rad/s) line_to_line peak",
+            "did you mean `back_emf`?".to_owned(),
+        ),
+    ] {
+        let told = changed(
+            "back_emf = \"0.1648 V/(rad/s) line_to_line peak\"",
+            &format!("{name} = \"{value}\""),
+        );
+        assert_eq!(
+            told,
+            format!("hub.toml:6:1: error[HX0103]: `motor` has no field `{name}`; {remedy}")
+        );
+    }
+}
