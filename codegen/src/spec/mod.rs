@@ -31,6 +31,6 @@ pub use controller::{
 pub(crate) use load::is_absolute;
 pub use load::load_motor_file;
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
-pub use model::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 pub use toml_syntax::parse_toml;
 pub use variant::apply_variant;
