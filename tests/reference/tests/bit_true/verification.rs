@@ -41,6 +41,9 @@ impl Subject for Mirror {
     fn fault(&self) -> Fault {
         self.model.fault()
     }
+    fn bus_is_stale(&self) -> bool {
+        self.model.bus_is_stale()
+    }
     fn state_words(&self, words: &mut [i32]) {
         self.model.state_words(words);
         if let Some(word) = self.flip {
