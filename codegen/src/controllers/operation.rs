@@ -135,15 +135,14 @@ pub fn unseen(spec: &Spec) -> Vec<String> {
         BusSource::Fixed => "No bus voltage is looked at",
         BusSource::Measured { .. } => "No bus voltage trips the drive",
     };
-    let lines = [
+    vec![
         String::new(),
         "# What the supervisor cannot see".to_owned(),
         String::new(),
-        "A current converter or amplifier that is stuck or wrong within its range: one frozen at mid-scale lets the true current rise to".to_owned(),
-        "several times the trip level. The current of phase c, which has no sensor: it is taken as -(a + b). A control interrupt that does".to_owned(),
+        "A current converter or amplifier that is stuck or wrong within its range: one frozen at mid-scale can let the true current rise".to_owned(),
+        "to several times the trip level. The current of phase c, which has no sensor: it is taken as -(a + b). A control interrupt that does".to_owned(),
         format!("not come: the last command stands. Heat, shoot-through, and what is shorter than a control period. {bus}, not even one"),
         "too high for the switches. So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog".to_owned(),
         "on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus voltage, too.".to_owned(),
-    ];
-    lines.to_vec()
+    ]
 }
