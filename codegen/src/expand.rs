@@ -145,7 +145,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
             .is_some_and(|field| matches!(&field.value, Value::Word(given) if given == word))
     };
     let timer_capture = is(&ast.controller, "hall_capture", "timer");
-    let measured_bus = is(&ast.inverter, "v_bus", "measured");
+    let bus_periods = is(&ast.inverter, "v_bus", "measured").then_some(1);
     let exemplary = exemplary_interface();
     let mut constants = exemplary.constants;
     constants.retain(|constant| timer_capture || constant.name != "HALL_TIMER_HZ");
@@ -155,7 +155,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
         doc: vec!["Not generated: the specification has errors.".to_owned()],
         header: vec!["Empty shape of a drive whose specification has errors.".to_owned()],
         timer_capture,
-        measured_bus,
+        bus_periods,
         ..exemplary
     };
     let has_speed = is(&ast.controller, "speed_loop", "on");
@@ -187,7 +187,7 @@ fn exemplary_interface() -> Interface {
             constants: vec![],
             delay: 1,
             timer_capture: false,
-            measured_bus: false,
+            bus_periods: None,
             calibration_samples: 1,
             precharge_periods: 0,
         },
@@ -204,7 +204,7 @@ fn empty_program(interface: &Interface, has_speed: bool) -> Program {
     if has_speed {
         setters.push(("set_speed", "bits", Interval::WORD));
     }
-    if interface.measured_bus {
+    if interface.bus_periods.is_some() {
         setters.push(("set_bus", "counts", count));
     }
     let mut program = Program::new(&interface.type_name);

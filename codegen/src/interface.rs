@@ -93,8 +93,9 @@ pub struct Interface {
     pub delay: u32,
     /// Whether `step` takes `hall_ticks`.
     pub timer_capture: bool,
-    /// Whether `set_bus` exists as an inherent method.
-    pub measured_bus: bool,
+    /// Periods without a call of `set_bus` after which the bus voltage is stale; none where it is fixed, and
+    /// no inherent method tells it.
+    pub bus_periods: Option<i32>,
     /// Samples of the offset calibration.
     pub calibration_samples: i32,
     /// Periods of bootstrap pre-charge.

@@ -16,7 +16,30 @@ pub struct InterpretedDrive<'g> {
     program: &'g Program,
     calibration_samples: i32,
     precharge_periods: i32,
+    bus: Option<BusWatch>,
     places: Places,
+}
+
+/// The watch over a bus voltage that is told.
+#[derive(Clone, Copy, Debug)]
+struct BusWatch {
+    /// Since the last period.
+    told: bool,
+    /// Periods until it is stale.
+    left: i32,
+    /// Periods for which it is fresh.
+    periods: i32,
+}
+
+impl BusWatch {
+    fn pass_period(&mut self) {
+        self.left = if self.told {
+            self.periods
+        } else {
+            (self.left - 1).max(0)
+        };
+        self.told = false;
+    }
 }
 
 /// Places of the words that calls touch.
@@ -57,6 +80,11 @@ impl<'g> InterpretedDrive<'g> {
             program,
             calibration_samples: interface.calibration_samples,
             precharge_periods: interface.precharge_periods,
+            bus: interface.bus_periods.map(|periods| BusWatch {
+                told: false,
+                left: 0,
+                periods,
+            }),
             places: Places {
                 mode: state("mode"),
                 fault: state("fault"),
@@ -76,6 +104,9 @@ impl<'g> InterpretedDrive<'g> {
     /// # Errors
     /// [`Escape`] when a value leaves its proven interval.
     pub fn step(&mut self, sample: [i32; 4]) -> Result<[[i32; 3]; 2], Escape> {
+        if let Some(bus) = &mut self.bus {
+            bus.pass_period();
+        }
         let mut inputs = [0; 4];
         let taken = &mut inputs[..self.places.inputs.len()];
         for (word, place) in taken.iter_mut().zip(&self.places.inputs) {
@@ -91,7 +122,11 @@ impl<'g> InterpretedDrive<'g> {
     /// # Errors
     /// [`Escape`] when a value leaves its proven interval.
     pub fn set(&mut self, setter: &str, word: i32) -> Result<(), Escape> {
-        self.machine.set(setter, &[word])
+        self.machine.set(setter, &[word])?;
+        if let Some(bus) = self.bus.as_mut().filter(|_| setter == "set_bus") {
+            bus.told = true;
+        }
+        Ok(())
     }
 
     /// As the emitted type's `reset`: everything but the calibrated offsets starts again, unless start-up
@@ -128,6 +163,11 @@ impl<'g> InterpretedDrive<'g> {
     /// The word that tells what tripped the drive.
     pub fn fault(&self) -> i32 {
         self.machine.state[self.places.fault]
+    }
+
+    /// Whether a bus voltage that is told is stale.
+    pub fn bus_is_stale(&self) -> bool {
+        self.bus.is_some_and(|bus| bus.left == 0)
     }
 
     /// State words, in the program's order.

@@ -15,7 +15,10 @@ use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
 /// gets the old words whole. Order is kept by the compiler alone, which costs no barrier.
 ///
 /// - Reads: from anywhere.
-/// - Stores: from anywhere; one that interrupts another store of the same buffer has no effect.
+/// - Stores: from anywhere; one that interrupts another store of the same buffer has no effect, and
+///   says so. One that was interrupted for good, as that of a task that was ended, keeps later ones
+///   from having an effect for [`GIVEN_UP`](Self::GIVEN_UP) control periods; if it does go on behind
+///   them, a read meanwhile may get words of two stores.
 /// - A store may interrupt a read, which gets the old or the new words whole. The next store fills
 ///   the bank that the read began with: contexts that can interrupt the reader may store once per
 ///   read.
@@ -23,6 +26,9 @@ use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
 pub struct DoubleBuffer<const N: usize>(Banks<AtomicI32, N>);
 
 impl<const N: usize> DoubleBuffer<N> {
+    /// Control periods after which a store that has not ended counts as given up.
+    pub const GIVEN_UP: i32 = 1 << 16;
+
     /// A buffer that holds `words`.
     #[must_use]
     pub const fn new(words: [Word; N]) -> Self {
@@ -50,22 +56,27 @@ impl<const N: usize> DoubleBuffer<N> {
         self.0.read()
     }
 
-    /// Replaces all words together.
+    /// Replaces all words together; false where it interrupts another store, and does nothing.
     #[inline]
-    pub fn store(&self, words: [Word; N]) {
-        self.0.store(words);
+    pub fn store(&self, words: [Word; N]) -> bool {
+        self.0.store(words, Self::GIVEN_UP)
+    }
+
+    /// A control period has passed; called by the control loop.
+    #[inline]
+    pub fn pass_period(&self) {
+        self.0.pass_period();
     }
 }
 
 /// `published`: the first bank. Any other number is the second.
 const FIRST: i32 = 0;
 const SECOND: i32 = 1;
-/// `storing`: nobody is. Any other number: somebody is.
+/// `storing`: nobody is. Any other number: somebody is, and has so many periods left.
 const NO: i32 = 0;
-const YES: i32 = 1;
 
 /// A place of a word that several contexts see.
-trait Place {
+pub(crate) trait Place {
     fn load(&self) -> i32;
     fn store(&self, value: i32);
 }
@@ -112,12 +123,12 @@ impl<P: Place, const N: usize> Banks<P, N> {
     }
 
     #[inline]
-    fn store(&self, words: [Word; N]) {
+    fn store(&self, words: [Word; N], periods: i32) -> bool {
         // An interrupted store would go on filling the bank that this one publishes.
         if self.storing.load() != NO {
-            return;
+            return false;
         }
-        self.storing.store(YES);
+        self.storing.store(periods);
         compiler_fence(Ordering::SeqCst);
         let (spare, number) = if self.published.load() == FIRST {
             (&self.second, SECOND)
@@ -133,5 +144,14 @@ impl<P: Place, const N: usize> Banks<P, N> {
         self.published.store(number);
         compiler_fence(Ordering::Release);
         self.storing.store(NO);
+        true
+    }
+
+    #[inline]
+    fn pass_period(&self) {
+        let left = self.storing.load();
+        if left != NO {
+            self.storing.store(left.wrapping_sub(1));
+        }
     }
 }

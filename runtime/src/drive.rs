@@ -114,7 +114,9 @@ pub trait Drive {
 ///
 /// `set_current` and `set_torque` may be called from anywhere, interrupts included: the last call
 /// wins. A call of `set_bus` that interrupts another one of the same drive has no effect, and from
-/// an interrupt that can interrupt the control loop it may be called once per control period.
+/// an interrupt that can interrupt the control loop it may be called once per control period. One that
+/// was interrupted for good keeps later calls from having an effect for
+/// [65536 control periods](crate::DoubleBuffer::GIVEN_UP), and [`Status::bus_is_stale`] says so meanwhile.
 pub trait DriveSetPoint: Sync {
     /// Sets the current set-point in amperes (peak of the quasi-square wave); saturates at the
     /// largest current of the specification to both sides. Positive makes torque forward, negative backward,
@@ -128,8 +130,8 @@ pub trait DriveSetPoint: Sync {
     /// regulator asks for.
     fn set_speed(&self, _speed: I16F16) {}
     /// Tells the bus voltage as an ADC count. A voltage outside `bus_min` to `bus_max` of the specification counts as the
-    /// nearer of these, without a fault; until the first call the nominal voltage holds. Does nothing for
-    /// drives with `v_bus: fixed`.
+    /// nearer of these, without a fault; until the first call the nominal voltage holds. Where calls cease, the
+    /// status says so from 100 ms on ([`Status::bus_is_stale`]). Does nothing for drives with `v_bus: fixed`.
     fn set_bus(&self, counts: u16);
     /// What the drive is doing, and what tripped it: as its control loop last said, which may go on
     /// meanwhile.

@@ -8,6 +8,7 @@
 
 pub mod arith;
 mod boundary;
+mod bus_watch;
 mod constants;
 /// Signs, angles, sectors, wiring.
 ///
@@ -24,6 +25,7 @@ mod status;
 mod word;
 
 pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
+pub use bus_watch::BusWatch;
 pub use constants::pairs_from_bits;
 pub use double_buffer::DoubleBuffer;
 pub use drive::{Drive, DriveLoop, DriveSetPoint};

@@ -27,6 +27,10 @@ pub struct Status {
     pub mode: Mode,
     /// What tripped it, or [`Fault::None`].
     pub fault: Fault,
+    /// `v_bus: measured`: for 100 ms no call of `set_bus` took effect, so the controller goes by an old
+    /// voltage; from the start to the first call by the nominal one. A warning, which trips nothing.
+    /// Never with `v_bus: fixed`.
+    pub bus_is_stale: bool,
 }
 
 impl Status {
@@ -46,7 +50,7 @@ impl Status {
         Word((low | (high << 16)) as i32)
     }
 
-    /// What [`Status::word`] made one word of.
+    /// What [`Status::word`] made one word of, with a bus voltage that is not stale.
     #[inline]
     #[must_use]
     pub fn from_word(word: Word) -> Self {
@@ -60,6 +64,7 @@ impl Status {
         Self {
             mode,
             fault: Fault::from_word(fault),
+            bus_is_stale: false,
         }
     }
 
@@ -71,6 +76,7 @@ impl Status {
         f.debug_struct(name)
             .field("mode", &self.mode)
             .field("fault", &self.fault)
+            .field("bus_is_stale", &self.bus_is_stale)
             .finish_non_exhaustive()
     }
 }
@@ -91,7 +97,11 @@ mod tests {
         for (word, mode) in modes {
             for fault in 0..8 {
                 let fault = Fault::from_word(fault.into());
-                let status = Status { mode, fault };
+                let status = Status {
+                    mode,
+                    fault,
+                    bus_is_stale: false,
+                };
                 assert_eq!(Status::from_word(Status::word(word, fault.word())), status);
             }
         }

@@ -1,6 +1,7 @@
 //! What emitted code never contains, and that it is laid out as `rustfmt` lays it out.
 
 use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust, rustfmt};
 use hexagen_codegen::pipeline::{Generated, generate};
@@ -156,6 +157,64 @@ fn divisions_are_off_the_normal_path() {
         }
     }
     assert!(cold > 50, "{cold} functions");
+}
+
+/// The words of a text without what makes it a comment.
+fn words_of(text: &str) -> String {
+    let words = text.split_whitespace();
+    let words = words.filter(|word| !["///", "//!", "*", "/**", "*/"].contains(word));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// What is wrong without a trip, and what the board must therefore have, is told where firmware engineers read: with the
+/// type in both languages, whatever the controller and the bus, and in the README.
+#[test]
+fn every_type_says_what_its_supervisor_cannot_see() {
+    let said = [
+        "What the supervisor cannot see",
+        "frozen at mid-scale",
+        "several times the trip level",
+        "phase c, which has no sensor",
+        "control interrupt that does not come",
+        "shoot-through, and what is shorter than a control period",
+        "(a) a comparator of the current on the timer's break input",
+        "(b) a watchdog on the control interrupt",
+        "(c) a thermal limit",
+        "a limit of the bus voltage",
+    ];
+    let paper = motor(PAPER_MOTOR);
+    let buses = [
+        "",
+        "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\n",
+    ];
+    for kind in kinds() {
+        for bus in buses {
+            let text = paper
+                .text
+                .replacen("[inverter]\n", &format!("[inverter]\n{bus}"), 1);
+            let generated = generate_variant(&text, &paper.name, kind.name).expect("it generates");
+            let (graph, interface) = (&generated.graph, &generated.interface);
+            let rust = format_rust(&emit_rust(graph, interface, &Surface::public("Hub")));
+            let (docs, _) = rust.split_once("pub struct Hub {").expect("the type");
+            let (_, docs) = docs.rsplit_once("}\n").expect("an item before it");
+            let header = emit_c99(graph, interface, "Hub").header;
+            for text in [docs, &header].map(words_of) {
+                for words in said {
+                    assert!(text.contains(words), "{}: {words}\n{text}", kind.name);
+                }
+                let is_told = text.contains("`bus_is_stale` from 100 ms on");
+                assert_eq!(is_told, !bus.is_empty(), "{}\n{text}", kind.name);
+            }
+        }
+    }
+    let readme = include_str!("../../README.md");
+    let (_, section) = readme
+        .split_once("### What the supervisor cannot see\n")
+        .expect("a section");
+    let section = words_of(section.split("\n#").next().expect("its end"));
+    for words in &said[1..] {
+        assert!(section.contains(words), "{words}\n{section}");
+    }
 }
 
 /// The code that the README shows is emitted, item by item.

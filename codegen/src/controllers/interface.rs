@@ -11,7 +11,7 @@ use crate::scaling::Scaled;
 use crate::spec::controller::common::OPTIONS;
 use crate::spec::schema::Kind;
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, ControllerSpec, FcsMpcSpec, HallCapture, Spec};
+use crate::spec::{ControllerSpec, FcsMpcSpec, HallCapture, Spec};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
@@ -46,7 +46,7 @@ pub fn interface(
         constants: constants(spec, design, law, accuracy),
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
-        measured_bus: matches!(inverter.bus, BusSource::Measured { .. }),
+        bus_periods: inverter.bus_periods().map(|periods| periods as i32),
         calibration_samples: 1 << inverter.calibration_log2,
         precharge_periods: inverter.precharge_periods as i32,
     }
@@ -140,6 +140,7 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
     doc.extend(operation::wiring(spec, design));
     doc.extend(operation::start_up(spec, design));
     doc.extend(operation::safe_states(spec));
+    doc.extend(operation::unseen(spec));
     doc
 }
 

@@ -4,7 +4,7 @@ use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, significant};
-use crate::spec::{BusSource, HallCapture, Spec};
+use crate::spec::{BUS_FRESH, BusSource, HallCapture, Spec};
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: the phase into which the current flows, and that out of which.
 fn pairs() -> [String; 6] {
@@ -117,8 +117,27 @@ pub fn safe_states(spec: &Spec) -> Vec<String> {
     if let BusSource::Measured { min, max, .. } = inverter.bus {
         lines.extend([
             format!("Nor is any bus voltage: until the first `set_bus` it is taken as {}, and one outside {} to {}, such as", engineering(inverter.v_bus, "V"), engineering(min, "V"), engineering(max, "V")),
-            "that of a dead sensor, as the nearer of these; who reads the sensor watches over it.".to_owned(),
+            "that of a dead sensor, as the nearer of these; who reads the sensor watches over it. Where calls cease, the status says".to_owned(),
+            format!("`bus_is_stale` from {} on, and before the first one: a warning, for firmware to act on.", engineering(BUS_FRESH, "s")),
         ]);
     }
     lines
+}
+
+/// What goes wrong without a trip, and whose part it is.
+pub fn unseen(spec: &Spec) -> Vec<String> {
+    let bus = match spec.inverter.bus {
+        BusSource::Fixed => "No bus voltage is looked at",
+        BusSource::Measured { .. } => "No bus voltage trips the drive",
+    };
+    vec![
+        String::new(),
+        "# What the supervisor cannot see".to_owned(),
+        String::new(),
+        "A current converter or amplifier that is stuck or wrong within its range: one frozen at mid-scale can let the true current rise".to_owned(),
+        "to several times the trip level. The current of phase c, which has no sensor: it is taken as -(a + b). A control interrupt that does".to_owned(),
+        format!("not come: the last command stands. Heat, shoot-through, and what is shorter than a control period. {bus}, not even one"),
+        "too high for the switches. So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog".to_owned(),
+        "on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus voltage, too.".to_owned(),
+    ]
 }

@@ -6,6 +6,9 @@ use crate::diagnostics::list;
 use crate::interface::Interface;
 use crate::ir::{Input, Op, PathCost, Program};
 
+/// Control periods after which a call that replaces several words counts as given up, as the runtime has it.
+pub(super) const GIVEN_UP: i32 = 1 << 16;
+
 /// The header: the interface's, what a step costs, how far it is from the ideal one at most, and the
 /// specification that all of it was made from.
 pub(super) fn header(program: &Program, interface: &Interface) -> Vec<String> {
@@ -165,8 +168,9 @@ pub(super) fn set_point(program: &Program, shared: &[Shared<'_>]) -> Vec<String>
     if let Some(names) = names(false) {
         lines.extend([
             String::new(),
-            format!("{names} replaces several words as one. A call that interrupts another call of it has no effect. From an"),
-            "interrupt that can interrupt the control loop: at most once per control period.".to_owned(),
+            format!("{names} replaces several words as one. A call that interrupts another call of it has no effect; one that was"),
+            format!("interrupted for good keeps later calls from having an effect for {GIVEN_UP} control periods. From an interrupt that can"),
+            "interrupt the control loop: at most once per control period.".to_owned(),
         ]);
     }
     lines

@@ -6,7 +6,7 @@ use super::{Bus, Coefficient, Lowering, Scale, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program, Value};
-use crate::spec::{BusSource, ControllerSpec, Spec};
+use crate::spec::{BUS_FRESH, BusSource, ControllerSpec, Spec};
 use std::f64::consts::TAU;
 
 /// Fraction bits of the ratio of nominal to measured bus.
@@ -372,7 +372,11 @@ fn set_bus(
         engineering(max, "V"),
         engineering(v_bus, "V")
     );
-    let doc = [doc, "", &limits_doc];
+    let stale_doc = format!(
+        "Until then, and where {} pass without a call that takes effect, the status says `bus_is_stale`.",
+        engineering(BUS_FRESH, "s")
+    );
+    let doc = [doc, "", &limits_doc, &stale_doc];
     let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &doc);
     b.stage("set_bus", &[stage_doc]);
     let counts = b.input(

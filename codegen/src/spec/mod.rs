@@ -32,6 +32,6 @@ pub use controller::{
 pub(crate) use load::is_absolute;
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
-pub use model::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 pub use toml_syntax::parse_toml;
 pub use variant::{apply_variant, variant_of};

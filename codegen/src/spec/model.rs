@@ -174,6 +174,15 @@ pub struct InverterSpec {
     pub precharge_periods: u32,
 }
 
+/// How long a bus voltage that was told is fresh, s: a main program of some hundred Hertz has many tries, and a supply
+/// that sags does not go unnoticed for long.
+pub const BUS_FRESH: f64 = 0.1;
+
+/// Whole periods that cover a time; a time that is whole but for its rounding is that number.
+pub(super) fn periods(time: f64, t_s: f64) -> u32 {
+    (time / t_s - 1e-6).ceil().max(0.0) as u32
+}
+
 impl InverterSpec {
     /// The lowest bus voltage that the controller reckons with, volt.
     pub fn lowest_bus(&self) -> f64 {
@@ -194,6 +203,12 @@ impl InverterSpec {
             BusSource::Fixed => self.v_bus,
             BusSource::Measured { max, .. } => max,
         }
+    }
+
+    /// Periods without a call of `set_bus` after which a measured bus voltage is stale: those of [`BUS_FRESH`].
+    pub fn bus_periods(&self) -> Option<u32> {
+        let is_measured = matches!(self.bus, BusSource::Measured { .. });
+        is_measured.then(|| periods(BUS_FRESH, self.t_s))
     }
 }
 

@@ -4,8 +4,10 @@ extern crate std;
 
 use super::{Banks, FIRST, NO, Place};
 use crate::arith::Word;
+use crate::bus_watch::{self, Watch};
 use std::boxed::Box;
 use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::rc::Rc;
 use std::vec::Vec;
 
@@ -94,6 +96,10 @@ fn whole(words: [Word; 3]) -> i32 {
     words[0].0
 }
 
+/// Periods after which a store counts as given up, and periods after which a bus voltage is stale.
+const GIVEN_UP: i32 = 6;
+const STALE: i32 = 3;
+
 /// More accesses than any scenario makes: an interrupt then strikes nowhere.
 const BEHIND: usize = 40;
 
@@ -115,7 +121,7 @@ fn a_read_that_interrupts_a_store_gets_old_or_new_words_whole() {
             let seen = whole(reader.read());
             assert!(seen == 1 || seen == 2);
         });
-        buffer.store([Word(2); 3]);
+        buffer.store([Word(2); 3], GIVEN_UP);
         assert_eq!(whole(buffer.read()), 2);
     });
 }
@@ -125,7 +131,9 @@ fn a_store_that_interrupts_a_read_is_seen_whole_or_not_at_all() {
     at_every_access(|core, access| {
         let buffer = buffer(core, 1);
         let writer = Rc::clone(&buffer);
-        core.at(access, move || writer.store([Word(2); 3]));
+        core.at(access, move || {
+            writer.store([Word(2); 3], GIVEN_UP);
+        });
         let seen = whole(buffer.read());
         assert!(seen == 1 || seen == 2);
     });
@@ -137,16 +145,18 @@ fn stores_that_interrupt_each_other_never_tear_what_any_read_gets() {
         at_every_access(|core, access| {
             let buffer = buffer(core, 1);
             let (writer, reader) = (Rc::clone(&buffer), Rc::clone(&buffer));
-            core.at(access, move || writer.store([Word(3); 3]));
+            core.at(access, move || {
+                writer.store([Word(3); 3], GIVEN_UP);
+            });
             core.at(second, move || {
                 whole(reader.read());
             });
-            buffer.store([Word(2); 3]);
+            buffer.store([Word(2); 3], GIVEN_UP);
             let end = whole(buffer.read());
             assert!(end == 2 || end == 3);
             core.let_in_the_rest();
             // A later store is not held up by what went on before.
-            buffer.store([Word(4); 3]);
+            buffer.store([Word(4); 3], GIVEN_UP);
             assert_eq!(whole(buffer.read()), 4);
         });
     }
@@ -159,7 +169,7 @@ fn current_and_bus_told_from_two_contexts_both_arrive() {
         let (current, bus) = (Rc::new(watched(core, 0)), buffer(core, 1));
         let interrupt = Rc::clone(&current);
         core.at(access, move || interrupt.store(7));
-        bus.store([Word(2); 3]);
+        bus.store([Word(2); 3], GIVEN_UP);
         whole(bus.read());
         core.let_in_the_rest();
         assert_eq!((current.load(), whole(bus.read())), (7, 2));
@@ -167,7 +177,9 @@ fn current_and_bus_told_from_two_contexts_both_arrive() {
     at_every_access(|core, access| {
         let (current, bus) = (Rc::new(watched(core, 0)), buffer(core, 1));
         let interrupt = Rc::clone(&bus);
-        core.at(access, move || interrupt.store([Word(2); 3]));
+        core.at(access, move || {
+            interrupt.store([Word(2); 3], GIVEN_UP);
+        });
         current.store(7);
         core.let_in_the_rest();
         assert_eq!((current.load(), whole(bus.read())), (7, 2));
@@ -183,7 +195,9 @@ fn two_stores_within_one_read_tear_it() {
             let buffer = buffer(core, 1);
             for (at, value) in [(first, 2), (access, 3)] {
                 let writer = Rc::clone(&buffer);
-                core.at(at, move || writer.store([Word(value); 3]));
+                core.at(at, move || {
+                    writer.store([Word(value); 3], GIVEN_UP);
+                });
             }
             let words = buffer.read();
             if words.iter().any(|word| *word != words[0]) {
@@ -192,4 +206,156 @@ fn two_stores_within_one_read_tear_it() {
         });
     }
     assert!(torn > 0);
+}
+
+/// A drive that is told its bus voltage, as emitted code has one.
+struct Told<'t> {
+    bus: Rc<Banks<Watched<'t>, 3>>,
+    watch: Watch<Watched<'t>>,
+}
+
+impl<'t> Told<'t> {
+    fn new(core: &Rc<Core<'t>>) -> Rc<Self> {
+        Rc::new(Self {
+            bus: buffer(core, 1),
+            watch: Watch {
+                told: watched(core, bus_watch::NO),
+                left: watched(core, 0),
+            },
+        })
+    }
+
+    fn set_bus(&self, value: i32) {
+        if self.bus.store([Word(value); 3], GIVEN_UP) {
+            self.watch.told();
+        }
+    }
+
+    /// The control interrupt; the voltage that it goes by.
+    fn step(&self) -> i32 {
+        self.bus.pass_period();
+        self.watch.pass_period(STALE);
+        whole(self.bus.read())
+    }
+
+    /// Runs a call that ends for good before an access; whether that was before its own end.
+    fn is_ended_at(self: &Rc<Self>, core: &Rc<Core<'t>>, access: usize, call: impl Fn()) -> bool {
+        core.at(core.accesses.get() + access, || resume_unwind(Box::new(())));
+        let ended = catch_unwind(AssertUnwindSafe(call)).is_err();
+        core.pending.borrow_mut().clear();
+        ended
+    }
+}
+
+#[test]
+fn a_bus_voltage_is_stale_before_the_first_call_and_where_calls_cease() {
+    let drive = Told::new(&Rc::new(Core::default()));
+    assert!(drive.watch.is_stale());
+    drive.step();
+    assert!(drive.watch.is_stale());
+    for _ in 0..2 {
+        drive.set_bus(2);
+        for _ in 0..STALE {
+            assert_eq!(drive.step(), 2);
+            assert!(!drive.watch.is_stale());
+        }
+        for _ in 0..4 * STALE {
+            drive.step();
+            assert!(drive.watch.is_stale());
+        }
+    }
+    for _ in 0..8 {
+        drive.set_bus(2);
+        (1..STALE).for_each(|_| {
+            drive.step();
+        });
+        assert!(!drive.watch.is_stale());
+    }
+}
+
+/// A call that ends at any access leaves old or new words whole. Where later ones have no effect, the
+/// voltage becomes stale and stays so until they have.
+#[test]
+fn a_call_interrupted_for_good_shows_until_a_later_one_takes_effect() {
+    let (mut ended, mut held_up) = (0, 0);
+    for access in 0..BEHIND {
+        let core = Rc::new(Core::default());
+        let drive = Told::new(&core);
+        drive.set_bus(2);
+        drive.step();
+        if !drive.is_ended_at(&core, access, || drive.set_bus(3)) {
+            continue;
+        }
+        ended += 1;
+        // Later calls, one per period, all of another voltage.
+        let (mut stale, mut told) = (0, 0);
+        for _ in 0..4 * GIVEN_UP {
+            drive.set_bus(4);
+            let is_told = drive.step() == 4;
+            assert!(told == 0 || is_told, "{access}: a call is lost");
+            assert!(!is_told || !drive.watch.is_stale(), "{access}: not seen");
+            stale += i32::from(drive.watch.is_stale());
+            told += i32::from(is_told);
+        }
+        assert!(told >= 3 * GIVEN_UP, "{access}: {told} periods");
+        // What was held up for longer than the voltage stays fresh showed as long as that.
+        let held = 4 * GIVEN_UP - told;
+        assert_eq!(stale, (held + 1 - STALE).max(0), "{access}: {held} periods");
+        held_up += i32::from(stale > 0);
+    }
+    assert!(ended > 6 && held_up > 3, "{ended} ended, {held_up} held up");
+}
+
+/// The control interrupt between any two accesses of a call, and a call between any two of its own:
+/// every call that takes effect is seen.
+#[test]
+fn no_call_is_lost_to_an_interrupt() {
+    at_every_access(|core, access| {
+        let drive = Told::new(core);
+        let control = Rc::clone(&drive);
+        core.at(access, move || {
+            control.step();
+        });
+        drive.set_bus(2);
+        core.let_in_the_rest();
+        drive.step();
+        assert!(!drive.watch.is_stale());
+    });
+    at_every_access(|core, access| {
+        let drive = Told::new(core);
+        let caller = Rc::clone(&drive);
+        core.at(access, move || caller.set_bus(2));
+        drive.step();
+        core.let_in_the_rest();
+        drive.step();
+        assert!(!drive.watch.is_stale());
+    });
+}
+
+/// The control interrupt that runs a store's time down never undoes the begin or the end of one.
+#[test]
+fn a_store_that_goes_on_is_not_given_up() {
+    at_every_access(|core, access| {
+        let buffer = buffer(core, 1);
+        let (control, writer) = (Rc::clone(&buffer), Rc::clone(&buffer));
+        core.at(access, move || {
+            (1..GIVEN_UP).for_each(|_| control.pass_period());
+            writer.store([Word(3); 3], GIVEN_UP);
+        });
+        buffer.store([Word(2); 3], GIVEN_UP);
+        core.let_in_the_rest();
+        whole(buffer.read());
+        assert_eq!(buffer.storing.value.get(), NO);
+    });
+    at_every_access(|core, access| {
+        let buffer = buffer(core, 1);
+        let writer = Rc::clone(&buffer);
+        core.at(access, move || {
+            writer.store([Word(2); 3], GIVEN_UP);
+        });
+        buffer.pass_period();
+        core.let_in_the_rest();
+        assert_eq!(whole(buffer.read()), 2);
+        assert_eq!(buffer.storing.value.get(), NO);
+    });
 }

@@ -23,6 +23,8 @@ impl CStatus {
         Status {
             mode: modes[usize::from(self.mode)],
             fault: faults[usize::from(self.fault)],
+            // No drive here is told its bus voltage.
+            bus_is_stale: false,
         }
     }
 }

@@ -185,6 +185,7 @@ impl<S: Subject> Pair<S> {
         if found == expected
             && self.found == self.expected
             && self.subject.fault() == self.model.fault()
+            && self.subject.bus_is_stale() == self.model.bus_is_stale()
         {
             Ok(expected)
         } else {
@@ -214,6 +215,12 @@ impl<S: Subject> Pair<S> {
             None,
             word_of(self.subject.fault()),
             word_of(self.model.fault()),
+        );
+        note(
+            "bus_is_stale",
+            None,
+            i32::from(self.subject.bus_is_stale()),
+            i32::from(self.model.bus_is_stale()),
         );
         for (index, name) in self.model.state_names().into_iter().enumerate() {
             note(

@@ -136,7 +136,12 @@ fn halves<D: Drive>() {
     interrupt.strikes(1);
     assert_eq!(interrupt.legs, Legs::LOW, "{}", D::NAME);
     (0..100).for_each(|_| interrupt.strikes(1));
-    assert_eq!(set_point.status(), Status::default(), "{}", D::NAME);
+    // Nobody told the bus voltage yet, where it is to be told.
+    let untold = Status {
+        bus_is_stale: D::SPEC.contains("bus = \"measured\""),
+        ..Status::default()
+    };
+    assert_eq!(set_point.status(), untold, "{}", D::NAME);
     set_point.set_current(I16F16::from_num(5));
     set_point.set_bus(2400);
     (0..8).for_each(|_| interrupt.strikes(1));
@@ -146,6 +151,7 @@ fn halves<D: Drive>() {
     let tripped = Status {
         mode: Mode::Tripped,
         fault: Fault::Hall,
+        bus_is_stale: false,
     };
     assert_eq!(set_point.status(), tripped, "{}", D::NAME);
     assert_eq!(interrupt.control.status(), tripped, "{}", D::NAME);
@@ -187,6 +193,44 @@ fn the_halves_live_in_contexts_of_their_own() {
     assert!(told(2000) > told(2400) && told(2400) > 0);
 }
 
+/// Periods of 50 us for which a bus voltage that was told is fresh.
+const FRESH: usize = 2000;
+
+#[test]
+fn the_status_shows_a_bus_voltage_that_is_no_longer_told() {
+    let mut drive = FrontHub::new();
+    let (set_point, mut control) = drive.split();
+    let mut steps = |count: usize| {
+        let stale = (0..count).filter(|_| {
+            control.step(2048, 2048, 1);
+            assert_eq!(control.status(), set_point.status());
+            set_point.status().bus_is_stale
+        });
+        stale.count()
+    };
+    assert!(set_point.status().bus_is_stale, "before the first step");
+    assert_eq!(steps(3), 3, "before the first call");
+    for _ in 0..2 {
+        set_point.set_bus(2400);
+        assert_eq!(steps(FRESH), 0);
+        assert_eq!(steps(3 * FRESH), 3 * FRESH, "where calls have ceased");
+    }
+    for _ in 0..5 {
+        set_point.set_bus(2400);
+        assert_eq!(steps(FRESH - 1), 0);
+    }
+    assert!(drive.is_running(), "it is a warning");
+    // A reset keeps the set-point, and so its age.
+    drive.reset();
+    assert!(!drive.status().bus_is_stale);
+    // A fixed bus is never stale.
+    let mut rear = RearHub::new();
+    for _ in 0..2 * FRESH {
+        rear.step(2048, 2048, 1);
+        assert!(!rear.status().bus_is_stale);
+    }
+}
+
 #[test]
 fn drives_know_their_motors() {
     assert_eq!(<RearHub as Drive>::NAME, "RearHub");
@@ -218,7 +262,7 @@ mod motors_of_any_name {
     }
 
     drives! {
-        ControlLoop Default DoubleBuffer Drive DriveLoop DriveSetPoint Fault Format I16F16 LegState Legs
+        BusWatch ControlLoop Default DoubleBuffer Drive DriveLoop DriveSetPoint Fault Format I16F16 LegState Legs
         Loop LoopHalf Mode Rounding Sample SetPoint SharedWord State Status TrackRotorResults Word
     }
 }

@@ -8,9 +8,10 @@ use super::super::path::{
 use super::super::plan::{Context, StagePlan};
 use super::super::set_point::shared;
 use super::super::signal::{Code, Shape};
+use super::super::texts::GIVEN_UP;
 use super::expression::{Printer, coded};
 use super::layout::{INDENT, wrapped};
-use super::names::Names;
+use super::names::{Names, typed_number};
 use super::stage::StageFunction;
 use crate::ir::{Function, Paths, Program};
 use std::fmt::Write as _;
@@ -264,6 +265,8 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
         names,
     };
     let mut stores = String::new();
+    let is_bus = function.name == "set_bus";
+    let told = format!("{INDENT}set_point->bus_told = 1;\n");
     let mut kept_words = vec![];
     for (shared, values) in writes(program, function) {
         let field = names.local(&shared.name);
@@ -283,14 +286,22 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
             [only] => {
                 let line = format!("set_point->{field} = {only};");
                 stores.push_str(&wrapped(INDENT, &line));
+                if is_bus {
+                    stores.push_str(&told);
+                }
             }
             many => {
-                let line = format!(
-                    "store_{}(&set_point->{field}, {});",
+                let call = format!(
+                    "store_{}(&set_point->{field}, {})",
                     shared.name,
                     many.join(", ")
                 );
-                stores.push_str(&wrapped(INDENT, &line));
+                if is_bus {
+                    stores.push_str(&wrapped(INDENT, &format!("if ({call}) {{")));
+                    let _ = write!(stores, "{INDENT}{told}{INDENT}}}\n");
+                } else {
+                    stores.push_str(&wrapped(INDENT, &format!("(void){call};")));
+                }
             }
         }
     }
@@ -341,26 +352,29 @@ pub(super) fn emit_stores(program: &Program, names: &Names) -> String {
             &[
                 "Replaces words as one: fills the bank that is not in use, and then publishes it. A reader that interrupts this",
                 "gets the old words whole; a call that interrupts this one does nothing, as its bank would be filled further.",
+                "Whether it did something.",
             ],
         ));
         let head = format!(
-            "static void store_{}({kind} *buffer, {})",
+            "static bool store_{}({kind} *buffer, {})",
             shared.name,
             parameters.join(", ")
         );
         text.push_str(&wrapped("", &head));
-        let _ = writeln!(text, "{{\n{INDENT}if (buffer->storing == 0) {{");
         let inner = INDENT.repeat(2);
         let _ = writeln!(
             text,
-            "{inner}const int32_t spare = (buffer->published == 0) ? 1 : 0;\n{inner}buffer->storing = 1;"
+            "{{\n{INDENT}if (buffer->storing != 0) {{\n{inner}return false;\n{INDENT}}}\n\
+             {INDENT}buffer->storing = {};\n\
+             {INDENT}const int32_t spare = (buffer->published == 0) ? 1 : 0;",
+            typed_number(GIVEN_UP)
         );
         for (place, word) in words.iter().enumerate() {
-            let _ = writeln!(text, "{inner}buffer->banks[spare][{place}] = {word};");
+            let _ = writeln!(text, "{INDENT}buffer->banks[spare][{place}] = {word};");
         }
         let _ = write!(
             text,
-            "{inner}buffer->published = spare;\n{inner}buffer->storing = 0;\n{INDENT}}}\n}}\n\n"
+            "{INDENT}buffer->published = spare;\n{INDENT}buffer->storing = 0;\n{INDENT}return true;\n}}\n\n"
         );
     }
     text

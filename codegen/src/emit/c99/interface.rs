@@ -170,11 +170,22 @@ impl Types<'_> {
         text.push_str(&self.names.comment("", &["What a drive is doing and what tripped it, as of the end of the last control period or call."]));
         let _ = write!(
             text,
-            "typedef struct {{\n{INDENT}{} mode;\n{INDENT}{} fault;\n}} {};\n\n",
+            "typedef struct {{\n{INDENT}{} mode;\n{INDENT}{} fault;\n",
             self.names.type_of("mode"),
             self.names.type_of("fault"),
-            self.names.type_of("status")
         );
+        if let Some(periods) = self.interface.bus_periods {
+            let doc = [
+                format!(
+                    "For {periods} control periods no call of `set_bus` took effect, so the controller goes by an old voltage; from the"
+                ),
+                "start to the first call by the nominal one. A warning, which trips nothing."
+                    .to_owned(),
+            ];
+            text.push_str(&self.names.comment(INDENT, &doc));
+            let _ = writeln!(text, "{INDENT}bool bus_is_stale;");
+        }
+        let _ = write!(text, "}} {};\n\n", self.names.type_of("status"));
         text.push_str(&self.names.comment(
             "",
             &[
@@ -224,6 +235,22 @@ impl Types<'_> {
         text.push_str("typedef struct {\n");
         for group in &shared {
             text.push_str(&self.shared_field(group));
+        }
+        if self.interface.bus_periods.is_some() {
+            let fields = [
+                (
+                    "bus_told",
+                    "Not 0: `set_bus` took effect since the last control period.",
+                ),
+                (
+                    "bus_left",
+                    "Control periods until the bus voltage is stale; the control loop's own.",
+                ),
+            ];
+            for (field, doc) in fields {
+                text.push_str(&names.comment(INDENT, &[doc]));
+                let _ = writeln!(text, "{INDENT}volatile int32_t {field};");
+            }
         }
         text.push_str(&names.comment(
             INDENT,

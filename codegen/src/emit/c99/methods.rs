@@ -75,6 +75,12 @@ impl Types<'_> {
             body.push(format!("{INDENT}{field}.published = 0;"));
             body.push(format!("{INDENT}{field}.storing = 0;"));
         }
+        if self.interface.bus_periods.is_some() {
+            body.extend(
+                ["bus_told", "bus_left"]
+                    .map(|field| format!("{INDENT}drive->set_point.{field} = 0;")),
+            );
+        }
         body.push(format!("{INDENT}drive->state = initial_state;"));
         body.push(format!("{INDENT}publish(drive);"));
         Method {
@@ -108,6 +114,9 @@ impl Types<'_> {
                 _ => format!("(int32_t){name}"),
             }
         });
+        if self.interface.bus_periods.is_some() {
+            body.push(format!("{INDENT}pass_period(&drive->set_point);"));
+        }
         let own = ["&drive->state", "&drive->set_point"].map(str::to_owned);
         let arguments: Vec<String> = own.into_iter().chain(inputs).collect();
         let call = wrapped(INDENT, &format!("return step({});", arguments.join(", ")));
@@ -240,6 +249,19 @@ impl Types<'_> {
             body: body.iter().copied().map(line).collect(),
         };
         let own_status = format!("{}(drive)", names.public("status"));
+        let bus_is_stale = self
+            .interface
+            .bus_periods
+            .map(|_| "status.bus_is_stale = drive->set_point.bus_left == 0;");
+        let mut status_body = vec![
+            "const uint32_t word = drive->set_point.status;".to_owned(),
+            format!("{status} status;"),
+            format!("status.mode = ({})(word & 0xffffU);", names.type_of("mode")),
+            format!("status.fault = ({})(word >> 16);", names.type_of("fault")),
+        ];
+        status_body.extend(bus_is_stale.map(str::to_owned));
+        status_body.push("return status;".to_owned());
+        let status_body: Vec<&str> = status_body.iter().map(String::as_str).collect();
         let running = format!("return {own_status}.mode == {};", mode(Code::Run));
         [
             command(
@@ -256,13 +278,7 @@ impl Types<'_> {
                 &status,
                 "status",
                 "What the drive is doing, and what tripped it: from any context.",
-                &[
-                    "const uint32_t word = drive->set_point.status;",
-                    &format!("{status} status;"),
-                    &format!("status.mode = ({})(word & 0xffffU);", names.type_of("mode")),
-                    &format!("status.fault = ({})(word >> 16);", names.type_of("fault")),
-                    "return status;",
-                ],
+                &status_body,
             ),
             read(
                 &names.type_of("fault"),
@@ -365,11 +381,52 @@ impl Types<'_> {
             "static inline void publish({})\n{{\n{INDENT}drive->set_point.status = status_of(&drive->state);\n}}\n\n",
             self.drive()
         );
+        text.push_str(&self.pass_period());
         text.push_str(&names.comment("", &["All legs alike, without pulses."]));
         let _ = write!(
             text,
             "static inline {legs} legs_at_rest({leg} leg)\n{{\n\
              {INDENT}const {legs} legs = {{ {{ 0, 0, 0 }}, {{ leg, leg, leg }} }};\n{INDENT}return legs;\n}}\n\n"
+        );
+        text
+    }
+
+    /// Where the bus voltage is told, the function that lets it grow older.
+    fn pass_period(&self) -> String {
+        if self.interface.bus_periods.is_none() {
+            return String::new();
+        }
+        let names = self.names;
+        let mut text = names.comment(
+            "",
+            &[
+                "A control period begins: the bus voltage is that much older, and so is a call that replaces words as one and has",
+                "not come to its end.",
+            ],
+        );
+        let _ = writeln!(
+            text,
+            "static inline void pass_period({} *set_point)\n{{",
+            names.type_of("set_point")
+        );
+        let inner = INDENT.repeat(2);
+        for group in shared(self.program) {
+            if group.words.len() > 1 {
+                let field = format!("set_point->{}.storing", names.local(&group.name));
+                let _ = writeln!(
+                    text,
+                    "{INDENT}const int32_t storing = {field};\n\
+                     {INDENT}if (storing != 0) {{\n{inner}{field} = storing - 1;\n{INDENT}}}"
+                );
+            }
+        }
+        let periods = self.own_constant(&self.freshness()).1;
+        let _ = write!(
+            text,
+            "{INDENT}const int32_t left = set_point->bus_left;\n\
+             {INDENT}if (set_point->bus_told != 0) {{\n\
+             {inner}set_point->bus_told = 0;\n{inner}set_point->bus_left = {periods};\n\
+             {INDENT}}} else if (left != 0) {{\n{inner}set_point->bus_left = left - 1;\n{INDENT}}}\n}}\n\n"
         );
         text
     }
@@ -415,9 +472,17 @@ impl Types<'_> {
         }
     }
 
+    fn freshness(&self) -> OwnConstant {
+        OwnConstant {
+            name: "bus_periods",
+            value: self.interface.bus_periods.unwrap_or_default(),
+            doc: "Control periods after which a bus voltage that was told is stale.",
+        }
+    }
+
     /// Constants of the functions that the program does not have.
     pub(super) fn own_constants(&self) -> String {
-        let all = [self.calibration(), self.charging()];
+        let all = [self.calibration(), self.charging(), self.freshness()];
         all.iter()
             .map(|constant| self.own_constant(constant).0)
             .collect()

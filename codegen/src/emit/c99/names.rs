@@ -14,13 +14,16 @@ const KEYWORDS: [&str; 40] = [
 ];
 
 /// Local names and functions of every emitted source.
-const RESERVED: [&str; 14] = [
+const RESERVED: [&str; 17] = [
+    "bus_left",
+    "bus_told",
     "buffer",
     "drive",
     "initial_state",
     "leg_of",
     "legs",
     "legs_at_rest",
+    "pass_period",
     "publish",
     "rest",
     "result",

@@ -295,6 +295,8 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
     };
     let mut kept = vec![];
     let mut stores = Source::new();
+    // The watch over the bus voltage is told of calls that take effect.
+    let told = (function.name == "set_bus").then(|| quote!(self.bus_watch.told();));
     for (shared, values) in writes(program, function) {
         let values = shared
             .words
@@ -311,9 +313,10 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             });
         let values: Vec<Source> = values.collect();
         let name = snake(&shared.name);
-        stores.insert(&match values.as_slice() {
-            [only] => quote!(self.#name.store(#only);),
-            many => quote!(self.#name.store([#(#many),*]);),
+        stores.insert(&match (values.as_slice(), &told) {
+            ([only], told) => quote!(self.#name.store(#only); #told),
+            (many, None) => quote!(self.#name.store([#(#many),*]);),
+            (many, Some(told)) => quote!(if self.#name.store([#(#many),*]) { #told }),
         });
     }
     let reads = (!kept.is_empty() || !params_read(function).is_empty()).then(|| {

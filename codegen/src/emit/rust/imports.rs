@@ -16,7 +16,8 @@ use std::collections::{BTreeSet, HashSet};
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 14] = [
+const SHARED: [&str; 15] = [
+    "BusWatch",
     "DoubleBuffer",
     "Drive",
     "DriveLoop",

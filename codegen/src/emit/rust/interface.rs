@@ -44,6 +44,8 @@ impl Types<'_> {
                 quote!(#name: DoubleBuffer::new([#(#words),*]))
             }
         });
+        let bus_periods = self.interface.bus_periods;
+        let watch = bus_periods.map(|_| quote!(bus_watch: BusWatch::new(),));
         quote! {
             {
                 set_point: SetPoint,
@@ -60,7 +62,7 @@ impl Types<'_> {
                 #[must_use]
                 pub const fn new() -> Self {
                     Self {
-                        set_point: SetPoint { #(#initial,)* status: SharedWord::new(Word(0)) },
+                        set_point: SetPoint { #(#initial,)* #watch status: SharedWord::new(Word(0)) },
                         state: State::INITIAL,
                     }
                 }
@@ -112,6 +114,8 @@ impl Types<'_> {
         let step_docs = self.step_docs();
         let commands = self.commands(&quote!(self.publish();));
         let debug = debug(&quote!(ControlLoop<'_>), "ControlLoop");
+        let bus_periods = self.interface.bus_periods;
+        let pass_period = bus_periods.map(|_| quote!(self.set_point.pass_period();));
         quote! {
             /// The half of the drive that the control interrupt owns.
             pub struct ControlLoop<'drive> {
@@ -123,6 +127,7 @@ impl Types<'_> {
                 #step_docs
                 #[inline]
                 pub fn step(&mut self, #(#arguments),*) -> Legs {
+                    #pass_period
                     step(self.state, self.set_point, #(#words),*)
                 }
 
@@ -170,6 +175,7 @@ impl Types<'_> {
             self.interface.precharge_periods,
             "Control periods of bootstrap pre-charge.",
         );
+        let bus_definition = self.bus_periods().map(|(definition, _)| definition);
         let set_mode = |mode: &Source| self.assign("mode", mode);
         let calibrate = [
             set_mode(&quote!(mode::CALIBRATE)),
@@ -184,6 +190,7 @@ impl Types<'_> {
         quote! {
             #samples_definition
             #periods_definition
+            #bus_definition
 
             /// What outlives a control period.
             struct State {
@@ -228,7 +235,7 @@ impl Types<'_> {
     }
 
     /// A constant of the methods: its definition, unless the program has it already or names none, and its use.
-    fn own_constant(&self, name: &str, value: i32, line: &str) -> (Source, Source) {
+    pub(super) fn own_constant(&self, name: &str, value: i32, line: &str) -> (Source, Source) {
         let ident = screaming(name);
         let raw = number(i64::from(value));
         let constants = &self.program.constants;
@@ -276,6 +283,10 @@ impl Types<'_> {
     fn commands(&self, publish: &Source) -> Source {
         let calibrate = doc(&texts::calibrate(self.interface));
         let precharge = doc(&texts::precharge(self.interface));
+        let status = self.status(
+            &quote!(self.state.status()),
+            &quote!(self.set_point.bus_watch),
+        );
         quote! {
             /// Clears a trip and all control state; keeps calibrated offsets and the set-point, at which the next step
             /// goes on. Ignored while calibrating and pre-charging.
@@ -299,7 +310,7 @@ impl Types<'_> {
             /// What the drive is doing, and what tripped it.
             #[must_use]
             pub fn status(&self) -> Status {
-                Status::from_word(self.state.status())
+                #status
             }
 
             /// What tripped the drive, or [`Fault::None`].

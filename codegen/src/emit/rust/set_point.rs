@@ -44,10 +44,19 @@ impl Types<'_> {
             }
         });
         let debug = debug(&quote!(SetPoint), "SetPoint");
+        let watch = self.interface.bus_periods.map(|_| {
+            quote! {
+                /// Whether `set_bus` goes on being called.
+                bus_watch: BusWatch,
+            }
+        });
+        let status = self.status(&quote!(self.status.load()), &quote!(self.bus_watch));
+        let pass_period = self.pass_period(&shared);
         quote! {
             #docs
             pub struct SetPoint {
                 #(#fields,)*
+                #watch
                 /// What the control loop last said of mode and fault; see [`Status::word`].
                 status: SharedWord,
             }
@@ -59,8 +68,10 @@ impl Types<'_> {
                 /// anywhere, while the control loop goes on.
                 #[must_use]
                 pub fn status(&self) -> Status {
-                    Status::from_word(self.status.load())
+                    #status
                 }
+
+                #pass_period
 
                 /// All words, as the control loop takes them.
                 #[inline]
@@ -72,5 +83,40 @@ impl Types<'_> {
 
             #debug
         }
+    }
+
+    /// The status of a word and, where the bus voltage is told, of the watch over that.
+    pub(super) fn status(&self, word: &Source, watch: &Source) -> Source {
+        match self.interface.bus_periods {
+            None => quote!(Status::from_word(#word)),
+            Some(_) => {
+                quote!(Status { bus_is_stale: #watch.is_stale(), ..Status::from_word(#word) })
+            }
+        }
+    }
+
+    /// Where the bus voltage is told, the method that lets it grow older.
+    fn pass_period(&self, shared: &[Shared<'_>]) -> Option<Source> {
+        let periods = self.bus_periods()?.1;
+        let buffers = shared.iter().filter(|shared| shared.words.len() > 1);
+        let buffers = buffers.map(|shared| {
+            let field = snake(&shared.name);
+            quote!(self.#field.pass_period();)
+        });
+        Some(quote! {
+            /// A control period begins: the bus voltage is that much older.
+            #[inline]
+            fn pass_period(&self) {
+                #(#buffers)*
+                self.bus_watch.pass_period(#periods);
+            }
+        })
+    }
+
+    /// Periods after which the bus voltage is stale: the definition of a constant, and its use.
+    pub(super) fn bus_periods(&self) -> Option<(Source, Source)> {
+        let periods = self.interface.bus_periods?;
+        let doc = "Control periods after which a bus voltage that was told is stale.";
+        Some(self.own_constant("bus_periods", periods, doc))
     }
 }

@@ -43,7 +43,7 @@ impl Types<'_> {
         });
         let measurements = self.measurements();
         let sample = measurements.iter().map(|(name, _, _)| quote!(sample.#name));
-        let set_bus = if self.interface.measured_bus {
+        let set_bus = if self.interface.bus_periods.is_some() {
             quote! {
                 fn set_bus(&self, counts: u16) {
                     self.set_bus(counts);

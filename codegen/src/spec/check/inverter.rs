@@ -5,7 +5,7 @@ use super::reader::{Given, Reader};
 use super::{currents, relations};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering, rpm};
-use crate::spec::model::period_within;
+use crate::spec::model::{period_within, periods};
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, ControllerSpec, HallCapture, InverterSpec};
 
@@ -371,11 +371,6 @@ pub(super) fn finish(
         calibration_log2: inverter.calibration_log2,
         precharge_periods: finish_precharge(reader, inverter, t_s, errors),
     })
-}
-
-/// Whole periods that cover a time; a time that is whole but for its rounding is that number.
-fn periods(time: f64, t_s: f64) -> u32 {
-    (time / t_s - 1e-6).ceil().max(0.0) as u32
 }
 
 fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {

@@ -105,6 +105,10 @@ impl Subject for AnySubject {
         self.0.fault()
     }
     #[inline]
+    fn bus_is_stale(&self) -> bool {
+        self.0.bus_is_stale()
+    }
+    #[inline]
     fn state_words(&self, words: &mut [i32]) {
         self.0.state_words(words);
     }

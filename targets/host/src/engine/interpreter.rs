@@ -89,6 +89,10 @@ impl Subject for Interpreted<'_> {
         Fault::from_word(Word(self.drive.fault()))
     }
 
+    fn bus_is_stale(&self) -> bool {
+        self.drive.bus_is_stale()
+    }
+
     fn state_words(&self, words: &mut [i32]) {
         words.copy_from_slice(self.drive.state());
     }

@@ -45,7 +45,7 @@ impl<'p> Verifier<'p> {
         let binding = Binding {
             state_words: program.states.len(),
             has_hall_ticks: interface.timer_capture,
-            has_bus: interface.measured_bus,
+            has_bus: interface.bus_periods.is_some(),
             has_speed: setters.any(|setter| setter.name == "set_speed"),
         };
         let external = compile_c99(&sources, &binding, flags)?;

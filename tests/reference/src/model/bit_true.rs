@@ -20,7 +20,7 @@ mod tables;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{Limits, Mode, Observation, Period};
+use super::supervision::{BusWatch, Limits, Mode, Observation, Period};
 use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
 use crate::exact::{
@@ -52,6 +52,7 @@ pub struct BitTrue {
     ratio: Word,
     /// `ratio`, split.
     to_duty: Coefficient,
+    bus_watch: Option<BusWatch>,
     state: State,
     last: Signals,
 }
@@ -106,6 +107,7 @@ impl BitTrue {
             gain: reference_gain(spec),
             ratio: word(pow2(k.ratio_bits as i32)),
             to_duty: Coefficient::new(pow2(k.ratio_bits as i32), k.ratio_bits),
+            bus_watch: BusWatch::new(&spec.inverter),
             state: State::default(),
             last: Signals::default(),
             law: Law::new(spec, &scale)?,
@@ -151,6 +153,9 @@ impl BitTrue {
             );
             self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
         }
+        if let Some(watch) = &mut self.bus_watch {
+            watch.tell();
+        }
     }
 
     /// The set-point words `j`, `v_bus`, `ratio`, `speed_ref`.
@@ -189,6 +194,18 @@ impl BitTrue {
         self.state.supervisor.mode
     }
 
+    /// Whether the bus voltage is measured.
+    #[inline]
+    pub fn has_measured_bus(&self) -> bool {
+        self.bus_watch.is_some()
+    }
+
+    /// Whether the bus voltage, where it is measured, is no longer told.
+    #[inline]
+    pub fn bus_is_stale(&self) -> bool {
+        self.bus_watch.is_some_and(|watch| watch.is_stale())
+    }
+
     /// Which way the last step went.
     #[inline]
     pub fn course(&self) -> Course {
@@ -224,6 +241,9 @@ impl BitTrue {
     /// One control period: reads the sample, returns the command for the inverter.
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> Legs {
+        if let Some(watch) = &mut self.bus_watch {
+            watch.age();
+        }
         let k = &self.k;
         // 1 measure
         let adc = [input(sample.adc_a), input(sample.adc_b)];

@@ -1,9 +1,10 @@
-//! Modes, faults and the start-up sequence (section 3 of the semantics). Nothing here is rounded:
-//! currents and trip level are compared in whatever unit the model uses.
+//! Modes, faults and the start-up sequence (section 3 of the semantics), and whether the bus voltage
+//! goes on being told (its section "Set-point words"). Nothing here is rounded: currents and trip level
+//! are compared in whatever unit the model uses.
 
 use crate::Error;
 use crate::exact::{Word, word};
-use crate::spec::Inverter;
+use crate::spec::{Bus, Inverter};
 use hexagen::Fault;
 
 /// What the drive is doing.
@@ -75,6 +76,54 @@ impl Limits {
             precharge_periods: f64::from(inverter.precharge_periods),
             stall_periods: f64::from(inverter.stall_periods),
         })
+    }
+}
+
+/// How long a bus voltage that was told is fresh, second.
+const BUS_FRESH: f64 = 0.1;
+
+/// The age of a measured bus voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct BusWatch {
+    /// Periods after which it is stale.
+    limit: u32,
+    /// Periods since it was told, up to the limit; there, too, before the first time.
+    age: u32,
+    /// It was told since the last period.
+    told: bool,
+}
+
+impl BusWatch {
+    /// None where the bus is fixed.
+    pub fn new(inverter: &Inverter) -> Option<Self> {
+        (inverter.bus == Bus::Measured).then(|| {
+            let limit = (BUS_FRESH / inverter.t_s - 1e-6).ceil() as u32;
+            Self {
+                limit,
+                age: limit,
+                told: false,
+            }
+        })
+    }
+
+    /// The voltage is told.
+    pub fn tell(&mut self) {
+        self.told = true;
+    }
+
+    /// A period begins.
+    pub fn age(&mut self) {
+        self.age = if self.told {
+            0
+        } else {
+            (self.age + 1).min(self.limit)
+        };
+        self.told = false;
+    }
+
+    /// Whether the voltage is stale, as of the last period.
+    pub fn is_stale(&self) -> bool {
+        self.age == self.limit
     }
 }
 

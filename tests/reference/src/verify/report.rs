@@ -28,6 +28,8 @@ pub struct Report {
     pub timed: u64,
     /// Of these, steps with the rotor turning backward.
     pub backward: u64,
+    /// Steps with a measured bus voltage that is told, and is fresh.
+    pub fresh_bus: u64,
     /// Calls between the steps: set-points, reset, calibration, pre-charge, state jumps.
     pub actions: u64,
 }
@@ -40,6 +42,7 @@ impl Report {
         let calibrated =
             before == Mode::Calibrate && matches!(model.mode(), Mode::Precharge | Mode::Run);
         self.calibrations += u64::from(calibrated);
+        self.fresh_bus += u64::from(model.has_measured_bus() && !model.bus_is_stale());
         match model.mode() {
             Mode::Run => {
                 let seen = model.course();
@@ -69,6 +72,7 @@ impl Report {
         self.commutating += other.commutating;
         self.timed += other.timed;
         self.backward += other.backward;
+        self.fresh_bus += other.fresh_bus;
         self.actions += other.actions;
     }
 }

@@ -23,6 +23,8 @@ pub trait Subject {
     fn precharge(&mut self);
     /// Why the drive is tripped.
     fn fault(&self) -> Fault;
+    /// Whether the bus voltage, where it is measured, is no longer told.
+    fn bus_is_stale(&self) -> bool;
     /// Copies the state words, in the order of their names, to `words`.
     fn state_words(&self, words: &mut [i32]);
     /// Overwrites the state words.
@@ -70,6 +72,11 @@ impl<D: Drive> Subject for Compiled<D> {
     #[inline]
     fn fault(&self) -> Fault {
         self.0.fault()
+    }
+
+    #[inline]
+    fn bus_is_stale(&self) -> bool {
+        self.0.status().bus_is_stale
     }
 
     #[inline]

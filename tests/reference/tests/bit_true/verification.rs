@@ -3,7 +3,7 @@
 use crate::variants::{self, Variant};
 use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
-use hexagen_reference::{BitTrue, Controller, FormatTable, Spec};
+use hexagen_reference::{BitTrue, Bus, Controller, FormatTable, Spec};
 
 /// The model in the place of a drive, with an optional fault.
 struct Mirror {
@@ -40,6 +40,9 @@ impl Subject for Mirror {
     }
     fn fault(&self) -> Fault {
         self.model.fault()
+    }
+    fn bus_is_stale(&self) -> bool {
+        self.model.bus_is_stale()
     }
     fn state_words(&self, words: &mut [i32]) {
         self.model.state_words(words);
@@ -100,6 +103,10 @@ fn covers_every_path() {
         }
         at_least(report.running - report.limited, 0.1, "not limited");
         at_least(report.tripped, 0.001, "tripped");
+        if variant.spec.inverter.bus == Bus::Measured {
+            at_least(report.fresh_bus, 0.1, "told the bus voltage");
+            at_least(report.steps - report.fresh_bus, 0.01, "no longer told it");
+        }
         if variants::commutates(&variant) {
             at_least(report.commutating, 0.02, "commutating");
             at_least(report.running - report.commutating, 0.1, "not commutating");

@@ -54,7 +54,7 @@ impl BuildError {
 }
 
 /// The runtime's sources.
-const RUNTIME: [(&str, &str); 9] = [
+const RUNTIME: [(&str, &str); 10] = [
     ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
     (
         "arith.rs",
@@ -63,6 +63,10 @@ const RUNTIME: [(&str, &str); 9] = [
     (
         "boundary.rs",
         include_str!("../../../../../runtime/src/boundary.rs"),
+    ),
+    (
+        "bus_watch.rs",
+        include_str!("../../../../../runtime/src/bus_watch.rs"),
     ),
     (
         "constants.rs",

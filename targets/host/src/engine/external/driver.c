@@ -51,6 +51,11 @@ static void step(drive_t *drive)
         answer(1, (uint32_t)legs.state[leg]);
     }
     answer(1, (uint32_t)CALL(fault)(drive));
+#if HAS_BUS
+    answer(1, CALL(status)(drive).bus_is_stale ? 1U : 0U);
+#else
+    answer(1, 0);
+#endif
     int32_t words[STATE_WORDS];
     CALL(state_words)(drive, words);
     for (int at = 0; at < STATE_WORDS; at++) {

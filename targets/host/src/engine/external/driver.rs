@@ -57,6 +57,7 @@ fn main() {
                     }
                     answers.extend(legs.state().map(|state| state as u8));
                     answers.push(Drive::fault(&drive) as u8);
+                    answers.push(u8::from(Drive::status(&drive).bus_is_stale));
                     Drive::state_words(&drive, &mut state);
                     answers.extend(state.iter().flat_map(|word| word.to_le_bytes()));
                 }

@@ -81,9 +81,9 @@ impl Link {
         })
     }
 
-    /// Bytes of a step's answer: compare values, leg states, fault, state words.
+    /// Bytes of a step's answer: compare values, leg states, fault, whether the bus voltage is stale, state words.
     fn answer_length(&self) -> usize {
-        6 + 3 + 1 + 4 * self.state_words
+        6 + 3 + 1 + 1 + 4 * self.state_words
     }
 
     /// Adds a call to the batch.
@@ -127,7 +127,13 @@ impl Link {
     }
 
     /// Adds a step and the answer that is expected to it.
-    pub fn step(&mut self, sample: Sample, legs: Legs, fault: Fault, words: &[i32]) {
+    pub fn step(
+        &mut self,
+        sample: Sample,
+        legs: Legs,
+        (fault, bus_is_stale): (Fault, bool),
+        words: &[i32],
+    ) {
         self.send_step(sample);
         let expected = &mut self.expected;
         expected.extend(
@@ -136,7 +142,7 @@ impl Link {
                 .flat_map(|compare| compare.to_le_bytes()),
         );
         expected.extend(legs.state().map(|state| state as u8));
-        expected.push(fault as u8);
+        expected.extend([fault as u8, u8::from(bus_is_stale)]);
         expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         if self.pending >= BATCH {
             self.compare();
@@ -144,7 +150,11 @@ impl Link {
     }
 
     /// Runs a step and waits for its answer; none when the program broke off.
-    pub fn step_and_wait(&mut self, sample: Sample, words: &mut [i32]) -> Option<(Legs, Fault)> {
+    pub fn step_and_wait(
+        &mut self,
+        sample: Sample,
+        words: &mut [i32],
+    ) -> Option<(Legs, Fault, bool)> {
         self.send_step(sample);
         self.exchange();
         self.done += self.pending;
@@ -159,7 +169,7 @@ impl Link {
             1 => LegState::Low,
             _ => LegState::Off,
         };
-        for (word, bytes) in words.iter_mut().zip(answer[10..].chunks_exact(4)) {
+        for (word, bytes) in words.iter_mut().zip(answer[11..].chunks_exact(4)) {
             *word = i32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
         let legs = Legs::new(
@@ -167,7 +177,7 @@ impl Link {
             [state(0), state(1), state(2)],
         );
         let fault = Fault::from_word(hexagen::arith::Word(i32::from(answer[9])));
-        Some((legs, fault))
+        Some((legs, fault, answer[10] != 0))
     }
 
     /// Sends the batch and reads its answers into `found`.

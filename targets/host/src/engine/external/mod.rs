@@ -55,6 +55,7 @@ pub(super) fn verify(
                 model: is_batched.then(|| terms.model.clone()),
                 words: vec![0; terms.state_names.len()],
                 fault: Fault::None,
+                bus_is_stale: false,
             }
         };
         verify_subject(
@@ -84,6 +85,7 @@ struct Remote<'l> {
     model: Option<BitTrue>,
     words: Vec<i32>,
     fault: Fault,
+    bus_is_stale: bool,
 }
 
 impl Remote<'_> {
@@ -103,12 +105,15 @@ impl Subject for Remote<'_> {
                 let legs = model.step(sample);
                 model.state_words(&mut self.words);
                 self.fault = model.fault();
-                link.step(*sample, legs, self.fault, &self.words);
+                self.bus_is_stale = model.bus_is_stale();
+                let status = (self.fault, self.bus_is_stale);
+                link.step(*sample, legs, status, &self.words);
                 legs
             }
             None => match link.step_and_wait(*sample, &mut self.words) {
-                Some((legs, fault)) => {
+                Some((legs, fault, bus_is_stale)) => {
                     self.fault = fault;
+                    self.bus_is_stale = bus_is_stale;
                     legs
                 }
                 // A broken process answers what no step does; the link knows why.
@@ -147,6 +152,10 @@ impl Subject for Remote<'_> {
 
     fn fault(&self) -> Fault {
         self.fault
+    }
+
+    fn bus_is_stale(&self) -> bool {
+        self.bus_is_stale
     }
 
     fn state_words(&self, words: &mut [i32]) {
