@@ -13,13 +13,13 @@ const SETTING: Setting = Setting {
 
 fn at(mean: f64, [h6, h12]: [f64; 2], [i5, i7]: [f64; 2], hexagon: f64, hz: f64) -> AtSpeed {
     AtSpeed {
-        mean_torque_nm: mean,
-        h6_pct: h6,
-        h12_pct: h12,
-        i5_pct: i5,
-        i7_pct: i7,
-        hexagon_rms_a: hexagon,
-        switching_hz: hz,
+        mean_torque_nm: Some(mean),
+        h6_pct: Some(h6),
+        h12_pct: Some(h12),
+        i5_pct: Some(i5),
+        i7_pct: Some(i7),
+        hexagon_rms_a: Some(hexagon),
+        switching_hz: Some(hz),
     }
 }
 
