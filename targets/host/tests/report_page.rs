@@ -118,12 +118,13 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
 #[test]
 fn the_page_says_which_torque_counts_as_held() {
     assert!(PAGE.contains("falls below 97 % of the demand, as in the design document's table"));
-    assert!(PAGE.contains(">97 % of demand</text>") && !PAGE.contains(">103 % of demand</text>"));
+    assert!(PAGE.contains("\n97 % of demand\n") && !PAGE.contains("\n103 % of demand\n"));
     let mut data = DATA.clone();
     data.held = Held::Within;
     let page = render(&data).expect("the page renders");
     assert!(page.contains("is no longer within 3 % of the demand, on either side"));
-    assert!(page.contains(">97 % of demand</text>") && page.contains(">103 % of demand</text>"));
+    page_support::assert_plots_stay_inside_their_frames(&page);
+    assert!(page.contains("\n97 % of demand\n") && page.contains("\n103 % of demand\n"));
 }
 
 #[test]

@@ -104,11 +104,12 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
             let held = demand.map(|(rpm, torque)| (rpm, side.edge() * torque));
             dashed(&mut chart, held, line(DEMAND, 1.0), (6.0, 4.0))?;
             let percent = format!("{:.0} % of demand", 100.0 * side.edge());
+            // Beside the name of the demand, however near its line is.
             let (offset, style) = match side {
-                Side::Below => (3.0, &below),
-                Side::Above => (-3.0, &above),
+                Side::Below => ((6.0, 3.0), &below),
+                Side::Above => ((66.0, -3.0), &above),
             };
-            write_at(&chart, &percent, held[0], (6.0, offset), style)?;
+            write_at(&chart, &percent, held[0], offset, style)?;
         }
         for curve in &plot.curves {
             draw_curve(&mut chart, curve, y_range.start)?;
@@ -238,14 +239,14 @@ fn speed_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     least..most + pad
 }
 
-/// Holds every curve as far down as [`LEAST`] of the demand; at least 9 % of the demand high.
+/// Holds every curve as far down as [`LEAST`] of the demand; at least 12 % of the demand high.
 fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     let torques = plot
         .curves
         .iter()
         .flat_map(|curve| curve.points.iter().map(|point| point.1));
     let span = TOLERANCE * plot.torque.abs();
-    let start = (plot.torque - 2.0 * span, plot.torque + span);
+    let start = (plot.torque - 2.0 * span, plot.torque + 2.0 * span);
     let (least, most) = torques
         .filter(|torque| torque.is_finite())
         .fold(start, |(least, most), torque| {
