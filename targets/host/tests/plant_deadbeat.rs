@@ -4,7 +4,8 @@
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_host::closed_loop::{
-    CurrentLoop, LimitOptions, LimitOutcome, Merits, RunOptions, measure, quasi_square, speed_limit,
+    CurrentLoop, Held, LimitOptions, LimitOutcome, Merits, RunOptions, Side, measure, quasi_square,
+    speed_limit,
 };
 use hexagen_host::plant::{PlantParams, Truth};
 use std::f64::consts::{PI, TAU};
@@ -136,10 +137,17 @@ fn at(reference: Reference, rpm: f64, torque: f64) -> Merits {
     measurement.merits
 }
 
-fn assert_near(what: &str, got: f64, want: f64, tolerance: f64) {
+fn assert_near(
+    what: &str,
+    got: impl Into<Option<f64>>,
+    want: impl Into<Option<f64>>,
+    tolerance: f64,
+) {
+    let (got, want) = (got.into(), want.into());
+    let distance = got.zip(want).map(|(got, want)| (got - want).abs());
     assert!(
-        (got - want).abs() <= tolerance,
-        "{what}: {got:.4}, expected {want} +- {tolerance}"
+        distance.is_some_and(|distance| distance <= tolerance),
+        "{what}: {got:?}, expected {want:?} +- {tolerance}"
     );
 }
 
@@ -190,7 +198,7 @@ fn all_four_quadrants_are_alike() {
     assert_near(
         "reverse motoring mean",
         backward.mean_torque_nm,
-        -forward.mean_torque_nm,
+        forward.mean_torque_nm.map(|torque| -torque),
         0.003,
     );
     assert_near(
@@ -215,7 +223,9 @@ fn all_four_quadrants_are_alike() {
             0.5,
         );
         assert!(
-            braking.commutation_us > 20.0 && braking.commutation_us < 400.0,
+            braking
+                .commutation_us
+                .is_some_and(|time| time > 20.0 && time < 400.0),
             "{braking:?}"
         );
     }
@@ -256,9 +266,40 @@ fn speed_limit_is_the_first_crossing_even_if_the_torque_recovers() {
         (never.outcome, never.limit_rpm),
         (LimitOutcome::NeverHeld, None)
     );
+    assert_eq!(
+        (found.lost, never.lost),
+        (Some(Side::Below), Some(Side::Below))
+    );
     let beyond = speed_limit(&motor(), &run, &options, faltering(0.0, 0.0)).unwrap();
     assert_eq!(
-        (beyond.outcome, beyond.limit_pct),
-        (LimitOutcome::NotReached, Some(50.0))
+        (beyond.outcome, beyond.limit_pct, beyond.lost),
+        (LimitOutcome::NotReached, Some(50.0), None)
     );
+}
+
+/// A controller that asks for more torque the faster it turns: by 1 % per 100 rpm beyond 500 rpm.
+#[test]
+fn a_torque_above_the_demand_ends_what_is_held() {
+    let run = RunOptions::new(1.0, CURRENT);
+    let scan = |held| {
+        let options = LimitOptions {
+            held,
+            to_rpm: 1000.0,
+            ..LimitOptions::new(2000.0, TORQUE)
+        };
+        let growing = |initial: &Truth| {
+            let rpm = initial.omega_m * 60.0 / TAU;
+            let torque = TORQUE * (1.0 + 1e-4 * (rpm - 500.0));
+            Deadbeat::new(Reference::Proportional, torque)
+        };
+        speed_limit(&motor(), &run, &options, growing).unwrap()
+    };
+    let within = scan(Held::Within);
+    assert_eq!(
+        (within.outcome, within.lost),
+        (LimitOutcome::Found, Some(Side::Above))
+    );
+    assert_near("limit", within.limit_rpm, 800.0, 3.0);
+    let at_least = scan(Held::AtLeast);
+    assert_eq!(at_least.outcome, LimitOutcome::NotReached);
 }

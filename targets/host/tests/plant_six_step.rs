@@ -4,7 +4,7 @@
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_host::closed_loop::{
-    CurrentLoop, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
+    CurrentLoop, Held as HeldTorque, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
 use hexagen_host::plant::{PlantParams, Truth};
 use std::f64::consts::TAU;
@@ -95,6 +95,7 @@ fn at(held: Held, rpm: f64) -> [f64; 3] {
         merits.ripple_pp_pct,
         merits.ripple_rms_pct,
     ]
+    .map(|figure| figure.expect("it runs"))
 }
 
 fn assert_near(held: Held, rpm: f64, expected: [f64; 3]) {
@@ -110,7 +111,11 @@ fn assert_near(held: Held, rpm: f64, expected: [f64; 3]) {
 
 fn limit(held: Held) -> f64 {
     let run = RunOptions::new(1.0, CURRENT);
-    let scan = LimitOptions::new(2000.0, TORQUE);
+    // The design document's: where the torque falls off.
+    let scan = LimitOptions {
+        held: HeldTorque::AtLeast,
+        ..LimitOptions::new(2000.0, TORQUE)
+    };
     let limit = speed_limit(&motor(), &run, &scan, |_: &Truth| SixStep::new(held)).expect("runs");
     println!("{held:?}: limit {:?} %", limit.limit_pct);
     limit.limit_pct.expect("is reached")

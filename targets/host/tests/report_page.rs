@@ -3,7 +3,7 @@
 mod page_support;
 mod report_support;
 
-use hexagen_host::closed_loop::{LimitOutcome, SpeedLimit};
+use hexagen_host::closed_loop::{Cause, Held, LimitOutcome, Merits, Side, SpeedLimit, Trip};
 use hexagen_host::report::{
     Expectation, Expected, ExpectedPoint, ReportData, Variant, render, write,
 };
@@ -80,14 +80,51 @@ fn difference_from_the_expected_is_marked() {
         limit_rpm: None,
         limit_pct: None,
         outcome: LimitOutcome::NeverHeld,
+        lost: Some(Side::Above),
         tripped: None,
         curve: Vec::new(),
     });
     let page = render(&data).expect("the page renders");
     assert!(page.contains("\u{2260}\u{a0}3.30"), "the mean differs");
     assert!(page.contains("2.0\u{2013}3.0"), "a band is shown as one");
-    assert!(page.contains("missed\">never held"), "so does the limit");
+    let limit = "missed\">never held, torque above";
+    assert!(page.contains(limit), "so does the limit, with its side");
     assert!(page.contains("expected figures are met; the others are marked"));
+}
+
+#[test]
+fn a_drive_that_tripped_has_no_figures_and_no_plots() {
+    let trip = Trip {
+        fault: Cause::OverCurrent,
+        time_s: 0.01,
+        rpm: 400.0,
+    };
+    let mut data = DATA.clone();
+    let variant = &mut data.variants[0];
+    for point in variant.runs.iter_mut().map(|run| &mut run.points[0]) {
+        (point.merits, point.tripped) = (Merits::default(), Some(trip));
+    }
+    variant.records.remove(0);
+    let limit = variant.runs[0].limit.as_mut().expect("was searched");
+    (limit.tripped, limit.lost) = (Some(trip), None);
+    let page = render(&data).expect("the page renders");
+    let cell = "<td class=\"number edge missed\" colspan=\"3\">trips</td>";
+    assert_eq!(page.matches(cell).count(), 2, "fixed and ideal");
+    assert!(page.contains("rpm: the drive trips at 400 rpm)"));
+    // Currents, trajectory and torque of the record that is gone.
+    assert_eq!(page.matches("<svg class=\"plot\"").count(), 27 - 3);
+}
+
+#[test]
+fn the_page_says_which_torque_counts_as_held() {
+    assert!(PAGE.contains("falls below 97 % of the demand, as in the design document's table"));
+    assert!(PAGE.contains("\n97 % of demand\n") && !PAGE.contains("\n103 % of demand\n"));
+    let mut data = DATA.clone();
+    data.held = Held::Within;
+    let page = render(&data).expect("the page renders");
+    assert!(page.contains("is no longer within 3 % of the demand, on either side"));
+    page_support::assert_plots_stay_inside_their_frames(&page);
+    assert!(page.contains("\n97 % of demand\n") && page.contains("\n103 % of demand\n"));
 }
 
 #[test]

@@ -64,11 +64,12 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// A number with so many significant digits, without exponent where that is readable.
-pub fn significant(value: f64, digits: u32) -> String {
-    if value.is_nan() {
+/// A number with so many significant digits, without exponent where that is readable; a dash where
+/// there is none.
+pub fn significant(value: impl Into<Option<f64>>, digits: u32) -> String {
+    let Some(value) = value.into() else {
         return "-".to_owned();
-    }
+    };
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -160,7 +161,7 @@ mod tests {
         assert_eq!(significant(0.012_345, 3), "0.0123");
         assert_eq!(significant(1.2e-9, 2), "1.2e-9");
         assert_eq!(significant(0.0, 3), "0");
-        assert_eq!(significant(f64::NAN, 3), "-");
+        assert_eq!(significant(None, 3), "-");
     }
 
     #[test]

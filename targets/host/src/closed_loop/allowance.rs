@@ -7,10 +7,15 @@ pub const RELATIVE: f64 = 0.005;
 pub const POINTS: f64 = 0.05;
 
 /// How far a merit is from what it should be, in parts of the difference that still counts as alike. Merits that
-/// do not exist (percent of a zero torque) are alike when both do not.
-pub fn share_of_allowance(found: f64, expected: f64, is_percentage: bool) -> f64 {
+/// do not exist (percent of a zero torque) are alike when both do not; where one does, it is infinitely far.
+pub fn share_of_allowance(found: Option<f64>, expected: Option<f64>, is_percentage: bool) -> f64 {
+    let (found, expected) = match (found, expected) {
+        (None, None) => return 0.0,
+        (Some(found), Some(expected)) => (found, expected),
+        _ => return f64::INFINITY,
+    };
     let distance = (found - expected).abs();
-    if distance == 0.0 || found.is_nan() && expected.is_nan() {
+    if distance == 0.0 {
         return 0.0;
     }
     if !distance.is_finite() {
@@ -31,19 +36,20 @@ mod tests {
     #[test]
     fn percentages_may_differ_by_points_and_all_else_in_proportion() {
         for (found, expected, is_percentage, share) in [
-            (100.5, 100.0, false, 1.0),
-            (0.1, 0.05, true, 1.0),
-            (0.1, 0.05, false, 200.0),
-            (40.1, 40.0, true, 0.5),
-            (0.0, 0.0, false, 0.0),
-            (f64::NAN, f64::NAN, true, 0.0),
-            (f64::NAN, 1.0, true, f64::INFINITY),
-            (1.0, 0.0, false, f64::INFINITY),
+            (Some(100.5), Some(100.0), false, 1.0),
+            (Some(0.1), Some(0.05), true, 1.0),
+            (Some(0.1), Some(0.05), false, 200.0),
+            (Some(40.1), Some(40.0), true, 0.5),
+            (Some(0.0), Some(0.0), false, 0.0),
+            (None, None, true, 0.0),
+            (None, Some(1.0), true, f64::INFINITY),
+            (Some(1.0), None, true, f64::INFINITY),
+            (Some(1.0), Some(0.0), false, f64::INFINITY),
         ] {
             let got = share_of_allowance(found, expected, is_percentage);
             assert!(
                 got == share || (got - share).abs() < 1e-9,
-                "{found}, {expected}: {got}"
+                "{found:?}, {expected:?}: {got}"
             );
         }
     }

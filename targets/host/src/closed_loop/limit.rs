@@ -1,4 +1,4 @@
-//! The constant-torque speed limit: where the mean torque first falls below 97 % of the demand.
+//! The constant-torque speed limit: where the mean torque is first no longer the demanded one.
 //!
 //! Every speed of the grid is simulated from the lowest upward, in blocks that run in parallel;
 //! the scan stops after the first block with a crossing. No speed below the crossing is skipped,
@@ -11,8 +11,70 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Fraction of the demanded torque that counts as held.
-pub const HELD: f64 = 0.97;
+/// Distance from the demanded torque that still counts as held, in parts of it.
+pub const TOLERANCE: f64 = 0.03;
+
+/// Which mean torques count as held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Held {
+    /// Those within [`TOLERANCE`] of the demand, on either side.
+    #[default]
+    Within,
+    /// Those of at least the demand less [`TOLERANCE`], however much more: the limit of the paper and
+    /// of the design document's table, where the torque falls off.
+    AtLeast,
+}
+
+/// The side of the demand on which a torque is not held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Less torque than demanded, or against it.
+    Below,
+    /// More than demanded.
+    Above,
+}
+
+impl Side {
+    /// What readers are told.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Below => "torque below the demand",
+            Self::Above => "torque above the demand",
+        }
+    }
+
+    /// The end of what is held on this side, in parts of the demand.
+    pub fn edge(self) -> f64 {
+        match self {
+            Self::Below => 1.0 - TOLERANCE,
+            Self::Above => 1.0 + TOLERANCE,
+        }
+    }
+}
+
+impl Held {
+    /// The sides on which a torque can be lost.
+    pub fn sides(self) -> &'static [Side] {
+        match self {
+            Self::Within => &[Side::Below, Side::Above],
+            Self::AtLeast => &[Side::Below],
+        }
+    }
+
+    /// The side on which a mean torque is not held; none where it is. Both torques in the same
+    /// unit, with their signs.
+    pub fn lost(self, torque: f64, demand: f64) -> Option<Side> {
+        let share = torque / demand;
+        let is_lost = |side: &&Side| match side {
+            // What is no number is not held, either.
+            Side::Below => share.is_nan() || share < side.edge(),
+            Side::Above => share > side.edge(),
+        };
+        self.sides().iter().find(is_lost).copied()
+    }
+}
 
 /// The grid of a scan. Speeds are magnitudes; the direction is that of the run's speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +83,8 @@ pub struct LimitOptions {
     pub rated_rpm: f64,
     /// Demanded torque in newton metres, with its sign.
     pub torque: f64,
+    /// Which mean torques count as held.
+    pub held: Held,
     /// First speed of the grid in rpm. The default is 20 % of rated speed: below it the EMF is far
     /// from the bus voltage, so a controller that fails there fails at the first point too.
     pub from_rpm: f64,
@@ -36,6 +100,7 @@ impl LimitOptions {
         Self {
             rated_rpm,
             torque,
+            held: Held::Within,
             from_rpm: 0.2 * rated_rpm,
             to_rpm: 1.6 * rated_rpm,
             step_rpm: 20.0,
@@ -58,16 +123,31 @@ pub enum LimitOutcome {
 /// The constant-torque speed limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedLimit {
-    /// First crossing in rpm (a magnitude), linearly interpolated; none if never held.
+    /// First crossing of the end of what is held in rpm (a magnitude), linearly interpolated; where
+    /// the drive tripped, the last speed at which the torque was held; none if never held.
     pub limit_rpm: Option<f64>,
     /// The same in percent of rated speed.
     pub limit_pct: Option<f64>,
     /// How the scan ended.
     pub outcome: LimitOutcome,
-    /// Why the torque was not held at the speed that ended the scan, if the controller tripped there.
+    /// The side of the demand on which the torque left it at the speed that ended the scan; none if
+    /// it was held to the end, or the drive tripped.
+    pub lost: Option<Side>,
+    /// What tripped the drive at the speed that ended the scan.
     pub tripped: Option<Trip>,
-    /// The torque-speed curve as far as it was scanned: rpm and mean torque in newton metres.
+    /// The torque-speed curve as far as it was scanned: rpm and mean torque in newton metres. A
+    /// speed at which the drive tripped is not on it.
     pub curve: Vec<(f64, f64)>,
+}
+
+impl SpeedLimit {
+    /// How the torque was lost at the speed that ended the scan, for readers; none if it was held to
+    /// the end.
+    pub fn why(&self) -> Option<String> {
+        let trip = self.tripped;
+        let trips = trip.map(|trip| format!("the drive trips at {:.0} rpm", trip.rpm.abs()));
+        trips.or_else(|| self.lost.map(|side| side.text().to_owned()))
+    }
 }
 
 /// Finds the speed limit of a controller. `run` gives the starts, delay and direction of rotation
@@ -115,7 +195,6 @@ where
     let speeds: Vec<f64> = (0..=steps)
         .map(|k| options.from_rpm + k as f64 * options.step_rpm)
         .collect();
-    let held = |torque: f64| torque / options.torque >= HELD;
     let mut curve: Vec<(f64, f64)> = Vec::with_capacity(speeds.len());
     // Longer blocks would only simulate more speeds beyond the crossing.
     let block = rayon::current_num_threads();
@@ -124,7 +203,7 @@ where
             .par_iter()
             .map(|rpm| {
                 if let Some(torque) = measured(*rpm) {
-                    return Ok((torque, None));
+                    return Ok(Ok(torque));
                 }
                 let omega_m = (rpm * TAU / 60.0).copysign(run.omega_m);
                 mean_torque(
@@ -137,43 +216,72 @@ where
                 )
             })
             .collect::<Result<Vec<_>, _>>()?;
-        for (&rpm, (torque, tripped)) in speeds.iter().zip(torques) {
-            let before = curve.last().copied();
-            curve.push((rpm, torque));
-            if held(torque) {
-                continue;
-            }
-            let (limit, outcome) = match before {
-                None => (None, LimitOutcome::NeverHeld),
-                Some((rpm_before, torque_before)) => {
-                    let excess = torque_before / options.torque - HELD;
-                    let lack = HELD - torque / options.torque;
-                    (
-                        Some(rpm_before + (rpm - rpm_before) * excess / (excess + lack)),
-                        LimitOutcome::Found,
-                    )
+        for (&rpm, measured) in speeds.iter().zip(torques) {
+            let before: Option<(f64, f64)> = curve.last().copied();
+            let lost = match measured {
+                Ok(torque) => {
+                    curve.push((rpm, torque));
+                    let Some(side) = options.held.lost(torque, options.torque) else {
+                        continue;
+                    };
+                    Ok((side, torque / options.torque))
                 }
+                Err(trip) => Err(trip),
             };
-            return Ok(report(limit, options, (outcome, tripped), curve));
+            let limit = before.map(|(rpm_before, torque_before)| match lost {
+                Ok((side, share)) => {
+                    let share_before = torque_before / options.torque;
+                    let part = (side.edge() - share_before) / (share - share_before);
+                    rpm_before + (rpm - rpm_before) * part
+                }
+                // A tripped drive has no torque to interpolate with.
+                Err(_) => rpm_before,
+            });
+            return Ok(SpeedLimit {
+                limit_rpm: limit,
+                limit_pct: limit.map(|rpm| 100.0 * rpm / options.rated_rpm),
+                outcome: match limit {
+                    Some(_) => LimitOutcome::Found,
+                    None => LimitOutcome::NeverHeld,
+                },
+                lost: lost.ok().map(|(side, _)| side),
+                tripped: lost.err(),
+                curve,
+            });
         }
     }
     let last = curve.last().map(|point| point.0);
-    let outcome = (LimitOutcome::NotReached, None);
-    Ok(report(last, options, outcome, curve))
+    Ok(SpeedLimit {
+        limit_rpm: last,
+        limit_pct: last.map(|rpm| 100.0 * rpm / options.rated_rpm),
+        outcome: LimitOutcome::NotReached,
+        lost: None,
+        tripped: None,
+        curve,
+    })
 }
 
-fn report(
-    limit: Option<f64>,
-    options: &LimitOptions,
-    (outcome, tripped): (LimitOutcome, Option<Trip>),
-    curve: Vec<(f64, f64)>,
-) -> SpeedLimit {
-    let limit_pct = limit.map(|rpm| 100.0 * rpm / options.rated_rpm);
-    SpeedLimit {
-        limit_rpm: limit,
-        limit_pct,
-        outcome,
-        tripped,
-        curve,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_torque_is_held_within_three_percent_on_either_side() {
+        for (torque, within, at_least) in [
+            (2.0, None, None),
+            (1.95, None, None),
+            (2.05, None, None),
+            (1.93, Some(Side::Below), Some(Side::Below)),
+            (2.07, Some(Side::Above), None),
+            (5.64, Some(Side::Above), None),
+            (-2.0, Some(Side::Below), Some(Side::Below)),
+            (f64::NAN, Some(Side::Below), Some(Side::Below)),
+        ] {
+            for sign in [1.0, -1.0] {
+                let lost = |held: Held| held.lost(sign * torque, sign * 2.0);
+                assert_eq!(lost(Held::Within), within, "{torque}");
+                assert_eq!(lost(Held::AtLeast), at_least, "{torque}");
+            }
+        }
     }
 }

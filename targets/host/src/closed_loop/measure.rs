@@ -29,7 +29,7 @@ pub struct RunOptions {
     /// Mechanical speed in rad/s; the initial one when the speed is free.
     pub omega_m: f64,
     /// Amplitude in amperes of the quasi-square reference that tracking and commutation are
-    /// judged against; its sign is the torque's.
+    /// judged against: that of the torque that the drive may ask for. Its sign is the torque's.
     pub current: f64,
     /// When commands reach the inverter.
     pub delay: Delay,
@@ -85,10 +85,8 @@ impl RunOptions {
 /// The merits over all starts and the records behind them.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// Worst peak-to-peak ripple of the starts, mean of all else.
+    /// Worst peak-to-peak ripple of the starts, mean of all else; none of a drive that tripped.
     pub merits: Merits,
-    /// Merits of each start.
-    pub starts: Vec<Merits>,
     /// Record of each start's measured window.
     pub traces: Vec<Trace>,
     /// The trip of the first start whose controller tripped.
@@ -135,24 +133,24 @@ where
         })
         .collect::<Result<Vec<_>, _>>()?;
     let (traces, trips): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
-    Ok(Measurement {
-        tripped: trips.into_iter().flatten().next(),
-        ..Measurement::of(traces, options)
-    })
+    let tripped = trips.into_iter().flatten().next();
+    Ok(Measurement::of(traces, tripped, options))
 }
 
 impl Measurement {
-    /// The merits of the records of all starts of a run in which nothing tripped.
-    pub fn of(traces: Vec<Trace>, options: &RunOptions) -> Self {
+    /// The merits of the records of all starts of a run, of which none may have `tripped`.
+    pub fn of(traces: Vec<Trace>, tripped: Option<Trip>, options: &RunOptions) -> Self {
         let starts: Vec<Merits> = traces
             .iter()
             .map(|trace| merits(trace, options.current, options.commutation_threshold))
             .collect();
         Self {
-            merits: Merits::of_starts(&starts),
-            starts,
+            merits: match tripped {
+                None => Merits::of_starts(&starts),
+                Some(_) => Merits::default(),
+            },
             traces,
-            tripped: None,
+            tripped,
         }
     }
 }
@@ -176,7 +174,7 @@ pub fn record<C: CurrentLoop>(
     Ok(trace)
 }
 
-/// Mean torque over the measured window, mean of the starts, in newton metres, and the trip of the first
+/// Mean torque over the measured window, mean of the starts, in newton metres, or the trip of the first
 /// start whose controller tripped, without a record: what the speed limit's scan needs.
 ///
 /// # Errors
@@ -185,13 +183,13 @@ pub fn mean_torque<C, F>(
     params: &PlantParams,
     options: &RunOptions,
     make: &F,
-) -> Result<(f64, Option<Trip>), PlantError>
+) -> Result<Result<f64, Trip>, PlantError>
 where
     C: CurrentLoop,
     F: Fn(&Truth) -> C + Sync,
 {
     let (settling, measured) = options.periods(params);
-    let (mut total, mut tripped) = (0.0, None);
+    let mut total = 0.0;
     for &start in &options.starts {
         let plant = Plant::new(params.clone(), start, options.omega_m)?;
         let controller = make(&plant.truth());
@@ -202,8 +200,10 @@ where
             closed.run(1, &mut ());
             sum += closed.plant().truth().mean_torque;
         }
+        if let Some(trip) = closed.tripped() {
+            return Ok(Err(trip));
+        }
         total += sum / measured as f64;
-        tripped = tripped.or(closed.tripped());
     }
-    Ok((total / options.starts.len() as f64, tripped))
+    Ok(Ok(total / options.starts.len() as f64))
 }

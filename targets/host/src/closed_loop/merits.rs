@@ -1,48 +1,51 @@
 //! The merits of a run as its record shows them: means over bins of 2.5 us.
 
-use super::amplitudes;
 use super::trace::{Trace, quasi_square};
+use super::{amplitudes, percent};
 use serde::Serialize;
 
-/// What a run is judged by. Percentages of a mean torque or fundamental that is zero are NaN,
-/// which JSON shows as null.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// What a run is judged by; JSON shows what there is none of as null. A drive that tripped has no
+/// merits at all ([`Merits::default`]).
+///
+/// Percentages of mean torque and of the current's fundamental are none where that, or the current
+/// that was asked for, is below what the drive's converters resolve ([`Trace::current_floor`],
+/// [`Trace::torque_floor`]). Harmonics are none where the shaft made less than an electrical turn,
+/// as at standstill.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Merits {
     /// Mean torque in newton metres, with its sign.
-    pub mean_torque_nm: f64,
+    pub mean_torque_nm: Option<f64>,
     /// Peak-to-peak torque after a moving mean over Ts, in percent of the mean.
-    pub ripple_pp_pct: f64,
+    pub ripple_pp_pct: Option<f64>,
     /// Standard deviation of the same, in percent of the mean.
-    pub ripple_rms_pct: f64,
+    pub ripple_rms_pct: Option<f64>,
     /// Amplitude of the torque's 6th electrical harmonic in percent of the mean.
-    pub h6_pct: f64,
+    pub h6_pct: Option<f64>,
     /// Amplitude of the 12th.
-    pub h12_pct: f64,
+    pub h12_pct: Option<f64>,
     /// 5th harmonic of the phase current in percent of the fundamental, mean of the phases.
-    pub i5_pct: f64,
+    pub i5_pct: Option<f64>,
     /// 7th harmonic, likewise.
-    pub i7_pct: f64,
+    pub i7_pct: Option<f64>,
     /// 11th harmonic, likewise.
-    pub i11_pct: f64,
+    pub i11_pct: Option<f64>,
     /// 13th harmonic, likewise.
-    pub i13_pct: f64,
+    pub i13_pct: Option<f64>,
     /// Total harmonic distortion of the phase current: all that is neither mean nor fundamental,
     /// switching ripple included, in percent of the fundamental; mean of the phases.
-    pub thd_pct: f64,
+    pub thd_pct: Option<f64>,
     /// RMS distance of the current from the quasi-square reference of the true sector in the
-    /// alpha-beta plane, in amperes.
-    pub tracking_rms_a: f64,
+    /// alpha-beta plane, in amperes. The reference's amplitude is that of the current that the
+    /// drive may ask for: of the limited set-point ([`super::RunOptions::current`]).
+    pub tracking_rms_a: Option<f64>,
     /// Mean time from a change of the true sector until the outgoing phase's current has fallen
-    /// to the threshold, in microseconds.
-    pub commutation_us: f64,
+    /// to the threshold, in microseconds; none where the sector never changes.
+    pub commutation_us: Option<f64>,
     /// Turn-ons per device and second, mean of the six switches, in hertz.
-    pub switching_hz: f64,
+    pub switching_hz: Option<f64>,
     /// Periods whose command lay on the edge of the hexagon, in percent.
-    pub saturated_pct: f64,
+    pub saturated_pct: Option<f64>,
 }
-
-/// Harmonics that are computed for a current.
-const ORDERS: [usize; 5] = [1, 5, 7, 11, 13];
 
 /// The highest of all harmonics that are computed.
 const HIGHEST: usize = 13;
@@ -52,7 +55,9 @@ const HIGHEST: usize = 13;
 /// electrical periods.
 pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
     let mean = mean(&trace.torque);
-    let percent = 100.0 / mean.abs();
+    let is_asked = current.abs() > trace.current_floor;
+    let has_turned = trace.turns() >= 1.0;
+    let of_mean = |part: f64| percent(part, mean, trace.torque_floor).filter(|_| is_asked);
     let smoothed = trace.smoothed_torque();
     let (least, most) = smoothed
         .iter()
@@ -68,16 +73,16 @@ pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
         .collect();
     let signals = [&trace.torque[..], &trace.i_a, &trace.i_b, &i_c];
     let [torque, currents @ ..] = amplitudes(signals, &trace.theta_e, HIGHEST);
-    let mut distortion = [0.0; ORDERS.len()];
-    for (current, harmonics) in signals[1..].iter().zip(&currents) {
-        for (sum, part) in distortion
-            .iter_mut()
-            .zip(current_distortion(current, harmonics))
-        {
-            *sum += part / 3.0;
-        }
-    }
-    let torque_harmonic = |order: usize| percent * torque[order];
+    let torque_harmonic = |order: usize| of_mean(torque[order]).filter(|_| has_turned);
+    let of_fundamental = |part: &dyn Fn(&[f64], &[f64]) -> f64| {
+        let phases = signals[1..].iter().zip(&currents);
+        let shares = phases.map(|(current, harmonics)| {
+            percent(part(current, harmonics), harmonics[1], trace.current_floor)
+        });
+        let sum = shares.sum::<Option<f64>>()?;
+        (is_asked && has_turned).then_some(sum / 3.0)
+    };
+    let current_harmonic = |order: usize| of_fundamental(&|_, harmonics| harmonics[order]);
 
     let bins = trace.torque.len();
     let squares = (0..bins).map(|k| {
@@ -94,33 +99,33 @@ pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
         .sum();
     let saturated = trace.periods.iter().filter(|row| row.saturated).count();
     Merits {
-        mean_torque_nm: mean,
-        ripple_pp_pct: percent * (most - least),
-        ripple_rms_pct: percent * deviation(&smoothed),
+        mean_torque_nm: Some(mean),
+        ripple_pp_pct: of_mean(most - least),
+        ripple_rms_pct: of_mean(deviation(&smoothed)),
         h6_pct: torque_harmonic(6),
         h12_pct: torque_harmonic(12),
-        i5_pct: distortion[1],
-        i7_pct: distortion[2],
-        i11_pct: distortion[3],
-        i13_pct: distortion[4],
-        thd_pct: distortion[0],
-        tracking_rms_a: tracking,
-        commutation_us: commutation_time(trace, current, threshold) * 1e6,
-        switching_hz: turn_ons as f64 / 6.0 / trace.duration(),
-        saturated_pct: 100.0 * saturated as f64 / trace.periods.len() as f64,
+        i5_pct: current_harmonic(5),
+        i7_pct: current_harmonic(7),
+        i11_pct: current_harmonic(11),
+        i13_pct: current_harmonic(13),
+        thd_pct: of_fundamental(&distortion),
+        tracking_rms_a: Some(tracking),
+        commutation_us: commutation_time(trace, current, threshold).map(|time| time * 1e6),
+        switching_hz: Some(turn_ons as f64 / 6.0 / trace.duration()),
+        saturated_pct: percent(saturated as f64, trace.periods.len() as f64, 0.0),
     }
 }
 
 impl Merits {
-    /// The merits of several starts: the worst peak-to-peak ripple, the mean of all else.
+    /// The merits of several starts: the worst peak-to-peak ripple, the mean of all else; none of
+    /// what one of them has none of.
     pub(super) fn of_starts(starts: &[Self]) -> Self {
-        let mean = |of: fn(&Self) -> f64| starts.iter().map(of).sum::<f64>() / starts.len() as f64;
+        let all = |of: fn(&Self) -> Option<f64>| starts.iter().map(of).collect::<Option<Vec<_>>>();
+        let mean = |of| all(of).map(|values| mean(&values));
         Self {
             mean_torque_nm: mean(|m| m.mean_torque_nm),
-            ripple_pp_pct: starts
-                .iter()
-                .map(|m| m.ripple_pp_pct)
-                .fold(f64::NAN, f64::max),
+            ripple_pp_pct: all(|m| m.ripple_pp_pct)
+                .and_then(|values| values.into_iter().reduce(f64::max)),
             ripple_rms_pct: mean(|m| m.ripple_rms_pct),
             h6_pct: mean(|m| m.h6_pct),
             h12_pct: mean(|m| m.h12_pct),
@@ -146,24 +151,16 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Total distortion first, then harmonics 5, 7, 11 and 13, all in percent of the fundamental.
-/// `harmonics` are the current's amplitudes by order.
-fn current_distortion(current: &[f64], harmonics: &[f64]) -> [f64; ORDERS.len()] {
-    let fundamental = harmonics[1];
-    let rest = (deviation(current).powi(2) - 0.5 * fundamental.powi(2)).max(0.0);
-    ORDERS.map(|order| {
-        let part = if order == 1 {
-            (2.0 * rest).sqrt()
-        } else {
-            harmonics[order]
-        };
-        100.0 * part / fundamental
-    })
+/// Amplitude of all of a current that is neither mean nor fundamental; `harmonics` are its
+/// amplitudes by order.
+fn distortion(current: &[f64], harmonics: &[f64]) -> f64 {
+    let rest = deviation(current).powi(2) - 0.5 * harmonics[1].powi(2);
+    (2.0 * rest.max(0.0)).sqrt()
 }
 
-/// Mean length of the commutations that begin within the record, in seconds; 0 when the sector
+/// Mean length of the commutations that begin within the record, in seconds; none where the sector
 /// never changes.
-fn commutation_time(trace: &Trace, current: f64, threshold: f64) -> f64 {
+fn commutation_time(trace: &Trace, current: f64, threshold: f64) -> Option<f64> {
     let sectors: Vec<usize> = trace
         .theta_e
         .iter()
@@ -171,14 +168,14 @@ fn commutation_time(trace: &Trace, current: f64, threshold: f64) -> f64 {
         .collect();
     let changes = sectors.windows(2).filter(|pair| pair[0] != pair[1]).count();
     if changes == 0 {
-        return 0.0;
+        return None;
     }
     let active = trace
         .commutating(current, threshold)
         .iter()
         .filter(|&&active| active)
         .count();
-    active as f64 * trace.bin / changes as f64
+    Some(active as f64 * trace.bin / changes as f64)
 }
 
 #[cfg(test)]
@@ -223,10 +220,10 @@ mod tests {
     }
 
     #[track_caller]
-    fn assert_close(got: f64, want: f64, tolerance: f64) {
+    fn assert_close(got: Option<f64>, want: f64, tolerance: f64) {
         assert!(
-            (got - want).abs() <= tolerance,
-            "got {got}, want {want} +- {tolerance}"
+            got.is_some_and(|got| (got - want).abs() <= tolerance),
+            "got {got:?}, want {want} +- {tolerance}"
         );
     }
 
@@ -248,7 +245,7 @@ mod tests {
             assert_close(got, 100.0 / order, 0.3);
         }
         assert_close(merits.thd_pct, 31.08, 0.1);
-        assert!(merits.tracking_rms_a < 1e-9, "{}", merits.tracking_rms_a);
+        assert_close(merits.tracking_rms_a, 0.0, 1e-9);
         assert_close(merits.commutation_us, 0.0, 0.0);
         assert_close(merits.switching_hz, 2.0 / 6.0 / 50e-6, 1e-6);
         assert_close(merits.saturated_pct, 25.0, 0.0);
@@ -313,8 +310,76 @@ mod tests {
         assert_close(both.mean_torque_nm, 7.0 / 3.0, 1e-9);
         assert_close(
             both.ripple_rms_pct,
-            (2.0 * quiet.ripple_rms_pct + loud.ripple_rms_pct) / 3.0,
+            (2.0 * quiet.ripple_rms_pct.unwrap() + loud.ripple_rms_pct.unwrap()) / 3.0,
             1e-12,
         );
+        // What a start has none of, all of them have none of.
+        let still = merits(&synthetic(|_| 0.0, square), 20.0, 0.5);
+        let some = Merits::of_starts(&[quiet, still]);
+        assert_eq!((some.ripple_pp_pct, some.ripple_rms_pct), (None, None));
+        assert_close(some.mean_torque_nm, 1.0, 1e-9);
+    }
+
+    /// Percentages of mean torque, and of the current's fundamental.
+    fn percentages(merits: &Merits) -> ([Option<f64>; 4], [Option<f64>; 5]) {
+        (
+            [
+                merits.ripple_pp_pct,
+                merits.ripple_rms_pct,
+                merits.h6_pct,
+                merits.h12_pct,
+            ],
+            [
+                merits.i5_pct,
+                merits.i7_pct,
+                merits.i11_pct,
+                merits.i13_pct,
+                merits.thd_pct,
+            ],
+        )
+    }
+
+    #[test]
+    fn what_the_converters_cannot_tell_from_zero_has_no_percentages() {
+        // One count of 12 bits over +-40 A, and its torque at 0.1 V s/rad per phase.
+        let (count, torque) = (40.0 / 2048.0, 2.0 * 0.1 * 40.0 / 2048.0);
+        for share in [0.0, 0.9] {
+            let rippling = |theta: f64| share * torque + 0.5 * (6.0 * theta).sin();
+            let found = merits(&synthetic(rippling, square), 20.0, 0.5);
+            assert_eq!(percentages(&found).0, [None; 4], "{found:?}");
+            assert!(percentages(&found).1.iter().all(Option::is_some));
+            assert_close(found.mean_torque_nm, share * torque, 1e-9);
+
+            let small = |theta: f64| 0.9 * count * share * theta.sin() + 0.2 * (5.0 * theta).sin();
+            let found = merits(&synthetic(|_| 3.0, small), 20.0, 0.5);
+            assert_eq!(percentages(&found).1, [None; 5], "{found:?}");
+            assert!(percentages(&found).0.iter().all(Option::is_some));
+
+            let unasked = merits(&synthetic(|_| 3.0, square), share * count, 0.5);
+            assert_eq!(percentages(&unasked), ([None; 4], [None; 5]));
+        }
+        let enough = merits(&synthetic(|_| 1.1 * torque, square), 20.0, 0.5);
+        assert!(percentages(&enough).0.iter().all(Option::is_some));
+    }
+
+    #[test]
+    fn a_shaft_that_makes_no_electrical_turn_has_no_harmonics() {
+        let mut trace = synthetic(|theta| 3.0 + 0.1 * theta.sin(), square);
+        assert!((trace.turns() - 6.0).abs() < 0.01, "{}", trace.turns());
+        trace.theta_e.iter_mut().for_each(|theta| *theta = 0.2);
+        let still = merits(&trace, 20.0, 0.5);
+        assert_eq!((still.h6_pct, still.h12_pct), (None, None));
+        assert_eq!(percentages(&still).1, [None; 5]);
+        assert_eq!(still.commutation_us, None);
+        assert!(still.ripple_pp_pct.is_some() && still.tracking_rms_a.is_some());
+        // Backward, and to and fro.
+        for (k, theta) in trace.theta_e.iter_mut().enumerate() {
+            *theta = (-0.01 * k as f64).rem_euclid(TAU);
+        }
+        assert!((trace.turns() - 47.99 / TAU).abs() < 1e-9);
+        for (k, theta) in trace.theta_e.iter_mut().enumerate() {
+            *theta = (0.3 * (k as f64 * 0.1).sin()).rem_euclid(TAU);
+        }
+        assert!(trace.turns() < 0.1);
     }
 }

@@ -9,17 +9,21 @@ mod harmonics;
 mod limit;
 mod measure;
 mod merits;
+mod percent;
 mod swing;
 mod trace;
 mod trip;
 
 pub use allowance::{POINTS, RELATIVE, share_of_allowance};
 pub use harmonics::amplitudes;
-pub use limit::{HELD, LimitOptions, LimitOutcome, SpeedLimit, speed_limit, speed_limit_knowing};
+pub use limit::{
+    Held, LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, speed_limit, speed_limit_knowing,
+};
 pub use measure::{
     Aim, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
 };
 pub use merits::{Merits, merits};
+pub use percent::percent;
 pub use swing::Swing;
 pub use trace::{PeriodRow, Trace, quasi_square};
 pub use trip::{Cause, Trip};

@@ -6,7 +6,7 @@ use super::{Recorder, Step};
 use crate::plant::{Observer, Segment, Series, TERMS, clarke, integral, sector_of};
 use hexagen::{LegState, Legs};
 use serde::Serialize;
-use std::f64::consts::{FRAC_PI_3, PI};
+use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use std::io;
 
 /// Length that bins aim at, in seconds.
@@ -79,6 +79,11 @@ pub struct Trace {
     pub i_b: Vec<f64>,
     /// One row per control period.
     pub periods: Vec<PeriodRow>,
+    /// One count of the current converters in amperes, the coarser one's: a smaller current is
+    /// none that the drive could tell from zero.
+    pub current_floor: f64,
+    /// Greatest torque of that current through a pair of phases, in newton metres.
+    pub torque_floor: f64,
     t_s: f64,
     timer_period: u16,
     turn_ons: u64,
@@ -91,7 +96,11 @@ impl Trace {
     /// An empty record that continues from the plant's present state; `periods` is the expected
     /// length.
     pub fn new(plant: &crate::plant::Plant, periods: usize) -> Self {
-        let t_s = plant.params().t_s;
+        let params = plant.params();
+        let t_s = params.t_s;
+        let counts = params.adc.map(|channel| channel.amperes_per_count.abs());
+        let current_floor = counts[0].max(counts[1]);
+        let k_phase = params.k_phase.into_iter().fold(0.0, f64::max);
         let bins_per_period = ((t_s / BIN).round() as usize).max(1);
         let bins = periods * bins_per_period;
         Self {
@@ -103,8 +112,10 @@ impl Trace {
             i_a: Vec::with_capacity(bins),
             i_b: Vec::with_capacity(bins),
             periods: Vec::with_capacity(periods),
+            current_floor,
+            torque_floor: 2.0 * k_phase * current_floor,
             t_s,
-            timer_period: plant.params().timer_period,
+            timer_period: params.timer_period,
             turn_ons: plant.turn_ons(),
             open: [0.0; 3],
             open_theta: 0.0,
@@ -115,6 +126,15 @@ impl Trace {
     /// Length of the record in seconds.
     pub fn duration(&self) -> f64 {
         self.periods.len() as f64 * self.t_s
+    }
+
+    /// Electrical turns of the shaft over the record; 0 at standstill.
+    pub fn turns(&self) -> f64 {
+        let steps = self.theta_e.windows(2);
+        let turned: f64 = steps
+            .map(|pair| (pair[1] - pair[0] + PI).rem_euclid(TAU) - PI)
+            .sum();
+        turned.abs() / TAU
     }
 
     /// Time of the middle of bin `index` in seconds.
@@ -170,7 +190,8 @@ impl Trace {
 
     /// Writes the period rows as CSV with the columns t, theta_e, sector, hall, comm, ia, ib, ic,
     /// ialpha_ref, ibeta_ref, torque_mean, valpha_mean, vbeta_mean; SI units. References are the
-    /// quasi-square of the true sector with amplitude `current`; comm as [`Self::commutating`].
+    /// quasi-square of the true sector with amplitude `current`, that of the limited set-point
+    /// where it is [`super::RunOptions::current`]; comm as [`Self::commutating`].
     ///
     /// # Errors
     /// The writer's own.

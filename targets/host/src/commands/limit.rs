@@ -1,7 +1,7 @@
 //! `hexagen limit`: the speed up to which a controller holds the torque.
 
 use crate::cli::{Failure, RunArguments, print_json, print_text, significant, spinner};
-use crate::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, speed_limit};
+use crate::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
 use crate::engine::{EngineKind, Model, Prepared};
 use clap::Args;
 use serde::Serialize;
@@ -14,7 +14,8 @@ pub struct Options {
     pub run: RunArguments,
 }
 
-/// A limit and what it is about.
+/// A limit and what it is about. The torque counts as held while its mean is within 3 % of the demand
+/// on either side.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor.
@@ -84,27 +85,31 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
+    let why = outcome.limit.why().unwrap_or_default();
     let found = match (
         outcome.limit.outcome,
         outcome.limit.limit_rpm,
         outcome.limit.limit_pct,
     ) {
         (LimitOutcome::NeverHeld, _, _) | (_, None, _) | (_, _, None) => {
-            let first = outcome.limit.curve.first().map_or(0.0, |point| point.0);
             let reach = drive.reach();
-            let why = if reach < outcome.torque_nm.abs() {
+            let limited = if reach < outcome.torque_nm.abs() {
                 format!(
-                    ": max_current = {} A limits the set-point to {} Nm",
+                    "; max_current = {} A limits the set-point to {} Nm",
                     drive.spec.inverter.max_current,
                     significant(reach, 3)
                 )
             } else {
                 String::new()
             };
-            format!("not held even at {first:.0} rpm{why}")
+            let found = outcome.limit.curve.first().map_or(String::new(), |point| {
+                let share = percent(point.1, outcome.torque_nm, 0.0);
+                format!(" ({} % of it at {:.0} rpm)", significant(share, 3), point.0)
+            });
+            format!("not held even at the first speed: {why}{found}{limited}")
         }
         (LimitOutcome::Found, Some(rpm), Some(percent)) => {
-            format!("held up to {rpm:.0} rpm, {percent:.1} % of rated speed")
+            format!("held up to {rpm:.0} rpm, {percent:.1} % of rated speed; beyond, {why}")
         }
         (LimitOutcome::NotReached, Some(rpm), Some(percent)) => {
             format!("held beyond {rpm:.0} rpm, {percent:.1} % of rated speed, where the scan ends")

@@ -4,7 +4,7 @@ use crate::cli::{
     Failure, PlantArguments, SelectedMotor, TextTable, bar, note, print_json, print_text,
     significant,
 };
-use crate::closed_loop::{HELD, RunOptions, STARTS, Trip, mean_torque};
+use crate::closed_loop::{Held, RunOptions, STARTS, TOLERANCE, Trip, mean_torque};
 use crate::engine::{Model, Prepared, plant_of, run_of};
 use clap::Args;
 use rayon::prelude::*;
@@ -50,9 +50,10 @@ pub struct Entry {
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
-    /// Whether PDCC with its defaults holds rated torque at rated speed from the nominal bus.
+    /// Whether PDCC with its defaults holds rated torque at rated speed from the nominal bus: within
+    /// 3 % on either side.
     pub holds_rating: Option<bool>,
-    /// Mean torque that it reaches there, in percent of the rated one.
+    /// Mean torque that it reaches there, in percent of the rated one; none of a drive that trips.
     pub rated_speed_torque_pct: Option<f64>,
     /// What trips it there.
     pub tripped: Option<Trip>,
@@ -84,8 +85,8 @@ pub fn collect() -> Result<Vec<Entry>, Failure> {
 }
 
 /// Runs a drive at rated speed with the set-point of rated torque, as far as that reaches, on the
-/// plant of its motor's file: the mean torque in percent of the rated one, and what tripped it.
-fn at_rating(drive: &Prepared) -> Result<(f64, Option<Trip>), Failure> {
+/// plant of its motor's file: the mean torque in newton metres, or what tripped it.
+fn at_rating(drive: &Prepared) -> Result<Result<f64, Trip>, Failure> {
     let plant = plant_of(&drive.spec);
     let set_point = drive.set_point(drive.demand());
     let rated = RunOptions {
@@ -93,11 +94,10 @@ fn at_rating(drive: &Prepared) -> Result<(f64, Option<Trip>), Failure> {
         ..run_of(&drive.spec, drive.spec.motor.rated_speed, drive.demand())
     };
     let maker = drive.maker(Model::Fixed, set_point);
-    let (torque, tripped) = mean_torque(&plant, &rated, &maker)?;
-    Ok((100.0 * torque / drive.rated_torque(), tripped))
+    Ok(mean_torque(&plant, &rated, &maker)?)
 }
 
-fn entry(motor: &SelectedMotor, rating: Option<(f64, Option<Trip>)>) -> Entry {
+fn entry(motor: &SelectedMotor, rating: Option<Result<f64, Trip>>) -> Entry {
     let none = Entry {
         name: motor.source.name.clone(),
         description: None,
@@ -119,6 +119,8 @@ fn entry(motor: &SelectedMotor, rating: Option<(f64, Option<Trip>)>) -> Entry {
     match motor.prepare(None) {
         Ok(drive) => {
             let (spec, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+            let torque = rating.and_then(Result::ok);
+            let rated = drive.rated_torque();
             Entry {
                 description: Some(spec.description.clone()),
                 pole_pairs: Some(spec.pole_pairs),
@@ -127,14 +129,15 @@ fn entry(motor: &SelectedMotor, rating: Option<(f64, Option<Trip>)>) -> Entry {
                 emf_constant_v_s: Some(spec.emf_constant),
                 v_bus_v: Some(inverter.v_bus),
                 rated_current_a: Some(spec.rated_current),
-                rated_torque_nm: Some(drive.rated_torque()),
+                rated_torque_nm: Some(rated),
                 rated_rpm: Some(spec.rated_speed * 30.0 / std::f64::consts::PI),
                 t_s: Some(inverter.t_s),
                 generates: true,
-                holds_rating: rating
-                    .map(|(percent, _)| (percent - 100.0).abs() <= 100.0 * (1.0 - HELD)),
-                rated_speed_torque_pct: rating.map(|(percent, _)| percent),
-                tripped: rating.and_then(|(_, tripped)| tripped),
+                holds_rating: rating.map(|rating| {
+                    rating.is_ok_and(|torque| Held::Within.lost(torque, rated).is_none())
+                }),
+                rated_speed_torque_pct: torque.map(|torque| 100.0 * torque / rated),
+                tripped: rating.and_then(Result::err),
                 ..none
             }
         }
@@ -209,8 +212,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_text(&table.render())?;
     print_text(&format!(
         "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
-         speed from the nominal bus, in percent of the rated one; it holds within {:.0} %.",
-        100.0 * (1.0 - HELD)
+         speed from the nominal bus, in percent of the rated one; it holds it within {:.0} % on either side.",
+        100.0 * TOLERANCE
     ))?;
     for motor in &motors {
         if let Some(reason) = &motor.reason {

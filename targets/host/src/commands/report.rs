@@ -2,12 +2,13 @@
 
 use super::accuracy::one_step;
 use super::compare::{WORDS, at_speeds, with_word};
-use super::results::{Planned, SPEEDS};
+use super::results::{Planned, SPEEDS, held};
 use super::robustness;
 use super::verify::{self, Checked};
 use crate::cli::{
     Failure, KINDS, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant,
 };
+use crate::closed_loop::Side;
 use crate::engine::{EngineKind, Prepared};
 use crate::report::{
     self, Capture, ErrorsSeen, Judged, Model, ReportData, Run, SpeedMark, Variant, Verification,
@@ -110,6 +111,7 @@ pub fn collect(
         source: source(&own),
         torque: own.rated_torque(),
         current: own.rated_torque() / own.spec.torque_constant(),
+        held: held(is_paper),
         speeds_rpm: SPEEDS.map(|part| part * own.rated_rpm()).to_vec(),
         verification: Some(verification(&checked)),
         variants,
@@ -377,22 +379,29 @@ fn row(variant: &Variant, run: &Run) -> Vec<String> {
             .expected
             .as_ref()
             .and_then(|expected| expected.at(point.rpm.round()));
-        cells.push(figure(&judge_mean(&point.merits, expected), 3));
-        cells.push(figure(&judge_pp(&point.merits, expected), 2));
-        cells.push(figure(&judge_rms(&point.merits, expected), 3));
+        let mean = judge_mean(&point.merits, expected);
+        cells.push(match point.tripped {
+            None => figure(&mean, 3, "-"),
+            Some(_) => figure(&mean, 3, "trips"),
+        });
+        cells.push(figure(&judge_pp(&point.merits, expected), 2, "-"));
+        cells.push(figure(&judge_rms(&point.merits, expected), 3, "-"));
     }
-    cells.push(figure(
-        &judge_limit(run.limit.as_ref(), run.expected.as_ref()),
-        1,
-    ));
+    let limit = run.limit.as_ref();
+    let found = figure(&judge_limit(limit, run.expected.as_ref()), 1, "never");
+    cells.push(match limit.and_then(|limit| limit.lost) {
+        Some(Side::Above) => format!("{found}, torque above"),
+        Some(Side::Below) | None => found,
+    });
     cells
 }
 
-/// A figure with so many decimals; what was expected stands in brackets where it was not met.
-fn figure(judged: &Judged, decimals: usize) -> String {
+/// A figure with so many decimals, or what stands for `none`; what was expected stands in brackets
+/// where it was not met.
+fn figure(judged: &Judged, decimals: usize, none: &str) -> String {
     let measured = judged
         .measured
-        .map_or_else(|| "never".to_owned(), |x| format!("{x:.decimals$}"));
+        .map_or_else(|| none.to_owned(), |x| format!("{x:.decimals$}"));
     match judged.expected {
         Some(expected) if !judged.met => {
             let expected = expected.text("-", |x| x.to_string());

@@ -9,7 +9,7 @@ pub use variants::{READINGS, Readings};
 use super::report::{FOLDER, PAPER_MOTOR};
 use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
 use crate::closed_loop::{
-    Delay, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
+    Delay, Held, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
 };
 use crate::counted::{Counted, Figures as StepCost};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
@@ -185,20 +185,24 @@ impl<'p> Bench<'p> {
         let points = [low?, high?];
         let maker = || drive.maker(Model::Fixed, self.set_point);
         let known = |rpm: f64| points.iter().find(|point| point.rpm == rpm);
-        let mut curve = effort
+        let curve = effort
             .curve_rpm
             .par_iter()
             .map(|&rpm| {
                 let torque = match known(rpm) {
                     Some(point) => point.merits.mean_torque_nm,
-                    None => mean_torque(&self.plant, &self.at(rpm), &maker())?.0,
+                    None => mean_torque(&self.plant, &self.at(rpm), &maker())?.ok(),
                 };
                 progress.inc(1);
-                Ok((rpm, torque))
+                Ok(torque.map(|torque| (rpm, torque)))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
+        // A drive that tripped has no torque there.
+        let mut curve: Vec<(f64, f64)> = curve.into_iter().flatten().collect();
         let (from_rpm, step_rpm) = effort.limit_rpm;
+        // The paper asks where the torque falls off: more than the demand counts as held.
         let scan = LimitOptions {
+            held: Held::AtLeast,
             from_rpm,
             step_rpm,
             ..LimitOptions::new(drive.rated_rpm(), TORQUE)
@@ -306,9 +310,9 @@ fn table_5(data: &Reproduction) -> String {
             let times = run.times(data.inverter.t_s);
             let microseconds = |time: f64| format!("{:.1}", 1e6 * time);
             let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
-            let switching = run.points.iter().map(|point| match point.trip {
-                None => format!("{:.1}", point.merits.switching_hz / 1e3),
-                Some(_) => "-".to_owned(),
+            let switching = run.points.iter().map(|point| {
+                let kilohertz = point.merits.switching_hz.map(|hertz| hertz / 1e3);
+                or_dash(kilohertz.map(|figure| format!("{figure:.1}")))
             });
             let cells = [
                 method.name().to_owned(),

@@ -6,7 +6,9 @@
 use super::accuracy::{OneStep, SideBySide, one_step, side_by_side};
 use super::stability;
 use crate::cli::{Emit, Failure};
-use crate::closed_loop::{LimitOptions, Merits, RunOptions, measure, speed_limit_knowing};
+use crate::closed_loop::{
+    Held, LimitOptions, Measurement, RunOptions, measure, speed_limit_knowing,
+};
 use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::report::{
@@ -38,6 +40,7 @@ struct Line<'p> {
     model: Model,
     capture: Capture,
     expected: Option<Expected>,
+    held: Held,
 }
 
 /// What one way of reading Hall edges gave at the table's speeds.
@@ -45,7 +48,7 @@ struct AtSpeeds {
     /// The fixed-point drive, and the ideal model on its words.
     both: Vec<SideBySide>,
     /// The ideal model in a loop of its own.
-    alone: Vec<Merits>,
+    alone: Vec<Measurement>,
 }
 
 impl AtSpeeds {
@@ -56,21 +59,27 @@ impl AtSpeeds {
             let (plant, set_point) = (&conditions.plant, conditions.set_point);
             let both = side_by_side(drive, plant, &run, set_point)?;
             let alone = measure(plant, &run, drive.maker(Model::Ideal, set_point))?;
-            Ok((both, alone.merits))
+            Ok((both, alone))
         });
         let measured = measured.collect::<Result<Vec<_>, Failure>>()?;
         let (both, alone) = measured.into_iter().unzip();
         Ok(Self { both, alone })
     }
 
-    /// Merits of a model in its own loop, at each speed.
-    fn merits(&self, model: Model) -> Vec<Merits> {
-        match model {
-            Model::Ideal => self.alone.clone(),
-            Model::Fixed | Model::BitTrue => {
-                self.both.iter().map(|both| both.fixed.merits).collect()
-            }
-        }
+    /// What a model in its own loop gave, at each speed.
+    fn points(&self, drive: &Prepared, model: Model) -> Vec<RunPoint> {
+        let of_model: Vec<&Measurement> = match model {
+            Model::Ideal => self.alone.iter().collect(),
+            Model::Fixed | Model::BitTrue => self.both.iter().map(|both| &both.fixed).collect(),
+        };
+        let at_speeds = SPEEDS.into_iter().zip(of_model);
+        at_speeds
+            .map(|(part, measured)| RunPoint {
+                rpm: part * drive.rated_rpm(),
+                merits: measured.merits,
+                tripped: measured.tripped,
+            })
+            .collect()
     }
 }
 
@@ -95,7 +104,7 @@ impl Planned {
             .collect();
         let runs = lines
             .par_iter()
-            .map(|(line, at)| line.run(&at.merits(line.model)))
+            .map(|(line, at)| line.run(at.points(line.drive, line.model)))
             .collect::<Result<Vec<_>, _>>()?;
         let drive = self.best();
         let rpm = SPEEDS.map(|part| part * drive.rated_rpm());
@@ -117,7 +126,9 @@ impl Planned {
         let of_best = measured.into_iter().next().map(|at| at.both);
         let of_best = of_best.unwrap_or_default();
         let signal_errors = signal_errors(drive, &of_best);
-        let records = rpm.into_iter().zip(of_best).filter_map(|(rpm, both)| {
+        let running = rpm.into_iter().zip(of_best);
+        let running = running.filter(|(_, both)| both.fixed.tripped.is_none());
+        let records = running.filter_map(|(rpm, both)| {
             let trace = both.fixed.traces.into_iter().next()?;
             Some(Record { rpm, trace })
         });
@@ -157,25 +168,33 @@ impl Planned {
             model,
             capture,
             expected: expected.filter(|_| self.is_expected && model == Model::Fixed),
+            held: held(self.is_expected),
         }
     }
 }
 
+/// Which torque counts as held in the limits of a table: where it is held against the design
+/// document's, that document's.
+pub fn held(is_expected: bool) -> Held {
+    if is_expected {
+        Held::AtLeast
+    } else {
+        Held::Within
+    }
+}
+
 impl Line<'_> {
-    /// Finds the limit; `merits` are those at the table's speeds.
-    fn run(&self, merits: &[Merits]) -> Result<Run, Failure> {
+    /// Finds the limit; `points` are those at the table's speeds.
+    fn run(&self, points: Vec<RunPoint>) -> Result<Run, Failure> {
         let conditions = Conditions::of(self.drive);
-        let speeds = SPEEDS.map(|part| part * self.drive.rated_rpm());
-        let points: Vec<RunPoint> = speeds
-            .into_iter()
-            .zip(merits)
-            .map(|(rpm, &merits)| RunPoint { rpm, merits })
-            .collect();
         let known: Vec<(f64, f64)> = points
             .iter()
-            .map(|point| (point.rpm, point.merits.mean_torque_nm))
+            .filter_map(|point| Some((point.rpm, point.merits.mean_torque_nm?)))
             .collect();
-        let scan = LimitOptions::new(self.drive.rated_rpm(), conditions.torque);
+        let scan = LimitOptions {
+            held: self.held,
+            ..LimitOptions::new(self.drive.rated_rpm(), conditions.torque)
+        };
         let run = conditions.at(self.drive, self.drive.rated_rpm());
         let maker = self.drive.maker(self.model, conditions.set_point);
         let limit = speed_limit_knowing(&conditions.plant, &run, &scan, &known, maker)?;

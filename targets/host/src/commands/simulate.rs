@@ -4,8 +4,10 @@ use crate::cli::{
     Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
     warn, write_file,
 };
-use crate::closed_loop::{Aim, MOST_RECORDED, Measurement, Merits, RunOptions, Trip, measure};
-use crate::engine::{EngineKind, Model, Prepared};
+use crate::closed_loop::{
+    Aim, MOST_RECORDED, Measurement, Merits, PeriodRow, RunOptions, Trip, measure,
+};
+use crate::engine::{EngineKind, Model, Prepared, run_of};
 use crate::plant::PlantParams;
 use clap::Args;
 use serde::Serialize;
@@ -22,7 +24,8 @@ pub struct Options {
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
     pub rpm: f64,
     /// Speed in rpm that the drive's speed loop holds, with `speed_loop=on`: --torque is then the greatest that it asks
-    /// for, the run starts at --rpm, and what is measured begins when the speed has had the time to be there
+    /// for, the run starts at --rpm, and what is measured begins when the speed has had the time to be there; a warning
+    /// tells where it has not settled within 2 % of it
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, requires = "inertia")]
     pub speed_set: Option<f64>,
     /// Write the measured window of the first start, one row per period
@@ -45,23 +48,68 @@ pub struct Outcome {
     pub rpm: f64,
     /// Demanded torque, Nm.
     pub torque_nm: f64,
-    /// What tripped the drive; none if nothing did.
+    /// What tripped the drive; none if nothing did. A drive that tripped has no merits.
     pub tripped: Option<Trip>,
-    /// The speed loop's result, where there is one.
+    /// What speed a free shaft reached.
     #[serde(flatten)]
     pub speed: Option<Speed>,
-    /// What was measured.
+    /// What was measured; null where there is no such figure.
     #[serde(flatten)]
     pub merits: Merits,
 }
 
-/// What a speed loop reached.
+/// What a free shaft reached, with or without a speed loop. None of it of a drive that tripped.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Speed {
-    /// Speed that was set, rpm.
-    pub set_rpm: f64,
-    /// Mean speed while it was measured, rpm.
-    pub mean_rpm: f64,
+    /// Speed that was set, rpm; none without a speed loop.
+    pub set_rpm: Option<f64>,
+    /// Mean speed while it was measured, rpm, mean of the starts.
+    pub mean_rpm: Option<f64>,
+    /// Speed at the end of what was measured, rpm, mean of the starts.
+    pub final_rpm: Option<f64>,
+    /// Whether the speed loop has settled: the mean speeds of the last three sixths of what was
+    /// measured, which are electrical turns at the set speed, are within 2 % of the set speed at
+    /// every start. (Of the least speed that the drive tells from standstill, where less is set.)
+    /// None without a speed loop.
+    pub settled: Option<bool>,
+}
+
+/// Distance of a settled speed from the set one, in parts of it.
+const SETTLED: f64 = 0.02;
+
+impl Speed {
+    /// What the shaft of a run reached. `set_rpm` is the speed loop's, `least_rpm` the least speed
+    /// that the drive tells from standstill.
+    fn of(measured: &Measurement, set_rpm: Option<f64>, least_rpm: f64) -> Self {
+        let traces = match measured.tripped {
+            None => &measured.traces[..],
+            Some(_) => &[],
+        };
+        let has_run = !traces.is_empty();
+        let over_starts = |speed: &dyn Fn(&[PeriodRow]) -> f64| {
+            let sum: f64 = traces.iter().map(|trace| speed(&trace.periods)).sum();
+            has_run.then(|| sum / traces.len() as f64)
+        };
+        let has_settled = |set: f64| {
+            let distance = SETTLED * set.abs().max(least_rpm);
+            let mut parts = traces.iter().flat_map(|trace| {
+                let sixth = trace.periods.len().div_ceil(6);
+                trace.periods.rchunks(sixth.max(1)).take(3)
+            });
+            parts.all(|rows| (mean_rpm(rows) - set).abs() <= distance)
+        };
+        Self {
+            set_rpm,
+            mean_rpm: over_starts(&mean_rpm),
+            final_rpm: over_starts(&|rows| mean_rpm(&rows[rows.len().saturating_sub(1)..])),
+            settled: set_rpm.filter(|_| has_run).map(has_settled),
+        }
+    }
+}
+
+/// Mean speed of periods, rpm.
+fn mean_rpm(rows: &[PeriodRow]) -> f64 {
+    rows.iter().map(|row| row.omega_m).sum::<f64>() / rows.len() as f64 * 60.0 / TAU
 }
 
 /// Runs and measures.
@@ -82,13 +130,10 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let measured = measure(&plant, &run, drive.maker(arguments.model, set_point));
     progress.finish_and_clear();
     let mut measured = measured?;
-    if run.aim.is_some() && torque != 0.0 {
+    if let (Some(_), Some(mean)) = (run.aim, measured.merits.mean_torque_nm) {
         // The reference is what the speed loop asked for, not the most that it may.
-        run.current *= measured.merits.mean_torque_nm / torque;
-        measured = Measurement {
-            tripped: measured.tripped,
-            ..Measurement::of(measured.traces, &run)
-        };
+        run.current = run_of(&drive.spec, run.omega_m, mean).current;
+        measured = Measurement::of(measured.traces, measured.tripped, &run);
     }
     Ok((drive, run, measured))
 }
@@ -141,12 +186,6 @@ fn aim(
             }))
         }
     }
-}
-
-/// Mean speed of all starts while they were measured, rpm.
-fn mean_rpm(measured: &Measurement) -> f64 {
-    let rows = || measured.traces.iter().flat_map(|trace| &trace.periods);
-    rows().map(|row| row.omega_m).sum::<f64>() / rows().count() as f64 * 60.0 / TAU
 }
 
 /// Most control periods of a run, settling included: minutes.
@@ -221,12 +260,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         rpm: options.rpm,
         torque_nm: options.run.torque(&drive),
         tripped: measured.tripped,
-        speed: options.speed_set.map(|set_rpm| Speed {
-            set_rpm,
-            mean_rpm: mean_rpm(&measured),
+        speed: options.run.plant.inertia.map(|_| {
+            let least_rpm = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+            Speed::of(&measured, options.speed_set, least_rpm)
         }),
         merits: measured.merits,
     };
+    if let Some(Speed {
+        set_rpm: Some(set),
+        settled: Some(false),
+        ..
+    }) = outcome.speed
+    {
+        warn(&format!(
+            "--speed-set {set}: the speed has not settled within {:.0} % of it",
+            100.0 * SETTLED
+        ));
+    }
     if options.run.json {
         print_json(&outcome)?;
     } else {
@@ -247,10 +297,22 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         significant(outcome.torque_nm, 4),
         outcome.rpm
     ))?;
-    if let Some(Speed { set_rpm, mean_rpm }) = outcome.speed {
+    if let Some(trip) = outcome.tripped {
+        return print_text(&format!("{trip}; it has no merits"));
+    }
+    if let Some(speed) = outcome.speed {
+        let of = speed.set_rpm.map_or("free shaft".to_owned(), |set_rpm| {
+            format!("speed set to {set_rpm} rpm")
+        });
+        let settled = match speed.settled {
+            None => "",
+            Some(true) => ", settled",
+            Some(false) => ", NOT settled",
+        };
         print_text(&format!(
-            "speed set to {set_rpm} rpm: {} rpm",
-            significant(mean_rpm, 5)
+            "{of}: {} rpm in the mean of what was measured, {} rpm at its end{settled}",
+            significant(speed.mean_rpm, 5),
+            significant(speed.final_rpm, 5)
         ))?;
     }
     let mut table = TextTable::new(1, ["merit", "value", "unit"]);
@@ -261,7 +323,7 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
 }
 
 /// Names, values and units of merits, in the order of their keys.
-pub fn rows(merits: &Merits) -> [(&'static str, f64, &'static str); 14] {
+pub fn rows(merits: &Merits) -> [(&'static str, Option<f64>, &'static str); 14] {
     [
         ("mean torque", merits.mean_torque_nm, "Nm"),
         ("torque ripple, peak to peak", merits.ripple_pp_pct, "%"),

@@ -16,7 +16,7 @@ pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
 pub use external::BuildError;
 pub use interpreter::Interpreted;
 pub use motor::{MotorSource, SourceError};
-pub use plant::{plant_of, run_of};
+pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
 pub use verifier::Verifier;
 

@@ -34,10 +34,17 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
     }
 }
 
+/// Largest torque in newton metres that a drive's limited set-point asks for.
+pub fn reach_of(spec: &Spec) -> f64 {
+    spec.inverter.max_current * spec.torque_constant()
+}
+
 /// The standard measurement of a drive at a mechanical speed in rad/s and a torque in newton
-/// metres: judged against the quasi-square reference that gives this torque.
+/// metres: judged against the quasi-square reference that gives this torque, as far as the limited
+/// set-point reaches.
 pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
     let controller = spec.controller.common();
+    let reach = reach_of(spec);
     let per_ampere = spec.motor.emf_constant * spec.motor.emf_shape.quasi_square_factor();
     RunOptions {
         delay: if controller.delay == 0 {
@@ -46,6 +53,6 @@ pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
             Delay::OnePeriod
         },
         commutation_threshold: controller.commutation_threshold,
-        ..RunOptions::new(omega_m, torque / per_ampere)
+        ..RunOptions::new(omega_m, torque.clamp(-reach, reach) / per_ampere)
     }
 }

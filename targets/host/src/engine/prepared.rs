@@ -2,6 +2,7 @@
 
 use super::{
     AnySubject, BuiltIn, Engine, EngineKind, Interpreted, Model, MotorSource, Verifier, built_in,
+    reach_of,
 };
 use crate::plant::Truth;
 use hexagen::Format;
@@ -220,7 +221,7 @@ impl Prepared {
 
     /// Largest torque in newton metres that the limited set-point asks for.
     pub fn reach(&self) -> f64 {
-        self.spec.inverter.max_current * self.spec.torque_constant()
+        reach_of(&self.spec)
     }
 
     /// The torque in newton metres that the drive is measured at unless another is asked for: the

@@ -6,7 +6,7 @@
 
 use super::expected::Expected;
 use super::robustness::Robustness;
-use crate::closed_loop::{Merits, SpeedLimit, Trace};
+use crate::closed_loop::{Held, Merits, SpeedLimit, Trace, Trip};
 use hexagen_codegen::controllers::StableRange;
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
@@ -30,6 +30,8 @@ pub struct ReportData {
     pub torque: f64,
     /// Amplitude in amperes of the quasi-square reference that gives this torque.
     pub current: f64,
+    /// Which mean torques count as held in the speed limits.
+    pub held: Held,
     /// Speeds in rpm of the table's columns and of the plots, ascending.
     pub speeds_rpm: Vec<f64>,
     /// What the bit-for-bit check found.
@@ -68,8 +70,8 @@ pub struct Variant {
     pub chooses_vectors: bool,
     /// Runs that were measured: one row each in the result table, best known first.
     pub runs: Vec<Run>,
-    /// Records of the first run, one per speed of [`ReportData::speeds_rpm`]; empty for a variant
-    /// that is not plotted.
+    /// Records of the first run, one per speed of [`ReportData::speeds_rpm`] at which it did not
+    /// trip; empty for a variant that is not plotted.
     pub records: Vec<Record>,
     /// Torque-speed curve of the first run: rpm and mean torque in newton metres, ascending.
     pub torque_speed: Vec<(f64, f64)>,
@@ -128,6 +130,8 @@ pub struct RunPoint {
     pub rpm: f64,
     /// What was measured.
     pub merits: Merits,
+    /// What tripped the drive; then it has no merits.
+    pub tripped: Option<Trip>,
 }
 
 /// Merits of the fixed-point code at one speed, and of the ideal model on its own plant from the
@@ -206,7 +210,7 @@ pub struct StabilityCheck {
     /// Speed in rpm.
     pub rpm: f64,
     /// RMS torque ripple in percent of the mean.
-    pub ripple_rms_pct: f64,
+    pub ripple_rms_pct: Option<f64>,
     /// Whether the run counts as stable.
     pub stable: bool,
 }

@@ -114,21 +114,19 @@ impl Judged {
 /// Mean torque against what is expected.
 pub fn judge_mean(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.mean_torque_nm);
-    Judged::new(Some(merits.mean_torque_nm), band, |band| {
-        0.01 * band.high.abs()
-    })
+    Judged::new(merits.mean_torque_nm, band, |band| 0.01 * band.high.abs())
 }
 
 /// Peak-to-peak ripple against what is expected.
 pub fn judge_pp(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.ripple_pp_pct);
-    Judged::new(Some(merits.ripple_pp_pct), band, ripple_tolerance)
+    Judged::new(merits.ripple_pp_pct, band, ripple_tolerance)
 }
 
 /// RMS ripple against what is expected.
 pub fn judge_rms(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.ripple_rms_pct);
-    Judged::new(Some(merits.ripple_rms_pct), band, ripple_tolerance)
+    Judged::new(merits.ripple_rms_pct, band, ripple_tolerance)
 }
 
 /// Speed limit in percent of rated speed against what is expected.
@@ -358,6 +356,7 @@ mod tests {
             outcome,
             limit_rpm: percent,
             limit_pct: percent,
+            lost: None,
             tripped: None,
             curve: Vec::new(),
         };

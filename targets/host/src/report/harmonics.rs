@@ -1,31 +1,31 @@
 //! Harmonics as spectra show them.
 
-use crate::closed_loop::{Trace, amplitudes};
+use crate::closed_loop::{Trace, amplitudes, percent};
 
-/// Harmonics of the phase currents in percent of the fundamental, mean of the phases.
-pub fn of_current(trace: &Trace, highest: usize) -> Vec<f64> {
+/// Harmonics of the phase currents in percent of the fundamental, mean of the phases; none of a
+/// fundamental that is nothing.
+pub fn of_current(trace: &Trace, highest: usize) -> Vec<Option<f64>> {
     let i_c: Vec<f64> = trace
         .i_a
         .iter()
         .zip(&trace.i_b)
         .map(|(a, b)| -a - b)
         .collect();
-    let mut percent = vec![0.0; highest + 1];
     let phases = [&trace.i_a[..], &trace.i_b, &i_c];
-    for amplitudes in amplitudes(phases, &trace.theta_e, highest) {
-        let scale = 100.0 / 3.0 / amplitudes[1];
-        for (sum, amplitude) in percent.iter_mut().zip(amplitudes) {
-            *sum += scale * amplitude;
-        }
-    }
-    percent
+    let phases = amplitudes(phases, &trace.theta_e, highest);
+    let mean_share = |order: usize| {
+        let shares = phases.iter();
+        let shares = shares.map(|phase| percent(phase[order], phase[1], trace.current_floor));
+        shares.sum::<Option<f64>>().map(|sum| sum / 3.0)
+    };
+    (0..=highest).map(mean_share).collect()
 }
 
-/// Harmonics of the torque in percent of its mean.
-pub fn of_torque(trace: &Trace, highest: usize) -> Vec<f64> {
+/// Harmonics of the torque in percent of its mean; none of a mean that is nothing.
+pub fn of_torque(trace: &Trace, highest: usize) -> Vec<Option<f64>> {
     let [amplitudes] = amplitudes([&trace.torque[..]], &trace.theta_e, highest);
-    let scale = 100.0 / amplitudes[0];
-    amplitudes.into_iter().map(|a| scale * a).collect()
+    let share = |amplitude: &f64| percent(*amplitude, amplitudes[0], trace.torque_floor);
+    amplitudes.iter().map(share).collect()
 }
 
 /// Harmonics of the ideal quasi-square wave in percent of its fundamental: 100/n for odd orders

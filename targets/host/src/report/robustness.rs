@@ -69,16 +69,17 @@ pub struct Figures {
     pub engine: EngineKind,
     /// Torque in newton metres of the demanded current on this plant's EMF constant.
     pub expected_torque_nm: f64,
-    /// Mean torque in newton metres.
-    pub mean_torque_nm: f64,
-    /// Peak-to-peak ripple in percent of the mean.
-    pub ripple_pp_pct: f64,
-    /// RMS ripple in percent of the mean.
-    pub ripple_rms_pct: f64,
+    /// Mean torque in newton metres. This and what follows up to the outcome: none of a drive that
+    /// tripped.
+    pub mean_torque_nm: Option<f64>,
+    /// Peak-to-peak ripple in percent of the mean; none of a mean that is nothing.
+    pub ripple_pp_pct: Option<f64>,
+    /// RMS ripple in percent of the mean, likewise.
+    pub ripple_rms_pct: Option<f64>,
     /// Swing of the sampled current in percent of the reference's length.
-    pub swing_current_pct: f64,
+    pub swing_current_pct: Option<f64>,
     /// Swing of the mean voltage in percent of the bus voltage.
-    pub swing_voltage_pct: f64,
+    pub swing_voltage_pct: Option<f64>,
     /// How the run ended.
     pub outcome: Outcome,
     /// What tripped the drive.
@@ -181,7 +182,8 @@ pub struct Measured {
 impl Measured {
     /// Compares with the undisturbed run at the same speed.
     pub fn judged(&self, undisturbed: &Self) -> Figures {
-        let (merits, swing) = (&self.merits, self.swing);
+        let merits = &self.merits;
+        let swing = Some(self.swing).filter(|_| self.tripped.is_none());
         let outcome = if self.tripped.is_some() {
             Outcome::Trips
         } else if self.oscillates(undisturbed) {
@@ -195,8 +197,8 @@ impl Measured {
             mean_torque_nm: merits.mean_torque_nm,
             ripple_pp_pct: merits.ripple_pp_pct,
             ripple_rms_pct: merits.ripple_rms_pct,
-            swing_current_pct: swing.current_pct,
-            swing_voltage_pct: swing.voltage_pct,
+            swing_current_pct: swing.map(|swing| swing.current_pct),
+            swing_voltage_pct: swing.map(|swing| swing.voltage_pct),
             outcome,
             tripped: self.tripped,
             heat: match outcome {
@@ -210,15 +212,24 @@ impl Measured {
         if self.modulates {
             self.swing.current_pct > SWINGING_CURRENT || self.swing.voltage_pct > SWINGING_VOLTAGE
         } else {
-            self.merits.ripple_rms_pct > SWINGING_RIPPLE * undisturbed.merits.ripple_rms_pct
+            let ripples = self
+                .merits
+                .ripple_rms_pct
+                .zip(undisturbed.merits.ripple_rms_pct);
+            ripples.is_some_and(|(own, calm)| own > SWINGING_RIPPLE * calm)
         }
     }
 
     fn heat(&self, undisturbed: &Self) -> Heat {
-        let held = |run: &Self| 100.0 * run.merits.mean_torque_nm / run.expected_torque;
-        let torque = (held(self) - held(undisturbed)).abs();
-        let ripple = self.merits.ripple_rms_pct - undisturbed.merits.ripple_rms_pct;
+        let figures = |run: &Self| {
+            let torque = 100.0 * run.merits.mean_torque_nm? / run.expected_torque;
+            Some((torque, run.merits.ripple_rms_pct?))
+        };
         // A run without torque has no ripple in percent of it: it is far away.
+        let Some((own, calm)) = figures(self).zip(figures(undisturbed)) else {
+            return Heat::Strong;
+        };
+        let (torque, ripple) = ((own.0 - calm.0).abs(), own.1 - calm.1);
         let is_within = |points: &f64| torque < *points && ripple < *points;
         match STEPS.iter().position(is_within) {
             Some(0) => Heat::None,
@@ -248,26 +259,15 @@ mod tests {
     use super::*;
     use crate::closed_loop::Cause;
 
-    fn run(mean_torque: f64, ripple_rms_pct: f64) -> Measured {
+    fn run(mean_torque: f64, ripple_rms_pct: impl Into<Option<f64>>) -> Measured {
         Measured {
             engine: EngineKind::Compiled,
             modulates: true,
             expected_torque: 2.0,
             merits: Merits {
-                mean_torque_nm: mean_torque,
-                ripple_pp_pct: 4.0 * ripple_rms_pct,
-                ripple_rms_pct,
-                h6_pct: 0.0,
-                h12_pct: 0.0,
-                i5_pct: 0.0,
-                i7_pct: 0.0,
-                i11_pct: 0.0,
-                i13_pct: 0.0,
-                thd_pct: 0.0,
-                tracking_rms_a: 0.0,
-                commutation_us: 0.0,
-                switching_hz: 0.0,
-                saturated_pct: 0.0,
+                mean_torque_nm: Some(mean_torque),
+                ripple_rms_pct: ripple_rms_pct.into(),
+                ..Merits::default()
             },
             swing: Swing::default(),
             tripped: None,
@@ -286,12 +286,12 @@ mod tests {
             (1.80, 1.0, Heat::Marked),
             (1.98, 12.0, Heat::Strong),
             (1.70, 1.0, Heat::Strong),
-            (0.0, f64::NAN, Heat::Strong),
             // Less ripple is no distance.
             (1.98, 0.0, Heat::None),
         ] {
             assert_eq!(heat(run(torque, ripple)), expected, "{torque} {ripple}");
         }
+        assert_eq!(heat(run(0.0, None)), Heat::Strong);
         // Another EMF constant gives another torque from the same current.
         let stronger = Measured {
             expected_torque: 2.6,
@@ -331,12 +331,22 @@ mod tests {
                 time_s: 0.01,
                 rpm: 100.0,
             }),
+            merits: Merits::default(),
             ..chooses(10.1)
         };
         let figures = tripped.judged(&undisturbed);
         assert_eq!(
             (figures.outcome, figures.heat),
             (Outcome::Trips, Heat::Broken)
+        );
+        // A tripped drive has no figures of merit, of swing either.
+        assert_eq!(
+            (figures.swing_current_pct, figures.swing_voltage_pct),
+            (None, None)
+        );
+        assert_eq!(
+            chooses(1.0).judged(&undisturbed).swing_current_pct,
+            Some(50.0)
         );
     }
 }

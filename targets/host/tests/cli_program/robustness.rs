@@ -174,6 +174,16 @@ fn a_drive_that_trips_says_so_in_its_cell() {
     let cell = cell(&sheet, "L -30 %", 1500.0);
     assert_eq!(cell["outcome"], "trips", "{cell}");
     assert_eq!(cell["tripped"]["fault"], "over_current");
+    for figure in [
+        "mean_torque_nm",
+        "ripple_pp_pct",
+        "ripple_rms_pct",
+        "swing_current_pct",
+        "swing_voltage_pct",
+    ] {
+        assert!(keys(cell).contains(&figure), "{cell}");
+        assert_eq!(cell[figure], Value::Null, "{figure}: {cell}");
+    }
 }
 
 #[test]

@@ -236,10 +236,181 @@ fn a_speed_loop_reaches_the_speed_that_is_set() {
 
 #[test]
 fn a_set_point_beyond_the_limit_is_told() {
-    let said = run(["simulate", PAPER, "--rpm", "300", "--torque", "5", "--json"]);
+    let at = |torque: &str| {
+        run([
+            "simulate", PAPER, "--rpm", "300", "--torque", torque, "--json",
+        ])
+    };
+    let said = at("5");
     let result = said.json();
     assert!(said.stderr.contains("max_current"), "{}", said.stderr);
-    assert!(number(&result, "mean_torque_nm") < 4.0, "{result}");
+    let reached = number(&result, "mean_torque_nm");
+    assert!(reached < 4.0, "{result}");
+    // Tracking is judged by the current that the drive may ask for, not by the one that it may not.
+    let asked = at(&reached.to_string()).json();
+    let [beyond, within] = [&result, &asked].map(|run| number(run, "tracking_rms_a"));
+    assert!(
+        (beyond / within - 1.0).abs() < 0.05,
+        "{beyond} A, {within} A"
+    );
+}
+
+#[test]
+fn a_percentage_of_nothing_is_absent() {
+    let torque = &MERITS[1..5];
+    let current = &MERITS[5..10];
+    let [harmonics, both] = [[&torque[2..], current].concat(), [torque, current].concat()];
+    for controller in ["pdcc", "pi-pwm", "fcs-mpc", "phcc"] {
+        for (rpm, torque, absent) in [
+            ("1500", "0", &both),
+            ("0", "0", &both),
+            ("0", "3", &harmonics),
+        ] {
+            let arguments = ["--rpm", rpm, "--torque", torque, "--controller", controller];
+            let result = simulate(&[&arguments[..], &["--start-angle", "0.1"]].concat());
+            for key in MERITS {
+                let is_absent = absent.contains(&key) || (rpm, key) == ("0", "commutation_us");
+                let place = format!("{controller}, {rpm} rpm, {torque} Nm, {key}: {result}");
+                assert!(keys(&result).contains(&key), "{place}");
+                assert_eq!(result[key].is_null(), is_absent, "{place}");
+            }
+        }
+    }
+    let said = run(["simulate", PAPER, "--rpm", "0", "--start-angle", "0.1"]);
+    assert!(
+        said.stdout
+            .contains("| current distortion          |       - |"),
+        "{}",
+        said.stdout
+    );
+}
+
+#[test]
+fn a_free_shaft_tells_the_speed_that_it_reached() {
+    // 1 Nm against 0.5 Nm: 100 rad/s^2 for 50 ms of settling and 150 ms of measurement.
+    let free = [
+        "--rpm",
+        "600",
+        "--torque",
+        "1",
+        "--inertia",
+        "5e-3",
+        "--load",
+        "0.5",
+        "--start-angle",
+        "0.1",
+    ];
+    let result = simulate(&free);
+    let gained = |seconds: f64| 600.0 + 100.0 * seconds * 60.0 / std::f64::consts::TAU;
+    for (key, expected) in [("mean_rpm", gained(0.125)), ("final_rpm", gained(0.2))] {
+        let found = number(&result, key);
+        assert!(
+            (found / expected - 1.0).abs() < 0.01,
+            "{key}: {found}, {expected}"
+        );
+    }
+    assert_eq!(number(&result, "rpm"), 600.0);
+    assert_eq!(
+        (&result["set_rpm"], &result["settled"]),
+        (&Value::Null, &Value::Null)
+    );
+    let said = run(["simulate", PAPER].iter().chain(&free));
+    assert!(said.stdout.contains("free shaft: 718.9"), "{}", said.stdout);
+}
+
+#[test]
+fn a_speed_loop_that_does_not_settle_says_so() {
+    let common = [
+        "simulate",
+        "hurst-long",
+        "--controller",
+        "pdcc:speed_loop=on",
+        "--rpm",
+        "0",
+        "--speed-set",
+        "1500",
+        "--inertia",
+        "7.06e-6",
+        "--start-angle",
+        "0.1",
+        "--load",
+    ];
+    for (load, settled) in [("0.1", true), ("0.4", false)] {
+        let said = run(common.iter().chain(&[load, "--json"]));
+        let result = said.json();
+        assert_eq!(result["settled"], settled, "{result}");
+        assert_eq!(
+            said.stderr.contains("has not settled"),
+            !settled,
+            "{}",
+            said.stderr
+        );
+        let table = run(common.iter().chain(&[load]));
+        assert_eq!(table.code, 0);
+        assert_eq!(
+            table.stdout.contains(", NOT settled"),
+            !settled,
+            "{}",
+            table.stdout
+        );
+        assert_eq!(
+            table.stdout.contains(", settled"),
+            settled,
+            "{}",
+            table.stdout
+        );
+    }
+}
+
+/// This motor's default drive gives more torque than is asked for, the more the faster it turns, until it trips.
+#[test]
+fn limit_ends_where_the_torque_rises_above_the_demand() {
+    let options = ["--controller", "pdcc", "--start-angle", "0.1"];
+    let common = ["limit", "br2804-1700kv"];
+    let result = run(common.iter().chain(&options).chain(&["--json"])).json();
+    let demand = number(&result, "torque_nm");
+    let curve: Vec<(f64, f64)> =
+        serde_json::from_value(result["curve"].clone()).expect("pairs of numbers");
+    let [.., before, last] = curve[..] else {
+        panic!("too short: {result}");
+    };
+    assert!(
+        before.1 / demand <= 1.03 && last.1 / demand > 1.03,
+        "{before:?} {last:?}"
+    );
+    let part = (1.03 * demand - before.1) / (last.1 - before.1);
+    let expected = before.0 + part * (last.0 - before.0);
+    let found = number(&result, "limit_rpm");
+    assert!(
+        (found - expected).abs() < 1e-6 && found < 6000.0,
+        "{found} {expected}"
+    );
+    assert_eq!(
+        (&result["outcome"], &result["lost"]),
+        (&"found".into(), &"above".into())
+    );
+    let text = run(common.iter().chain(&options)).stdout;
+    assert!(text.contains("; beyond, torque above the demand"), "{text}");
+
+    // PHCC overshoots the set torque of this motor from the first speed on.
+    let said = run([
+        "limit",
+        PAPER,
+        "--controller",
+        "phcc",
+        "--start-angle",
+        "0.1",
+        "--json",
+    ]);
+    let result = said.json();
+    assert_eq!(
+        (&result["outcome"], &result["lost"]),
+        (&"never_held".into(), &"above".into())
+    );
+    assert_eq!(
+        (&result["limit_rpm"], &result["limit_pct"]),
+        (&Value::Null, &Value::Null)
+    );
 }
 
 #[test]
@@ -258,6 +429,7 @@ fn limit_has_its_keys_and_agrees_with_simulate() {
     let (rpm, percent) = (number(&result, "limit_rpm"), number(&result, "limit_pct"));
     assert!((percent - rpm / 20.0).abs() < 1e-9, "{rpm} {percent}");
     assert_eq!(result["outcome"], "found");
+    assert_eq!(result["lost"], "below");
     assert_eq!(result["tripped"], Value::Null);
     assert_eq!(result["engine"], "interpreter");
     let held = |rpm: f64| {
@@ -298,6 +470,10 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
         let time = number(trip, "time_s");
         assert!(time > 0.0 && time < 0.1, "{trip}");
         assert!((number(trip, "rpm") - 1500.0).abs() < 1e-6, "{trip}");
+        for key in MERITS {
+            assert!(keys(&result).contains(&key), "{result}");
+            assert_eq!(result[key], Value::Null, "{key} of a drive that tripped");
+        }
 
         let said = run(["limit", PAPER].iter().chain(&common).chain(&plant));
         assert_eq!(said.code, 1, "{said:?}");
@@ -305,12 +481,15 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
         let result = said.json_whatever_the_code();
         assert_eq!(result["outcome"], "never_held", "{result}");
         assert_eq!(result["limit_rpm"], Value::Null);
+        assert_eq!(result["curve"], serde_json::json!([]), "{result}");
+        assert_eq!(result["lost"], Value::Null);
         assert_eq!(result["tripped"]["fault"], "over_current", "{result}");
         assert!((number(&result["tripped"], "rpm") - 400.0).abs() < 1e-6);
     }
     let said = run(["simulate", PAPER, "--rpm", "1500", "--scale-l", "0.1"]);
     assert_eq!(said.code, 1);
-    assert!(said.stdout.contains("| mean torque"), "{}", said.stdout);
+    assert!(said.stdout.contains("the drive tripped"), "{}", said.stdout);
+    assert!(!said.stdout.contains('|'), "{}", said.stdout);
 }
 
 /// A motor file's controller is the one that is named, with the options that the file gives it; so

@@ -8,7 +8,7 @@ use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
 use hexagen_host::closed_loop::{
-    CurrentLoop, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
+    CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
 use hexagen_host::engine::EngineKind;
 use hexagen_host::plant::{PlantParams, Truth};
@@ -178,6 +178,7 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
             points.push(RunPoint {
                 rpm,
                 merits: measured.merits,
+                tripped: measured.tripped,
             });
             if model == Model::Fixed {
                 let trace = measured.traces.swap_remove(0);
@@ -191,6 +192,7 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
             };
             let grid = LimitOptions {
                 from_rpm: 1200.0,
+                held: Held::AtLeast,
                 to_rpm: 2500.0,
                 step_rpm: 100.0,
                 ..LimitOptions::new(2000.0, TORQUE)
@@ -232,7 +234,7 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
                     factor,
                     rpm: 400.0,
                     ripple_rms_pct: merits.ripple_rms_pct,
-                    stable: merits.ripple_rms_pct < 5.0,
+                    stable: merits.ripple_rms_pct.is_some_and(|ripple| ripple < 5.0),
                 });
             }
         }
@@ -298,11 +300,11 @@ fn robustness() -> Robustness {
                 let figures = Figures {
                     engine: EngineKind::Compiled,
                     expected_torque_nm: TORQUE,
-                    mean_torque_nm: TORQUE - 0.1 * place as f64,
-                    ripple_pp_pct: 12.0,
-                    ripple_rms_pct: 2.5,
-                    swing_current_pct: 1.0,
-                    swing_voltage_pct: 1.0,
+                    mean_torque_nm: Some(TORQUE - 0.1 * place as f64),
+                    ripple_pp_pct: Some(12.0),
+                    ripple_rms_pct: Some(2.5),
+                    swing_current_pct: Some(1.0),
+                    swing_voltage_pct: Some(1.0),
                     outcome,
                     tripped: None,
                     heat,
@@ -365,6 +367,7 @@ pub fn data() -> ReportData {
         source: Some("M. S. Trivedi, R. K. Keshri, doi 10.1109/ACCESS.2020.2978695, Table 4 <text & \"quotes\">".to_owned()),
         torque: TORQUE,
         current: CURRENT,
+        held: Held::AtLeast,
         speeds_rpm: SPEEDS.to_vec(),
         verification: Some(Verification {
             engine: "compiled".to_owned(),

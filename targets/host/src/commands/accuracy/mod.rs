@@ -9,11 +9,12 @@ pub use uniform::{Uniform16, uniform_format};
 
 use crate::cli::Failure;
 use crate::closed_loop::{
-    ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace, share_of_allowance,
+    ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace, Trip, percent,
+    share_of_allowance,
 };
 use crate::engine::{Engine, Model, Prepared, SetPoint};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
-use hexagen::{Legs, Sample};
+use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::{BitTrue, Ideal};
 use one_step::{Step, Sums};
 use rayon::prelude::*;
@@ -40,6 +41,11 @@ impl CurrentLoop for SameWords {
         self.sums.add(&step, self.timer_period);
         duties.to_legs(self.timer_period)
     }
+
+    /// It follows the drive that it is compared with, into a trip, too.
+    fn fault(&self) -> Fault {
+        self.bit_true.fault()
+    }
 }
 
 /// A drive that notes what it reads.
@@ -52,6 +58,10 @@ impl CurrentLoop for Noting<'_> {
     fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
         self.samples.push(*sample);
         self.engine.step(sample, truth)
+    }
+
+    fn fault(&self) -> Fault {
+        self.engine.fault()
     }
 }
 
@@ -98,7 +108,7 @@ pub fn side_by_side(
             engine: drive.engine(Model::Fixed, set_point),
             samples: Vec::with_capacity(settling + measured),
         };
-        let (fixed, noting) = settled(motor.clone(), noting, run, settling, measured);
+        let (fixed, fixed_trip, noting) = settled(motor.clone(), noting, run, settling, measured);
         let (bit_true, ideal) = drive.references(set_point);
         let same_words = SameWords {
             bit_true,
@@ -107,34 +117,38 @@ pub fn side_by_side(
             timer_period: plant.timer_period,
             sums: none.clone(),
         };
-        let (ideal, same_words) = settled(motor, same_words, run, settling, measured);
-        Ok((fixed, ideal, same_words.sums))
+        let (ideal, ideal_trip, same_words) = settled(motor, same_words, run, settling, measured);
+        Ok(((fixed, fixed_trip), (ideal, ideal_trip), same_words.sums))
     });
     let starts = starts.collect::<Result<Vec<_>, PlantError>>()?;
     let sums = starts
         .iter()
         .fold(none.clone(), |sum, start| sum.and(&start.2));
-    let (fixed, ideal) = starts.into_iter().map(|(f, i, _)| (f, i)).unzip();
+    let (fixed, ideal): (Vec<_>, Vec<_>) = starts.into_iter().map(|(f, i, _)| (f, i)).unzip();
+    let measurement = |starts: Vec<(Trace, Option<Trip>)>| {
+        let (traces, trips): (Vec<_>, Vec<_>) = starts.into_iter().unzip();
+        Measurement::of(traces, trips.into_iter().flatten().next(), run)
+    };
     Ok(SideBySide {
-        fixed: Measurement::of(fixed, run),
-        ideal: Measurement::of(ideal, run),
+        fixed: measurement(fixed),
+        ideal: measurement(ideal),
         sums,
     })
 }
 
-/// Settles a loop and records its measured window; gives the controller back.
+/// Settles a loop and records its measured window; gives its trip and the controller back.
 fn settled<C: CurrentLoop>(
     motor: Plant,
     controller: C,
     run: &RunOptions,
     settling: usize,
     measured: usize,
-) -> (Trace, C) {
+) -> (Trace, Option<Trip>, C) {
     let mut closed = ClosedLoop::new(motor, controller, run.delay);
     closed.run(settling, &mut ());
     let mut trace = Trace::new(closed.plant(), measured);
     closed.run(measured, &mut trace);
-    (trace, closed.into_controller())
+    (trace, closed.tripped(), closed.into_controller())
 }
 
 /// A merit of the fixed-point drive beside the ideal model's.
@@ -144,14 +158,14 @@ pub struct MeritDifference {
     pub merit: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Of the fixed-point drive.
-    pub fixed: f64,
+    /// Of the fixed-point drive; null where there is no such figure, as after a trip.
+    pub fixed: Option<f64>,
     /// Of the ideal model on the same words.
-    pub ideal: f64,
+    pub ideal: Option<f64>,
     /// Of the ideal model in a loop of its own.
-    pub ideal_alone: f64,
+    pub ideal_alone: Option<f64>,
     /// How far `fixed` and `ideal` are apart, in parts of what still counts as close: 0.5 %, or 0.05 points where
-    /// the unit is %.
+    /// the unit is %; infinite (in JSON null) where only one of them exists or `ideal` alone is zero.
     pub of_allowance: f64,
     /// Whether that is at most 1.
     pub close: bool,
@@ -160,13 +174,12 @@ pub struct MeritDifference {
 impl MeritDifference {
     /// The difference with its unit: points of percentages, percent of everything else.
     pub fn text(&self) -> String {
-        let distance = (self.fixed - self.ideal).abs();
-        let (value, unit) = if self.unit == "%" {
-            (distance, "points")
-        } else if distance == 0.0 {
-            (0.0, "%")
-        } else {
-            (100.0 * distance / self.ideal.abs(), "%")
+        let both = self.fixed.zip(self.ideal);
+        let (value, unit) = match both.map(|(fixed, ideal)| ((fixed - ideal).abs(), ideal)) {
+            None => (None, if self.unit == "%" { "points" } else { "%" }),
+            Some((distance, _)) if self.unit == "%" => (Some(distance), "points"),
+            Some((0.0, _)) => (Some(0.0), "%"),
+            Some((distance, ideal)) => (percent(distance, ideal, 0.0), "%"),
         };
         format!("{} {unit}", crate::cli::significant(value, 2))
     }

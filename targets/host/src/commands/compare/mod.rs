@@ -10,7 +10,7 @@ use super::robustness;
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, print_json, spinner, write_file,
 };
-use crate::closed_loop::measure;
+use crate::closed_loop::{Trip, measure};
 use crate::engine::{EngineKind, Model, Prepared};
 use crate::report::Robustness;
 use clap::Args;
@@ -88,6 +88,8 @@ impl Accuracy {
 pub struct AtSpeed {
     /// Mechanical speed, rpm.
     pub rpm: f64,
+    /// What tripped the fixed-point drive; then it has no merits.
+    pub tripped: Option<Trip>,
     /// Every merit.
     pub merits: Vec<MeritDifference>,
 }
@@ -122,7 +124,11 @@ pub fn accuracy(drive: &Prepared, plant: &PlantArguments) -> Result<Accuracy, Fa
         let run = plant.run(drive, *rpm, torque);
         let alone = measure(&params, &run, drive.maker(Model::Ideal, set_point))?;
         let merits = differences(&both.fixed.merits, &both.ideal.merits, &alone.merits);
-        Ok(AtSpeed { rpm: *rpm, merits })
+        Ok(AtSpeed {
+            rpm: *rpm,
+            tripped: both.fixed.tripped,
+            merits,
+        })
     });
     let closed_loop = closed_loop.collect::<Result<_, Failure>>()?;
     let (one_step, histogram) = one_step(drive, measured.iter().map(|(_, both)| both));

@@ -37,7 +37,10 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
                 at.rpm,
                 accuracy.engine.name()
             ))?;
-            print_text(&merit_table(&at.merits))?;
+            match at.tripped {
+                Some(trip) => print_text(&trip.to_string())?,
+                None => print_text(&merit_table(&at.merits))?,
+            }
         }
     }
     print_text(
@@ -75,11 +78,17 @@ fn accuracy_table(rows: &[Row]) -> String {
     ];
     table(rows, header, |accuracy| {
         let one_step = &accuracy.one_step;
-        let closed_loop = accuracy
-            .furthest()
-            .map_or_else(String::new, |(merit, rpm)| {
+        let mut trips = accuracy
+            .closed_loop
+            .iter()
+            .filter(|at| at.tripped.is_some());
+        let closed_loop = match (trips.next(), accuracy.furthest()) {
+            (Some(at), _) => format!("trips, {:.0} rpm", at.rpm),
+            (None, Some((merit, rpm))) => {
                 format!("{}: {}, {rpm:.0} rpm", merit.text(), merit.merit)
-            });
+            }
+            (None, None) => String::new(),
+        };
         vec![
             format!("{:.1}", one_step.snr_db),
             significant(one_step.largest_v, 3),

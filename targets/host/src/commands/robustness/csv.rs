@@ -3,7 +3,7 @@
 use crate::report::{Figures, Robustness};
 use serde::Serialize;
 
-/// A row; what a refused cell does not have is empty.
+/// A row; what a refused cell or a tripped drive does not have is empty.
 #[derive(Serialize)]
 struct Row<'s>(
     &'s str,
@@ -65,11 +65,11 @@ fn values(figures: Option<&Figures>) -> ([Option<f64>; 7], [Option<String>; 4]) 
     };
     let numbers = [
         Some(figures.expected_torque_nm),
-        Some(figures.mean_torque_nm),
-        Some(figures.ripple_pp_pct),
-        Some(figures.ripple_rms_pct),
-        Some(figures.swing_current_pct),
-        Some(figures.swing_voltage_pct),
+        figures.mean_torque_nm,
+        figures.ripple_pp_pct,
+        figures.ripple_rms_pct,
+        figures.swing_current_pct,
+        figures.swing_voltage_pct,
         figures.tripped.map(|trip| trip.time_s),
     ];
     let words = [

@@ -17,8 +17,8 @@ const FILLED: f64 = 0.8;
 pub struct Group {
     /// Text below.
     pub name: String,
-    /// A value per bar; not finite where there is none.
-    pub values: Vec<f64>,
+    /// A value per bar, where there is one.
+    pub values: Vec<Option<f64>>,
     /// The ideal value, marked across the group.
     pub ideal: Option<f64>,
 }
@@ -76,10 +76,10 @@ pub fn bars(bars: &Bars<'_>) -> Result<PreEscaped<String>, ReportError> {
         let above = anchored(&text(AXIS, 0.8), HPos::Center, VPos::Bottom);
         for (k, group) in bars.groups.iter().enumerate() {
             let start = k as f64 + (1.0 - FILLED) / 2.0;
-            for (bar, (&value, color)) in group.values.iter().zip(&bars.colors).enumerate() {
-                if !value.is_finite() {
+            for (bar, (value, color)) in group.values.iter().zip(&bars.colors).enumerate() {
+                let Some(value) = *value else {
                     continue;
-                }
+                };
                 let left = start + bar as f64 * width;
                 let corners = [(left, value.min(bars.top)), (left + 0.88 * width, 0.0)];
                 let element = Rectangle::new(corners, color.filled());

@@ -26,11 +26,10 @@ pub fn stability(
     let x_range = least - pad..most + pad;
     // Far outside the range the ripple says no more than that the loop is unstable.
     let stable = checks.iter().filter(|check| check.stable);
-    let calm = stable.map(|c| c.ripple_rms_pct).fold(0.0, f64::max);
+    let calm = stable.filter_map(|c| c.ripple_rms_pct).fold(0.0, f64::max);
     let any = checks
         .iter()
-        .map(|c| c.ripple_rms_pct)
-        .filter(|ripple| ripple.is_finite())
+        .filter_map(|c| c.ripple_rms_pct)
         .fold(0.0, f64::max);
     let y_step = canvas::step(&(0.0..any.min(4.0 * calm).max(1.0)), 6);
     let top = (any.min(4.0 * calm).max(1.0) / y_step).ceil() * y_step;
@@ -68,15 +67,11 @@ pub fn stability(
                 }
             }
         }
-        let inside = |ripple: f64| {
-            if ripple.is_finite() {
-                ripple.min(top)
-            } else {
-                top
-            }
-        };
         for check in checks {
-            let at = (check.factor, inside(check.ripple_rms_pct));
+            let at = (
+                check.factor,
+                check.ripple_rms_pct.map_or(top, |ripple| ripple.min(top)),
+            );
             let plane = chart.plotting_area();
             if check.stable {
                 plane.draw(&Circle::new(at, px(3.5), PHASES[0].filled()))

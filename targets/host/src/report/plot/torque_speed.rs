@@ -5,6 +5,7 @@ use super::canvas::{
     polyline, px, rule_above, text, tick_text, ticks, write_at,
 };
 use super::palette::{AXIS, DEMAND, INK};
+use crate::closed_loop::{Held, Side, TOLERANCE};
 use crate::report::{ReportError, SpeedMark};
 use maud::PreEscaped;
 use plotters::prelude::*;
@@ -45,8 +46,8 @@ pub struct TorqueSpeed<'a> {
     pub curves: Vec<Curve>,
     /// Marks along the speed axis.
     pub marks: &'a [SpeedMark],
-    /// Fraction of the demand that counts as held.
-    pub held: f64,
+    /// Which mean torques count as held.
+    pub held: Held,
 }
 
 /// Dash and gap of the curve at a place in the legend, in CSS pixels; no gap means a solid line.
@@ -95,14 +96,21 @@ pub fn torque_speed(plot: &TorqueSpeed<'_>) -> Result<PreEscaped<String>, Report
         draw_marks(&mut chart, &marks, &y_range)?;
         let demand = [(x_range.start, plot.torque), (x_range.end, plot.torque)];
         polyline(&mut chart, demand, line(DEMAND, 1.0))?;
-        let held = demand.map(|(rpm, torque)| (rpm, plot.held * torque));
-        dashed(&mut chart, held, line(DEMAND, 1.0), (6.0, 4.0))?;
         let name = text(INK, 0.95);
         let above = anchored(&name, HPos::Left, VPos::Bottom);
         write_at(&chart, "demand", demand[0], (6.0, -3.0), &above)?;
         let below = anchored(&name, HPos::Left, VPos::Top);
-        let percent = format!("{:.0} % of demand", 100.0 * plot.held);
-        write_at(&chart, &percent, held[0], (6.0, 3.0), &below)?;
+        for side in plot.held.sides() {
+            let held = demand.map(|(rpm, torque)| (rpm, side.edge() * torque));
+            dashed(&mut chart, held, line(DEMAND, 1.0), (6.0, 4.0))?;
+            let percent = format!("{:.0} % of demand", 100.0 * side.edge());
+            // Beside the name of the demand, however near its line is.
+            let (offset, style) = match side {
+                Side::Below => ((6.0, 3.0), &below),
+                Side::Above => ((66.0, -3.0), &above),
+            };
+            write_at(&chart, &percent, held[0], offset, style)?;
+        }
         for curve in &plot.curves {
             draw_curve(&mut chart, curve, y_range.start)?;
         }
@@ -231,14 +239,14 @@ fn speed_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     least..most + pad
 }
 
-/// Holds every curve as far down as [`LEAST`] of the demand; at least 9 % of the demand high.
+/// Holds every curve as far down as [`LEAST`] of the demand; at least 12 % of the demand high.
 fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     let torques = plot
         .curves
         .iter()
         .flat_map(|curve| curve.points.iter().map(|point| point.1));
-    let span = 0.03 * plot.torque.abs();
-    let start = (plot.torque - 2.0 * span, plot.torque + span);
+    let span = TOLERANCE * plot.torque.abs();
+    let start = (plot.torque - 2.0 * span, plot.torque + 2.0 * span);
     let (least, most) = torques
         .filter(|torque| torque.is_finite())
         .fold(start, |(least, most), torque| {

@@ -34,19 +34,19 @@ const HIGH: usize = 1;
 /// Torque harmonics: name and figure.
 const TORQUE: [(&str, Of); 2] = [("6th", h6), ("12th", h12)];
 
-fn h6(at: &AtSpeed) -> f64 {
+fn h6(at: &AtSpeed) -> Option<f64> {
     at.h6_pct
 }
 
-fn h12(at: &AtSpeed) -> f64 {
+fn h12(at: &AtSpeed) -> Option<f64> {
     at.h12_pct
 }
 
-fn hexagon(at: &AtSpeed) -> f64 {
+fn hexagon(at: &AtSpeed) -> Option<f64> {
     at.hexagon_rms_a
 }
 
-fn switching(at: &AtSpeed) -> f64 {
+fn switching(at: &AtSpeed) -> Option<f64> {
     at.switching_hz
 }
 

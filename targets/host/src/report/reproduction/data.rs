@@ -208,6 +208,7 @@ fn figures(run: &Run) -> Figures {
         let Point {
             merits,
             hexagon_rms_a,
+            trip,
             ..
         } = &run.points[speed];
         AtSpeed {
@@ -216,7 +217,7 @@ fn figures(run: &Run) -> Figures {
             h12_pct: merits.h12_pct,
             i5_pct: merits.i5_pct,
             i7_pct: merits.i7_pct,
-            hexagon_rms_a: *hexagon_rms_a,
+            hexagon_rms_a: trip.is_none().then_some(*hexagon_rms_a),
             switching_hz: merits.switching_hz,
         }
     });

@@ -5,7 +5,7 @@
 
 use super::data::Method;
 use super::judge::Finding;
-use crate::closed_loop::HELD;
+use crate::closed_loop::{Held, Side};
 
 /// Fraction of the demand below which a drive has lost its current.
 const LOST: f64 = 0.5;
@@ -23,23 +23,23 @@ pub struct Setting {
     pub period_cycles: f64,
 }
 
-/// Figures of a drive at one speed.
+/// Figures of a drive at one speed; none of a drive that tripped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtSpeed {
     /// Mean torque in newton metres.
-    pub mean_torque_nm: f64,
+    pub mean_torque_nm: Option<f64>,
     /// 6th harmonic of the torque in percent of its mean.
-    pub h6_pct: f64,
+    pub h6_pct: Option<f64>,
     /// 12th harmonic, likewise.
-    pub h12_pct: f64,
+    pub h12_pct: Option<f64>,
     /// 5th harmonic of the phase current in percent of the fundamental.
-    pub i5_pct: f64,
+    pub i5_pct: Option<f64>,
     /// 7th harmonic, likewise.
-    pub i7_pct: f64,
+    pub i7_pct: Option<f64>,
     /// RMS distance of the current from the ideal hexagon's outline in amperes.
-    pub hexagon_rms_a: f64,
+    pub hexagon_rms_a: Option<f64>,
     /// Turn-ons per device and second.
-    pub switching_hz: f64,
+    pub switching_hz: Option<f64>,
 }
 
 /// Figures of a drive.
@@ -65,7 +65,7 @@ pub struct Experiment {
 }
 
 /// A figure of a drive at a speed.
-pub type Of = fn(&AtSpeed) -> f64;
+pub type Of = fn(&AtSpeed) -> Option<f64>;
 
 impl Experiment {
     fn drive(&self, method: Method) -> &Figures {
@@ -74,14 +74,13 @@ impl Experiment {
 
     fn is_lost(&self, method: Method, speed: usize) -> bool {
         let torque = self.drive(method).speeds[speed].mean_torque_nm;
-        let share = torque / self.setting.torque;
-        share.is_nan() || share < LOST
+        !torque.is_some_and(|torque| torque / self.setting.torque >= LOST)
     }
 
     /// A figure at a speed; none for a drive that has lost its current.
     pub fn at(&self, method: Method, speed: usize, of: Of) -> Option<f64> {
         let figure = of(&self.drive(method).speeds[speed]);
-        (!self.is_lost(method, speed) && figure.is_finite()).then_some(figure)
+        figure.filter(|_| !self.is_lost(method, speed))
     }
 
     /// The speed limit in percent; none for a drive that has lost its current at both speeds.
@@ -111,7 +110,7 @@ impl Experiment {
             return lost(method);
         };
         Finding {
-            outcome: Some(torque / self.setting.torque < HELD),
+            outcome: Some(Held::AtLeast.lost(torque, self.setting.torque) == Some(Side::Below)),
             why: format!("{torque:.2} Nm of {:.2} Nm", self.setting.torque),
         }
     }

@@ -223,7 +223,7 @@ pub fn figures_12_13(data: &Reproduction) -> Result<Markup, ReportError> {
             .iter()
             .map(|&order| Group {
                 name: order.to_string(),
-                values: vec![of_quasi_square(order)],
+                values: vec![Some(of_quasi_square(order))],
                 ideal: None,
             })
             .collect(),

@@ -1,7 +1,7 @@
 //! Figures of runs: 4 and 14 to 20.
 
 use super::data::{Method, Point, Reading, Reproduction};
-use crate::closed_loop::{HELD, LimitOutcome};
+use crate::closed_loop::{Held, LimitOutcome};
 use crate::report::harmonics::{of_current, of_quasi_square};
 use crate::report::plot::{
     Bars, Curve, Group, Path, Plane, TorqueSpeed, Wave, bars, corners, dash, hexagon, means,
@@ -179,14 +179,14 @@ pub fn currents(data: &Reproduction, speed: usize) -> Result<Markup, ReportError
 }
 
 fn current_spectra(data: &Reproduction, speed: usize) -> Result<Markup, ReportError> {
-    let spectra: Vec<(Method, [Vec<f64>; 2])> = Method::ALL
+    let spectra: Vec<(Method, [Vec<Option<f64>>; 2])> = Method::ALL
         .into_iter()
         .map(|method| {
             let of = |reading| {
                 let point = &data.methods[method.index()].of(reading).points[speed];
                 match point.trip {
                     None => of_current(&point.trace, HIGHEST),
-                    Some(_) => vec![f64::NAN; HIGHEST + 1],
+                    Some(_) => vec![None; HIGHEST + 1],
                 }
             };
             (method, Reading::ALL.map(of))
@@ -196,11 +196,7 @@ fn current_spectra(data: &Reproduction, speed: usize) -> Result<Markup, ReportEr
         .iter()
         .flat_map(|(_, both)| both)
         .flat_map(|spectrum| ORDERS.map(|order| spectrum[order]));
-    let top = 1.06
-        * values
-            .filter(|x| x.is_finite())
-            .fold(22.0, f64::max)
-            .min(60.0);
+    let top = 1.06 * values.flatten().fold(22.0, f64::max).min(60.0);
     let mut plots = Vec::new();
     for (method, both) in &spectra {
         let plot = bars(&Bars {
@@ -293,11 +289,7 @@ fn torque_harmonics(data: &Reproduction, speed: usize) -> Result<Markup, ReportE
             orders.map(|order| Reading::ALL.map(|reading| value(method, reading, order)))
         })
         .flatten();
-    let top = 1.06
-        * values
-            .filter(|x| x.is_finite())
-            .fold(1.0, f64::max)
-            .min(60.0);
+    let top = 1.06 * values.flatten().fold(1.0, f64::max).min(60.0);
     let mut plots = Vec::new();
     for order in orders {
         let plot = bars(&Bars {
@@ -432,7 +424,7 @@ pub fn figure_20(data: &Reproduction) -> Result<Markup, ReportError> {
                 })
                 .collect(),
             marks: &marks,
-            held: HELD,
+            held: Held::AtLeast,
         })?;
         let items = runs.iter().map(|(method, run)| {
             let limit = match (run.limit.outcome, run.limit.limit_pct) {

@@ -2,7 +2,6 @@
 
 use super::data::{Method, Reading, Reproduction};
 use super::timing::{CLOCK_HZ, TIMES_TEXT};
-use crate::closed_loop::Merits;
 use crate::report::sections::{number, quantity};
 use hexagen_codegen::design::vectors::{
     LegSigns, SECTOR_CURRENT, THREE_PHASE, TWO_PHASE, clarke, leg_vector,
@@ -261,13 +260,13 @@ pub fn table_5(data: &Reproduction) -> Markup {
                             tr {
                                 td { @if reading == Reading::Literal { "(" (method.letter()) ") " (method.name()) } }
                                 td { (reading.name()) }
-                                td.number.edge { (number(run.usual_instructions().map_or(f64::NAN, f64::from), 0)) } td.number { (cost.worst) }
+                                td.number.edge { (number(run.usual_instructions().map(f64::from), 0)) } td.number { (cost.worst) }
                                 td.number.edge { (cost.code) } td.number { (cost.stack) }
-                                @for (k, time) in [times.usual.unwrap_or(f64::NAN), times.worst, times.free].into_iter().enumerate() {
-                                    td.number.edge[k == 0] { (number(1e6 * time, 1)) }
+                                @for (k, time) in [times.usual, Some(times.worst), Some(times.free)].into_iter().enumerate() {
+                                    td.number.edge[k == 0] { (number(time.map(|time| 1e6 * time), 1)) }
                                 }
                                 @for (k, point) in run.points.iter().enumerate() {
-                                    td.number.edge[k == 0] { (switching(&point.merits)) }
+                                    td.number.edge[k == 0] { (number(point.merits.switching_hz.map(|hertz| hertz / 1e3), 1)) }
                                 }
                             }
                         }
@@ -275,15 +274,6 @@ pub fn table_5(data: &Reproduction) -> Markup {
                 }
             }
         }
-    }
-}
-
-/// Switching frequency in kHz; a dash where nothing switches, because the drive has tripped.
-fn switching(merits: &Merits) -> String {
-    if merits.switching_hz == 0.0 {
-        number(f64::NAN, 0)
-    } else {
-        number(merits.switching_hz / 1e3, 1)
     }
 }
 

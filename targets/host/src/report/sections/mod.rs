@@ -31,18 +31,18 @@ pub(in crate::report) fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// A number with so many decimals and a true minus sign; a dash where there is none.
-pub(in crate::report) fn number(value: f64, decimals: usize) -> String {
-    if value.is_finite() {
-        format!("{value:.decimals$}").replace('-', "\u{2212}")
-    } else {
-        "\u{2013}".to_owned()
+pub(in crate::report) fn number(value: impl Into<Option<f64>>, decimals: usize) -> String {
+    match value.into().filter(|value: &f64| value.is_finite()) {
+        Some(value) => format!("{value:.decimals$}").replace('-', "\u{2212}"),
+        None => "\u{2013}".to_owned(),
     }
 }
 
 /// A percentage of ripple: two decimals below 1, one below 100.
-pub(in crate::report) fn ripple(value: f64) -> String {
+pub(in crate::report) fn ripple(value: impl Into<Option<f64>>) -> String {
+    let value = value.into();
     // Where rounding decides, what is shown counts.
-    let decimals = match value.abs() {
+    let decimals = match value.map_or(0.0, f64::abs) {
         x if x < 0.995 => 2,
         x if x < 99.95 => 1,
         _ => 0,
@@ -83,8 +83,9 @@ impl TorqueScale {
     }
 
     /// A torque in newton metres, with more decimals by so many.
-    fn text(&self, torque: f64, more: usize) -> String {
-        number(self.per_nm * torque, self.decimals + more)
+    fn text(&self, torque: impl Into<Option<f64>>, more: usize) -> String {
+        let torque = torque.into().map(|torque: f64| self.per_nm * torque);
+        number(torque, self.decimals + more)
     }
 }
 
@@ -182,7 +183,7 @@ mod tests {
         assert_eq!(quantity(0.135, "ohm"), "135\u{a0}m\u{3a9}");
         assert_eq!(quantity(22e-5, "H"), "220\u{a0}\u{b5}H");
         assert_eq!(quantity(-0.5, "A"), "\u{2212}500\u{a0}mA");
-        assert_eq!(number(f64::NAN, 2), "\u{2013}");
+        assert_eq!(number(None, 2), "\u{2013}");
         for (value, text) in [
             (0.128, "0.13"),
             (0.997, "1.0"),

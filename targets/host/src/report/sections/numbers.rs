@@ -73,12 +73,12 @@ struct Shown {
     decimals: usize,
     /// Whether it is a percentage, so that a few hundredths of a point count as equal.
     percentage: bool,
-    of: fn(&Merits) -> f64,
+    of: fn(&Merits) -> Option<f64>,
 }
 
 impl Shown {
-    fn text(&self, value: f64) -> String {
-        number(self.per_si * value, self.decimals)
+    fn text(&self, value: Option<f64>) -> String {
+        number(value.map(|value| self.per_si * value), self.decimals)
     }
 }
 
@@ -118,15 +118,18 @@ fn shown_merits(scale: &TorqueScale) -> [Shown; 14] {
         percent("THD", |m| m.thd_pct),
         plain("Tracking", "A", 3, |m| m.tracking_rms_a),
         plain("Commu\u{ad}tation", "\u{b5}s", 1, |m| m.commutation_us),
-        plain("Switch\u{ad}ing", "kHz", 3, |m| 1e-3 * m.switching_hz),
+        Shown {
+            per_si: 1e-3,
+            ..plain("Switch\u{ad}ing", "kHz", 3, |m| m.switching_hz)
+        },
         percent("Satu\u{ad}rated", |m| m.saturated_pct),
     ]
 }
 
 /// Fixed and ideal values of a merit.
 struct Pair {
-    fixed: f64,
-    ideal: f64,
+    fixed: Option<f64>,
+    ideal: Option<f64>,
 }
 
 impl Pair {

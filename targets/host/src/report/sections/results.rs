@@ -1,7 +1,7 @@
 //! The result table: every run, its merits at each speed, its limit, and what was expected.
 
 use super::{TorqueScale, capture_name, model_name, number, ripple, variant_swatch, variant_text};
-use crate::closed_loop::LimitOutcome;
+use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
 use crate::report::{Expectation, Expected, ReportData, Run, RunPoint};
 use maud::{Markup, html};
@@ -30,7 +30,12 @@ pub fn section(data: &ReportData) -> Markup {
         }
         p.note {
             "Ripple is torque after a moving mean over one control period, in percent of its mean: peak to peak (worst of three starts) and RMS. \
-             The limit is the first speed at which mean torque falls below 97 % of the demand."
+             The limit is the first speed at which mean torque "
+            (match data.held {
+                Held::AtLeast => "falls below 97 % of the demand, as in the design document's table: more than the demand counts as held.",
+                Held::Within => "is no longer within 3 % of the demand, on either side.",
+            })
+            " A drive that trips has no figures."
         }
         div.scroll {
             table.results {
@@ -143,9 +148,18 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
             }
         }
     };
+    let lost = run.limit.as_ref().and_then(|limit| limit.lost);
+    let above = if lost == Some(Side::Above) {
+        ", torque above"
+    } else {
+        ""
+    };
     html! {
         @for &rpm in &data.speeds_rpm {
             @match judge_point(run, rpm) {
+                Some(_) if point_at(run, rpm).is_some_and(|point| point.tripped.is_some()) => {
+                    td.number.edge.missed colspan="3" { "trips" }
+                }
                 Some([torque, pp, rms]) => {
                     (cell(torque, true, &mean, &mean))
                     (cell(pp, false, &ripple, &ripple))
@@ -165,14 +179,14 @@ fn figures(data: &ReportData, run: &Run) -> Markup {
             }
             Some(LimitOutcome::NeverHeld) => {
                 td.number.edge.missed[!judge_limit(run.limit.as_ref(), run.expected.as_ref()).met] {
-                    "never held"
+                    "never held" (above)
                     @if any_expected {
                         span.expected { (expected_limit(run.expected.as_ref())) }
                     }
                 }
             }
             Some(LimitOutcome::Found) => {
-                (cell(judge_limit(run.limit.as_ref(), run.expected.as_ref()), true, &|x| number(x, 1), &whole))
+                (cell(judge_limit(run.limit.as_ref(), run.expected.as_ref()), true, &|x| number(x, 1) + above, &whole))
             }
             None => {
                 td.number.edge {

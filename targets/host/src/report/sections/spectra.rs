@@ -19,8 +19,8 @@ const HIGHEST: usize = 25;
 struct AtSpeed {
     rpm: f64,
     colors: Vec<plotters::style::RGBColor>,
-    current: Vec<Vec<f64>>,
-    torque: Vec<Vec<f64>>,
+    current: Vec<Vec<Option<f64>>>,
+    torque: Vec<Vec<Option<f64>>>,
 }
 
 fn at_speed(data: &ReportData, rpm: f64) -> AtSpeed {
@@ -104,7 +104,7 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
 }
 
 fn groups(
-    spectra: &[Vec<f64>],
+    spectra: &[Vec<Option<f64>>],
     orders: &[usize],
     ideal: &dyn Fn(usize) -> Option<f64>,
 ) -> Vec<Group> {
@@ -117,9 +117,11 @@ fn groups(
 }
 
 /// The vertical axis' end: the greatest harmonic, at least `least`, with a little room.
-fn top<'a>(spectra: impl Iterator<Item = &'a Vec<f64>>, orders: &[usize], least: f64) -> f64 {
-    let values = spectra.flat_map(|spectrum| orders.iter().map(|&order| spectrum[order]));
-    // A current without a fundamental has no percentages.
-    let finite = values.filter(|value| value.is_finite());
-    1.06 * finite.fold(least, f64::max).min(100.0)
+fn top<'a>(
+    spectra: impl Iterator<Item = &'a Vec<Option<f64>>>,
+    orders: &[usize],
+    least: f64,
+) -> f64 {
+    let values = spectra.flat_map(|spectrum| orders.iter().filter_map(|&order| spectrum[order]));
+    1.06 * values.fold(least, f64::max).min(100.0)
 }

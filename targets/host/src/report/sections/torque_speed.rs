@@ -1,7 +1,7 @@
 //! Mean torque over speed, all variants.
 
 use super::{TorqueScale, legend, nothing, number, swatch};
-use crate::closed_loop::{HELD, LimitOutcome};
+use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::report::plot::{Curve, TorqueSpeed, dash, palette, torque_speed};
 use crate::report::{ReportData, ReportError, Variant};
 use maud::{Markup, html};
@@ -27,7 +27,10 @@ fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
         let torque = scale.text(torque, 0);
         format!(" at {torque}\u{a0}{}, its most", scale.unit)
     });
-    format!(" ({speed}{at})")
+    // That it falls off is the rule, and what the note below says.
+    let why = limit.why().filter(|_| limit.lost != Some(Side::Below));
+    let why = why.map_or_else(String::new, |why| format!(": {why}"));
+    format!(" ({speed}{at}{why})")
 }
 
 /// The plot and its legend.
@@ -63,14 +66,19 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
             })
             .collect(),
         marks: &data.marks,
-        held: HELD,
+        held: data.held,
     })?;
     Ok(html! {
         (legend(variants.iter().map(|&(index, variant)| {
             let text = format!("{}{}", variant.label, limit_text(variant, &scale));
             (swatch(palette::variant(index), 3.0, dash(index)), text)
         })))
-        p.note { "Dots and the speeds in the legend mark where mean torque falls below 97 % of the demand (of the torque given in the legend, where a limited set-point cannot ask for more). Curves end where the search for this limit ended." }
+        p.note { "Dots and the speeds in the legend mark where mean torque "
+            (match data.held {
+                Held::AtLeast => "falls below 97 %",
+                Held::Within => "is no longer within 3 %",
+            })
+            " of the demand (of the torque given in the legend, where a limited set-point cannot ask for more). Curves end where the search for this limit ended." }
         (plot)
     })
 }

@@ -13,13 +13,13 @@ const SETTING: Setting = Setting {
 
 fn at(mean: f64, [h6, h12]: [f64; 2], [i5, i7]: [f64; 2], hexagon: f64, hz: f64) -> AtSpeed {
     AtSpeed {
-        mean_torque_nm: mean,
-        h6_pct: h6,
-        h12_pct: h12,
-        i5_pct: i5,
-        i7_pct: i7,
-        hexagon_rms_a: hexagon,
-        switching_hz: hz,
+        mean_torque_nm: Some(mean),
+        h6_pct: Some(h6),
+        h12_pct: Some(h12),
+        i5_pct: Some(i5),
+        i7_pct: Some(i7),
+        hexagon_rms_a: Some(hexagon),
+        switching_hz: Some(hz),
     }
 }
 
@@ -138,8 +138,8 @@ fn without_current() -> Experiment {
     let mut lost = claimed();
     for drive in &mut lost.methods {
         for at in &mut drive.speeds {
-            at.mean_torque_nm = 0.0;
-            at.h6_pct = f64::NAN;
+            at.mean_torque_nm = None;
+            at.h6_pct = None;
         }
     }
     lost
@@ -184,9 +184,9 @@ fn one_lost_drive_leaves_open_only_what_depends_on_it() {
     assert_eq!(outcome('g', "alike at 400 rpm"), None);
     // Another drive refutes it whatever the lost one would have done.
     let mut refuted = readings;
-    refuted.methods[PiPwm.index()].speeds[LOW].h6_pct = 10.0;
-    refuted.methods[PiPwm.index()].speeds[LOW].switching_hz = 2e3;
-    refuted.methods[Pdcc.index()].speeds[HIGH].i5_pct = 25.0;
+    refuted.methods[PiPwm.index()].speeds[LOW].h6_pct = Some(10.0);
+    refuted.methods[PiPwm.index()].speeds[LOW].switching_hz = Some(2e3);
+    refuted.methods[Pdcc.index()].speeds[HIGH].i5_pct = Some(25.0);
     let claims = super::claims([refuted, refuted]);
     let outcome = |claim: usize, statement: usize| {
         let finding = &claims[claim].statements[statement].findings[0];
@@ -213,22 +213,25 @@ fn tolerances_decide_at_their_edges() {
     assert_eq!(judged(&limit(61.9), 0, 0), Some(false));
     assert_eq!(judged(&limit(72.1), 0, 0), Some(false));
     let mean = |torque: f64| {
-        move |x: &mut Experiment| x.methods[FcsMpc.index()].speeds[LOW].mean_torque_nm = torque
+        move |x: &mut Experiment| {
+            x.methods[FcsMpc.index()].speeds[LOW].mean_torque_nm = Some(torque)
+        }
     };
     assert_eq!(judged(&mean(0.96 * 3.3), 1, 0), Some(true));
     assert_eq!(judged(&mean(0.98 * 3.3), 1, 0), Some(false));
     let i5 = |percent: f64| {
-        move |x: &mut Experiment| x.methods[PiPwm.index()].speeds[LOW].i5_pct = percent
+        move |x: &mut Experiment| x.methods[PiPwm.index()].speeds[LOW].i5_pct = Some(percent)
     };
     assert_eq!(judged(&i5(21.4), 3, 2), Some(true));
     assert_eq!(judged(&i5(21.6), 3, 2), Some(false));
     let off = |amperes: f64| {
-        move |x: &mut Experiment| x.methods[PiPwm.index()].speeds[LOW].hexagon_rms_a = amperes
+        move |x: &mut Experiment| x.methods[PiPwm.index()].speeds[LOW].hexagon_rms_a = Some(amperes)
     };
     assert_eq!(judged(&off(0.99), 4, 2), Some(true));
     assert_eq!(judged(&off(1.01), 4, 2), Some(false));
-    let khz =
-        |hz: f64| move |x: &mut Experiment| x.methods[Pdcc.index()].speeds[LOW].switching_hz = hz;
+    let khz = |hz: f64| {
+        move |x: &mut Experiment| x.methods[Pdcc.index()].speeds[LOW].switching_hz = Some(hz)
+    };
     assert_eq!(judged(&khz(16.1e3), 6, 0), Some(true));
     assert_eq!(judged(&khz(15.9e3), 6, 0), Some(false));
     assert_eq!(judged(&khz(20.1e3), 7, 0), Some(false));

@@ -1,0 +1,33 @@
+//! Percentages of what was measured, and when there are none.
+//!
+//! A torque or current that the drive's converters cannot tell from zero is nothing to refer to:
+//! its ripple and harmonics are many times as large whatever the controller does.
+
+/// A part in percent of the magnitude of a whole. None where that is not above `floor`
+/// ([`super::Trace::current_floor`], [`super::Trace::torque_floor`]) in the same unit, or where
+/// either is no finite number.
+pub fn percent(part: f64, whole: f64, floor: f64) -> Option<f64> {
+    let percent = 100.0 * part / whole.abs();
+    (whole.abs() > floor && percent.is_finite()).then_some(percent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn nothing_has_no_percentages() {
+        assert_eq!(percent(0.5, -2.0, 0.1), Some(25.0));
+        for (part, whole, floor) in [
+            (1.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (1.0, 0.1, 0.1),
+            (1.0, 1e-18, 1e-3),
+            (1.0, f64::NAN, 0.0),
+            (f64::NAN, 1.0, 0.0),
+            (1.0, 1e-310, 0.0),
+        ] {
+            assert_eq!(percent(part, whole, floor), None, "{part} {whole} {floor}");
+        }
+    }
+}
