@@ -312,8 +312,12 @@ fn check_stability(
 
 #[cfg(test)]
 mod tests {
-    use super::generate;
+    use super::{check_stability, generate};
+    use crate::controllers::current_loop::LinearLoop;
+    use crate::design::DiscretePlant;
+    use crate::diagnostics::{Code, Collector};
     use crate::spec::{apply_variant, check, parse_toml};
+    use nalgebra::DVector;
 
     const MOTOR: &str = r#"
 [motor]
@@ -489,6 +493,40 @@ kind = "pdcc"
         apply_variant(&mut ast, variant).expect("the variant parses");
         let (spec, origins) = check(&ast).expect("it passes the checks");
         generate(&spec, &origins).unwrap_or_else(|errors| panic!("{variant}: {errors}"))
+    }
+
+    /// A loop with one pole, whatever the motor.
+    struct OnePole(f64);
+
+    impl LinearLoop for OnePole {
+        fn order(&self) -> usize {
+            1
+        }
+
+        fn advance(&self, _: DiscretePlant, x: &DVector<f64>) -> DVector<f64> {
+            x * self.0
+        }
+    }
+
+    #[test]
+    fn a_loop_is_stable_with_its_largest_pole_below_1_only() {
+        let ast = parse_toml(MOTOR, "motor.toml").expect("the motor parses");
+        let (spec, origins) = check(&ast).expect("it passes the checks");
+        let codes = |pole: f64| {
+            let mut errors = Collector::new();
+            let options = spec.controller.common();
+            check_stability(&spec, options, &OnePole(pole), &origins, &mut errors);
+            let errors = errors.into_result(()).err().into_iter().flatten();
+            errors.map(|error| error.code).collect::<Vec<_>>()
+        };
+        for sign in [1.0, -1.0] {
+            for stable in [0.0, 0.5, 1.0_f64.next_down()] {
+                assert_eq!(codes(sign * stable), [], "{stable}");
+            }
+            for unstable in [1.0, 1.0_f64.next_up(), 2.0] {
+                assert_eq!(codes(sign * unstable), [Code::Unstable], "{unstable}");
+            }
+        }
     }
 
     #[test]

@@ -88,6 +88,27 @@ proptest! {
     }
 
     #[test]
+    fn extremes_of_words_whose_difference_just_fits(x in factor(), difference in factor()) {
+        // All of x - y from -2^31 to 2^31 - 1: beyond, no caller goes.
+        if let Some(y) = x.checked_sub(difference) {
+            prop_assert_eq!(Word(x).lesser(Word(y)).0, x.min(y));
+            prop_assert_eq!(Word(x).greater(Word(y)).0, x.max(y));
+        }
+    }
+
+    #[test]
+    fn magnitudes_beyond_a_limit(x in factor(), limit in natural(31), near in -1..=1_i64) {
+        let magnitude = i64::from(x).abs();
+        // Any limit, and those about the magnitude.
+        for limit in [i64::from(limit), magnitude + near] {
+            if let Ok(limit) = i32::try_from(limit.max(0)) {
+                let exceeds = magnitude > i64::from(limit);
+                prop_assert_eq!(Word(x).exceeds(limit), exceeds, "{} {}", x, limit);
+            }
+        }
+    }
+
+    #[test]
     fn magnitudes_of_three_words_that_add_up_to_zero(x in word(31), y in word(31), limit in natural(31), at in 0..3_usize) {
         let magnitudes = [x, y, x + y].map(i32::abs);
         // Any limit, and those about a magnitude.

@@ -87,6 +87,38 @@ fn compiled_drives_are_bit_true() {
     }
 }
 
+hexagen::controller! {
+    /// A rotor that may turn by 48 electrical degrees in a period: at most 30 of them are believed.
+    pub Fast {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            maximum_speed: 40000 rpm,
+            hall_timer_clock: 1 MHz,
+        },
+        controller: pdcc { emf: model, advance: 1.5, hall_capture: timer },
+    }
+}
+
+#[test]
+fn a_rotor_that_turns_by_more_than_30_degrees_a_period_is_followed_bit_for_bit() {
+    let report = verify::<Fast>(500_000, 1).unwrap_or_else(|error| panic!("{error}"));
+    assert!(report.timed > 1000 && report.backward > 1000, "{report}");
+}
+
 /// All that the streams are to reach was reached, and often.
 fn check_reach(kind: &str, total: &Report) {
     for (what, count) in [

@@ -1,5 +1,6 @@
 //! The interpreted IR computes what the bit-true model computes, on every output and state bit.
 
+use hexagen_codegen::ir::{Machine, Program};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, Meeting, generate_toml, kind, kinds};
@@ -192,5 +193,70 @@ fn every_library_motor_in_a_sample_of_the_product() {
         let refusals = ["OptionWithoutEffect", "VectorTooStrong"];
         let known = |code: &&String| refusals.contains(&code.as_str());
         assert!(tally.refused.keys().all(|code| known(&code)));
+    }
+}
+
+/// The angle per period that a drive sees, in degrees, of a rotor that turns by so many, once it
+/// turns evenly.
+fn angle_per_period(program: &Program, degrees: f64) -> f64 {
+    const CODES: [i32; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
+    const TICKS: f64 = 50.0;
+    let mut probe = program.clone();
+    let mut values = probe.step.values();
+    let angle = values.find(|&value| probe.step.node(value).name == "step_angle");
+    probe.step.outputs = vec![(
+        "step_angle".to_owned(),
+        angle.expect("the rotor is followed"),
+    )];
+    let mut machine = Machine::of_program(&probe);
+    let mut seen = 0;
+    for period in 0..200 {
+        // Sixths of a turn since sector 1 began.
+        let sixths = (10.0 + f64::from(period) * degrees + 30.0) / 60.0;
+        let edge = if degrees > 0.0 {
+            sixths.floor()
+        } else {
+            sixths.ceil()
+        };
+        let since = (sixths - edge) * 60.0 / degrees * TICKS;
+        let hall = CODES[sixths.rem_euclid(6.0) as usize];
+        let inputs = probe
+            .step
+            .inputs
+            .iter()
+            .map(|input| match input.name.as_str() {
+                "adc_a" | "adc_b" => 2048,
+                "hall" => hall,
+                _ => since as i32,
+            });
+        let inputs: Vec<i32> = inputs.collect();
+        seen = machine.step(&inputs).expect("stays in its intervals")[0];
+    }
+    f64::from(seen) * 360.0 / f64::from(32).exp2()
+}
+
+/// Told by the rotor's speed alone: model and generator limit it by constants of their own.
+#[test]
+fn a_rotor_is_believed_to_turn_by_30_degrees_a_period_at_most() {
+    let lines = "[controller]\nhall_capture = \"timer\"\nemf = \"model\"\n";
+    let text = motor(PAPER_MOTOR).text.replacen("[controller]\n", lines, 1);
+    let text = text.replacen(
+        "[inverter]\n",
+        "[inverter]\nmaximum_speed = \"45000 rpm\"\n",
+        1,
+    );
+    let (_, generated) = generate_toml(&text).unwrap_or_else(|errors| panic!("{errors}"));
+    for degrees in [3.0, 11.0, 20.0, 28.0, 29.5, 30.5, 33.0, 41.0, 52.0] {
+        for turned in [degrees, -degrees] {
+            let seen = angle_per_period(generated.graph.program(), turned);
+            // A turn is measured to a tick, of 600 and more at up to 30 degrees.
+            let believed = f64::min(degrees, 30.0).copysign(turned);
+            let limit = if degrees < 30.0 {
+                degrees / 400.0
+            } else {
+                1e-6
+            };
+            assert!((seen - believed).abs() < limit, "{turned}: {seen}");
+        }
     }
 }

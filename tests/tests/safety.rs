@@ -1,8 +1,12 @@
 //! What a drive does with input that must not be believed, and how start-up runs: one scenario each, on the
 //! step that firmware calls.
 
+use hexagen::arith::Word;
 use hexagen::fixed::types::I16F16;
-use hexagen::{Fault, LegState, Legs};
+use hexagen::{Drive, Fault, LegState, Legs, Mode, Sample};
+use hexagen_codegen::InterpretedDrive;
+use hexagen_tests::library::{PAPER_MOTOR, motor};
+use hexagen_tests::options::generate_toml;
 
 hexagen::controller! {
     /// Twelve bits over 40 A, offset 2048, tolerance 2 A (102 counts); trip at 38 A.
@@ -55,6 +59,106 @@ fn a_converter_at_an_end_of_its_range_trips_at_once() {
     }
 }
 
+hexagen::controller! {
+    /// As `Guarded`, but for a trip level that a count at an end need not be above.
+    pub Late {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            offset_tolerance: 2 A,
+            trip_current: 39.5 A,
+            calibration_samples: 16,
+        },
+        controller: pdcc,
+    }
+}
+
+/// With every offset that calibration accepts, a count at an end trips, told from an over-current.
+fn check_ends<D: Drive>() {
+    let sample = |adc_a, adc_b| Sample {
+        adc_a,
+        adc_b,
+        hall: HALL,
+        ..Sample::default()
+    };
+    for offset in [ZERO - 102, ZERO, ZERO + 102] {
+        for count in [0, 4095] {
+            for [a, b] in [[count, offset], [offset, count]] {
+                let mut drive = D::new();
+                drive.calibrate();
+                for _ in 0..100 {
+                    drive.step(&sample(offset, offset));
+                }
+                assert!(drive.is_running());
+                assert_eq!(drive.step(&sample(a, b)), Legs::OFF, "{offset}: {a} {b}");
+                assert_eq!(drive.fault(), Fault::AdcRange, "{offset}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_converter_at_an_end_trips_with_any_offset_that_calibration_accepts() {
+    check_ends::<Guarded>();
+    check_ends::<Late>();
+}
+
+/// A trip level of 1944 counts is the current of the topmost count with an offset of 2151: with a
+/// tolerance of 103 counts on, that count is told by itself.
+#[test]
+fn a_converter_at_an_end_trips_with_any_tolerance_of_offsets() {
+    const TRIP: i32 = 1944;
+    let amperes = |counts: f64| counts * 40.0 / 2048.0;
+    let paper = motor(PAPER_MOTOR).text;
+    for tolerance in [1, 60, 101, 102, 103, 104, 105, 150] {
+        let lines = format!(
+            "[inverter]\ntrip_current = \"{} A\"\noffset_tolerance = \"{} A\"\ncalibration_samples = 16\n",
+            amperes(TRIP.into()),
+            amperes(f64::from(tolerance) + 0.01),
+        );
+        let (_, generated) = generate_toml(&paper.replacen("[inverter]\n", &lines, 1))
+            .unwrap_or_else(|errors| panic!("{tolerance}: {errors}"));
+        let program = generated.graph.program();
+        for offset in [2048 - tolerance, 2048, 2048 + tolerance] {
+            for count in [0, 1, 4094, 4095, 4096] {
+                for [a, b] in [[count, offset], [offset, count]] {
+                    let mut drive = InterpretedDrive::new(program, &generated.interface);
+                    drive.calibrate();
+                    let mut step = |a: i32, b: i32| {
+                        let sample = [a, b, HALL.into(), 0];
+                        drive.step(sample).expect("stays in its intervals");
+                        Fault::from_word(Word(drive.fault()))
+                    };
+                    for _ in 0..100 {
+                        assert_eq!(step(offset, offset), Fault::None, "{tolerance}");
+                    }
+                    let fault = if [0, 4095, 4096].contains(&count) {
+                        Fault::AdcRange
+                    } else if (count - offset).abs() > TRIP {
+                        Fault::OverCurrent
+                    } else {
+                        Fault::None
+                    };
+                    assert_eq!(step(a, b), fault, "{tolerance} {offset}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn over_current_trips_by_either_phase_and_by_the_third() {
     // 38 A are 1945.6 counts; i_c = -(i_a + i_b).
@@ -101,6 +205,68 @@ fn calibration_averages_then_charges_then_runs() {
     // The new zero is 2148 and 1998 counts: no current, so the legs stand at half.
     let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
     assert_eq!(legs.compare(), [900; 3]);
+}
+
+/// The offsets in force, in counts: a new drive has the nominal ones.
+fn offsets(drive: &Guarded) -> [i32; 2] {
+    let words = |drive: &Guarded| {
+        let mut words = vec![0; Guarded::STATE_NAMES.len()];
+        drive.state_words(&mut words);
+        let place = |name| Guarded::STATE_NAMES.iter().position(|known| *known == name);
+        ["offset_a", "offset_b"].map(|name| words[place(name).expect("a word of every drive")])
+    };
+    let unit = words(&Guarded::new())[0] / i32::from(ZERO);
+    words(drive).map(|word| {
+        assert_eq!(word % unit, 0, "{word}");
+        word / unit
+    })
+}
+
+/// A whole start-up with these offsets, and what it must show: the samples of pre-charge and
+/// control are others.
+#[track_caller]
+fn starts_up(drive: &mut Guarded, a: u16, b: u16) {
+    for _ in 0..16 {
+        assert_eq!(drive.status().mode, Mode::Calibrate);
+        assert_eq!(drive.step(a, b, HALL), Legs::OFF);
+    }
+    assert_eq!(offsets(drive), [a, b].map(i32::from));
+    for _ in 0..4 {
+        assert_eq!(drive.status().mode, Mode::Precharge);
+        assert_eq!(drive.step(ZERO - 18, ZERO + 12, HALL), Legs::LOW);
+    }
+    for _ in 0..15 {
+        assert!(drive.is_running());
+        let legs = drive.step(ZERO - 8, ZERO + 2, HALL);
+        assert_eq!(legs.state(), [LegState::Pulsed; 3]);
+    }
+    assert_eq!(offsets(drive), [a, b].map(i32::from));
+}
+
+#[test]
+fn every_calibration_averages_its_own_samples_once() {
+    let mut drive = Guarded::new();
+    drive.calibrate();
+    assert_eq!(drive.status().mode, Mode::Calibrate, "published at once");
+    starts_up(&mut drive, ZERO + 100, ZERO - 50);
+    drive.calibrate();
+    starts_up(&mut drive, ZERO - 100, ZERO + 50);
+    // Halfway: nothing of the first half counts.
+    drive.calibrate();
+    for _ in 0..8 {
+        drive.step(ZERO + 100, ZERO - 100, HALL);
+    }
+    drive.calibrate();
+    starts_up(&mut drive, ZERO + 20, ZERO - 40);
+    // In pre-charge.
+    drive.calibrate();
+    for _ in 0..18 {
+        drive.step(ZERO + 100, ZERO - 100, HALL);
+    }
+    assert_eq!(drive.status().mode, Mode::Precharge);
+    drive.calibrate();
+    assert_eq!(drive.status().mode, Mode::Calibrate);
+    starts_up(&mut drive, ZERO, ZERO - 20);
 }
 
 #[test]

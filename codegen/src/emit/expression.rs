@@ -540,3 +540,49 @@ fn extreme(primitive: Primitive, a: Expression, b: Expression) -> Expression {
 fn fits_word(interval: Interval) -> bool {
     Interval::WORD.contains(interval)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Context, Expression, Primitive, Scope};
+    use crate::ir::{FunctionBuilder, Interval, Program};
+
+    /// The primitives that the lesser and the greater of two words become.
+    fn extremes(x: Interval, y: Interval) -> Vec<Primitive> {
+        let mut program = Program::new("Extremes");
+        let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+        b.stage("compare", &[]);
+        let (x, y) = (b.input("x", x, ""), b.input("y", y, ""));
+        let all = [b.min(x, y), b.max(x, y), b.min(y, x), b.max(y, x)];
+        program.step = b.finish();
+        let context = Context::new(&program, &program.step);
+        let scope = Scope {
+            context: &context,
+            reads_state: true,
+        };
+        let primitive = |value| match scope.definition(value) {
+            Expression::Call(primitive, ..) => primitive,
+            other => panic!("{other:?}"),
+        };
+        all.map(primitive).to_vec()
+    }
+
+    /// `a + negative part of (b - a)` is right only where neither difference leaves its word:
+    /// `Word::lesser`.
+    #[test]
+    fn extremes_go_by_a_difference_only_where_it_fits_a_word() {
+        let most = i64::from(i32::MAX);
+        let by_difference = vec![Primitive::Lesser, Primitive::Greater].repeat(2);
+        let by_comparison = vec![Primitive::Min, Primitive::Max].repeat(2);
+        for high in [0, 1, 1 << 30, most] {
+            let x = Interval::new(0, high);
+            let y = |low: i64| Interval::new(low, 0);
+            assert_eq!(extremes(x, y(high - most)), by_difference, "{high}");
+            assert_eq!(extremes(y(high - most), x), by_difference, "{high}");
+            let beyond = extremes(x, y(high - most - 1));
+            assert_eq!(beyond[0], Primitive::Min, "{high}: x - y may be 2^31");
+            let beyond = extremes(x, y(high - most - 2));
+            assert_eq!(beyond, by_comparison, "{high}");
+        }
+        assert_eq!(extremes(Interval::WORD, Interval::WORD), by_comparison);
+    }
+}

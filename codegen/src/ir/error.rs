@@ -18,7 +18,7 @@ const UNBOUNDED: i128 = 1 << (40 + FRACTION_BITS);
 const LARGEST: i128 = 1 << 100;
 
 /// A real number of the generator: a floating-point number is itself an exact rational, m 2^e.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Real {
     /// m
     pub mantissa: i64,

@@ -14,6 +14,8 @@ pub mod error;
 pub mod graph;
 pub mod interpret;
 pub mod interval;
+#[cfg(test)]
+mod interval_tests;
 pub mod op;
 mod paths;
 mod prune;

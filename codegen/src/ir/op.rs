@@ -234,7 +234,7 @@ impl Op {
     }
 
     /// Replaces every operand.
-    pub(crate) fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
+    pub fn map_operands(&mut self, f: impl Fn(Value) -> Value) {
         self.each_operand(|operand| *operand = f(*operand));
     }
 

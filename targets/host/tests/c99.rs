@@ -8,7 +8,8 @@ use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::kinds;
 use rayon::prelude::*;
-use std::env;
+use std::process::Command;
+use std::{env, fs};
 
 /// Steps per drive.
 const STEPS: u64 = 20_000;
@@ -163,4 +164,35 @@ fn names_that_c_does_not_take_are_changed() {
         assert_eq!(sources.name, prefix);
         assert_eq!(difference(&drive, "", 1), None);
     }
+}
+
+/// What firmware does at start-up, and what it must see: [`c99_start_up.c`].
+const START_UP: &str = include_str!("c99_start_up.c");
+
+/// Offsets that are averaged anew by every call of `calibrate()`, once; a status that is published
+/// by every call.
+#[test]
+fn start_up_in_c_averages_once_per_call_and_tells_its_status_at_once() {
+    let text = motor(PAPER_MOTOR).text.replacen(
+        "[inverter]\n",
+        "[inverter]\ncalibration_samples = 16\nprecharge = \"200 us\"\n",
+        1,
+    );
+    let drive = prepared(&text, "start-up");
+    let sources = emit_c99(&drive.generated.graph, &drive.generated.interface, "Hub");
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("hub.h"), &sources.header).expect("a file");
+    fs::write(at("hub.c"), &sources.source).expect("a file");
+    fs::write(at("start_up.c"), START_UP).expect("a file");
+    let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    cc.current_dir(folder.path())
+        .args(["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror"])
+        .args(CHECK.split_whitespace())
+        .args(["hub.c", "start_up.c", "-o", "start_up"]);
+    let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
+    let messages = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success(), "{messages}");
+    let run = Command::new(at("start_up")).output().expect("it runs");
+    assert_eq!(String::from_utf8_lossy(&run.stdout), "as it should be\n");
 }

@@ -1,12 +1,15 @@
-//! A float64 reference experiment: two conventional six-step drives on the 660 W motor, which differ in the current
-//! that their regulator holds. The largest of the three gives the mean and the ripple of the design document's row,
-//! the pair's those of the generated drive. Nothing of the generator takes part.
+//! A float64 reference experiment: two conventional six-step drives on the 660 W motor, which
+//! differ in the current that their regulator holds. The largest of the three gives the mean and
+//! the ripple of the design document's row, the pair's those of the generated drive. Nothing of the
+//! generator takes part in these; a generated drive holds the pair's current, too.
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_host::closed_loop::{
-    CurrentLoop, Held as HeldTorque, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
+    ClosedLoop, CurrentLoop, Held as HeldTorque, LimitOptions, RunOptions, measure, quasi_square,
+    speed_limit,
 };
-use hexagen_host::plant::{PlantParams, Truth};
+use hexagen_host::engine::{Model, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_host::plant::{Plant, PlantParams, Truth};
 use std::f64::consts::TAU;
 
 const R: f64 = 0.135;
@@ -139,4 +142,38 @@ fn the_current_of_the_pair_holds_the_torque_further() {
     let [largest, pair] = [Held::Largest, Held::Pair].map(limit);
     assert!((96.0..99.0).contains(&largest), "{largest}");
     assert!((104.0..108.0).contains(&pair), "{pair}");
+}
+
+/// With the rotor held, both currents of the pair come to the set-point, in every sector and with
+/// either sign.
+#[test]
+fn a_generated_drive_brings_the_current_of_the_pair_to_its_set_point() {
+    let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
+    let drive = prepare(&motor, Some("pi-pwm:six_step=on")).expect("generates");
+    let delay = run_of(&drive.spec, 0.0, 0.0).delay;
+    for sector in 0..6 {
+        // The middle of a sector.
+        let theta = f64::from(sector) * TAU / 6.0;
+        let (plus, minus) = pair(theta);
+        for current in [CURRENT, -CURRENT, 3.0] {
+            let set_point = SetPoint {
+                current,
+                ..drive.set_point(0.0)
+            };
+            let plant = Plant::new(plant_of(&drive.spec), theta, 0.0).expect("a plant");
+            let mut closed = ClosedLoop::new(plant, drive.engine(Model::Fixed, set_point), delay);
+            closed.run(600, &mut ());
+            assert_eq!(closed.tripped(), None);
+            let currents = closed.plant().truth().currents;
+            let off = [currents[plus] - current, currents[minus] + current];
+            let is_near = off
+                .iter()
+                .all(|off| off.abs() < 0.02 * current.abs() + 0.05);
+            assert!(
+                is_near,
+                "sector {}: {currents:?} for {current} A",
+                sector + 1
+            );
+        }
+    }
 }

@@ -316,3 +316,84 @@ pub(super) fn used(words: &BTreeSet<String>) -> Vec<&'static str> {
     used.reverse();
     used
 }
+
+#[cfg(test)]
+mod tests {
+    use super::HELPERS;
+    use std::process::Command;
+    use std::{env, fs, process};
+
+    /// Compares every helper with arithmetic in 128 bits; says the first difference.
+    const COMPARISON: &str = include_str!("helpers_test.c");
+
+    /// What the comparison says of these helpers.
+    fn compared(helpers: &str, name: &str) -> String {
+        let folder = env::temp_dir().join(format!("hexagen-helpers-{}-{name}", process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let source = folder.join("helpers.c");
+        let text = format!("#include <stdbool.h>\n#include <stdint.h>\n{helpers}\n{COMPARISON}");
+        fs::write(&source, text).expect("a file");
+        let program = folder.join("helpers");
+        let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
+        cc.args([
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-Wconversion",
+            "-Werror",
+            "-O1",
+        ])
+        .args(["-fsanitize=undefined", "-fno-sanitize-recover", "-o"])
+        .args([&program, &source]);
+        let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
+        assert!(
+            built.status.success(),
+            "{}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        let run = Command::new(&program).output().expect("it runs");
+        fs::remove_dir_all(&folder).expect("the folder goes");
+        let said = [run.stdout, run.stderr].concat();
+        String::from_utf8_lossy(&said).into_owned()
+    }
+
+    #[test]
+    fn helpers_compute_what_their_comments_say() {
+        let sound: String = HELPERS.iter().map(|helper| helper.text).collect();
+        assert_eq!(compared(&sound, "sound"), "no difference\n");
+        // That each of these is seen, and where.
+        let faults = [
+            ("abs_of", "(x < 0) ? -x", "(x < -1) ? -x"),
+            ("exceeds", "limit > UINT32_C(2)", "limit >= UINT32_C(2)"),
+            ("exceeding", "0) > limit)", "0) >= limit)"),
+            (
+                "divide",
+                "return (quotient <",
+                "quotient &= ~UINT32_C(1);\n    return (quotient <",
+            ),
+            ("divide", "< UINT32_C(0x80000000)", "< UINT32_C(0x40000000)"),
+            (
+                "divide",
+                "(dividend >> 32) >= divisor",
+                "(dividend >> 32) > divisor",
+            ),
+            ("divide", "        rest += top;\n", ""),
+            (
+                "divide_narrow",
+                "/ (uint32_t)denominator",
+                "/ ((uint32_t)denominator + 1U)",
+            ),
+            (
+                "mul_round",
+                "INT64_C(1) << (shift - 1)",
+                "(INT64_C(1) << (shift - 1)) - 1",
+            ),
+            ("turn_over", "0xffffffff", "0xfffffffe"),
+        ];
+        for (place, (helper, old, new)) in faults.into_iter().enumerate() {
+            assert!(sound.contains(old), "`{old}`");
+            let said = compared(&sound.replacen(old, new, 1), &place.to_string());
+            assert!(said.starts_with(&format!("{helper}(")), "`{new}`: {said}");
+        }
+    }
+}

@@ -6,14 +6,16 @@
 //! moves no two values further apart, a selected value is one of two, a table's entry is as exact as its
 //! document says, so their results come into the next definitions as variables again.
 //!
-//! A script holds one implication. Its goals are the bounds that the generator found itself.
+//! A script holds one implication, or of constants alone what follows from nothing. Its goals are
+//! the bounds that the generator found itself.
 
 mod segment;
 
-use std::collections::HashSet;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt::{self, Write};
 
-use crate::ir::{ErrorInterval, Interval, Real, VerifiedGraph, cases};
+use crate::ir::{ErrorInterval, Function, Interval, Real, Value, VerifiedGraph, cases};
 use segment::segments;
 
 /// A script of one implication.
@@ -21,6 +23,8 @@ use segment::segments;
 pub struct Script {
     /// Function, stage and case.
     pub name: String,
+    /// Names of the scripts of other cases that say the same: this one stands for them.
+    pub also: Vec<String>,
     /// Definitions, in order.
     definitions: Vec<String>,
     /// What is known of the variables.
@@ -45,7 +49,7 @@ pub struct Goal {
 }
 
 /// What a goal bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// A value: that it stays in its interval, and so in its word.
     Value,
@@ -99,12 +103,10 @@ impl Script {
             let _ = writeln!(script, "{definition};");
         }
         let goals: Vec<String> = self.goals.iter().map(text).collect();
-        let _ = writeln!(
-            script,
-            "{{ {}\n  ->\n  {} }}",
-            self.hypotheses.join("\n  /\\ "),
-            goals.join("\n  /\\ ")
-        );
+        let [known, goals] = [&self.hypotheses, &goals].map(|parts| parts.join("\n  /\\ "));
+        // Of constants alone nothing needs to be known.
+        let implies = if known.is_empty() { "" } else { "\n  ->\n  " };
+        let _ = writeln!(script, "{{ {known}{implies}{goals} }}");
         for hint in &self.hints {
             let _ = writeln!(script, "{hint};");
         }
@@ -121,11 +123,27 @@ impl fmt::Display for Script {
     }
 }
 
+/// The name of a value in scripts: as the code computes it; as the ideal computation does, with `M`
+/// before it.
+pub fn variable(function: &Function, value: Value) -> String {
+    let name = &function.node(value).name;
+    if name.is_empty() {
+        format!("t{}", value.index())
+    } else {
+        format!("{name}_{}", value.index())
+    }
+}
+
+/// The name of the difference that a decision goes by, in scripts.
+pub fn gap(decision: Value) -> String {
+    format!("gap{}", decision.index())
+}
+
 /// The scripts of all functions of a controller; segments that are the same in several cases come once.
 pub fn emit_gappa(graph: &VerifiedGraph) -> Vec<Script> {
     let program = graph.program();
-    let mut known = HashSet::new();
-    let mut scripts = vec![];
+    let mut known = HashMap::new();
+    let mut scripts: Vec<Script> = vec![];
     for function in program.functions() {
         for case in cases(program, function) {
             for script in segments(program, function, &case) {
@@ -135,8 +153,12 @@ pub fn emit_gappa(graph: &VerifiedGraph) -> Vec<Script> {
                     .split_once('\n')
                     .map_or("", |(_, rest)| rest)
                     .to_owned();
-                if known.insert((function.name.clone(), text)) {
-                    scripts.push(script);
+                match known.entry((function.name.clone(), text)) {
+                    Entry::Vacant(place) => {
+                        place.insert(scripts.len());
+                        scripts.push(script);
+                    }
+                    Entry::Occupied(place) => scripts[*place.get()].also.push(script.name),
                 }
             }
         }

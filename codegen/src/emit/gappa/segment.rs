@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Goal, Script, Subject};
+use super::{Goal, Script, Subject, gap, variable};
 use crate::ir::{
     Bounds, Case, ErrorInterval, Exact, Function, Interval, Op, Program, Stage, Value,
 };
@@ -155,8 +155,9 @@ impl<'a> Segment<'a> {
             .last()
             .map(|&value| self.name(value))
             .unwrap_or_default();
-        (!self.goals.is_empty() && !self.hypotheses.is_empty()).then_some(Script {
+        (!self.goals.is_empty()).then_some(Script {
             name: format!("{name}.{last}"),
+            also: vec![],
             definitions: self.definitions,
             hypotheses: self.hypotheses,
             hints: vec![],
@@ -273,7 +274,7 @@ impl<'a> Segment<'a> {
             return;
         }
         let [a, b] = [a, b].map(|operand| self.operand(value, operand));
-        let name = format!("gap{}", value.index());
+        let name = gap(value);
         self.definitions
             .push(format!("{name} = {} - {}", a.code, b.code));
         self.definitions
@@ -284,12 +285,7 @@ impl<'a> Segment<'a> {
     }
 
     fn name(&self, value: Value) -> String {
-        let name = &self.function.node(value).name;
-        if name.is_empty() {
-            format!("t{}", value.index())
-        } else {
-            format!("{name}_{}", value.index())
-        }
+        variable(self.function, value)
     }
 
     /// An operand: a number, a value that is defined here, or a variable.
@@ -414,6 +410,7 @@ impl<'a> Segment<'a> {
                 let goal = Goal::error(format!("{name} - M{name}_exact"), Subject::Error, error);
                 scripts.push(Script {
                     name: format!("{stage}.{name}.{}", if of_code { "code" } else { "ideal" }),
+                    also: vec![],
                     definitions: part.definitions,
                     hypotheses: part.hypotheses,
                     hints: vec![hint],

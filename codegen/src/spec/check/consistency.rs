@@ -184,3 +184,82 @@ fn check_torque_constant(
     ));
     Some(())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnostics::Code;
+    use crate::spec::{check, parse_toml};
+
+    /// Codes of what is wrong with the paper's motor, its shape of EMF and one more line in its
+    /// file.
+    fn codes(shape: &str, line: &str) -> Vec<Code> {
+        let text = include_str!("../../example.toml");
+        let text = text.replace("\"trapezoidal\"", &format!("\"{shape}\""));
+        let lines = text
+            .lines()
+            .filter(|line| !line.starts_with("rated_torque"));
+        let text = lines.collect::<Vec<_>>().join("\n");
+        let text = text.replacen("[motor]\n", &format!("[motor]\n{line}\n"), 1);
+        let checked = parse_toml(&text, "motor.toml").and_then(|ast| check(&ast).map(drop));
+        let errors = checked.err().into_iter().flatten();
+        errors.map(|error| error.code).collect()
+    }
+
+    /// The first and the last value that are accepted, to a millionth.
+    fn check_edges(shape: &str, field: &str, unit: &str, [first, last]: [f64; 2], code: Code) {
+        for (edge, outward) in [(first, -1.0), (last, 1.0)] {
+            let line =
+                |share: f64| format!("{field} = \"{:.9} {unit}\"", edge * (1.0 + share * outward));
+            assert_eq!(codes(shape, &line(-1e-6)), [], "{shape}: {}", line(-1e-6));
+            assert_eq!(codes(shape, &line(1e-6)), [code], "{shape}: {}", line(1e-6));
+        }
+    }
+
+    #[test]
+    fn torque_and_torque_constant_may_be_fifteen_percent_off_what_the_emf_gives() {
+        // 0.1648 V/(rad/s) between two lines: phases of half of it with a flat top, of 1/sqrt 3 of
+        // it without.
+        let (flat, sine) = (0.1648 / 2.0, 0.1648 / 3.0_f64.sqrt());
+        let quasi_square = |phase: f64, share: f64| phase * share;
+        let (of_flat, of_sine) = (
+            quasi_square(flat, 2.0),
+            // The mean of a sine over the 60 degrees about the crossing of two phases' tops.
+            quasi_square(sine, 3.0 * 3.0_f64.sqrt() / std::f64::consts::PI),
+        );
+        // What follows from the EMF is 15 % more than the least and 15 % less than the greatest.
+        let range = |least: f64, greatest: f64| [least / 1.15, greatest / 0.85];
+        let torque = Code::TorqueContradiction;
+        let times =
+            |[least, greatest]: [f64; 2], current: f64| [least * current, greatest * current];
+        check_edges(
+            "trapezoidal",
+            "rated_torque",
+            "Nm",
+            times(range(of_flat, of_flat), 20.0),
+            torque,
+        );
+        check_edges(
+            "sinusoidal",
+            "rated_torque",
+            "Nm",
+            times(range(1.5 * sine, of_sine), 20.0),
+            torque,
+        );
+        let constant = Code::TorqueConstantContradiction;
+        // Per ampere of a sine wave, too, of the same peak.
+        check_edges(
+            "trapezoidal",
+            "torque_constant",
+            "Nm/A",
+            range(1.5 * flat, of_flat),
+            constant,
+        );
+        check_edges(
+            "sinusoidal",
+            "torque_constant",
+            "Nm/A",
+            range(1.5 * sine, of_sine),
+            constant,
+        );
+    }
+}

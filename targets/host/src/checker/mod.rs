@@ -5,6 +5,7 @@
 //! bounds that are read must be the number that was asked, and what counts is that they hold as goals.
 
 mod coq;
+mod goals;
 mod program;
 mod run;
 
@@ -14,6 +15,7 @@ use run::{Bounds, Finding, Run};
 use std::time::Duration;
 
 pub use coq::{MissingCoq, certificate, check_certificate, coq_version};
+pub use goals::missing_goals;
 pub use run::{Missing, gappa_version};
 
 /// A proof may take so long; the longest of the library's takes a hundredth of it.

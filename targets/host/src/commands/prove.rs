@@ -4,7 +4,7 @@ mod certificates;
 
 pub use certificates::{Certificates, Certify};
 
-use crate::checker::{Proof, coq_version, gappa_version, prove};
+use crate::checker::{Proof, coq_version, gappa_version, missing_goals, prove};
 use crate::cli::{Failure, Selection, TextTable, bar, note, print_json, print_text, significant};
 use crate::commands::selected::{Refused, select};
 use crate::engine::Prepared;
@@ -85,19 +85,37 @@ pub struct Stated {
     pub limited: Option<f64>,
 }
 
-/// Proves all drives; the scripts of all of them share the cores.
+/// Proves all drives; the scripts of all of them share the cores. A goal that a drive's graph asks
+/// for and its scripts do not have is a failure, too.
 ///
 /// # Errors
 /// When there is no Gappa, or a certificate cannot be written.
 pub fn collect(drives: &[Prepared], certify: Option<Certify>) -> Result<Vec<Proved>, Failure> {
-    gappa_version()?;
-    let scripts: Vec<(usize, Script)> = drives
+    let scripts = drives
         .iter()
+        .map(|drive| emit_gappa(&drive.generated.graph));
+    collect_scripts(drives, scripts.collect(), certify)
+}
+
+/// As [`collect`], from these scripts of each drive: a goal that they lack is not proved.
+///
+/// # Errors
+/// As [`collect`].
+pub fn collect_scripts(
+    drives: &[Prepared],
+    scripts: Vec<Vec<Script>>,
+    certify: Option<Certify>,
+) -> Result<Vec<Proved>, Failure> {
+    gappa_version()?;
+    let missing: Vec<Vec<String>> = drives
+        .iter()
+        .zip(&scripts)
+        .map(|(drive, scripts)| missing_goals(&drive.generated.graph, scripts))
+        .collect();
+    let scripts: Vec<(usize, Script)> = scripts
+        .into_iter()
         .enumerate()
-        .flat_map(|(drive, prepared)| {
-            let scripts = emit_gappa(&prepared.generated.graph);
-            scripts.into_iter().map(move |script| (drive, script))
-        })
+        .flat_map(|(drive, scripts)| scripts.into_iter().map(move |script| (drive, script)))
         .collect();
     let progress = bar(scripts.len() as u64, "proving");
     let proofs: Result<Vec<(usize, Proof, Option<Certified>)>, _> = scripts
@@ -117,7 +135,8 @@ pub fn collect(drives: &[Prepared], certify: Option<Certify>) -> Result<Vec<Prov
     let of_drive = |(number, drive): (usize, &Prepared)| {
         let own = || proofs.iter().filter(|(of, ..)| *of == number);
         let proofs = || own().map(|(_, proof, _)| proof);
-        let failures: Vec<String> = proofs().filter_map(|proof| proof.failure.clone()).collect();
+        let refused = proofs().filter_map(|proof| proof.failure.clone());
+        let failures: Vec<String> = missing[number].iter().cloned().chain(refused).collect();
         Proved {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),

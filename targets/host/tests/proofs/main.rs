@@ -3,6 +3,7 @@
 
 mod certificates;
 mod faults;
+mod goals;
 mod random_motor;
 
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -10,7 +11,7 @@ use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_codegen::ir::stated_errors;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
-use hexagen_host::checker::{Proof, WIDEST, prove};
+use hexagen_host::checker::{Proof, WIDEST, missing_goals, prove};
 use hexagen_host::engine::library;
 use random_motor::RandomMotor;
 use rayon::prelude::*;
@@ -55,6 +56,10 @@ fn generated(toml: &str, variant: &str) -> Result<Generated, Diagnostics> {
 /// Goals that were proved, or what was not.
 fn prove_all(drive: &str, generated: &Generated) -> Result<usize, String> {
     let scripts = emit_gappa(&generated.graph);
+    let missing = missing_goals(&generated.graph, &scripts);
+    if !missing.is_empty() {
+        return Err(format!("{drive}: {}", missing.join("\n")));
+    }
     let proofs: Vec<Proof> = scripts
         .par_iter()
         .map(|script| prove(script).map_err(|missing| missing.to_string()))

@@ -1,0 +1,444 @@
+//! Intervals against all values of small ranges: none too narrow, and none wider than its values
+//! but where that is said.
+
+use super::{Bounds, Comparison, Function, FunctionBuilder, Interval, Op, Program, TableId, Value};
+
+fn hull(values: impl IntoIterator<Item = i64>) -> Option<Interval> {
+    values
+        .into_iter()
+        .map(Interval::point)
+        .reduce(Interval::union)
+}
+
+/// All intervals with ends from `low` to `high`.
+fn intervals(low: i64, high: i64) -> impl Iterator<Item = Interval> + Clone {
+    (low..=high).flat_map(move |from| (from..=high).map(move |to| Interval::new(from, to)))
+}
+
+/// All choices of one value of each interval.
+fn choices(intervals: &[Interval]) -> Vec<Vec<i64>> {
+    intervals.iter().fold(vec![vec![]], |choices, interval| {
+        let longer = choices.iter().flat_map(|choice: &Vec<i64>| {
+            (interval.low..=interval.high).map(|value| [&choice[..], &[value]].concat())
+        });
+        longer.collect()
+    })
+}
+
+/// That an operator's interval is that of all its results, and that it has none where an operand is
+/// out of its domain.
+fn check(op: Op, operands: &[Interval]) {
+    let results: Option<Vec<i64>> = choices(operands)
+        .iter()
+        .map(|x| op.apply(x, |_, _| 0))
+        .collect();
+    let found = op.interval(operands, |_| Interval::FLAG);
+    assert_eq!(found, results.and_then(hull), "{op:?} of {operands:?}");
+}
+
+/// Operands that no test looks at.
+const X: Value = Value(0);
+
+#[test]
+fn intervals_of_one_operand_are_those_of_all_values() {
+    for x in intervals(-9, 9) {
+        check(Op::Neg(X), &[x]);
+        check(Op::Abs(X), &[x]);
+        check(Op::TurnOver(X), &[x]);
+        for n in 0..4 {
+            check(Op::ShiftLeft(X, n), &[x]);
+            check(Op::ShiftRight(X, n), &[x]);
+        }
+    }
+}
+
+#[test]
+fn intervals_of_two_operands_are_those_of_all_values() {
+    for x in intervals(-4, 4) {
+        for y in intervals(-4, 4) {
+            let pair = [x, y];
+            check(Op::Add(X, X), &pair);
+            check(Op::Sub(X, X), &pair);
+            check(Op::Product(X, X), &pair);
+            check(Op::Min(X, X), &pair);
+            check(Op::Max(X, X), &pair);
+            for shift in 0..4 {
+                check(Op::MulFloor { a: X, b: X, shift }, &pair);
+                if shift > 0 {
+                    let (coefficient, signal) = (X, X);
+                    let op = Op::MulRound {
+                        coefficient,
+                        signal,
+                        shift,
+                    };
+                    check(op, &pair);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn intervals_of_three_operands_are_those_of_all_values() {
+    let limited = Op::MulLimited {
+        a: X,
+        b: X,
+        limit: X,
+    };
+    let clamp = Op::Clamp {
+        x: X,
+        low: X,
+        high: X,
+    };
+    for x in intervals(-2, 3) {
+        for y in intervals(-2, 3) {
+            for z in intervals(0, 5) {
+                check(limited, &[x, y, z]);
+                for shift in 0..3 {
+                    let op = Op::Divide {
+                        numerator: X,
+                        shift,
+                        denominator: X,
+                        limit: X,
+                    };
+                    check(op, &[x, y, z]);
+                }
+                if y.high <= z.low {
+                    check(clamp, &[x, y, z]);
+                }
+            }
+            let select = Op::Select {
+                condition: X,
+                then: X,
+                otherwise: X,
+            };
+            check(select, &[Interval::FLAG, x, y]);
+        }
+    }
+}
+
+#[test]
+fn intervals_of_sums_of_products_are_those_of_all_values() {
+    let few: Vec<Interval> = [(-2, 1), (-1, 2), (0, 2), (1, 3), (-3, -1), (2, 2)]
+        .map(|(low, high)| Interval::new(low, high))
+        .to_vec();
+    for shift in 0..3 {
+        let op = Op::MulAddFloor {
+            first: [X; 2],
+            second: [X; 2],
+            shift,
+        };
+        for &a in &few {
+            for &b in &few {
+                for &c in &few {
+                    few.iter().for_each(|&d| check(op, &[a, b, c, d]));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn intervals_of_angles_and_tables_are_those_of_all_words() {
+    let ends = [0, 1, -1, i64::from(i32::MAX), i64::from(i32::MIN)];
+    let of = |op: Op| {
+        let results = ends
+            .iter()
+            .filter_map(|&angle| op.apply(&[angle], |_, _| 0));
+        (
+            hull(results),
+            op.interval(&[Interval::WORD], |_| Interval::FLAG),
+        )
+    };
+    for segments in [1, 6, 64, 1 << 16] {
+        let (found, stated) = of(Op::AngleIndex { angle: X, segments });
+        assert_eq!(found, stated);
+    }
+    let (found, stated) = of(Op::AngleFraction {
+        angle: X,
+        segments: 1,
+    });
+    assert_eq!(found, stated);
+    let mut program = Program::new("Table");
+    let table: TableId = program.table("table", vec![5, -7, 2, 3], &[]);
+    assert_eq!(
+        program.tables[table.index()].interval(),
+        Interval::new(-7, 5)
+    );
+}
+
+#[test]
+fn bits_are_those_of_the_smallest_word_that_holds_both_ends() {
+    for bits in 1..=48 {
+        let (least, most) = (-(1_i64 << (bits - 1)), (1_i64 << (bits - 1)) - 1);
+        for (low, high, wanted) in [
+            (least, most, bits),
+            (least, 0, bits),
+            (0, most, bits),
+            (least - 1, 0, bits + 1),
+            (0, most + 1, bits + 1),
+        ] {
+            assert_eq!(Interval::new(low, high).bits(), wanted, "[{low}, {high}]");
+        }
+    }
+}
+
+/// A step of this shape, which is not verified: `build` names its values.
+fn program(inputs: &[Interval], build: impl Fn(&mut FunctionBuilder<'_>, &[Value])) -> Program {
+    let mut program = Program::new("Conditions");
+    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+    b.stage("read", &[]);
+    let names = ["x", "y", "z"].into_iter().zip(inputs);
+    let values: Vec<Value> = names
+        .map(|(name, &interval)| b.input(name, interval, ""))
+        .collect();
+    build(&mut b, &values);
+    program.step = b.finish();
+    program
+}
+
+fn named(function: &Function, name: &str) -> Value {
+    let mut values = function.values();
+    let found = values.find(|&value| function.node(value).name == name);
+    found.expect("a value of this name")
+}
+
+/// The results of all values of the step, by their places, for these inputs.
+fn results(function: &Function, inputs: &[i64]) -> Vec<i64> {
+    let mut results: Vec<i64> = vec![];
+    for node in &function.nodes {
+        let operands: Vec<i64> = node
+            .op
+            .operands()
+            .iter()
+            .map(|x| results[x.index()])
+            .collect();
+        let result = match node.op {
+            Op::Input(number) => inputs[number as usize],
+            Op::Join { taken, otherwise } => {
+                let holds = results[named(function, "holds").index()] == 1;
+                results[if holds { taken } else { otherwise }.index()]
+            }
+            op => op.apply(&operands, |_, _| 0).expect("inside its domain"),
+        };
+        results.push(result);
+    }
+    results
+}
+
+const HOWS: [Comparison; 4] = [
+    Comparison::Less,
+    Comparison::LessEqual,
+    Comparison::Equal,
+    Comparison::NotEqual,
+];
+
+/// What is known of `x` and `y` where `holds` says so, in a selection and in a guarded stage: no
+/// more than what all inputs show, and no less for an order of the two.
+fn check_condition(
+    ranges: &[Interval],
+    is_exact: bool,
+    condition: impl Fn(&mut FunctionBuilder<'_>, &[Value]) -> Value,
+) {
+    let selected = program(ranges, |b, x| {
+        let one = b.literal(1);
+        let (then, otherwise) = (b.add(x[0], one), b.sub(x[1], one));
+        b.name("then", then);
+        b.name("otherwise", otherwise);
+        let holds = condition(b, x);
+        b.name("holds", holds);
+        let chosen = b.select(holds, then, otherwise);
+        b.output("chosen", chosen);
+        let direct = b.select(holds, x[0], x[1]);
+        b.name("direct", direct);
+        b.output("direct", direct);
+    });
+    let guarded = program(ranges, |b, x| {
+        let holds = condition(b, x);
+        b.name("holds", holds);
+        let one = b.literal(1);
+        let otherwise = b.sub(x[1], one);
+        b.name("otherwise", otherwise);
+        b.guarded_stage("rarely", holds, true, &[]);
+        let then = b.add(x[0], one);
+        b.name("then", then);
+        let [joined] = b.join([("joined", then, otherwise)]);
+        b.output("joined", joined);
+    });
+    for program in [&selected, &guarded] {
+        let step = &program.step;
+        let all: Vec<Vec<i64>> = choices(ranges)
+            .iter()
+            .map(|inputs| results(step, inputs))
+            .collect();
+        let holds = named(step, "holds").index();
+        let seen = |name: &str, when: Option<bool>| {
+            let place = named(step, name).index();
+            let matters = all
+                .iter()
+                .filter(|values| when.is_none_or(|when| (values[holds] == 1) == when));
+            hull(matters.map(|values| values[place]))
+        };
+        let mut wanted = vec![("then", Some(true)), ("otherwise", Some(false))];
+        if step.nodes.iter().any(|node| node.name == "direct") {
+            wanted.push(("direct", None));
+        }
+        // A condition that never or always holds leaves a side that is never reached.
+        if wanted
+            .iter()
+            .any(|&(name, when)| seen(name, when).is_none())
+        {
+            continue;
+        }
+        let bounds = Bounds::new(program, step);
+        for &(name, when) in &wanted {
+            let Some(seen) = seen(name, when) else {
+                continue;
+            };
+            let stated = bounds.interval(named(step, name));
+            assert!(
+                stated.contains(seen),
+                "{name} in {stated}, but takes {seen}: {ranges:?} {:?}",
+                step.nodes[holds]
+            );
+            assert!(
+                !is_exact || stated == seen,
+                "{name} in {stated} for {seen}: {ranges:?} {:?}",
+                step.nodes[holds]
+            );
+        }
+        let known = [true, false].map(|when| {
+            let name = if when { "then" } else { "otherwise" };
+            let bounds = Bounds::where_known(program, step, &[(Value(holds as u32), when)]);
+            (bounds.interval(named(step, name)), seen(name, Some(when)))
+        });
+        for (stated, seen) in known {
+            assert!(
+                seen.is_some_and(|seen| stated.contains(seen)),
+                "{stated}: {ranges:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn comparisons_bound_what_they_compare() {
+    for x in intervals(-2, 3) {
+        for y in intervals(-2, 3) {
+            for how in HOWS {
+                let is_order = matches!(how, Comparison::Less | Comparison::LessEqual);
+                check_condition(&[x, y], is_order, |b, x| b.compare(how, x[0], x[1]));
+                check_condition(&[x, y], is_order, |b, x| b.compare(how, x[1], x[0]));
+                check_condition(&[x, y], is_order, |b, x| {
+                    let compared = b.compare(how, x[0], x[1]);
+                    b.not(compared)
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
+    let few =
+        [(-2, 2), (0, 3), (-1, 1), (1, 4), (-3, 0)].map(|(low, high)| Interval::new(low, high));
+    for x in few {
+        for y in few {
+            for z in few {
+                for first in HOWS {
+                    for second in HOWS {
+                        let pair = |b: &mut FunctionBuilder<'_>, x: &[Value]| {
+                            [b.compare(first, x[0], x[1]), b.compare(second, x[2], x[0])]
+                        };
+                        check_condition(&[x, y, z], false, |b, x| {
+                            let [one, other] = pair(b, x);
+                            b.and(one, other)
+                        });
+                        check_condition(&[x, y, z], false, |b, x| {
+                            let [one, other] = pair(b, x);
+                            b.or(one, other)
+                        });
+                    }
+                }
+            }
+        }
+    }
+    // Both say something: x < y and x < z.
+    let ranges = [(0, 9), (2, 6), (3, 5)].map(|(low, high)| Interval::new(low, high));
+    let either = program(&ranges, |b, x| {
+        let one = b.literal(1);
+        let then = b.add(x[0], one);
+        b.name("then", then);
+        let other = b.sub(x[0], one);
+        b.name("otherwise", other);
+        let flags = [1, 2].map(|y| b.compare(Comparison::Less, x[0], x[y]));
+        let holds = b.and(flags[0], flags[1]);
+        let chosen = b.select(holds, then, other);
+        b.output("chosen", chosen);
+    });
+    let bounds = Bounds::new(&either, &either.step);
+    let then = bounds.interval(named(&either.step, "then"));
+    assert_eq!(then, Interval::new(1, 5), "x is below 5 there");
+}
+
+/// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and what follows for each of them, their
+/// middle and each less the middle.
+#[test]
+fn a_spread_bounds_its_legs_and_their_middle() {
+    let range = Interval::symmetric(15);
+    let names = [
+        "a",
+        "b",
+        "c",
+        "middle",
+        "centred_a",
+        "centred_c",
+        "lifted_b",
+    ];
+    let mut tight = [0; 7];
+    for limit in 0..=18 {
+        let program = program(&[range, range], |b, x| {
+            let sum = b.add(x[0], x[1]);
+            let c = b.neg(sum);
+            let legs = [x[0], x[1], c];
+            b.name("c", c);
+            let (high, low) = (b.max(x[0], x[1]), b.min(x[0], x[1]));
+            let (high, low) = (b.max(high, c), b.min(low, c));
+            let spread = b.sub(high, low);
+            let limit = b.literal(limit);
+            let holds = b.compare(Comparison::Less, limit, spread);
+            b.name("holds", holds);
+            let both = b.add(high, low);
+            let middle = b.shift_right(both, 1);
+            b.name("middle", middle);
+            for (name, leg) in [("centred_a", legs[0]), ("centred_c", legs[2])] {
+                let centred = b.sub(leg, middle);
+                b.name(name, centred);
+            }
+            let seven = b.literal(7);
+            let lift = b.sub(seven, middle);
+            let lifted = b.add(legs[1], lift);
+            b.name("lifted_b", lifted);
+            b.name("a", x[0]);
+            b.name("b", x[1]);
+        });
+        let step = &program.step;
+        let all: Vec<Vec<i64>> = choices(&[range, range])
+            .iter()
+            .map(|inputs| results(step, inputs))
+            .collect();
+        let holds = named(step, "holds");
+        for (name, tight) in names.iter().zip(&mut tight) {
+            let value = named(step, name);
+            let inside = all.iter().filter(|values| values[holds.index()] == 0);
+            let seen = hull(inside.map(|values| values[value.index()])).expect("0 has no spread");
+            let stated = step.interval_where_not(holds, value);
+            assert!(
+                stated.contains(seen),
+                "{name} in {stated}, but takes {seen}: {limit}"
+            );
+            *tight += i32::from(stated.low == seen.low || stated.high == seen.high);
+        }
+    }
+    assert!(tight.iter().all(|&tight| tight > 0), "{names:?} {tight:?}");
+}
