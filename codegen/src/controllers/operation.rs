@@ -89,9 +89,13 @@ pub fn start_up(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             String::new(),
         ]);
     }
+    let told = match spec.inverter.bus {
+        BusSource::Fixed => "",
+        BusSource::Measured { .. } => " and the bus told by `set_bus`",
+    };
     lines.extend([
-        format!("Control may begin, and begin again by `reset()`, on a rotor that turns at up to {} rpm with set-point 0; on a faster one the", start_rpm(spec, design)),
-        "first periods, in which the EMF is not known yet, may trip the drive.".to_owned(),
+        format!("Control may begin, and begin again by `reset()`, on a rotor that turns at up to {} rpm with set-point 0{told}; on a faster", start_rpm(spec, design)),
+        "one the EMF, not known yet or beyond the lowest bus, may trip the drive.".to_owned(),
     ]);
     lines
 }

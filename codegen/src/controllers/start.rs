@@ -4,7 +4,9 @@ use super::current_loop::{LinearLoop, LoopDesign};
 use super::pdcc::DeadbeatLoop;
 use super::pi_pwm::PiLoop;
 use crate::design::emf::zero_sum_shape;
-use crate::spec::{ControllerSpec, EmfShape, EmfSource, PhccCandidates, Spec, SwitchingTable};
+use crate::spec::{
+    ControllerSpec, EmfShape, EmfSource, Modulation, PhccCandidates, Spec, SwitchingTable,
+};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Where a turn exceeds so many times the share that the filter lets in, an estimate, which is moved on at the speed that
@@ -18,7 +20,8 @@ fn loses(shape: EmfShape) -> f64 {
 }
 
 /// Greatest lack of such an estimate, of the EMF: it swings past its rest. (Without moving on it is at most 1; found by
-/// iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and turns up to 30 degrees.)
+/// iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and turns up to 30 degrees.) The
+/// integral of a modelled EMF that the sensors begin to tell swings as well: it still holds what the model lacked before.
 const LACK: f64 = 1.17;
 
 /// Part of the bus that the line EMF has where a derived switching table without floating legs was designed: with more,
@@ -84,9 +87,23 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
             (linear.greatest_response(spec, turn), 0.0)
         }
     };
-    let per_volt = if loses { LACK * per_volt } else { per_volt };
-    // The third phase's current is the sum of two, each half a count off.
-    let room = (inverter.trip_current - inverter.adc_gain.abs() - own).max(0.0);
+    let (integrates, pulses_pairs) = match &spec.controller {
+        ControllerSpec::Pdcc(pdcc) => (pdcc.integral, pdcc.modulation == Modulation::Pair),
+        _ => (false, false),
+    };
+    let lack = if loses || integrates { LACK } else { 1.0 };
+    // A leg that floats hides its EMF for one period more.
+    let hidden = if loses && pulses_pairs {
+        1.0 + 1.0 / periods
+    } else {
+        1.0
+    };
+    let per_volt = per_volt * lack * hidden;
+    // The third phase's current is the sum of two, each half a count off; of three compare values, each half a count off, a
+    // phase has two thirds of a count.
+    let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
+    let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
+    let room = (inverter.trip_current - rounded - own).max(0.0);
     let room = if options.speed.is_some() && estimates {
         let left = if loses {
             1.0
