@@ -153,27 +153,29 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     let (drive, inverter) = (spec.drive(), &spec.inverter);
     let (trip, peak) = (inverter.trip_current, drive.peak());
     let mut warnings = vec![];
-    let (most, why) = if origins.is_given(TRIP) {
-        (TRIP_GIVEN * peak, "unless this is meant".to_owned())
+    let usual = TRIP_BY_DEFAULT * peak;
+    let (most, remedy) = if origins.is_given(TRIP) {
+        let usual = engineering(usual, "A");
+        let remedy = format!("lower it to about {usual} unless switches and magnets bear more");
+        (TRIP_GIVEN * peak, remedy)
     } else {
-        let why = format!(
-            "as the vectors of {} move the current by up to {} in a period, which a shorter one makes less of",
+        let remedy = format!(
+            "the vectors of {}, which move the current by up to {} in a period, need it: a shorter period needs less",
             spec.controller.kind(),
             engineering(drive.stride(1.0), "A")
         );
         // Rounded up to a count.
-        (TRIP_BY_DEFAULT * peak + inverter.adc_gain.abs(), why)
+        (usual + inverter.adc_gain.abs(), remedy)
     };
     if trip > most * (1.0 + 1e-9) {
         let given = origins.given(TRIP, &engineering(trip, "A"));
-        let levels = [peak, TRIP_BY_DEFAULT * peak];
         let at = origins.at(TRIP);
         warnings.push(catalogue::trip_far_above(
             at,
             &given,
             trip / peak,
-            levels,
-            &why,
+            peak,
+            &remedy,
         ));
     }
     let swing = drive.swing();

@@ -156,7 +156,7 @@ pub struct InverterSpec {
     pub adc_offset: u32,
     /// Greatest distance of a calibrated offset from `adc_offset`, counts.
     pub offset_tolerance: u32,
-    /// Current that trips the drive, ampere.
+    /// Current that trips the drive, ampere: a whole number of ADC counts.
     pub trip_current: f64,
     /// Largest set-point, ampere.
     pub max_current: f64,

@@ -1,3 +1,6 @@
+// A warning, that this crate does not let pass.
+#![deny(deprecated)]
+
 use hexagen::controller;
 
 controller! {

@@ -334,23 +334,22 @@ pub fn bus_resolution(
     )
 }
 
-/// The trip current is far above what the drive is for. `given` as written or by default, `times` the largest set-point's
-/// peak; `why`: a clause.
+/// The trip current is far above what the drive is for. `given` as written or by default, `times` the `peak` of the largest
+/// set-point in ampere; `remedy`: a clause.
 pub fn trip_far_above(
     at: &Location,
     given: &str,
     times: f64,
-    [peak, twice]: [f64; 2],
-    why: &str,
+    peak: f64,
+    remedy: &str,
 ) -> Diagnostic {
     Diagnostic::new(
         Code::TripFarAbove,
         at,
         format!(
-            "`trip_current`: {given} is {} times the {} of the largest set-point, so that a fault may make as much before the drive trips, {why}; about {} is usual",
+            "`trip_current`: {given} is {} times the {} of the largest set-point, and a fault makes as much before the drive trips; {remedy}",
             significant(times),
             engineering(peak, "A"),
-            engineering(twice, "A"),
         ),
     )
 }

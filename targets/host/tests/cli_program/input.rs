@@ -280,3 +280,19 @@ fn help_and_version_are_no_errors() {
     }
     assert_eq!(run(["--version"]).code, 0);
 }
+
+#[test]
+fn the_greatest_speed_that_a_message_gives_is_accepted() {
+    const BEFORE: &str = "give at most ";
+    for motor in [PAPER, "br2804-1700kv"] {
+        let refused = run(["simulate", motor, "--rpm", "1e9"]).stderr;
+        let (_, most) = refused.split_once(BEFORE).expect("a limit");
+        let most = most.split(' ').next().expect("a number");
+        let run = run(["simulate", motor, "--rpm", most]);
+        assert!(
+            !run.stderr.contains(BEFORE),
+            "{motor} {most}: {}",
+            run.stderr
+        );
+    }
+}
