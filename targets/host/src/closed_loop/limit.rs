@@ -15,11 +15,10 @@ use std::f64::consts::TAU;
 pub const TOLERANCE: f64 = 0.03;
 
 /// Which mean torques count as held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Held {
     /// Those within [`TOLERANCE`] of the demand, on either side.
-    #[default]
     Within,
     /// Those of at least the demand less [`TOLERANCE`], however much more: the limit of the paper and
     /// of the design document's table, where the torque falls off.

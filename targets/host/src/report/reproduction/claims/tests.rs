@@ -214,7 +214,7 @@ fn tolerances_decide_at_their_edges() {
     assert_eq!(judged(&limit(72.1), 0, 0), Some(false));
     let mean = |torque: f64| {
         move |x: &mut Experiment| {
-            x.methods[FcsMpc.index()].speeds[LOW].mean_torque_nm = Some(torque)
+            x.methods[FcsMpc.index()].speeds[LOW].mean_torque_nm = Some(torque);
         }
     };
     assert_eq!(judged(&mean(0.96 * 3.3), 1, 0), Some(true));
