@@ -8,7 +8,7 @@ use crate::emit::c99::emit_c99;
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
-use crate::spec::{SpecAst, apply_variant, check, parse_toml};
+use crate::spec::{SpecAst, apply_variant, check, motor_text, parse_toml};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -383,12 +383,12 @@ struct Source {
 impl Builder {
     fn source_of(&self, motor: &Motor) -> Result<Source, BuildError> {
         println!("cargo:rerun-if-changed={}", motor.path);
-        let text =
-            fs::read_to_string(self.root.join(&motor.path)).map_err(|error| BuildError::Io {
-                path: motor.path.clone(),
-                error,
-            })?;
-        let ast = parse_toml(&text, &motor.path)
+        let bytes = fs::read(self.root.join(&motor.path)).map_err(|error| BuildError::Io {
+            path: motor.path.clone(),
+            error,
+        })?;
+        let ast = motor_text(bytes, &motor.path)
+            .and_then(|text| parse_toml(&text, &motor.path))
             .map_err(|errors| BuildError::Specification(vec![errors]))?;
         let own = [Wanted::default()];
         let drives = if motor.drives.is_empty() {

@@ -169,3 +169,18 @@ fn c99_is_written_by_type() {
         "hub.toml and rear.toml would both be written to hub_drive.h; tell their types apart with `.name(…)`"
     );
 }
+
+#[test]
+fn a_motor_file_that_is_no_text_is_refused_with_its_byte() {
+    let folder = std::env::temp_dir().join(format!("hexagen-latin-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    fs::write(folder.join("hub.toml"), b"[motor]\n# caf\xe9\n").expect("a motor file");
+    let builder = Builder::new().root(&folder).out_dir(&folder);
+    let outcome = builder.motor("hub.toml").generate();
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    let told = outcome.expect_err("is Latin-1").to_string();
+    assert!(
+        told.contains("hub.toml:2:6: error[HX0108]: the motor file is not UTF-8: byte 13"),
+        "{told}"
+    );
+}
