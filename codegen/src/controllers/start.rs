@@ -32,6 +32,9 @@ const TABLE_EMF: f64 = 0.75;
 /// that overshoots, and past the bus it pulls the voltage along an EMF that is not there.
 const INTEGRATED_EMF: f64 = 0.85;
 
+/// Greatest current of a braking speed loop over the greatest that it asks for: commutations overshoot (simulated).
+const BRAKING: f64 = 1.15;
+
 /// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
 pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
     let speed = start_speed(spec, design).min(spec.inverter.maximum_speed);
@@ -46,7 +49,8 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// of it before the sample that shows it and, with a delay, one more. The inverter can hold that current where its lowest
 /// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
 /// whole vectors add the step of one vector, modulated the greatest distance from what two vectors reach. A speed loop
-/// brakes as soon as it knows the speed, a sector later at the earliest, with what is left of the EMF then. Samples lie
+/// brakes as soon as it knows the speed, a sector later at the earliest: a filter that follows more slowly than the EMF
+/// turns has not met it by then. Samples lie
 /// where the ripple of pulses crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
@@ -104,13 +108,9 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
     let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
     let room = (inverter.trip_current - rounded - own).max(0.0);
-    let room = if options.speed.is_some() && estimates {
-        let left = if loses {
-            1.0
-        } else {
-            (1.0 - filter).powf(FRAC_PI_3 / turn)
-        };
-        room.min((room - inverter.max_current).max(0.0) / left.max(f64::EPSILON))
+    let brakes_early = options.speed.is_some() && estimates && turn > filter;
+    let room = if brakes_early {
+        (room - BRAKING * inverter.max_current).max(0.0)
     } else {
         room
     };
