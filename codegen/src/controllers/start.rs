@@ -21,16 +21,20 @@ fn loses(shape: EmfShape) -> f64 {
 
 /// Greatest lack of such an estimate, of the EMF: it swings past its rest. (Without moving on it is at most 1; found by
 /// iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and turns up to 30 degrees.) The
-/// integral of a modelled EMF that the sensors begin to tell swings as well: it still holds what the model lacked before.
+/// integral beside a modelled EMF that the sensors begin to tell swings as well: it still holds what the model lacked.
 const LACK: f64 = 1.17;
 
 /// Part of the bus that the line EMF has where a derived switching table without floating legs was designed: with more,
 /// the vectors that it chooses no longer move the current as they should.
 const TABLE_EMF: f64 = 0.75;
 
-/// Part of the bus that leaves room for a PI regulator whose integral has to stand for an EMF that its estimate lost:
-/// that overshoots, and past the bus it pulls the voltage along an EMF that is not there.
+/// Part of the bus that leaves room for an integral that has to stand for the EMF: a PI regulator's behind a filter that
+/// follows more slowly than the EMF turns, or a modelled EMF's until the sensors tell it. It overshoots, and past the bus
+/// the limit keeps the voltage along an EMF that is not there (simulated: trips from 0.88 on).
 const INTEGRATED_EMF: f64 = 0.85;
+
+/// Greatest current of a braking speed loop over the greatest that it asks for: commutations overshoot (simulated).
+const BRAKING: f64 = 1.15;
 
 /// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
 pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
@@ -46,7 +50,8 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// of it before the sample that shows it and, with a delay, one more. The inverter can hold that current where its lowest
 /// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
 /// whole vectors add the step of one vector, modulated the greatest distance from what two vectors reach. A speed loop
-/// brakes as soon as it knows the speed, a sector later at the earliest, with what is left of the EMF then. Samples lie
+/// brakes as soon as it knows the speed, a sector later at the earliest: a filter that follows more slowly than the EMF
+/// turns has not met it by then. Samples lie
 /// where the ripple of pulses crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
@@ -57,11 +62,13 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let filter = options.emf_filter;
     let estimates = options.emf == EmfSource::Estimated;
     let loses = estimates && turn > loses(motor.emf_shape) * filter;
+    let slow = estimates && turn > filter;
     let kept = match &spec.controller {
         // What a table that is given does says no derivation.
         ControllerSpec::Phcc(phcc) if phcc.table != SwitchingTable::Derived => 0.0,
         ControllerSpec::Phcc(phcc) if phcc.candidates == PhccCandidates::ThreePhase => TABLE_EMF,
-        ControllerSpec::PiPwm(pi) if pi.feed_forward && loses => INTEGRATED_EMF,
+        ControllerSpec::PiPwm(pi) if pi.feed_forward && slow => INTEGRATED_EMF,
+        ControllerSpec::Pdcc(pdcc) if pdcc.integral => INTEGRATED_EMF,
         _ => 1.0,
     };
     let met = most.min(kept * inverter.lowest_bus() / line);
@@ -89,6 +96,7 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     };
     let (integrates, pulses_pairs) = match &spec.controller {
         ControllerSpec::Pdcc(pdcc) => (pdcc.integral, pdcc.modulation == Modulation::Pair),
+        ControllerSpec::PiPwm(pi) => (pi.feed_forward && options.emf == EmfSource::Model, false),
         _ => (false, false),
     };
     let lack = if loses || integrates { LACK } else { 1.0 };
@@ -104,13 +112,8 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
     let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
     let room = (inverter.trip_current - rounded - own).max(0.0);
-    let room = if options.speed.is_some() && estimates {
-        let left = if loses {
-            1.0
-        } else {
-            (1.0 - filter).powf(FRAC_PI_3 / turn)
-        };
-        room.min((room - inverter.max_current).max(0.0) / left.max(f64::EPSILON))
+    let room = if options.speed.is_some() && slow {
+        (room - BRAKING * inverter.max_current).max(0.0)
     } else {
         room
     };
