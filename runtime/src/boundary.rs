@@ -15,9 +15,9 @@ pub struct Sample {
     /// Hall code `Ha Hb Hc`, Ha in bit 2. 0 and 7 are invalid and trip the drive; which code is which
     /// sector, and which way is forward: [`conventions`](crate::conventions).
     pub hall: u8,
-    /// Timer ticks from the last Hall edge to this sample, rounded down, stopping at 65535; the clock is
-    /// the specification's `hall_timer_clock`, `HALL_TIMER_HZ`. Read by drives with `hall_capture: timer`
-    /// only.
+    /// Timer ticks from the last Hall edge to this sample, rounded down, stopping at 65535; the
+    /// clock is the specification's `hall_timer_clock`, `HALL_TIMER_HZ`. Read by drives with
+    /// `hall_capture: timer` only.
     pub hall_ticks: u16,
 }
 

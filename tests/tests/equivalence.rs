@@ -20,7 +20,8 @@ mod array {
 /// Steps over all arrays; every kind of controller has an equal share of them.
 const STEPS: u64 = 10_000_000;
 
-/// Pairs of option values of which one has no effect beside the other, or rules it out: the generator says so.
+/// Pairs of option values of which one has no effect beside the other, or rules it out: the
+/// generator says so.
 const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc candidates=three_phase off_leg=nominal",
     "fcs-mpc candidates=table2 choice=two_steps",

@@ -31,7 +31,8 @@ impl DiscretePlant {
         }
     }
 
-    /// The period, in seconds, at which a plant of this resistance and inductance has the `gain`, ampere per volt.
+    /// The period, in seconds, at which a plant of this resistance and inductance has the `gain`,
+    /// ampere per volt.
     pub fn period_of(method: Discretisation, resistance: f64, inductance: f64, gain: f64) -> f64 {
         match method {
             Discretisation::Exact => -(-resistance * gain).ln_1p() * inductance / resistance,

@@ -74,12 +74,14 @@ pub fn frequency(hertz: f64) -> String {
     format!("{} {unit}", trim_zeros(&format!("{scaled:.digits$}")))
 }
 
-/// A greatest value, to be shown: rounded down to the four digits that are shown, so that it is accepted.
+/// A greatest value, to be shown: rounded down to the four digits that are shown, so that it is
+/// accepted.
 pub fn at_most(limit: f64) -> f64 {
     to_four_digits(limit, f64::floor)
 }
 
-/// A least value, to be shown: rounded up to the four digits that are shown, so that it is accepted.
+/// A least value, to be shown: rounded up to the four digits that are shown, so that it is
+/// accepted.
 pub fn at_least(limit: f64) -> f64 {
     to_four_digits(limit, f64::ceil)
 }

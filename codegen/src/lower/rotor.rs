@@ -25,7 +25,8 @@ struct PeriodTicks {
     exact: f64,
     /// Whole ticks, rounded down: counts that go up by them are never ahead of the timer.
     whole: i64,
-    /// What six intervals, each counted with a period of whole ticks, lack in a turn; 0 where all ticks are whole.
+    /// What six intervals, each counted with a period of whole ticks, lack in a turn; 0 where all
+    /// ticks are whole.
     turn_rest: i64,
 }
 

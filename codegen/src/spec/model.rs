@@ -141,7 +141,8 @@ pub struct InverterSpec {
     pub v_bus: f64,
     /// Fixed or measured.
     pub bus: BusSource,
-    /// Control period = PWM period, second: that of the timer's whole counts where its clock is given.
+    /// Control period = PWM period, second: that of the timer's whole counts where its clock is
+    /// given.
     pub t_s: f64,
     /// Counts of the centre-aligned timer from 0 to its top: a compare value of this many counts
     /// is 100 % duty.
@@ -212,7 +213,8 @@ impl InverterSpec {
     }
 }
 
-/// The longest period of whole counts that is not longer than `limit`, of a timer that counts to `timer_period` in `t_s`.
+/// The longest period of whole counts that is not longer than `limit`, of a timer that counts to
+/// `timer_period` in `t_s`.
 pub(super) fn period_within(limit: f64, t_s: f64, timer_period: u32) -> f64 {
     let count = t_s / f64::from(timer_period);
     (limit / count * (1.0 + 1e-9)).floor() * count

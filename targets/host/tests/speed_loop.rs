@@ -23,8 +23,8 @@ const VARIANTS: [(&str, f64); 5] = [
 /// From this ripple on a small current is none to turn slowly with.
 const RESTLESS: f64 = 0.7;
 
-/// A kind that carries the current of a motor further than it does others': two periods of a vector move it by 1.5 times
-/// the rated current.
+/// A kind that carries the current of a motor further than it does others': two periods of a vector
+/// move it by 1.5 times the rated current.
 const ROUGH: (&str, &str) = ("hurst-long", "phcc");
 
 /// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load that a run-up
@@ -215,7 +215,8 @@ fn four_turns_in_the_loops_time_are_enough_and_one_is_not() {
     });
 }
 
-/// A clock of 2.5 ticks a period: intervals that were counted with two or three would tell a speed that is 0.6 % off.
+/// A clock of 2.5 ticks a period: intervals that were counted with two or three would tell a speed
+/// that is 0.6 % off.
 #[test]
 fn edge_ticks_with_a_fraction_tell_the_speed() {
     let mut motor = motor_with("trivedi-keshri-660w", "2e-3 kg m2");

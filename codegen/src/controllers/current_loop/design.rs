@@ -45,7 +45,8 @@ fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
 }
 
 impl LoopDesign {
-    /// The longest period of whole timer counts in which the plant's gain b is not above `gain`, second.
+    /// The longest period of whole timer counts in which the plant's gain b is not above `gain`,
+    /// second.
     pub fn longest_period(spec: &Spec, gain: f64) -> f64 {
         let (motor, method) = (&spec.motor, spec.controller.common().discretisation);
         let limit = DiscretePlant::period_of(method, motor.resistance, motor.inductance, gain);

@@ -62,8 +62,8 @@ pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
     )
 }
 
-/// One vector moves the current by `stride` ampere in a period; `t_s`: the longest period of whole timer counts in
-/// which it is not more than the `rated` current.
+/// One vector moves the current by `stride` ampere in a period; `t_s`: the longest period of whole
+/// timer counts in which it is not more than the `rated` current.
 pub fn vector_too_strong(
     at: &Location,
     kind: &str,
@@ -86,8 +86,8 @@ pub fn vector_too_strong(
     )
 }
 
-/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the longest period of whole
-/// timer counts in which it is not more than the `rated` current.
+/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the
+/// longest period of whole timer counts in which it is not more than the `rated` current.
 pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,

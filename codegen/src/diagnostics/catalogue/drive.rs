@@ -44,8 +44,8 @@ pub fn implausible_emf(at: &Location, given: &str, phase: f64, low: f64, high: f
     )
 }
 
-/// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest period of whole
-/// timer counts that is accepted, second.
+/// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
+/// period of whole timer counts that is accepted, second.
 pub fn period_too_long(
     period: &Part,
     resistance: &Part,
@@ -251,8 +251,9 @@ pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic 
     )
 }
 
-/// Hysteresis control reaches the trip current in health. `reach`: greatest phase current, ampere; `band`: half width of
-/// the bands, `stride`: greatest change of a current in `periods` periods, ampere.
+/// Hysteresis control reaches the trip current in health. `reach`: greatest phase current, ampere;
+/// `band`: half width of the bands, `stride`: greatest change of a current in `periods` periods,
+/// ampere.
 pub fn hysteresis_reaches_trip(
     max: &Part,
     trip: &Part,
@@ -307,8 +308,8 @@ pub fn max_current_below_counts(
     )
 }
 
-/// A count of the bus converter is too much of the nominal voltage. `count` in volt, `share` of the nominal voltage and
-/// the `most` allowed; `range`: the widest range that these `bits` allow, volt.
+/// A count of the bus converter is too much of the nominal voltage. `count` in volt, `share` of the
+/// nominal voltage and the `most` allowed; `range`: the widest range that these `bits` allow, volt.
 pub fn bus_resolution(
     range: &Part,
     nominal: &Part,
@@ -334,8 +335,8 @@ pub fn bus_resolution(
     )
 }
 
-/// The trip current is far above what the drive is for. `given` as written or by default, `times` the `peak` of the largest
-/// set-point in ampere; `remedy`: a clause.
+/// The trip current is far above what the drive is for. `given` as written or by default, `times`
+/// the `peak` of the largest set-point in ampere; `remedy`: a clause.
 pub fn trip_far_above(
     at: &Location,
     given: &str,
@@ -354,8 +355,8 @@ pub fn trip_far_above(
     )
 }
 
-/// PHCC trips in the commutations of slow rotation. `trip`: the trip current; `swing`: the current that it reaches,
-/// ampere.
+/// PHCC trips in the commutations of slow rotation. `trip`: the trip current; `swing`: the current
+/// that it reaches, ampere.
 pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Diagnostic {
     Diagnostic::new(
         Code::SwingAboveTrip,
@@ -368,8 +369,8 @@ pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Di
     )
 }
 
-/// Timer clock and PWM frequency give no timer period from 100 to 65535, rounded to whole counts; `counts` is
-/// what they give; `clock`, `f_pwm` in hertz.
+/// Timer clock and PWM frequency give no timer period from 100 to 65535, rounded to whole counts;
+/// `counts` is what they give; `clock`, `f_pwm` in hertz.
 pub fn timer_period(
     timer: &Part,
     period: &Part,

@@ -115,7 +115,8 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
     known
 }
 
-/// Sampled edges by default; a capture timer needs a clock of at least two ticks in a control period.
+/// Sampled edges by default; a capture timer needs a clock of at least two ticks in a control
+/// period.
 fn read_capture(
     reader: &Reader,
     inverter: &Inverter,

@@ -8,8 +8,8 @@ use crate::diagnostics::{Collector, engineering};
 use crate::spec::ControllerSpec;
 use crate::spec::health::Drive;
 
-/// The default trip level over the largest set-point: room for what a current overshoots by, and little enough for
-/// switches and magnets that were chosen for the motor.
+/// The default trip level over the largest set-point: room for what a current overshoots by, and
+/// little enough for switches and magnets that were chosen for the motor.
 const TRIP: f64 = 2.0;
 
 /// Room above what whole vectors reach where that is more than twice the largest set-point.
@@ -58,7 +58,8 @@ pub(super) fn finish(
     Some((whole_counts(trip, adc.gain, f64::floor), levels.max))
 }
 
-/// The largest set-point, and what the converters show, against the rating and the trip level where that is written.
+/// The largest set-point, and what the converters show, against the rating and the trip level where
+/// that is written.
 fn read(
     reader: &Reader,
     inverter: &Inverter,
@@ -102,8 +103,9 @@ fn read(
     Some(Levels { shown, max })
 }
 
-/// Twice the largest set-point, or what whole vectors need where that is more; as far as it is below what a converter at
-/// an end of its range says with the offsets that are usual, but not below what the drive reaches in health.
+/// Twice the largest set-point, or what whole vectors need where that is more; as far as it is
+/// below what a converter at an end of its range says with the offsets that are usual, but not
+/// below what the drive reaches in health.
 fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     let (peak, reach) = (drive.peak(), drive.reach());
     let vectors = if reach > peak {
@@ -117,7 +119,8 @@ fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     whole_counts(trip, adc.gain, f64::ceil).min(shown)
 }
 
-/// A level of so many ADC counts: one that is whole but for its rounding to a floating-point number is that one.
+/// A level of so many ADC counts: one that is whole but for its rounding to a floating-point number
+/// is that one.
 fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
     let counts = current / gain;
     let whole = if (counts - counts.round()).abs() <= 1e-6 {
@@ -128,8 +131,8 @@ fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
     whole * gain
 }
 
-/// Accepted: a trip level that neither the reference nor the vectors of a drive in health reach. A band or a vector that
-/// takes the current by more than the `rated` one is refused as such.
+/// Accepted: a trip level that neither the reference nor the vectors of a drive in health reach. A
+/// band or a vector that takes the current by more than the `rated` one is refused as such.
 fn check_health(reader: &Reader, drive: &Drive, rated: f64, trip: f64, errors: &mut Collector) {
     let (peak, reach) = (drive.peak(), drive.reach());
     let max_part = reader.part("max_current", || engineering(drive.max_current, "A"));

@@ -15,7 +15,8 @@ pub(super) struct Inverter<'a> {
     pub bus: Option<BusSource>,
     /// `f_pwm` or `sampling_time` as written.
     pub period: Option<Given<'a>>,
-    /// The control period: that of the timer's whole counts where its clock is given, else as written, second.
+    /// The control period: that of the timer's whole counts where its clock is given, else as
+    /// written, second.
     pub t_s: Option<f64>,
     pub timer_period: Option<u32>,
     pub dead_time: Option<Given<'a>>,
@@ -51,8 +52,9 @@ pub(super) struct Adc {
 /// Tolerance of a calibrated offset where none is given, share of the range to either side.
 const OFFSET_TOLERANCE: f64 = 0.05;
 
-/// Coarsest count of a measured bus over its nominal voltage. The controller's voltages are shares of the bus that is
-/// measured: half a count off is then less than the 1 % of a voltage divider's resistors.
+/// Coarsest count of a measured bus over its nominal voltage. The controller's voltages are shares
+/// of the bus that is measured: half a count off is then less than the 1 % of a voltage divider's
+/// resistors.
 const COARSEST_BUS: f64 = 0.01;
 
 /// Pre-charge time where none is given, second.
@@ -170,9 +172,9 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
     })
 }
 
-/// Counts of the centre-aligned timer, the nearest whole number to clock/(2 f_pwm), and the control period that they
-/// make, 2 counts/clock: from 100 counts on within 0.5 % of the one that was asked for. Where the counts are given in
-/// place of the clock, the period is the one that was asked for.
+/// Counts of the centre-aligned timer, the nearest whole number to clock/(2 f_pwm), and the control
+/// period that they make, 2 counts/clock: from 100 counts on within 0.5 % of the one that was asked
+/// for. Where the counts are given in place of the clock, the period is the one that was asked for.
 fn read_timer(
     reader: &Reader,
     period: Option<&Given>,
@@ -241,7 +243,8 @@ fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
     })
 }
 
-/// Greatest distance of a calibrated offset where none is given, counts of a converter of `full` counts.
+/// Greatest distance of a calibrated offset where none is given, counts of a converter of `full`
+/// counts.
 pub(super) fn usual_tolerance(full: u32) -> f64 {
     (OFFSET_TOLERANCE * f64::from(full / 2)).round()
 }
@@ -296,7 +299,8 @@ fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
 }
 
 impl Inverter<'_> {
-    /// The longest period of whole timer counts that is not longer than `limit`; `limit` where the timer is not known.
+    /// The longest period of whole timer counts that is not longer than `limit`; `limit` where the
+    /// timer is not known.
     pub fn period_within(&self, limit: f64) -> f64 {
         match (self.t_s, self.timer_period) {
             (Some(t_s), Some(timer_period)) => period_within(limit, t_s, timer_period),

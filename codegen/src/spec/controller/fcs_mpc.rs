@@ -123,8 +123,8 @@ fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     }
 }
 
-/// At most what a vector moves the current by in a period, 2/3 v_bus Ts/L, rounded down: beyond it no vector would follow
-/// another.
+/// At most what a vector moves the current by in a period, 2/3 v_bus Ts/L, rounded down: beyond it
+/// no vector would follow another.
 fn read_switching_weight(
     reader: &Reader,
     surroundings: &Surroundings,

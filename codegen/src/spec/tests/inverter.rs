@@ -1,4 +1,5 @@
-//! The inverter's numbers: periods of whole counts, ticks with fractions, trip levels, and limits that hold.
+//! The inverter's numbers: periods of whole counts, ticks with fractions, trip levels, and limits
+//! that hold.
 
 use crate::diagnostics::Code;
 use crate::pipeline::{generate, warnings};
@@ -170,7 +171,8 @@ fn the_trip_level_follows_from_the_largest_set_point() {
     }
 }
 
-/// What a message says is enough is accepted: the message's code, the field, and the word in front of the limit.
+/// What a message says is enough is accepted: the message's code, the field, and the word in front
+/// of the limit.
 #[test]
 fn limits_in_messages_are_accepted() {
     let mut followed = 0;
