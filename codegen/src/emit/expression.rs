@@ -571,8 +571,8 @@ mod tests {
     #[test]
     fn extremes_go_by_a_difference_only_where_it_fits_a_word() {
         let most = i64::from(i32::MAX);
-        let by_difference = vec![Primitive::Lesser, Primitive::Greater].repeat(2);
-        let by_comparison = vec![Primitive::Min, Primitive::Max].repeat(2);
+        let by_difference = [Primitive::Lesser, Primitive::Greater].repeat(2);
+        let by_comparison = [Primitive::Min, Primitive::Max].repeat(2);
         for high in [0, 1, 1 << 30, most] {
             let x = Interval::new(0, high);
             let y = |low: i64| Interval::new(low, 0);

@@ -119,9 +119,8 @@ fn intervals_of_three_operands_are_those_of_all_values() {
 
 #[test]
 fn intervals_of_sums_of_products_are_those_of_all_values() {
-    let few: Vec<Interval> = [(-2, 1), (-1, 2), (0, 2), (1, 3), (-3, -1), (2, 2)]
-        .map(|(low, high)| Interval::new(low, high))
-        .to_vec();
+    let few = [(-2, 1), (-1, 2), (0, 2), (1, 3), (-3, -1), (2, 2)]
+        .map(|(low, high)| Interval::new(low, high));
     for shift in 0..3 {
         let op = Op::MulAddFloor {
             first: [X; 2],
@@ -131,7 +130,9 @@ fn intervals_of_sums_of_products_are_those_of_all_values() {
         for &a in &few {
             for &b in &few {
                 for &c in &few {
-                    few.iter().for_each(|&d| check(op, &[a, b, c, d]));
+                    for &d in &few {
+                        check(op, &[a, b, c, d]);
+                    }
                 }
             }
         }
