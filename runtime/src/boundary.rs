@@ -155,7 +155,7 @@ pub enum Fault {
     AdcRange = 1,
     /// A phase current exceeded the trip level.
     OverCurrent = 2,
-    /// The Hall code was 000 or 111.
+    /// The Hall code was 000, 111 or above.
     Hall = 3,
     /// No Hall edge within the stall time-out while a current was demanded.
     Stall = 4,

@@ -178,7 +178,8 @@ fn over_current_trips_by_either_phase_and_by_the_third() {
 
 #[test]
 fn impossible_hall_codes_trip() {
-    for hall in [0, 7, 0b1000, 0b1111] {
+    // A code of more than three bits is none, whatever its lower three say.
+    for hall in [0, 7, 8, 0b1000 | HALL, 0b1111, 0x80 | HALL, u8::MAX] {
         let mut drive = Guarded::new();
         assert_eq!(drive.step(ZERO, ZERO, hall), Legs::OFF);
         assert_eq!(drive.fault(), Fault::Hall);

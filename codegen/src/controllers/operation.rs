@@ -108,7 +108,7 @@ pub fn safe_states(spec: &Spec) -> Vec<String> {
         "# Safe states".to_owned(),
         String::new(),
         "Each of these turns all legs off until `reset()`, behind which the next step goes on at the set-point that stands: a current".to_owned(),
-        "converter at an end of its range, a phase current above the trip level, a Hall code of 000 or 111, an offset that".to_owned(),
+        "converter at an end of its range, a phase current above the trip level, a Hall code of 000 or from 111 on, an offset that".to_owned(),
     ];
     lines.push(if inverter.stall_periods > 0 {
         format!("calibration refuses, {} periods without a Hall edge while the set-point is not 0.", inverter.stall_periods)

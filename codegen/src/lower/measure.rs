@@ -8,7 +8,7 @@ use crate::ir::{Comparison, Interval, StateId, Value};
 pub struct Sample {
     /// ADC counts of phases a and b as they came.
     pub adc: [Value; 2],
-    /// The Hall code as it came.
+    /// The Hall code; 7 for more, which no sensors give.
     pub hall: Value,
     /// Sector that it names, 0 for an invalid code.
     pub sector: Value,
@@ -52,7 +52,7 @@ impl Lowering<'_> {
             "read_sample",
             &[
                 "Whether the sample says anything: a converter at an end of its range (count 0, the largest, or more) and an invalid",
-                "Hall code (000, 111) trip the drive. Counts that say a current above the trip level are not looked at here.",
+                "Hall code (000, 111 and above) trip the drive. Counts that say a current above the trip level are not looked at here.",
             ],
         );
         let word = Interval::new(0, i64::from(u16::MAX));
@@ -80,6 +80,9 @@ impl Lowering<'_> {
             Interval::new(0, 255),
             "Hall code, Ha in bit 2; sectors and forward direction in the type's documentation.",
         );
+        let greatest = self.b.literal(7);
+        let hall = self.b.min(hall, greatest);
+        self.b.name("hall_code", hall);
         let sectors = self.hall_sectors();
         let decode = self.b.program.column(
             "hall",

@@ -132,7 +132,7 @@ impl Types<'_> {
                 Code::OverCurrent,
                 "A phase current exceeded the trip level.",
             ),
-            (Code::Hall, "The Hall code was 000 or 111."),
+            (Code::Hall, "The Hall code was 000, 111 or above."),
             (
                 Code::Stall,
                 "No Hall edge within the stall time-out while a current was demanded.",

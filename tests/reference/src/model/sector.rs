@@ -45,7 +45,7 @@ impl HallEvent {
     /// Compares a sample's code with the sector of the last sample (0: none yet).
     #[inline]
     pub fn new(sectors: &[usize; 8], hall: u8, sector_prev: usize) -> Self {
-        let code = sectors[usize::from(hall & 7)];
+        let code = sectors[usize::from(hall.min(7))];
         let sector = if code != 0 { code } else { sector_prev };
         let edge = sector != sector_prev && sector_prev != 0;
         let forward = NEXT[sector_prev] == sector;

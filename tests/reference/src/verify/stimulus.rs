@@ -293,7 +293,7 @@ impl Stimulus {
             7 => u16::MAX,
             _ => self.age as u16,
         };
-        // Upper bits of the code are ignored by the drive.
+        // Codes of more than three bits are none.
         let code = match (dice >> 8) & 0x1ff {
             0 => 0,
             1 => 7,
