@@ -90,13 +90,17 @@ fn compare(core: &impl Core, listed: &Listed, steps: usize) -> Result<Outcome, B
 }
 
 /// What runs the records of a task: an emulator, or a test.
-trait Core {
+pub trait Core {
+    /// The answers to a task.
+    ///
+    /// # Errors
+    /// When the emulator fails or hangs.
     fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
 }
 
 /// A program of the firmware.
 #[derive(Clone, Copy)]
-struct Emulated<'f>(&'f Firmware, &'static str);
+pub struct Emulated<'f>(pub &'f Firmware, pub &'static str);
 
 impl Core for Emulated<'_> {
     fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
@@ -168,8 +172,8 @@ fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
         .position(|digest| found.next() != Some(digest))
 }
 
-/// The first step that differs, with all its words.
-fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option<String> {
+/// The first step that differs, with all its words: outputs, and state words by their names.
+pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option<String> {
     let length = ANSWER + 4 * names.len();
     let mut found = found.chunks(length);
     let (answer, found) = expected
@@ -219,7 +223,7 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<i32> {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use hexagen::{Drive, Legs};
     use hexagen_firmware::session::{Broken, Link, replay, serve};
@@ -231,9 +235,9 @@ mod tests {
     }
 
     /// A task and its answers in memory.
-    struct Memory<'t> {
-        input: &'t [u8],
-        answers: Vec<u8>,
+    pub struct Memory<'t> {
+        pub input: &'t [u8],
+        pub answers: Vec<u8>,
     }
 
     impl Link for Memory<'_> {

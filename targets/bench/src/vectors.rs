@@ -273,8 +273,11 @@ impl<'g> Recorder<'g> {
         Ok(())
     }
 
-    /// A stretch of the bit-for-bit test's stimulus.
-    fn edges(&mut self, drive: &Prepared, seed: u64) -> Result<(), BenchError> {
+    /// A stretch of the bit-for-bit test's stimulus: arbitrary words, corners, calls strewn in.
+    ///
+    /// # Errors
+    /// When there is no stimulus for the drive.
+    pub fn edges(&mut self, drive: &Prepared, seed: u64) -> Result<(), BenchError> {
         let mut stimulus = Stimulus::new(&drive.reference, seed)
             .map_err(|error| BenchError::Stimulus(error.to_string()))?;
         self.call(Record::New);

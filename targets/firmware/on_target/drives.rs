@@ -5,7 +5,7 @@ macro_rules! drives_for {
     ($target:ident) => {
         hexagen_firmware::drives! {
             TrivediPdcc, step_trivedi_keshri_660w_pdcc:
-                "../motors/trivedi-keshri-660w.toml", pdcc {};
+                "../motors/trivedi-keshri-660w.toml", pdcc { target: $target };
             TrivediFcsMpc, step_trivedi_keshri_660w_fcs_mpc:
                 "../motors/trivedi-keshri-660w.toml", fcs_mpc {};
             TrivediPhcc, step_trivedi_keshri_660w_phcc:

@@ -5,7 +5,7 @@ use crate::drives::{Drives, StepFn};
 use crate::peers::Peer;
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
 use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Legs, Sample};
+use hexagen::{Drive, Fault, Legs, Sample};
 
 /// Room for the state words of any drive here.
 const MOST_WORDS: usize = 64;
@@ -90,7 +90,7 @@ pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Re
     Ok(())
 }
 
-/// Counts a peer, or sounds its stack, on the steps of a task; its other calls are the drives' own.
+/// Answers a peer's steps in full, counts them, or sounds their stack; the other calls of a task are the drives' own.
 ///
 /// # Errors
 /// When the exchange ends early.
@@ -106,7 +106,11 @@ pub fn replay_peer<P: Peer>(
         let Record::Step(sample) = Record::decode(record).ok_or(Broken::Format)? else {
             continue;
         };
-        measure(task.mode, step, &mut peer, sample, &mut depth, link)?;
+        if task.mode == Mode::Full {
+            link.write(&encode_outputs(step.call(&mut peer, sample), Fault::None))?;
+        } else {
+            measure(task.mode, step, &mut peer, sample, &mut depth, link)?;
+        }
     }
     if task.mode == Mode::Stack {
         link.write(&depth.to_le_bytes())?;

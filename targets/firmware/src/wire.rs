@@ -30,7 +30,7 @@ pub enum Mode {
     List = 0,
     /// Answers each block with its [`Digest`].
     Digest = 1,
-    /// Answers every step of one block in full.
+    /// Answers every step of one block in full; of a peer, every step.
     Full = 2,
     /// Answers each step with its count of instructions, 16 bits.
     Count = 3,

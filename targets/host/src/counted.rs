@@ -17,7 +17,7 @@ pub struct Counted {
 pub struct Figures {
     /// Instructions on the normal path.
     pub normal: u32,
-    /// Instructions of the worst step.
+    /// Instructions of the worst step in closed loop; start-up and trips are none.
     pub worst: u32,
     /// Estimated cycles of the normal path.
     pub cycles: u32,

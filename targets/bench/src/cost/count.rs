@@ -16,6 +16,9 @@ const STEPS: usize = 2000;
 /// Steps of the stretch that is traced instruction by instruction.
 const TRACED: usize = 240;
 
+/// Number of the stimulus of the bit-for-bit test.
+const STIMULUS: u64 = 9;
+
 /// Inputs of a closed loop, and which of their steps are the normal path.
 #[derive(Debug)]
 pub struct Inputs {
@@ -23,6 +26,8 @@ pub struct Inputs {
     records: Vec<u8>,
     /// A short stretch.
     traced: Vec<u8>,
+    /// Calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; of drives alone.
+    arbitrary: Option<Vec<u8>>,
 }
 
 /// What a step costs in time and stack.
@@ -30,9 +35,11 @@ pub struct Inputs {
 pub struct Counts {
     /// Instructions of a settled step below the speed limit: the median.
     pub normal: u32,
-    /// Most instructions of any step.
+    /// Most instructions of a step in closed loop.
     pub worst: u32,
-    /// Bytes of stack.
+    /// Most instructions of a step in calibration, in pre-charge and on arbitrary inputs; of drives alone.
+    pub arbitrary: Option<u32>,
+    /// Bytes of stack, of the deepest of all these steps.
     pub stack: u32,
     /// Estimated cycles of a settled step: the median.
     pub cycles: u32,
@@ -50,9 +57,29 @@ impl Inputs {
         }
         let mut short = Recorder::new(drive, None);
         short.closed_loop(drive, &traced(drive))?;
+        let mut arbitrary = Recorder::new(drive, None);
+        let start = Stretch {
+            starts_up: true,
+            ..traced(drive)
+        };
+        arbitrary.closed_loop(drive, &start)?;
+        arbitrary.edges(drive, STIMULUS)?;
         Ok(Self {
             records: all.finish().records,
             traced: short.finish().records,
+            arbitrary: Some(arbitrary.finish().records),
+        })
+    }
+
+    /// Records the inputs of an interrupt, whose calls other than steps are its own: what its drive meets in closed loop.
+    ///
+    /// # Errors
+    /// When its plant cannot be made.
+    pub fn record_interrupt(drive: &Prepared) -> Result<Self, BenchError> {
+        let arbitrary = None;
+        Ok(Self {
+            arbitrary,
+            ..Self::record(drive)?
         })
     }
 
@@ -80,7 +107,24 @@ impl Inputs {
         Ok(Self {
             records,
             traced: run(&traced(drive))?,
+            arbitrary: None,
         })
+    }
+
+    /// The closed loop as it goes to the core.
+    pub fn records(&self) -> &[u8] {
+        &self.records
+    }
+
+    /// What the steps of the closed loop read.
+    pub fn samples(&self) -> impl Iterator<Item = Sample> {
+        let (records, _) = self.records.as_chunks();
+        records
+            .iter()
+            .filter_map(|&record| match Record::decode(record) {
+                Some(Record::Step(sample)) => Some(sample),
+                _ => None,
+            })
     }
 }
 
@@ -141,8 +185,18 @@ pub fn count(
         mode: Mode::Stack,
         ..task
     };
-    let depth = firmware.run_program(program, sounding, &inputs.records)?;
-    let depth = depth.try_into().map_or(0, u32::from_le_bytes);
+    let depth = |records: &[u8]| -> Result<u32, BenchError> {
+        let depth = firmware.run_program(program, sounding, records)?;
+        Ok(depth.try_into().map_or(0, u32::from_le_bytes))
+    };
+    let mut stack = depth(&inputs.records)?;
+    let mut arbitrary = None;
+    if let Some(records) = &inputs.arbitrary {
+        arbitrary = numbers(&firmware.run_program(program, task, records)?)
+            .into_iter()
+            .max();
+        stack = stack.max(depth(records)?);
+    }
     let traced = numbers(&firmware.run_program(program, task, &inputs.traced)?);
     let calls = trace(firmware, program, image, symbol, task, inputs)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
@@ -154,7 +208,8 @@ pub fn count(
     Ok(Counts {
         normal: median(settled(&counts)),
         worst: counts.iter().copied().max().unwrap_or(0),
-        stack: depth,
+        arbitrary,
+        stack,
         cycles: median(
             calls[calls.len() / 2..]
                 .iter()
@@ -188,4 +243,48 @@ fn numbers(answers: &[u8]) -> Vec<u32> {
         .chunks_exact(2)
         .map(|bytes| u32::from(u16::from_le_bytes([bytes[0], bytes[1]])))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::{INTERRUPT_VARIANT, paper_drive};
+    use hexagen::Fault;
+
+    /// What the table says of its column of arbitrary inputs.
+    #[test]
+    fn arbitrary_inputs_calibrate_pre_charge_and_trip() {
+        let drive = paper_drive(INTERRUPT_VARIANT).expect("a drive of the library");
+        let inputs = Inputs::record(&drive).expect("a plant");
+        let (records, _) = inputs.arbitrary.as_deref().expect("of a drive").as_chunks();
+        let records: Vec<Record> = records.iter().copied().filter_map(Record::decode).collect();
+        let steps_behind = |call: Record| {
+            let at = records.iter().position(|&record| record == call);
+            let behind = &records[at.expect("the call is there") + 1..];
+            let steps = behind
+                .iter()
+                .take_while(|record| matches!(record, Record::Step(_)));
+            steps.count()
+        };
+        let inverter = &drive.spec.inverter;
+        assert!(steps_behind(Record::Calibrate) >= 1 << inverter.calibration_log2);
+        assert!(steps_behind(Record::Precharge) >= inverter.precharge_periods as usize);
+
+        let mut replayed = Recorder::new(&drive, None);
+        let mut faults = vec![];
+        for record in records {
+            match record {
+                Record::Step(sample) => {
+                    replayed.step(sample);
+                }
+                call => replayed.call(call),
+            }
+            if !faults.contains(&replayed.fault()) {
+                faults.push(replayed.fault());
+            }
+        }
+        for fault in [Fault::OverCurrent, Fault::AdcRange, Fault::Hall] {
+            assert!(faults.contains(&fault), "{fault:?}");
+        }
+    }
 }

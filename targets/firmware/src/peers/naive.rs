@@ -71,27 +71,31 @@ fn reference<R: Real>(sample: Sample) -> [R; 2] {
 }
 
 /// Space-vector modulation by min/max injection; scales what the hexagon cannot hold.
-#[inline]
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "as each controller would have it in place"
+)]
 fn modulate<R: Real + Div<Output = R>>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Legs) {
-    let half = v_alpha * R::num(0.5);
-    let side = v_beta * R::num(SQRT_3 / 2.0);
-    let mut v = [v_alpha, side - half, -half - side];
+    // Phase voltages in counts of the timer. `37.5 * x` stands here once: of two products of 64 bits by the same odd multiple of
+    // 2^31, which 37.5 is one of in `I16F16`, rustc 1.96 (LLVM 22) makes undefined values on RV32.
+    let alpha = v_alpha * R::num(TIMER / BUS);
+    let half = alpha * R::num(0.5);
+    let side = v_beta * R::num(SQRT_3 / 2.0 * TIMER / BUS);
+    let mut v = [alpha, side - half, -half - side];
     let mut applied = [v_alpha, v_beta];
     let mut highest = v[0].greatest(v[1]).greatest(v[2]);
     let mut lowest = v[0].least(v[1]).least(v[2]);
     let spread = highest - lowest;
-    if spread > R::num(BUS) {
-        let scale = R::num(BUS) / spread;
+    if spread > R::num(TIMER) {
+        let scale = R::num(TIMER) / spread;
         v = v.map(|x| x * scale);
         applied = applied.map(|x| x * scale);
         highest = highest * scale;
         lowest = lowest * scale;
     }
-    let middle = (highest + lowest) * R::num(0.5);
-    let compare = v.map(|x| {
-        let counts = (x - middle) * R::num(TIMER / BUS) + R::num(TIMER / 2.0);
-        counts.greatest(R::num(0.0)).least(R::num(TIMER)).compare()
-    });
+    let zero = R::num(TIMER / 2.0) - (highest + lowest) * R::num(0.5);
+    let compare = v.map(|x| (x + zero).compare(TIMER as u16));
     let state = [LegState::Pulsed; 3];
     (applied, Legs::new(compare, state))
 }
@@ -108,7 +112,8 @@ fn whole(vector: usize) -> Legs {
 /// EMF of the last period and the current at the next sample, by the voltages applied.
 #[derive(Clone, Copy, Debug)]
 struct Prediction<R> {
-    i_last: [R; 2],
+    /// What the last current decays to within a period.
+    i_left: [R; 2],
     v_last: [R; 2],
     v_now: [R; 2],
 }
@@ -117,7 +122,7 @@ impl<R: Real> Prediction<R> {
     fn new() -> Self {
         let zero = [R::num(0.0); 2];
         Self {
-            i_last: zero,
+            i_left: zero,
             v_last: zero,
             v_now: zero,
         }
@@ -129,10 +134,10 @@ impl<R: Real> Prediction<R> {
         let mut e = [R::num(0.0); 2];
         let mut i_next = e;
         for x in 0..2 {
-            e[x] = self.v_last[x] - (i[x] - R::num(A) * self.i_last[x]) * R::num(K);
-            i_next[x] = R::num(A) * i[x] + R::num(B) * (self.v_now[x] - e[x]);
+            e[x] = self.v_last[x] - (i[x] - self.i_left[x]) * R::num(K);
+            self.i_left[x] = R::num(A) * i[x];
+            i_next[x] = self.i_left[x] + R::num(B) * (self.v_now[x] - e[x]);
         }
-        self.i_last = i;
         self.v_last = self.v_now;
         (e, i_next)
     }
@@ -246,10 +251,14 @@ impl<R: Real + Div<Output = R>> Peer for PiPwm<R> {
         let error = [0, 1].map(|x| i_ref[x] - i[x]);
         let v = [0, 1].map(|x| R::num(GAIN) * error[x] + self.integral[x]);
         let (applied, legs) = modulate(v);
-        for x in 0..2 {
-            let tracked = R::num(GAIN) * error[x] + (applied[x] - v[x]);
-            self.integral[x] = self.integral[x] + R::num(SHARE) * tracked;
-        }
+        // The share of the error, and of what was not applied: `GAIN * error + applied - v`.
+        self.integral = [0, 1].map(|x| {
+            let tracked = applied[x] - self.integral[x];
+            self.integral[x] + R::num(SHARE) * tracked
+        });
         legs
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,8 +21,8 @@ pub trait Real:
     fn num(value: f64) -> Self;
     /// An ADC count.
     fn count(count: u16) -> Self;
-    /// A compare value.
-    fn compare(self) -> u16;
+    /// A compare value: whole counts, from 0 to `most`.
+    fn compare(self, most: u16) -> u16;
 
     /// The lesser.
     #[must_use]
@@ -74,8 +74,9 @@ impl Real for f32 {
     }
 
     #[inline]
-    fn compare(self) -> u16 {
-        self as u16
+    fn compare(self, most: u16) -> u16 {
+        // Limited as an integer: the conversion to 32 bits is one instruction, which saturates by itself.
+        (self as u32).min(most.into()) as u16
     }
 }
 
@@ -98,7 +99,7 @@ impl Real for I16F16 {
     }
 
     #[inline]
-    fn compare(self) -> u16 {
-        self.to_num()
+    fn compare(self, most: u16) -> u16 {
+        self.greatest(Self::ZERO).least(Self::count(most)).to_num()
     }
 }
