@@ -118,7 +118,8 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
          goal: normal / worst / stack of the best that was found by editing the emitted text by hand, with the same supervision.\n\
          code: bytes of the function, and of all that it calls. state: bytes of the drive's type. stack: bytes, of the deepest of all steps.\n\
          cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1.\n\
-         Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervision; what they put out is compared with the host, exactly."
+         Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervision; what they put out is compared with the host, exactly (of step_foc, \
+         the first 500 steps)."
     );
     if rises.is_empty() {
         return Ok(());

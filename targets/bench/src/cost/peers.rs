@@ -11,6 +11,10 @@ use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Peer, Phcc, PiPwm
 use hexagen_firmware::wire::{Mode, Task, encode_outputs};
 use hexagen_host::engine::Prepared;
 
+/// Steps of `foc` that are compared: the integral of its controllers has no limit, and in another's loop leaves its words
+/// some time after them, where a host that checks for it stops.
+const FOC_STEPS: usize = 500;
+
 /// The run of a peer on the host.
 #[derive(Debug)]
 pub struct Run {
@@ -35,8 +39,8 @@ pub fn run(drive: &Prepared, symbol: &str) -> Result<Run, BenchError> {
         "step_i16f16_phcc" => in_closed_loop::<Phcc<I16F16>>(drive),
         "step_i16f16_pi_pwm" => in_closed_loop::<PiPwm<I16F16>>(drive),
         // `foc` and `idsp` are rotor-oriented, without an angle between the edges: they read what another PI meets.
-        "step_foc" => in_loop_of::<PiPwm<f32>, FocLoop>(drive),
-        "step_idsp" => in_loop_of::<PiPwm<f32>, IdspLoop>(drive),
+        "step_foc" => in_loop_of::<PiPwm<f32>, FocLoop>(drive, FOC_STEPS),
+        "step_idsp" => in_loop_of::<PiPwm<f32>, IdspLoop>(drive, usize::MAX),
         _ => Err(BenchError::Failed(format!(
             "`{symbol}` is no peer of the host"
         ))),
@@ -44,11 +48,11 @@ pub fn run(drive: &Prepared, symbol: &str) -> Result<Run, BenchError> {
 }
 
 fn in_closed_loop<P: Peer>(drive: &Prepared) -> Result<Run, BenchError> {
-    in_loop_of::<P, P>(drive)
+    in_loop_of::<P, P>(drive, usize::MAX)
 }
 
-/// The inputs that `L` meets in closed loop with itself, and what `P` answers to them.
-fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared) -> Result<Run, BenchError> {
+/// The inputs that `L` meets in closed loop with itself, and what `P` answers to the first of them.
+fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared, steps: usize) -> Result<Run, BenchError> {
     let (mut closed, mut peer) = (L::new(), P::new());
     let inputs = Inputs::record_peer(drive, |sample| closed.step(sample))?;
     let answer = |(step, sample)| Answer {
@@ -56,7 +60,12 @@ fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared) -> Result<Run, BenchError> {
         step,
         bytes: encode_outputs(peer.step(&sample), Fault::None).to_vec(),
     };
-    let answers = inputs.samples().enumerate().map(answer).collect();
+    let answers = inputs
+        .samples()
+        .take(steps)
+        .enumerate()
+        .map(answer)
+        .collect();
     Ok(Run { inputs, answers })
 }
 
@@ -135,6 +144,30 @@ mod tests {
         let [compare_a, compare_b, compare_c] = legs.compare();
         let compare_b = compare_b + u16::from(compare_b > 899);
         Legs::new([compare_a, compare_b, compare_c], legs.state())
+    }
+
+    #[test]
+    fn every_peer_runs_on_the_host() {
+        let paper = paper_drive(INTERRUPT_VARIANT).expect("a drive of the library");
+        for symbol in [
+            "step_f32_pdcc",
+            "step_f32_fcs_mpc",
+            "step_f32_phcc",
+            "step_f32_pi_pwm",
+            "step_i16f16_pdcc",
+            "step_i16f16_fcs_mpc",
+            "step_i16f16_phcc",
+            "step_i16f16_pi_pwm",
+            "step_foc",
+            "step_idsp",
+        ] {
+            let run = run(&paper, symbol).expect("a peer");
+            let mut outputs: Vec<_> = run.answers.iter().map(|answer| &answer.bytes).collect();
+            assert!(outputs.len() >= FOC_STEPS, "{symbol}");
+            outputs.sort_unstable();
+            outputs.dedup();
+            assert!(outputs.len() > 3, "{symbol}: {outputs:?}");
+        }
     }
 
     #[test]

@@ -251,11 +251,11 @@ impl<R: Real + Div<Output = R>> Peer for PiPwm<R> {
         let error = [0, 1].map(|x| i_ref[x] - i[x]);
         let v = [0, 1].map(|x| R::num(GAIN) * error[x] + self.integral[x]);
         let (applied, legs) = modulate(v);
-        for x in 0..2 {
-            // The share of the error, and of what was not applied: `GAIN * error + applied - v`.
+        // The share of the error, and of what was not applied: `GAIN * error + applied - v`.
+        self.integral = [0, 1].map(|x| {
             let tracked = applied[x] - self.integral[x];
-            self.integral[x] = self.integral[x] + R::num(SHARE) * tracked;
-        }
+            self.integral[x] + R::num(SHARE) * tracked
+        });
         legs
     }
 }
