@@ -49,7 +49,7 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// is what the closed loop lets an EMF drive that appears at once, and turns: of prediction without knowledge, one period
 /// of it before the sample that shows it and, with a delay, one more. The inverter can hold that current where its lowest
 /// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
-/// whole vectors add the step of one vector, modulated the greatest distance from what two vectors reach. A speed loop
+/// whole vectors add the step of one vector, modulated the greatest distance from the line of two. A speed loop
 /// brakes as soon as it knows the speed, a sector later at the earliest: a filter that follows more slowly than the EMF
 /// turns has not met it by then. Samples lie
 /// where the ripple of pulses crosses its mean.
@@ -79,9 +79,9 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
             let linear = DeadbeatLoop { options, design };
             (linear.greatest_response(spec, turn), 0.0)
         }
-        // The centre of a triangle of vectors lies so far from its edges.
+        // A pair shares the period with its own zero alone: a voltage of that length may lie 30 degrees off their line.
         ControllerSpec::FcsMpc(fcs) if fcs.modulated => {
-            (design.plant.gain * periods, vector / 12_f64.sqrt())
+            (design.plant.gain * periods, vector * 3_f64.sqrt() / 4.0)
         }
         ControllerSpec::FcsMpc(_) => (design.plant.gain * periods, vector),
         ControllerSpec::Phcc(phcc) => (design.plant.gain * periods, vector + phcc.band),
