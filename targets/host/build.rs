@@ -96,11 +96,12 @@ fn names() -> Result<Vec<String>, Box<dyn Error>> {
 /// Generates the drives of one motor. A motor that no controller can be made for is left out: the
 /// program says why when it is asked.
 fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box<dyn Error>> {
-    // The printed switching table is among the readings of the paper: known to lose the current. Of motors that are too
-    // fast for the default the program tells whoever asks for them.
-    let mut builder = hexagen_codegen::Builder::new()
-        .allow("HX0601")
-        .allow("HX0602")
+    // Every controller is generated for every motor; the program gives the warnings of those that are asked for.
+    let mut builder = ["HX0601", "HX0602", "HX0610", "HX0611"]
+        .into_iter()
+        .fold(hexagen_codegen::Builder::new(), |builder, code| {
+            builder.allow(code)
+        })
         .motor(file);
     builder = builder.controller("pdcc");
     for kind in KINDS {
