@@ -438,7 +438,15 @@ fn commutations(rows: &[PeriodRow], threshold: f64) -> Commutations {
         let row = &rows[k];
         // What the drive makes of this sample is at work in the next period.
         let is_driven = !rows[k + 1].state.contains(&2);
-        if row.sector != rows[k - 1].sector {
+        if row.sector == rows[k - 1].sector {
+            // Gone for good once it was gone. Two counts of the converters decide nothing.
+            let left = sign * row.currents[phase] - threshold;
+            flows &= if left.abs() < 0.04 {
+                is_driven
+            } else {
+                left > 0.0
+            };
+        } else {
             let (alpha, beta) = quasi_square(row.theta_e, 1.0);
             let part = 3.0_f64.sqrt() / 2.0 * beta;
             let reference = [alpha, part - alpha / 2.0, -part - alpha / 2.0];
@@ -447,14 +455,6 @@ fn commutations(rows: &[PeriodRow], threshold: f64) -> Commutations {
             sign = row.currents[phase].signum();
             flows = true;
             counts = row.currents[phase].abs() > 5.0;
-        } else {
-            // Gone for good once it was gone. Two counts of the converters decide nothing.
-            let left = sign * row.currents[phase] - threshold;
-            flows &= if left.abs() < 0.04 {
-                is_driven
-            } else {
-                left > 0.0
-            };
         }
         if counts {
             found.early += usize::from(flows && !is_driven);
