@@ -107,8 +107,8 @@ fn measured(drive: &Prepared, rpm: f64, share: f64) -> (Vec<Trace>, f64, f64) {
     let merits = found.merits;
     (
         found.traces,
-        merits.mean_torque_nm / torque,
-        merits.ripple_pp_pct,
+        merits.mean_torque_nm.expect("runs") / torque,
+        merits.ripple_pp_pct.expect("turns"),
     )
 }
 
