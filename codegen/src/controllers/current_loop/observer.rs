@@ -228,7 +228,7 @@ impl CurrentLoop<'_, '_> {
         let twice_a = b.shift_left(e[0], 1);
         let line_b = b.add(twice_a, e[1]);
         [0, 1].map(|x| {
-            let turned = b.mul_floor(turn, [line_a, line_b][x], word);
+            let turned = b.mul(turn, [line_a, line_b][x], word);
             b.name(names[x], turned)
         })
     }

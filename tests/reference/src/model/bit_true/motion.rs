@@ -11,13 +11,13 @@ pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [Word; 2]) -> ([Wor
         let line = within(line, -k.line_max, k.line_max);
         floor_shift(line * k.line_scale, k.line_shift)
     };
-    let product = |y: Word, z: Word| k.line_product.floor_product(y, z);
     // The pair's EMF with c as minus the sum of a and b.
     let [p, q] = [CORNER_A[sector], CORNER_B[sector]];
     let [line_a, line_b] = [2.0 * p + q, p + 2.0 * q];
     let y = factor(line_a * e[0] + line_b * e[1]);
     if k.emf_turns {
         let turn = k.k_slope.mul(y);
+        let product = |y: Word, z: Word| k.line_product.round_product(y, z);
         let [across_a, across_b] = [
             product(turn, -(e[0] + 2.0 * e[1])),
             product(turn, 2.0 * e[0] + e[1]),
@@ -32,7 +32,7 @@ pub fn ahead(k: &Constants, delayed: bool, sector: usize, e: [Word; 2]) -> ([Wor
         let target = if delayed { moved(e, twice) } else { present };
         return (target, present);
     }
-    let square = product(y, y);
+    let square = k.line_product.floor_product(y, y);
     let motion = [
         -k.k_slope.mul(line_b * square),
         k.k_slope.mul(line_a * square),
