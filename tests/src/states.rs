@@ -135,7 +135,8 @@ impl<'a> States<'a> {
             hall: match self.random.u8(..64) {
                 0 => 0,
                 1 => 7,
-                _ => self.codes[self.random.usize(..6)] | (self.random.u8(..2) << 3),
+                2 => self.codes[self.random.usize(..6)] | 8,
+                _ => self.codes[self.random.usize(..6)],
             },
             hall_ticks: self.age() as u16,
             ..Sample::default()

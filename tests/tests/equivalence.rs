@@ -30,6 +30,8 @@ const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc choice=two_steps emf=held",
     "pdcc modulation=pair emf=held",
     "pdcc modulation=pair reference=proportional",
+    "pdcc reference=proportional advance=1.5",
+    "pdcc reference=proportional advance=2",
     "phcc candidates=three_phase off_leg=nominal",
     "phcc candidates=three_phase table=printed",
     "phcc candidates=three_phase table=given",

@@ -52,6 +52,7 @@ fn draw(random: &mut Rng, node: &Node, adc_bits: u32) -> i64 {
     match node.name.as_str() {
         "mode" if !anything => i64::from(Mode::Run as i32),
         "adc_a" | "adc_b" if !anything => random.i64(0..1 << adc_bits),
+        "hall" if !anything => random.i64(0..8),
         _ => word(random, node.interval),
     }
 }

@@ -237,14 +237,14 @@ impl<'t> Told<'t> {
         self.watch.pass_period(STALE);
         whole(self.bus.read())
     }
+}
 
-    /// Runs a call that ends for good before an access; whether that was before its own end.
-    fn is_ended_at(self: &Rc<Self>, core: &Rc<Core<'t>>, access: usize, call: impl Fn()) -> bool {
-        core.at(core.accesses.get() + access, || resume_unwind(Box::new(())));
-        let ended = catch_unwind(AssertUnwindSafe(call)).is_err();
-        core.pending.borrow_mut().clear();
-        ended
-    }
+/// Runs a call that ends for good before an access; whether that was before its own end.
+fn is_ended_at(core: &Core<'_>, access: usize, call: impl Fn()) -> bool {
+    core.at(core.accesses.get() + access, || resume_unwind(Box::new(())));
+    let ended = catch_unwind(AssertUnwindSafe(call)).is_err();
+    core.pending.borrow_mut().clear();
+    ended
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn a_call_interrupted_for_good_shows_until_a_later_one_takes_effect() {
         let drive = Told::new(&core);
         drive.set_bus(2);
         drive.step();
-        if !drive.is_ended_at(&core, access, || drive.set_bus(3)) {
+        if !is_ended_at(&core, access, || drive.set_bus(3)) {
             continue;
         }
         ended += 1;

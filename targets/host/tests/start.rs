@@ -7,6 +7,7 @@ use hexagen_host::engine::{Model, MotorSource, Prepared, library, plant_of, prep
 use hexagen_host::plant::Plant;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::fmt::Write;
 
 /// Rotor angles that control begins at, every other one backward.
 const ANGLES: u32 = 12;
@@ -98,11 +99,11 @@ impl Case {
         if !matches!(bus, Bus::Fixed) {
             let range = 1.6 * inverter.v_bus;
             fields += "v_bus = \"measured\"\nbus_adc_bits = 12\n";
-            fields += &format!("bus_adc_range = \"{range:.3} V\"\n");
+            let _ = writeln!(fields, "bus_adc_range = \"{range:.3} V\"");
         }
         if let Some(trip) = trip {
             let level = trip * inverter.max_current;
-            fields += &format!("trip_current = \"{level:.4} A\"\n");
+            let _ = writeln!(fields, "trip_current = \"{level:.4} A\"");
         }
         let mut put = |section: &str, fields: &str| {
             let head = format!("[{section}]\n");

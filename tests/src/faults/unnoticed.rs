@@ -92,7 +92,9 @@ pub const RARE: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "moves the EMF by a part of its last bit, and only at the line EMF's limit",
-        drives: &[PAPER, HOVERBOARD, FCS_PAPER, PHCC_PAPER],
+        drives: &[
+            PAPER, HOVERBOARD, ESTUN, TEKNIC, FCS_PAPER, FCS_ESTUN, FCS_TEKNIC, PHCC_PAPER,
+        ],
         faults: &[(&["line_min", "line_max"], &["one more", "one less"])],
     },
     Unnoticed {

@@ -298,7 +298,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
                 );
                 if is_bus {
                     stores.push_str(&wrapped(INDENT, &format!("if ({call}) {{")));
-                    let _ = write!(stores, "{INDENT}{told}{INDENT}}}\n");
+                    let _ = writeln!(stores, "{INDENT}{told}{INDENT}}}");
                 } else {
                     stores.push_str(&wrapped(INDENT, &format!("(void){call};")));
                 }

@@ -158,7 +158,7 @@ fn plan(
                     let reason = without_place(&failure.to_string());
                     match left_out
                         .iter_mut()
-                        .find(|(w, r, _)| (*w, &*r) == (word, &reason))
+                        .find(|left| left.0 == word && left.1 == reason)
                     {
                         Some((_, _, rows)) => rows.push(row.label),
                         None => left_out.push((word, reason, vec![row.label])),
