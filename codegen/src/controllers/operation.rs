@@ -138,10 +138,11 @@ pub fn unseen(spec: &Spec) -> Vec<String> {
         String::new(),
         "# What the supervisor cannot see".to_owned(),
         String::new(),
-        "A current converter or amplifier that is stuck or wrong within its range: one frozen at mid-scale can let the true current rise".to_owned(),
-        "to several times the trip level. The current of phase c, which has no sensor: it is taken as -(a + b). A control interrupt that does".to_owned(),
-        format!("not come: the last command stands. Heat, shoot-through, and what is shorter than a control period. {bus}, not even one"),
-        "too high for the switches. So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog".to_owned(),
-        "on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus voltage, too.".to_owned(),
+        "The supervisor misses an ADC or amplifier that is stuck or wrong within its range: one that is frozen at mid-scale can let".to_owned(),
+        "the true current rise to several times the trip level. It misses the current of phase c, which has no sensor (it is taken as".to_owned(),
+        "-(a + b)), a control interrupt that does not come (the last command stands), heat, shoot-through, and what is shorter than a".to_owned(),
+        format!("control period. {bus}, not even one too high for the switches. So the board must have (a) a"),
+        "comparator of the current on the timer's break input, (b) a watchdog on the control interrupt and (c) a thermal limit; where".to_owned(),
+        "the motor can brake, a limit of the bus voltage, too.".to_owned(),
     ]
 }

@@ -261,7 +261,11 @@ pub const RARE: &[Unnoticed] = &[
                 &["1 for 0", "-1 for 0"],
             ),
             (
-                &["predict_off_legs: in d_b", "predict_off_legs: in d_c"],
+                &[
+                    "predict_off_legs: in d_a",
+                    "predict_off_legs: in d_b",
+                    "predict_off_legs: in d_c",
+                ],
                 &["1 for 0"],
             ),
             (
@@ -301,7 +305,7 @@ pub const RARE: &[Unnoticed] = &[
     },
     Unnoticed {
         because: "differs only where a phase is next to zero and no third of the bus from the others",
-        drives: &[FCS_PAPER],
+        drives: &[FCS_PAPER, FCS_HOVERBOARD],
         faults: &[(&["nearest_vector: in c_is_low"], &["-1 for 0 (2)"])],
     },
     Unnoticed {
@@ -346,6 +350,7 @@ pub const RARE: &[Unnoticed] = &[
                 "another comparison",
                 "another comparison (4)",
                 "another comparison (5)",
+                "another comparison (6)",
             ],
         )],
     },
@@ -356,6 +361,17 @@ pub const RARE: &[Unnoticed] = &[
             &["nearest_vector: in vector_three"],
             &["another comparison (5)"],
         )],
+    },
+    Unnoticed {
+        because: "differs only where the component is that of the corner to the last bit, and there by nothing",
+        drives: &[PAPER],
+        faults: &[
+            (&["limit_torque_priority: in beyond_corner"], &["1 for 0"]),
+            (
+                &["limit_torque_priority: beyond_corner"],
+                &["another comparison"],
+            ),
+        ],
     },
 ];
 
