@@ -167,5 +167,14 @@ fn every_pair_of_option_values_is_compiled() {
     );
     let (refused, codes): (Vec<&str>, Vec<&str>) = rest.into_iter().unzip();
     assert_eq!(refused, WITHOUT_EFFECT);
-    assert!(codes.iter().all(|codes| *codes == "HX0404"), "{codes:?}");
+    // Two legs cannot drive three currents; all else is refused as it has no effect.
+    let three_currents = "pdcc modulation=pair reference=proportional";
+    for (what, codes) in refused.iter().zip(codes) {
+        let expected = if *what == three_currents {
+            "HX0111"
+        } else {
+            "HX0404"
+        };
+        assert_eq!(codes, expected, "{what}");
+    }
 }
