@@ -9,7 +9,8 @@ fn errors(text: &str) -> String {
     }
 }
 
-const COMPLETE: &str = r#"[motor]
+/// A motor file without errors.
+pub(super) const COMPLETE: &str = r#"[motor]
 pole_pairs = 4
 resistance = "135 mohm per_phase"
 inductance = "0.22 mH per_phase"

@@ -1,27 +1,9 @@
 //! What may stand in a value, and the remedies for what may not: none turns a number into another
 //! quantity, and none puts a basis into the mouth of a user who did not name it.
 
+use super::diagnostics_toml::COMPLETE;
 use crate::diagnostics::Location;
 use crate::spec::{check, load_motor_file, parse_macro, parse_toml};
-
-const COMPLETE: &str = r#"[motor]
-pole_pairs = 4
-resistance = "135 mohm per_phase"
-inductance = "0.22 mH per_phase"
-winding = "star"
-back_emf = "0.1648 V/(rad/s) line_to_line peak"
-emf_shape = "trapezoidal"
-rated_current = "20 A"
-rated_speed = "2000 rpm"
-[inverter]
-bus_voltage = "48 V"
-f_pwm = "20 kHz"
-timer_clock = "72 MHz"
-adc_bits = 12
-adc_range = "40 A"
-[controller]
-kind = "pdcc"
-"#;
 
 fn errors(text: &str) -> String {
     match parse_toml(text, "hub.toml").and_then(|ast| check(&ast)) {
