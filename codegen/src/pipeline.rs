@@ -12,6 +12,7 @@ use crate::diagnostics::{
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::scaling::{Scaled, Unscalable, choose_scale};
+use crate::spec::health::TRIP_BY_DEFAULT;
 use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec, SwitchingTable};
 use crate::stopwatch::Part;
 
@@ -143,8 +144,6 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
 
 /// A written trip level is taken for a slip from this multiple of the largest set-point's peak on.
 const TRIP_GIVEN: f64 = 3.0;
-/// The trip level by default, unless the vectors of the controller force more.
-const TRIP_BY_DEFAULT: f64 = 2.0;
 
 /// A trip level that protects little, or that PHCC may reach in health.
 fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {

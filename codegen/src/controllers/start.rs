@@ -3,6 +3,7 @@
 use super::current_loop::{LinearLoop, LoopDesign};
 use super::pdcc::DeadbeatLoop;
 use super::pi_pwm::PiLoop;
+use super::trust::TRAPEZOID_PER_FILTER;
 use crate::design::emf::zero_sum_shape;
 use crate::spec::{
     ControllerSpec, EmfShape, EmfSource, Modulation, PhccCandidates, Spec, SwitchingTable,
@@ -15,7 +16,7 @@ use std::f64::consts::{FRAC_PI_3, TAU};
 fn loses(shape: EmfShape) -> f64 {
     match shape {
         EmfShape::Sinusoidal => 10.0 / 3.0,
-        EmfShape::Trapezoidal { .. } => 1.1,
+        EmfShape::Trapezoidal { .. } => TRAPEZOID_PER_FILTER,
     }
 }
 
@@ -51,8 +52,7 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
 /// whole vectors add the step of one vector, modulated the greatest distance from the line of two. A speed loop
 /// brakes as soon as it knows the speed, a sector later at the earliest: a filter that follows more slowly than the EMF
-/// turns has not met it by then. Samples lie
-/// where the ripple of pulses crosses its mean.
+/// turns has not met it by then. Samples lie where the ripple of pulses crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;

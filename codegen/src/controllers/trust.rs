@@ -18,7 +18,7 @@ const OTHER_PER_DEGREE: f64 = 0.25;
 /// Parts of the filter, as a turn in radian, at which an estimate that learns its speed from its own length falls behind
 /// the EMF for good: simulated with filters from 0.02 to 0.25.
 const SINE_PER_FILTER: f64 = 2.0;
-const TRAPEZOID_PER_FILTER: f64 = 1.1;
+pub(super) const TRAPEZOID_PER_FILTER: f64 = 1.1;
 
 /// An EMF's turn at rated speed and the greatest that its estimate stands, electrical degrees per period.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,10 @@
 
 use super::{ControllerSpec, EmfShape, Reference, Spec};
 
+/// The default trip level over the largest set-point: room for what a current overshoots by, and
+/// little enough for switches and magnets that were chosen for the motor. Vectors may need more.
+pub(crate) const TRIP_BY_DEFAULT: f64 = 2.0;
+
 /// What the currents of a drive depend on, SI.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'a> {

@@ -9,7 +9,7 @@ pub mod ast;
 pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
-mod health;
+pub(crate) mod health;
 mod load;
 mod macro_syntax;
 mod model;

@@ -6,11 +6,7 @@ use super::reader::Reader;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::{Collector, engineering};
 use crate::spec::ControllerSpec;
-use crate::spec::health::Drive;
-
-/// The default trip level over the largest set-point: room for what a current overshoots by, and
-/// little enough for switches and magnets that were chosen for the motor.
-const TRIP: f64 = 2.0;
+use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
 
 /// Room above what whole vectors reach where that is more than twice the largest set-point.
 const ROOM: f64 = 1.05;
@@ -115,7 +111,7 @@ fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     };
     let ends = adc.reach - (usual_tolerance(1 << adc.bits) + 1.0) * adc.gain;
     let most = (ends - adc.gain).max(reach.min(shown));
-    let trip = (TRIP * drive.max_current).max(vectors).min(most);
+    let trip = (TRIP_BY_DEFAULT * drive.max_current).max(vectors).min(most);
     whole_counts(trip, adc.gain, f64::ceil).min(shown)
 }
 
