@@ -4,7 +4,7 @@
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::emit::c99::emit_c99;
+// use crate::emit::c99::emit_c99;
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
@@ -486,7 +486,7 @@ impl Source {
 
     fn add_c99(&mut self, generated: &Generated, name: &str) {
         let Generated { graph, interface } = generated;
-        let sources = emit_c99(graph, interface, name);
+        let sources: crate::emit::C99Sources = todo!();
         let file = |ending: &str| PathBuf::from(format!("{}.{ending}", sources.name));
         let (header, source) = (file("h"), file("c"));
         self.files.push((header, sources.header));

@@ -10,7 +10,6 @@ use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, write_rust};
 use crate::interface::Interface;
-use crate::ir::{Function, Input, Interval, Program, verify};
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
 use crate::spec::{MacroInput, MotorFile, SpecAst, check, is_absolute, parse_macro, parse_toml};
@@ -52,7 +51,7 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
                     !is_absolute(&path) && root.join(path).is_file()
                 })
                 .map(track);
-            let shape = named_shape(&input.ast, surface);
+            let shape = empty_shape(&input.ast, &surface);
             quote!(#errors #shape #(#tracking)*)
         }
     }
@@ -112,122 +111,46 @@ fn track(file: &MotorFile) -> TokenStream {
     }
 }
 
-/// The empty shape under the name that was given, be it one that a type cannot have: `hub` is the name of its own
-/// module, too, so that such a shape gets another name and the given one as its alias.
-fn named_shape(ast: &SpecAst, surface: Surface) -> TokenStream {
-    let given = surface.name.to_string();
-    if module_name(&given) != given {
-        return empty_shape(ast, &surface);
-    }
-    let alias = surface.name.clone();
-    let visibility = surface.visibility.clone();
-    let words = given.split('_').map(|word| {
-        let mut letters = word.chars();
-        let first = letters.next().map(|first| first.to_ascii_uppercase());
-        first.into_iter().chain(letters).collect::<String>()
-    });
-    let name = Ident::new(&format!("Empty{}", words.collect::<String>()), alias.span());
-    let shape = empty_shape(
-        ast,
-        &Surface {
-            name: name.clone(),
-            ..surface
-        },
-    );
-    quote!(#shape #[allow(unused_imports)] #visibility use #name as #alias;)
-}
-
-/// The type without a controller in it: its step turns all legs off.
+/// The type under the name that was given, with every trait and constant that its options bring: the example's drive,
+/// which never runs, since the crate does not compile.
 fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     let is = |section: &crate::spec::ast::Section, field: &str, word: &str| {
         section
             .field(field)
             .is_some_and(|field| matches!(&field.value, Value::Word(given) if given == word))
     };
-    let timer_capture = is(&ast.controller, "hall_capture", "timer");
-    let bus_periods = is(&ast.inverter, "v_bus", "measured").then_some(1);
-    let exemplary = exemplary_interface();
-    let mut constants = exemplary.constants;
-    constants.retain(|constant| timer_capture || constant.name != "HALL_TIMER_HZ");
-    let interface = Interface {
-        constants,
-        type_name: surface.name.to_string(),
-        doc: vec!["Not generated: the specification has errors.".to_owned()],
-        header: vec!["Empty shape of a drive whose specification has errors.".to_owned()],
-        timer_capture,
-        bus_periods,
-        ..exemplary
+    let mut text = include_str!("example.toml").to_owned();
+    let mut add = |section: &str, lines: &str| {
+        text = text.replacen(section, &format!("{section}\n{lines}"), 1);
     };
-    let has_speed = is(&ast.controller, "speed_loop", "on");
-    match verify(empty_program(&interface, has_speed)) {
-        Ok(graph) => emit_rust(&graph, &interface, surface),
-        // Cannot happen; the errors themselves are reported in any case.
-        Err(_) => TokenStream::new(),
+    if is(&ast.controller, "hall_capture", "timer") {
+        add("[controller]", "hall_capture = \"timer\"");
     }
-}
-
-/// An interface with every constant that a drive has; their values are those of another motor and
-/// are never seen, since the crate does not compile.
-fn exemplary_interface() -> Interface {
-    // With a capture timer, which has a constant of its own.
-    let timed = "[controller]\nhall_capture = \"timer\"\n";
-    let text = include_str!("example.toml").replacen("[controller]\n", timed, 1);
+    if is(&ast.controller, "speed_loop", "on") {
+        add("[controller]", "speed_loop = true");
+        add("[motor]", "inertia = \"1e-4 kg m2\"");
+    }
+    if is(&ast.inverter, "v_bus", "measured") {
+        let lines = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"";
+        add("[inverter]", lines);
+    }
     let generated = parse_toml(&text, "example.toml").and_then(|ast| {
         let (spec, origins) = check(&ast)?;
         generate(&spec, &origins)
     });
     match generated {
-        Ok(Generated { interface, .. }) => interface,
-        Err(_) => Interface {
-            type_name: String::new(),
-            doc: vec![],
-            header: vec![],
-            spec_toml: String::new(),
-            formats: vec![],
-            constants: vec![],
-            delay: 1,
-            timer_capture: false,
-            bus_periods: None,
-            calibration_samples: 1,
-            precharge_periods: 0,
-        },
+        Ok(Generated { graph, interface }) => {
+            let interface = Interface {
+                type_name: surface.name.to_string(),
+                doc: vec!["Not generated: the specification has errors.".to_owned()],
+                header: vec![],
+                ..interface
+            };
+            emit_rust(&graph, &interface, surface)
+        }
+        // Cannot happen; the errors themselves are reported in any case.
+        Err(_) => TokenStream::new(),
     }
-}
-
-/// Inputs and setters of a drive, and nothing between them.
-fn empty_program(interface: &Interface, has_speed: bool) -> Program {
-    let count = Interval::new(0, i64::from(u16::MAX));
-    let mut setters = vec![
-        ("set_current", "bits", Interval::WORD),
-        ("set_torque", "bits", Interval::WORD),
-    ];
-    if has_speed {
-        setters.push(("set_speed", "bits", Interval::WORD));
-    }
-    if interface.bus_periods.is_some() {
-        setters.push(("set_bus", "counts", count));
-    }
-    let mut program = Program::new(&interface.type_name);
-    program.param("j", 0, Interval::point(0), "No set-point.");
-    program.step = empty_function("step", &[]);
-    program.setters = setters
-        .into_iter()
-        .map(|(name, input, interval)| empty_function(name, &[(input, interval)]))
-        .collect();
-    program
-}
-
-fn empty_function(name: &str, inputs: &[(&str, Interval)]) -> Function {
-    let mut function = Function::new(name, &["Does nothing: the specification has errors."]);
-    function.inputs = inputs
-        .iter()
-        .map(|&(name, interval)| Input {
-            name: name.to_owned(),
-            interval,
-            doc: String::new(),
-        })
-        .collect();
-    function
 }
 
 #[cfg(test)]

@@ -81,7 +81,7 @@ pub struct Interface {
     pub type_name: String,
     /// Documentation of the type, Markdown lines: what it controls, how, derived values, stable range.
     pub doc: Vec<String>,
-    /// Header of the emitted module, Markdown lines: generator version, derived values, operation count.
+    /// What stands behind it, Markdown lines: generator version, derived values.
     pub header: Vec<String>,
     /// The normalised specification.
     pub spec_toml: String,
@@ -93,11 +93,73 @@ pub struct Interface {
     pub delay: u32,
     /// Whether `step` takes `hall_ticks`.
     pub timer_capture: bool,
-    /// Periods without a call of `set_bus` after which the bus voltage is stale; none where it is fixed, and
-    /// no inherent method tells it.
+    /// Periods without a call of `set_bus` after which the bus voltage is stale; none where it is fixed.
     pub bus_periods: Option<i32>,
-    /// Samples of the offset calibration.
-    pub calibration_samples: i32,
-    /// Periods of bootstrap pre-charge.
-    pub precharge_periods: i32,
+    /// What samples are judged by, and how the drive starts up.
+    pub limits: Limits,
+    /// Units of what a drive tells of itself.
+    pub units: Units,
+}
+
+/// What the supervisor judges samples by; words of current are ADC counts with `current_bits` fraction bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Largest count of the phase-current ADC.
+    pub adc_max: u16,
+    /// Whether counts fall with the current into the motor.
+    pub adc_inverted: bool,
+    /// Fraction bits of currents.
+    pub current_bits: u32,
+    /// ADC count at zero current, where calibration has not told another.
+    pub offset: u16,
+    /// Least and greatest offset that calibration accepts, counts.
+    pub offsets: [u16; 2],
+    /// Largest phase current, words of current.
+    pub trip: i32,
+    /// Least and greatest current of any count at any accepted offset, words of current.
+    pub currents: [i32; 2],
+    /// Base-2 logarithm of the samples of a calibration.
+    pub calibration_log2: u32,
+    /// Control periods of bootstrap pre-charge; 0 where there is none.
+    pub precharge_periods: u16,
+    /// Control periods without a Hall edge under demand that count as a stall; 0 where none are counted.
+    pub stall_periods: i32,
+}
+
+/// Units of the words that a drive tells of itself, in numbers with 16 fraction bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Units {
+    /// Ampere per word of current.
+    pub ampere: Unit,
+    /// Volt per word of voltage.
+    pub volt: Unit,
+    /// Volt per timer count at the nominal bus.
+    pub volt_per_count: Unit,
+    /// Revolutions per minute per word of speed.
+    pub rpm: Unit,
+    /// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+    pub sectors: [u8; 8],
+}
+
+/// A factor in bits of a number with 16 fraction bits, shifted left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// The factor times 2^`shift`.
+    pub factor: i32,
+    /// 1 to 62.
+    pub shift: u32,
+}
+
+impl Unit {
+    /// The unit of words that are worth `value` each, rounded to 30 bits.
+    pub fn of(value: f64) -> Self {
+        let factor = value * 65536.0;
+        // The largest shift at which the factor fits.
+        let shift = (30.0 - factor.abs().max(1e-9).log2()).floor().clamp(1.0, 62.0);
+        let bits = (factor * shift.exp2()).round();
+        Self {
+            factor: bits.clamp(f64::from(i32::MIN), f64::from(i32::MAX)) as i32,
+            shift: shift as u32,
+        }
+    }
 }

@@ -25,13 +25,13 @@
 
 mod at_once;
 mod builder;
+mod derive;
 pub mod controllers;
 pub mod design;
 pub mod diagnostics;
 pub mod emit;
 mod expand;
 pub mod interface;
-mod interpreted;
 pub mod ir;
 pub mod lower;
 pub mod pipeline;
@@ -40,5 +40,5 @@ pub mod spec;
 pub mod stopwatch;
 
 pub use builder::{BuildError, Builder, Written};
+pub use derive::derive_state;
 pub use expand::{expand_controller, expand_verify};
-pub use interpreted::InterpretedDrive;

@@ -9,12 +9,12 @@ use core::sync::atomic::AtomicI32;
 /// [`told`](Self::told) from any context; [`pass_period`](Self::pass_period) from the control loop
 /// alone, once a period. Nothing of it is lost to an interrupt of either by the other.
 #[derive(Debug)]
-pub struct BusWatch(Watch<AtomicI32>);
+pub(crate) struct BusWatch(Watch<AtomicI32>);
 
 impl BusWatch {
     /// The watch of a drive that was never told: stale.
     #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self(Watch {
             told: AtomicI32::new(NO),
             left: AtomicI32::new(0),
@@ -23,20 +23,20 @@ impl BusWatch {
 
     /// `set_bus` took effect.
     #[inline]
-    pub fn told(&self) {
+    pub(crate) fn told(&self) {
         self.0.told();
     }
 
     /// A control period has passed; the voltage is stale where `periods` of them have since it was told.
     #[inline]
-    pub fn pass_period(&self, periods: Word) {
+    pub(crate) fn pass_period(&self, periods: Word) {
         self.0.pass_period(periods.0);
     }
 
     /// Whether the voltage is stale, as of the last control period.
     #[inline]
     #[must_use]
-    pub fn is_stale(&self) -> bool {
+    pub(crate) fn is_stale(&self) -> bool {
         self.0.is_stale()
     }
 }

@@ -1,158 +1,284 @@
-//! The traits of generated drives: the whole, and the two halves that firmware splits it into.
+//! A drive: a controller with its supervisor and its set-point, whole or split into two halves.
 
-use crate::{Fault, Format, Legs, Sample, Status};
-use fixed::types::I16F16;
+use crate::bus::Bus;
+use crate::signals::PeriodWords;
+use crate::set_point::debug;
+use crate::{
+    Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor,
+};
+use core::fmt;
+use core::ops::Deref;
 
-/// A generated current controller of one motor, inverter and sampling time.
+/// A drive of the controller `C`, which `hexagen::controller!` has emitted.
 ///
-/// Generic firmware code holds any drive through this trait; the inherent methods of the emitted
-/// type do the same with exactly the arguments that it needs.
+/// Firmware keeps it in a static and splits it: the main program has the [`SetPoint`], the control
+/// interrupt the [`ControlLoop`]. Kept whole it has the calls of both.
 ///
 /// ```
-/// use hexagen::{Drive, DriveLoop, DriveSetPoint, Fault, Legs, Sample};
-/// use hexagen::fixed::types::I16F16;
+/// use hexagen::{Control, ControlLoop, Drive, SetPoint};
+/// use static_cell::StaticCell;
 ///
-/// /// What the PWM interrupt owns.
-/// fn interrupt(control: &mut impl DriveLoop, sample: &Sample) -> Legs {
-///     control.step(sample)
-/// }
-///
-/// /// What the main program does meanwhile.
-/// fn main_program(set_point: &impl DriveSetPoint) -> Result<(), Fault> {
-///     set_point.set_current(I16F16::from_num(5));
-///     match set_point.status().fault {
-///         Fault::None => Ok(()),
-///         fault => Err(fault),
-///     }
-/// }
-///
-/// fn firmware<D: Drive>(drive: &'static mut D) {
-///     let (set_point, mut control) = drive.split();
-///     let legs = interrupt(&mut control, &Sample::default());
-///     let outcome = main_program(set_point);
+/// fn hand_over<C: Control>(
+///     place: &'static StaticCell<Drive<C>>,
+/// ) -> (&'static SetPoint<C>, ControlLoop<'static, C>) {
+///     place.init(Drive::new()).split()
 /// }
 /// ```
-pub trait Drive {
-    /// The half that the main program shares with the interrupt.
-    type SetPointHalf: DriveSetPoint;
-    /// The half that the control interrupt owns.
-    type LoopHalf<'drive>: DriveLoop
-    where
-        Self: 'drive;
-    /// The type's name as written in the macro call.
-    const NAME: &'static str;
-    /// The normalised specification: TOML, SI units, defaults filled in.
-    const SPEC: &'static str;
-    /// The fixed-point format of every kind of signals, coefficient and table.
-    const FORMATS: &'static [Format];
-    /// Names of the state words, in the order of [`Drive::state_words`].
-    const STATE_NAMES: &'static [&'static str];
+///
+/// A new drive controls currents from its first period on, with set-point 0 and nominal current
+/// offsets. Where offsets or the bootstrap capacitors of the inverter need it, call
+/// [`calibrate`](Self::calibrate) before the first period.
+pub struct Drive<C: Control> {
+    set_point: SetPoint<C>,
+    core: Core<C>,
+}
 
-    /// A drive with zero set-point that controls currents from its first step on, with nominal current offsets.
-    /// Where offsets or bootstrap capacitors need it, call [`Drive::calibrate`] before the first step.
-    fn new() -> Self
-    where
-        Self: Sized;
-    /// The two halves: an interrupt owns the control loop, the main program the set-point.
-    fn split(&mut self) -> (&Self::SetPointHalf, Self::LoopHalf<'_>);
+/// What the control interrupt owns.
+struct Core<C: Control> {
+    supervisor: Supervisor,
+    law: C::State,
+}
+
+impl<C: Control> Drive<C> {
+    /// A drive that was not run yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        const { assert!(C::LIMITS.hold(), "limits of a controller contradict each other") };
+        Self {
+            set_point: SetPoint::new(),
+            core: Core {
+                supervisor: Supervisor::new(&C::LIMITS),
+                law: C::State::INITIAL,
+            },
+        }
+    }
+
+    /// The two halves: the main program has the set-point, an interrupt the control loop.
+    pub const fn split(&mut self) -> (&SetPoint<C>, ControlLoop<'_, C>) {
+        let set_point = &self.set_point;
+        let core = &mut self.core;
+        (set_point, ControlLoop { set_point, core })
+    }
+
     /// The set-point of a drive that is not split.
-    fn set_point(&self) -> &Self::SetPointHalf;
-    /// Copies the state words, in the order of [`Drive::STATE_NAMES`], to the front of `words`; does nothing where they
-    /// do not fit. For verification.
-    fn state_words(&self, words: &mut [i32]);
-    /// Overwrites state word `index` (of [`Drive::STATE_NAMES`]) with a value inside its range. For verification.
-    fn set_state_word(&mut self, index: usize, value: i32);
+    #[must_use]
+    pub const fn set_point(&self) -> &SetPoint<C> {
+        &self.set_point
+    }
 
-    /// See [`DriveLoop::step`].
+    /// The control loop of a drive that is not split.
+    pub const fn control(&mut self) -> ControlLoop<'_, C> {
+        self.split().1
+    }
+
+    /// Runs one control period; see [`ControlLoop::step`].
     #[inline]
-    fn step(&mut self, sample: &Sample) -> Legs {
-        self.split().1.step(sample)
+    pub fn step(&mut self, sample: &Sample) -> C::Command {
+        self.control().step(sample)
     }
-    /// See [`DriveSetPoint::set_current`].
-    fn set_current(&self, current: I16F16) {
-        self.set_point().set_current(current);
+
+    /// See [`ControlLoop::reset`].
+    pub fn reset(&mut self) {
+        self.control().reset();
     }
-    /// See [`DriveSetPoint::set_torque`].
-    fn set_torque(&self, torque: I16F16) {
-        self.set_point().set_torque(torque);
+
+    /// See [`ControlLoop::calibrate`].
+    pub fn calibrate(&mut self) {
+        self.control().calibrate();
     }
-    /// See [`DriveSetPoint::set_speed`].
-    fn set_speed(&self, speed: I16F16) {
-        self.set_point().set_speed(speed);
+
+    /// See [`ControlLoop::precharge`].
+    pub fn precharge(&mut self) {
+        self.control().precharge();
     }
-    /// See [`DriveSetPoint::set_bus`].
-    fn set_bus(&self, counts: u16) {
-        self.set_point().set_bus(counts);
+
+    /// Names of the words that outlive a control period: the supervisor's, then the law's. For
+    /// verification.
+    pub fn state_names() -> impl Iterator<Item = &'static str> {
+        let supervisor = Supervisor::NAMES.iter().copied();
+        supervisor.chain(C::State::NAMES.iter().copied())
     }
-    /// See [`DriveLoop::reset`].
-    fn reset(&mut self) {
-        self.split().1.reset();
+
+    /// Copies those words to the front of `words`, as many as fit. For verification.
+    #[inline]
+    pub fn state_words(&self, words: &mut [i32]) {
+        let Some((supervisor, law)) = words.split_first_chunk_mut() else {
+            return;
+        };
+        *supervisor = self.core.supervisor.words();
+        self.core.law.words(law);
     }
-    /// See [`DriveLoop::calibrate`].
-    fn calibrate(&mut self) {
-        self.split().1.calibrate();
-    }
-    /// See [`DriveLoop::precharge`].
-    fn precharge(&mut self) {
-        self.split().1.precharge();
-    }
-    /// What the drive is doing, and what tripped it.
-    fn status(&self) -> Status {
-        self.set_point().status()
-    }
-    /// Why the drive is tripped, or [`Fault::None`].
-    fn fault(&self) -> Fault {
-        self.status().fault
-    }
-    /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
-    fn is_running(&self) -> bool {
-        self.status().is_running()
+
+    /// Overwrites those words with values inside their ranges; further ones stay. For verification.
+    pub fn set_state_words(&mut self, words: &[i32]) {
+        let Some((supervisor, law)) = words.split_first_chunk() else {
+            return;
+        };
+        self.core.supervisor.set_words(*supervisor);
+        for (index, word) in law.iter().enumerate() {
+            self.core.law.set_word(index, *word);
+        }
+        self.control().publish();
     }
 }
 
-/// The half of a drive that the main program shares with the control interrupt.
-///
-/// `set_current` and `set_torque` may be called from anywhere, interrupts included: the last call
-/// wins. A call of `set_bus` that interrupts another one of the same drive has no effect, and from
-/// an interrupt that can interrupt the control loop it may be called once per control period. One that
-/// was interrupted for good keeps later calls from having an effect for
-/// [65536 control periods](crate::DoubleBuffer::GIVEN_UP), and [`Status::bus_is_stale`] says so meanwhile.
-pub trait DriveSetPoint: Sync {
-    /// Sets the current set-point in amperes (peak of the quasi-square wave); saturates at the
-    /// largest current of the specification to both sides. Positive makes torque forward, negative backward,
-    /// whichever way the rotor turns; against the rotation it brakes into the bus
-    /// ([`conventions`](crate::conventions)).
-    fn set_current(&self, current: I16F16);
-    /// Sets the torque set-point in newton metres; sign and saturation likewise.
-    fn set_torque(&self, torque: I16F16);
-    /// Sets the speed in rpm, forward positive; saturates at the greatest speed of the specification. Does nothing for
-    /// drives without `speed_loop: on`; with it, `set_current` and `set_torque` set the greatest current that the speed
-    /// regulator asks for.
-    fn set_speed(&self, _speed: I16F16) {}
-    /// Tells the bus voltage as an ADC count. A voltage outside `bus_min` to `bus_max` of the specification counts as the
-    /// nearer of these, without a fault; until the first call the nominal voltage holds. Where calls cease, the
-    /// status says so from 100 ms on ([`Status::bus_is_stale`]). Does nothing for drives with `v_bus: fixed`.
-    fn set_bus(&self, counts: u16);
-    /// What the drive is doing, and what tripped it: as its control loop last said, which may go on
-    /// meanwhile.
-    fn status(&self) -> Status;
+/// The calls of the set-point's half.
+impl<C: Control> Deref for Drive<C> {
+    type Target = SetPoint<C>;
+
+    fn deref(&self) -> &SetPoint<C> {
+        &self.set_point
+    }
+}
+
+impl<C: Control> Default for Drive<C> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<C: Control> fmt::Debug for Drive<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        debug::<C>("Drive", self.status(), f)
+    }
 }
 
 /// The half of a drive that the control interrupt owns.
-pub trait DriveLoop: Send {
-    /// Runs one control period: reads the sample, returns the command for the inverter, publishes
-    /// the status.
-    fn step(&mut self, sample: &Sample) -> Legs;
-    /// Clears a trip and all control state; keeps calibrated offsets and the set-point, at which the next step
-    /// goes on. Ignored while calibrating and pre-charging.
-    fn reset(&mut self);
-    /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the specification has
-    /// one, and control at the set-point that stands follow by themselves. Ignored when tripped.
-    fn calibrate(&mut self);
-    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns; control follows by
-    /// itself. Accepted from control, too: call it at rest only. Ignored when tripped, while calibrating,
-    /// and where the specification has no pre-charge.
-    fn precharge(&mut self);
+pub struct ControlLoop<'drive, C: Control> {
+    set_point: &'drive SetPoint<C>,
+    core: &'drive mut Core<C>,
+}
+
+impl<C: Control> ControlLoop<'_, C> {
+    /// Runs one control period: takes the measurements of its start, returns the inverter's command.
+    ///
+    /// With `delay: 1` the command takes effect with the next period, while its own step computes
+    /// the one after; with `delay: 0` at once.
+    #[inline]
+    pub fn step(&mut self, sample: &Sample) -> C::Command {
+        let Self { set_point, core } = self;
+        set_point.words.bus.pass_period();
+        let is_demanded = || set_point.is_demanded();
+        let Some(checked) = core.supervisor.check(&C::LIMITS, sample, is_demanded) else {
+            return rest(set_point, core, sample);
+        };
+        let rotor = C::track(&mut core.law, &checked);
+        let command = C::step(&mut core.law, &set_point.words, &checked, rotor);
+        if set_point.signals.is_asked() {
+            tell(set_point, &core.law, &checked, command);
+        }
+        command
+    }
+
+    /// Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.
+    /// Ignored while calibrating and pre-charging.
+    pub fn reset(&mut self) {
+        if self.core.supervisor.reset(&C::LIMITS) {
+            self.core.law = C::State::INITIAL;
+            self.set_point.clear();
+        }
+        self.publish();
+    }
+
+    /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the
+    /// specification has one, and control at the set-point that stands follow by themselves.
+    /// Ignored when tripped.
+    pub fn calibrate(&mut self) {
+        self.core.supervisor.calibrate(&C::LIMITS);
+        self.publish();
+    }
+
+    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns;
+    /// control follows by itself. Accepted from control, too: call it at rest only. Ignored when
+    /// tripped, while calibrating, and where the specification has no pre-charge.
+    pub fn precharge(&mut self) {
+        self.core.supervisor.precharge(&C::LIMITS);
+        self.publish();
+    }
+
     /// What the drive is doing, and what tripped it.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        Status::from_bits(
+            self.core.supervisor.status_bits(),
+            self.set_point.words.bus.is_stale(),
+        )
+    }
+
+    /// Says what the drive is doing to those who hold the set-point.
+    fn publish(&self) {
+        let bits = self.core.supervisor.status_bits();
+        self.set_point.status.store(bits.into());
+    }
+}
+
+/// A period without control, in start-up or with a fault. Here alone mode and fault change, so here
+/// they are published.
+#[cold]
+#[inline(never)]
+fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: &Sample) -> C::Command {
+    let (checked, leg) = core.supervisor.rest(&C::LIMITS, sample);
+    let rotor = C::track(&mut core.law, &checked);
+    C::rest(&mut core.law, &checked, rotor);
+    set_point.status.store(core.supervisor.status_bits().into());
+    C::Command::at_rest(leg)
+}
+
+/// Answers a main program that has asked for the signals of a period.
+#[cold]
+#[inline(never)]
+fn tell<C: Control>(
+    set_point: &SetPoint<C>,
+    law: &C::State,
+    checked: &Checked,
+    command: C::Command,
+) {
+    set_point.signals.answer(PeriodWords {
+        currents: [checked.i_a(), checked.i_b()],
+        hall: checked.hall(),
+        on: command.on(),
+        observation: C::observe(law),
+    });
+}
+
+impl<C: Control> fmt::Debug for ControlLoop<'_, C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        debug::<C>("ControlLoop", self.status(), f)
+    }
+}
+
+/// The control loop of any drive, for firmware that chooses among several at run time.
+pub trait DynLoop<Out: Command = Legs>: Send {
+    /// See [`ControlLoop::step`].
+    fn step(&mut self, sample: &Sample) -> Out;
+    /// See [`ControlLoop::reset`].
+    fn reset(&mut self);
+    /// See [`ControlLoop::calibrate`].
+    fn calibrate(&mut self);
+    /// See [`ControlLoop::precharge`].
+    fn precharge(&mut self);
+    /// See [`ControlLoop::status`].
     fn status(&self) -> Status;
+}
+
+impl<C: Control> DynLoop<C::Command> for ControlLoop<'_, C> {
+    fn step(&mut self, sample: &Sample) -> C::Command {
+        self.step(sample)
+    }
+
+    fn reset(&mut self) {
+        self.reset();
+    }
+
+    fn calibrate(&mut self) {
+        self.calibrate();
+    }
+
+    fn precharge(&mut self) {
+        self.precharge();
+    }
+
+    fn status(&self) -> Status {
+        self.status()
+    }
 }

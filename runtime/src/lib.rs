@@ -1,15 +1,19 @@
-//! What firmware depends on: the boundary types of generated current controllers.
+//! What firmware depends on: the runtime of generated current controllers.
 //!
-//! `hexagen::controller!` emits one `no_std` type per motor; this crate holds the few types that
-//! all of them share: the sample that goes into a step, the leg commands that come out, the
-//! double buffer behind the set-point, and the trait that lets generic firmware hold any drive.
-//! Signs, sectors and wiring are in [`conventions`]; what the paper prints and is not so, in [`errata`].
+//! `hexagen::controller!` emits a type per motor and controller: constants, tables and the law. This
+//! crate has all that is the same for every drive: the [`Drive`] and its two halves, the
+//! [`Supervisor`] (faults, calibration, start-up), what goes in ([`Sample`]) and what comes out
+//! ([`Legs`]).
+//! Signs, sectors and wiring are in [`conventions`]; what the paper prints and is not so, in
+//! [`errata`].
 #![no_std]
 
 pub mod arith;
-mod boundary;
+mod bus;
 mod bus_watch;
+mod command;
 mod constants;
+mod control;
 /// Signs, angles, sectors, wiring.
 ///
 #[cfg_attr(doc, doc = include_str!("conventions.md"))]
@@ -20,16 +24,25 @@ mod drive;
 ///
 #[cfg_attr(doc, doc = include_str!("errata.md"))]
 pub mod errata {}
-mod shared_word;
+mod format;
+mod sample;
+mod set_point;
+mod shared;
+mod signals;
 mod status;
+mod supervisor;
 mod word;
 
-pub use boundary::{Fault, Format, LegState, Legs, Rounding, Sample, mode};
-pub use bus_watch::BusWatch;
+pub use bus::{Bus, FixedBus, ToldBus};
+pub use command::{Command, Intervals, LegState, Legs};
 pub use constants::pairs_from_bits;
-pub use double_buffer::DoubleBuffer;
-pub use drive::{Drive, DriveLoop, DriveSetPoint};
+pub use control::{Control, MeasuredBus, Observation, SpeedLoop, State, Unit, Units, Words};
+pub use drive::{ControlLoop, Drive, DynLoop};
 pub use fixed;
-pub use hexagen_macros::{controller, verify};
-pub use shared_word::SharedWord;
-pub use status::{Mode, Status};
+pub use format::{Format, Rounding};
+pub use hexagen_macros::{State, controller, verify};
+pub use sample::{Checked, Sample};
+pub use set_point::SetPoint;
+pub use signals::Signals;
+pub use status::{Fault, Mode, Status};
+pub use supervisor::{Limits, Supervisor};

@@ -4,8 +4,8 @@ use proc_macro::TokenStream;
 use std::env;
 use std::path::PathBuf;
 
-/// Emits the current controller of one motor: a `no_std` type with `new()`, `step()`, set-point and
-/// reset, everything precomputed.
+/// Emits the current controller of one motor, everything precomputed: a type that `hexagen::Drive`
+/// runs.
 ///
 /// ```text
 /// hexagen::controller! {
@@ -32,4 +32,11 @@ pub fn controller(tokens: TokenStream) -> TokenStream {
 #[proc_macro]
 pub fn verify(tokens: TokenStream) -> TokenStream {
     hexagen_codegen::expand_verify(tokens.into()).into()
+}
+
+/// Makes a structure of words the state of a law: names, initial values and access by number. Used by
+/// emitted code; each word begins at 0 or at the number of its `#[initial(…)]`.
+#[proc_macro_derive(State, attributes(initial))]
+pub fn derive_state(item: TokenStream) -> TokenStream {
+    hexagen_codegen::derive_state(item.into()).into()
 }

@@ -6,7 +6,7 @@
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
-use crate::ir::{Comparison, Exact, TableId, Value};
+use crate::ir::{Exact, TableId, Value};
 use crate::lower::{Applied, Coefficient, Command, Lowering};
 use crate::spec::BusSource;
 
@@ -115,24 +115,6 @@ pub(super) fn zero_vectors() -> Vec<i32> {
     std::iter::once(0)
         .chain(OFF_PHASE.iter().map(|phase| 13 + phase))
         .collect()
-}
-
-/// The vector of this number where the sector is known, else V0.
-pub(super) fn unless_lost(
-    l: &mut Lowering<'_>,
-    sector: Value,
-    vector: Value,
-    numbers: Numbers,
-) -> Value {
-    let zero = l.zero();
-    let known = l.b.compare(Comparison::NotEqual, sector, zero);
-    let zero = l.b.literal(if numbers == Numbers::LowLegs {
-        ALL_LOW
-    } else {
-        0
-    });
-    let vector = l.b.select(known, vector, zero);
-    l.b.name(numbers.row(), vector)
 }
 
 impl CurrentLoop<'_, '_> {

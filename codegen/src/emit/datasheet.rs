@@ -275,7 +275,7 @@ fn operations(sheet: &mut Sheet, program: &Program) {
             Cost::of_stage(step, stage),
         );
     }
-    let cost = PathCost::of_function(step, &program.tables);
+    let cost = PathCost::of_function(step);
     row_of_costs(sheet, "step, normal path", "", cost.normal);
     row_of_costs(sheet, "step, worst case", "", cost.worst);
     for setter in &program.setters {
@@ -283,7 +283,7 @@ fn operations(sheet: &mut Sheet, program: &Program) {
             sheet,
             &format!("`{}`", setter.name),
             "outside the step",
-            PathCost::of_function(setter, &program.tables).worst,
+            PathCost::of_function(setter).worst,
         );
     }
 }
@@ -292,10 +292,10 @@ fn runs(function: &Function, stage: &Stage) -> String {
     match &stage.guard {
         None => "always".to_owned(),
         Some(guard) => {
-            let path = match (guard.exit, guard.rare) {
-                (true, _) => "ends the step ",
-                (false, true) => "off the normal path, ",
-                (false, false) => "",
+            let path = if guard.rare {
+                "off the normal path, "
+            } else {
+                ""
             };
             format!("{path}if `{}`", function.node(guard.condition).name)
         }

@@ -4,7 +4,7 @@
 //! products and dividends that provably fit 32 bits take the narrow primitives.
 
 use super::plan::Context;
-use super::signal::{Code, Shape};
+use super::signal::{Leg, Shape};
 use crate::ir::{Comparison, ConstantId, Interval, Node, Op, StateId, TableId, Value};
 
 /// An expression.
@@ -18,8 +18,8 @@ pub(super) enum Expression {
     Constant(ConstantId),
     /// A small number.
     Number(i32),
-    /// A number with a name of the boundary.
-    Code(Code),
+    /// The state of a leg, by name.
+    Leg(Leg),
     /// -a
     Negated(Box<Self>),
     /// The flag does not hold.
@@ -55,8 +55,6 @@ pub(super) enum Operator {
     AngleSub,
     /// a b, in one word
     Mul,
-    /// Bits that either word has.
-    BitOr,
     /// a < b
     Less,
     /// a <= b
@@ -82,8 +80,6 @@ pub(super) enum Primitive {
     Abs,
     /// Flag: |a| > b, b not negative
     Exceeds,
-    /// Not 0 where one of |a|, |b| and |c| is more than d: c is a + b, d not negative
-    Exceeding,
     /// min(a, b)
     Min,
     /// max(a, b)
@@ -165,22 +161,16 @@ impl<'a> Scope<'a> {
             Op::Literal(literal) => Expression::Number(literal),
             Op::State(id) if self.reads_state => Expression::State(id),
             _ if node.name.is_empty() => self.definition(value),
-            _ if self.context.shape(value) == Shape::Alarm => {
-                let alarm = Expression::Signal(node.name.clone());
-                Expression::binary(Operator::NotEqual, alarm, Expression::Number(0))
-            }
             _ => Expression::Signal(node.name.clone()),
         }
     }
 
     /// A value as the given shape has it.
     pub(super) fn in_shape(&self, value: Value, shape: Shape) -> Expression {
-        let code = |literal| shape.code(literal);
-        if let Some(code) = self.literal(value).and_then(code) {
-            return Expression::Code(code);
-        }
-        if shape == Shape::Alarm {
-            return Expression::Signal(self.node(value).name.clone());
+        if shape == Shape::Leg
+            && let Some(number) = self.literal(value)
+        {
+            return Expression::Leg(Leg::of(number));
         }
         let is_as_wanted = shape != Shape::Leg || self.context.shape(value) == Shape::Leg;
         let word = self.value(value);
@@ -301,12 +291,8 @@ impl<'a> Scope<'a> {
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),
             Op::Or(a, b) => {
-                if let Some([x, limit]) = self.range_test(a, b, 0) {
+                if let Some([x, limit]) = self.range_test(a, b) {
                     call(P::Exceeds, &[x, limit], None)
-                } else if let Some(([x, y, limit], _)) = self.either_above(a, b) {
-                    E::binary(O::Greater, E::binary(O::BitOr, of(x), of(y)), of(limit))
-                } else if let Some(exceeding) = self.exceeding(a, b) {
-                    E::binary(O::NotEqual, exceeding, E::Number(0))
                 } else {
                     E::binary(O::Or, of(a), of(b))
                 }
@@ -320,73 +306,8 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// What a flag that is seen as a word is bound to: a word that is not 0 where the flag holds.
-    pub(super) fn alarm(&self, value: Value) -> Expression {
-        use Expression as E;
-        use Operator as O;
-        let boxed = |value: Value| Box::new(self.value(value));
-        match self.node(value).op {
-            Op::Compare(Comparison::NotEqual, word, other) if self.literal(other) == Some(0) => {
-                self.value(word)
-            }
-            Op::Compare(Comparison::Equal, word, other)
-                if self.literal(other) == Some(0) && self.interval(word).low >= 0 =>
-            {
-                let less = E::binary(O::Sub, self.value(word), E::Number(1));
-                E::ShiftedRight(Box::new(less), 31)
-            }
-            Op::Compare(Comparison::Less, limit, word) => match self.bits_above(limit, &[word]) {
-                Some(bits) => E::ShiftedRight(boxed(word), bits),
-                None => E::FlagWord(Box::new(self.definition(value))),
-            },
-            Op::Or(a, b) => {
-                if let Some(([x, y, _], bits)) = self.either_above(a, b) {
-                    let either = E::binary(O::BitOr, self.value(x), self.value(y));
-                    return E::ShiftedRight(Box::new(either), bits);
-                }
-                let exceeding = self.exceeding(a, b);
-                exceeding.unwrap_or_else(|| E::FlagWord(Box::new(self.definition(value))))
-            }
-            _ => E::FlagWord(Box::new(self.definition(value))),
-        }
-    }
-
-    /// Whether the alarm of a flag is made of a sign bit.
-    pub(super) fn is_sign(&self, flag: Value) -> bool {
-        matches!(
-            self.alarm(flag),
-            Expression::ShiftedRight(_, 31) | Expression::Call(Primitive::Exceeding, ..)
-        )
-    }
-
-    /// `(|x| > limit or |y| > limit) or |z| > limit` for `z` the sum of the others or its negative, by one test.
-    fn exceeding(&self, two: Value, third: Value) -> Option<Expression> {
-        let either = |value: Value| match self.node(value) {
-            Node {
-                name,
-                op: Op::Or(a, b),
-                ..
-            } if name.is_empty() => Some((*a, *b)),
-            _ => None,
-        };
-        let test = |value: Value| either(value).and_then(|(a, b)| self.range_test(a, b, -1));
-        let (first, second) = either(two)?;
-        let ([x, limit], [y, again], [sum, last]) = (test(first)?, test(second)?, test(third)?);
-        let is_limit = |other: Value| self.node(other).op == self.node(limit).op;
-        let is_added = |value: Value| self.node(value).op == Op::Add(x, y);
-        let whole = self.value(sum);
-        let sum = match self.node(sum).op {
-            Op::Neg(added) if is_added(added) => Expression::Negated(Box::new(whole)),
-            _ if is_added(sum) => whole,
-            _ => return None,
-        };
-        let operands = vec![self.value(x), self.value(y), sum, self.value(limit)];
-        let alike = is_limit(again) && is_limit(last);
-        alike.then_some(Expression::Call(Primitive::Exceeding, operands, None))
-    }
-
-    /// The word and the limit, at least `least`, whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
-    fn range_test(&self, above: Value, below: Value, least: i64) -> Option<[Value; 2]> {
+    /// The word and the limit, not negative, whose magnitudes the two flags compare: `limit < x` or `x < -limit`.
+    fn range_test(&self, above: Value, below: Value) -> Option<[Value; 2]> {
         let unnamed = |value: Value| {
             let node = self.node(value);
             node.name.is_empty().then_some(node.op)
@@ -402,37 +323,7 @@ impl<'a> Scope<'a> {
         let is_limit = other == limit
             || matches!(self.node(limit).op, Op::Constant(_))
                 && self.node(other).op == self.node(limit).op;
-        (x == again && is_limit && self.interval(limit).low >= least).then_some([x, limit])
-    }
-
-    /// Two words and the limit that the flags compare them with, `limit < x` and `limit < y`, where one comparison
-    /// of the bits of both tells as much: the limit's bits, whose number stands beside, are ones down to the last, and
-    /// no word is negative.
-    fn either_above(&self, a: Value, b: Value) -> Option<([Value; 3], u32)> {
-        let compared = |value: Value| match self.node(value) {
-            Node {
-                name,
-                op: Op::Compare(Comparison::Less, limit, x),
-                ..
-            } if name.is_empty() => Some((*limit, *x)),
-            _ => None,
-        };
-        let ((limit, x), (other, y)) = (compared(a)?, compared(b)?);
-        let is_same = self.node(other).op == self.node(limit).op;
-        let bits = self.bits_above(limit, &[x, y])?;
-        is_same.then_some(([x, y, limit], bits))
-    }
-
-    /// Bits of a limit that are ones down to the last, above which any bit of words that are not negative tells that
-    /// they are more.
-    fn bits_above(&self, limit: Value, words: &[Value]) -> Option<u32> {
-        let Op::Constant(id) = self.node(limit).op else {
-            return None;
-        };
-        let raw = self.context.program.constants[id.index()].raw;
-        let is_mask = raw > 0 && raw & raw.wrapping_add(1) == 0;
-        let are_signless = words.iter().all(|&word| self.interval(word).low >= 0);
-        (is_mask && are_signless).then_some(raw.trailing_ones())
+        (x == again && is_limit && self.interval(limit).low >= 0).then_some([x, limit])
     }
 
     /// The signal stands left, what it is compared with right.
@@ -447,12 +338,7 @@ impl<'a> Scope<'a> {
             (Comparison::LessEqual, false) => Operator::LessEqual,
             (Comparison::LessEqual, true) => Operator::GreaterEqual,
         };
-        let code = |literal| self.context.shape(left).code(literal);
-        let right = match self.literal(right).and_then(code) {
-            Some(code) => Expression::Code(code),
-            None => self.value(right),
-        };
-        Expression::binary(operator, self.value(left), right)
+        Expression::binary(operator, self.value(left), self.value(right))
     }
 
     /// The opposite comparison rather than a negated one.

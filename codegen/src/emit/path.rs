@@ -1,49 +1,23 @@
-//! A path of the step, or a setter, as calls of its stages: what every language's functions are made of.
+//! The step and the setters as calls of their stages: what every language's functions are made of.
 
 use super::plan::{Context, StagePlan};
-use super::set_point::{Shared, shared};
-use crate::ir::{Function, Op, Program, StateId, Value, Word};
+use crate::ir::{AtRest, Function, Op, Value, Word};
 
-/// A stage as a language writes it.
-pub(super) trait StageCode {
-    /// Name of its function.
-    fn name(&self) -> &str;
-    /// What it is planned as.
-    fn plan(&self) -> &StagePlan<'_>;
-    /// The text of its function.
-    fn text(&self) -> String;
+/// The two parts of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// Runs in every period.
+    Tracking,
+    /// Runs in controlled periods.
+    Control,
 }
 
-/// The stages of a path beside those of another, and which of them are functions of the other: a stage that is the
-/// same there is that function, and one that is not has a name of its own.
-pub(super) fn beside<'a, S: StageCode>(
-    context: &'a Context<'a>,
-    others: &[S],
-    make: impl Fn(StagePlan<'a>, &str) -> S,
-) -> (Vec<S>, Vec<bool>) {
-    let (mut stages, mut shared) = (vec![], vec![]);
-    for plan in context.plan() {
-        let name = plan.stage.name.clone();
-        let stage = make(plan.clone(), &name);
-        let other = others.iter().find(|other| other.name() == stage.name());
-        let is_same = other.is_some_and(|other| other.text() == stage.text());
-        shared.push(is_same);
-        stages.push(if is_same || other.is_none() {
-            stage
-        } else {
-            make(plan, &format!("{name}_at_rest"))
-        });
+impl Part {
+    /// Whether a stage belongs to the part.
+    pub(super) fn has(self, function: &Function, plan: &StagePlan<'_>) -> bool {
+        let is_tracking = plan.stage.first < function.tracking;
+        is_tracking == (self == Self::Tracking)
     }
-    (stages, shared)
-}
-
-/// The flags behind a stage of which one that holds ends the path.
-pub(super) fn leaves_behind(function: &Function, plan: &StagePlan<'_>) -> Vec<Value> {
-    let inside = plan.stage.first..plan.stage.end;
-    let flags = function.leave.iter().copied();
-    flags
-        .filter(|flag| inside.contains(&flag.index()))
-        .collect()
 }
 
 /// The value of an output by name.
@@ -62,24 +36,26 @@ pub(super) fn params_read(function: &Function) -> Vec<usize> {
     read.collect()
 }
 
-/// Names of the set-point words that a function reads.
-pub(super) fn words_read<'p>(program: &'p Program, function: &Function) -> Vec<&'p str> {
-    let words = params_read(function).into_iter();
-    words
-        .map(|index| program.params[index].name.as_str())
+/// Names of the inputs that the values use, in the order of the inputs.
+pub(super) fn inputs_used<'p>(
+    function: &'p Function,
+    values: impl Iterator<Item = Value>,
+) -> Vec<&'p str> {
+    let mut used: Vec<u32> = values
+        .filter_map(|value| match function.node(value).op {
+            Op::Input(n) => Some(n),
+            _ => None,
+        })
+        .collect();
+    used.sort_unstable();
+    used.dedup();
+    let names = used.into_iter();
+    names
+        .map(|n| function.inputs[n as usize].name.as_str())
         .collect()
 }
 
-/// Names of the inputs that a function reads.
-pub(super) fn inputs_read(function: &Function) -> Vec<&str> {
-    let inputs = function.nodes.iter().filter_map(|node| match node.op {
-        Op::Input(n) => Some(function.inputs[n as usize].name.as_str()),
-        _ => None,
-    });
-    inputs.collect()
-}
-
-/// What a path leaves behind.
+/// What a part of a step leaves behind.
 pub(super) struct Kept<'a> {
     /// Old words that go into other words or out of the step: read before anything is written.
     pub reads: Vec<Value>,
@@ -87,22 +63,22 @@ pub(super) struct Kept<'a> {
     pub words: Vec<(&'a Word, Value)>,
 }
 
-/// The words that a path keeps at its end: those that its stages store themselves are left out.
-pub(super) fn kept<'a, S: StageCode>(context: &Context<'a>, stages: &[S]) -> Kept<'a> {
+/// The words that a part of the step keeps at its end: those that its stages store themselves are left out.
+pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Part) -> Kept<'a> {
     let (program, function) = (context.program, context.function);
-    let is_stored = |state: StateId| {
-        let mut stores = stages.iter().flat_map(|stage| &stage.plan().stores);
-        stores.any(|&(stored, _)| stored == state)
-    };
-    let words: Vec<(&Word, Value)> = function
-        .next_state
-        .iter()
-        .filter(|(state, value)| function.node(*value).op != Op::State(*state))
-        .filter(|(state, _)| !is_stored(*state))
-        .map(|&(state, value)| (&program.states[state.index()], value))
-        .collect();
+    let mut words: Vec<(&Word, Value)> = vec![];
+    for &(state, value) in &function.next_state {
+        let mut stores = plans.iter().flat_map(|plan| &plan.stores);
+        let is_stored = stores.any(|&(stored, _)| stored == state);
+        let is_changed = function.node(value).op != Op::State(state);
+        let is_tracked = context.is_tracked(state);
+        if is_changed && !is_stored && is_tracked == (part == Part::Tracking) {
+            words.push((&program.states[state.index()], value));
+        }
+    }
     let mut reads: Vec<Value> = vec![];
     let outputs = function.outputs.iter().map(|&(_, value)| value);
+    let outputs = outputs.filter(|_| part == Part::Control);
     for value in words.iter().map(|&(_, value)| value).chain(outputs) {
         let is_old = matches!(function.node(value).op, Op::State(_));
         if is_old && !reads.contains(&value) {
@@ -112,21 +88,25 @@ pub(super) fn kept<'a, S: StageCode>(context: &Context<'a>, stages: &[S]) -> Kep
     Kept { reads, words }
 }
 
-/// What a setter writes: words that are replaced together, each with its new value; without one it stays.
-pub(super) fn writes<'p>(
-    program: &'p Program,
-    setter: &Function,
-) -> Vec<(Shared<'p>, Vec<Option<Value>>)> {
-    let written = |word: usize| {
-        let mut written = setter.next_params.iter();
-        let found = written.find(|(param, _)| param.index() == word);
-        found.map(|&(_, value)| value)
-    };
-    let all = shared(program).into_iter().map(|shared| {
-        let values = shared.words.iter().map(|&(word, _)| written(word));
-        let values: Vec<Option<Value>> = values.collect();
-        (shared, values)
+/// What a period without control leaves in the words that the tracking does not store.
+pub(super) fn kept_at_rest<'a>(context: &Context<'a>) -> Vec<(&'a Word, AtRest)> {
+    let function = context.function;
+    let next = function.next_state.iter();
+    let others = next.filter(|(state, value)| {
+        let is_changed = function.node(*value).op != Op::State(*state);
+        is_changed && !context.is_tracked(*state)
     });
-    all.filter(|(_, values)| values.iter().any(Option::is_some))
+    others
+        .map(|&(state, value)| {
+            let word = &context.program.states[state.index()];
+            (word, function.at_rest(value))
+        })
         .collect()
+}
+
+/// The words that a setter makes, in the order of the program's set-point words.
+pub(super) fn writes(setter: &Function) -> Vec<Value> {
+    let mut written = setter.next_params.clone();
+    written.sort_by_key(|(param, _)| param.index());
+    written.into_iter().map(|(_, value)| value).collect()
 }

@@ -7,7 +7,7 @@
 use super::rows::WholeCommand;
 use super::signal::{Shape, Signal};
 use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// Who uses a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,9 @@ enum User {
     NextState(StateId),
     /// The state of a leg.
     Leg,
-    /// Another output, a new set-point word or the guard of a stage.
+    /// The guard of a stage that begins with this node.
+    Guard(usize),
+    /// Another output, or a new set-point word.
     Other,
 }
 
@@ -31,10 +33,8 @@ pub(super) struct Context<'a> {
     pub function: &'a Function,
     users: Vec<Vec<User>>,
     legs: BTreeSet<Value>,
-    alarms: BTreeSet<Value>,
     /// Values that no stage computes: they go out of the step another way.
     left_out: BTreeSet<Value>,
-    codes: BTreeMap<Value, Shape>,
 }
 
 /// A value that leaves a stage.
@@ -79,58 +79,56 @@ impl<'a> Context<'a> {
     pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
         let users = users(function);
         let legs = legs(program, function, &users);
-        let codes = codes(program, function);
         Self {
             program,
             function,
             users,
             legs,
-            alarms: BTreeSet::new(),
             left_out: BTreeSet::new(),
-            codes,
         }
     }
 
-    /// Likewise, of a path whose flags to leave by are looked at together, behind the last of them: flags that do
-    /// nothing else are words, which take no comparison each. None where a stage on the way is guarded: what it does
-    /// is not for periods that are left. A command that is looked up as a `whole` is no stage's.
-    pub(super) fn watched(
-        program: &'a Program,
-        function: &'a Function,
-        whole: Option<&WholeCommand<'_>>,
-    ) -> Self {
-        let mut context = Self::new(program, function);
+    /// Likewise, of a step whose command is looked up as a `whole` and is no stage's.
+    pub(super) fn of_step(program: &'a Program, whole: Option<&WholeCommand<'_>>) -> Self {
+        let mut context = Self::new(program, &program.step);
         if let Some(whole) = whole {
             context.left_out = whole.entries.iter().copied().collect();
             context.users[whole.index.index()].push(User::Other);
         }
-        if context.leaves_once() {
-            let only = |flag: &Value| context.users[flag.index()] == [User::Other];
-            context.alarms = function.leave.iter().copied().filter(only).collect();
-        }
         context
     }
 
-    /// Of the other path, where the flags that `path` has as words are words, too: so both share the stages that find them.
-    pub(super) fn beside(program: &'a Program, function: &'a Function, path: &Self) -> Self {
-        let mut context = Self::new(program, function);
-        let names = path
-            .alarms
-            .iter()
-            .map(|&flag| &path.function.node(flag).name);
-        let names: BTreeSet<&String> = names.collect();
-        let values = (0..).map(Value).zip(&function.nodes);
-        let named = values.filter(|(_, node)| names.contains(&node.name));
-        context.alarms = named.map(|(value, _)| value).collect();
-        context
+    /// The values of the tracking that the rest of the step uses, in order.
+    pub(super) fn handed_over(&self) -> Vec<Value> {
+        let tracking = self.function.values().take(self.function.tracking);
+        let is_used = |user: &User| match *user {
+            User::Node(node) | User::Guard(node) => node >= self.function.tracking,
+            User::NextState(state) => !self.is_tracked(state),
+            User::Leg | User::Other => true,
+        };
+        let computed = tracking.filter(|&value| !is_leaf(&self.function.node(value).op));
+        computed
+            .filter(|value| self.users[value.index()].iter().any(is_used))
+            .collect()
     }
 
-    /// Whether no stage up to the last flag to leave by is guarded.
-    fn leaves_once(&self) -> bool {
-        let last = self.function.leave.iter().map(|flag| flag.index()).max();
-        let stages = self.function.stages.iter();
-        let mut before = stages.filter(|stage| last.is_some_and(|last| stage.first <= last));
-        before.all(|stage| stage.guard.is_none())
+    /// Whether the tracking itself stores a state word: what it stores is its own, and nothing behind it reads the old
+    /// word.
+    pub(super) fn is_tracked(&self, state: StateId) -> bool {
+        let mut next = self.function.next_state.iter();
+        let Some(&(_, value)) = next.find(|(known, _)| *known == state) else {
+            return false;
+        };
+        let is_old = |value: &Value| self.function.node(*value).op == Op::State(state);
+        let read_behind = |user: &User| match *user {
+            User::Node(node) | User::Guard(node) => node >= self.function.tracking,
+            User::NextState(other) => other != state,
+            User::Leg | User::Other => true,
+        };
+        let is_own = self.function.is_tracking(value)
+            && !matches!(self.function.node(value).op, Op::Input(_) | Op::Literal(_) | Op::Constant(_));
+        let mut old = self.function.values().filter(is_old);
+        is_own && !old.any(|old| self.users[old.index()].iter().any(read_behind))
     }
 
     /// Plans all stages.
@@ -145,10 +143,9 @@ impl<'a> Context<'a> {
     /// What a value is in emitted code.
     pub(super) fn shape(&self, value: Value) -> Shape {
         match self.function.node(value).kind {
-            Kind::Flag if self.alarms.contains(&value) => Shape::Alarm,
             Kind::Flag => Shape::Flag,
             Kind::Word if self.legs.contains(&value) => Shape::Leg,
-            Kind::Word => self.codes.get(&value).copied().unwrap_or(Shape::Word),
+            Kind::Word => Shape::Word,
         }
     }
 
@@ -231,18 +228,16 @@ impl<'a> Context<'a> {
     }
 
     /// The state word that the guarded stage may store itself: the join is its next value, it keeps its value where
-    /// the stage does not run, nothing reads the old value later, and no flag that is still to come leaves the path.
+    /// the stage does not run, and nothing reads the old value later.
     fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
         let Op::State(kept) = self.function.node(otherwise).op else {
             return None;
         };
-        let mut leave = self.function.leave.iter();
-        let stays = leave.all(|flag| flag.index() < stage.first);
         let is_next = self.users[join.index()].contains(&User::NextState(kept));
         let joins = stage.guard.as_ref().map_or(0, |guard| guard.joins.len());
         let behind = stage.end + joins;
         let read_before = |user: &User| matches!(user, User::Node(index) if *index < behind);
-        (stays && is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
+        (is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
     }
 
     /// Whether a value is more than the next one of a state word.
@@ -261,20 +256,17 @@ fn users(function: &Function) -> Vec<Vec<User>> {
     for &(state, value) in &function.next_state {
         users[value.index()].push(User::NextState(state));
     }
-    let conditions = function
-        .stages
-        .iter()
-        .filter_map(|stage| stage.guard.as_ref())
-        .map(|guard| guard.condition);
+    for stage in &function.stages {
+        if let Some(guard) = &stage.guard {
+            users[guard.condition.index()].push(User::Guard(stage.first));
+        }
+    }
     for (name, value) in &function.outputs {
         let leg = name.starts_with("leg_");
         users[value.index()].push(if leg { User::Leg } else { User::Other });
     }
     let params = function.next_params.iter().map(|&(_, value)| value);
-    for value in conditions
-        .chain(params)
-        .chain(function.leave.iter().copied())
-    {
+    for value in params {
         users[value.index()].push(User::Other);
     }
     users
@@ -297,40 +289,11 @@ fn legs(program: &Program, function: &Function, users: &[Vec<User>]) -> BTreeSet
         let becomes_leg = |user: &User| match *user {
             User::Leg => true,
             User::Node(user) => legs.contains(&Value(user as u32)) && is_arm(user),
-            User::NextState(_) | User::Other => false,
+            User::NextState(_) | User::Guard(_) | User::Other => false,
         };
         if is_choice && users[index].iter().all(becomes_leg) {
             legs.insert(value);
         }
     }
     legs
-}
-
-/// The modes and faults: the state words themselves, and all choices that end in them.
-fn codes(program: &Program, function: &Function) -> BTreeMap<Value, Shape> {
-    let shape = |state: StateId| Shape::of_state(&program.states[state.index()]);
-    let read = function.nodes.iter().enumerate();
-    let read = read.filter_map(|(index, node)| match node.op {
-        Op::State(state) => Some((Value(index as u32), shape(state))),
-        _ => None,
-    });
-    let written = function.next_state.iter();
-    let mut open: Vec<(Value, Shape)> = written
-        .map(|&(state, value)| (value, shape(state)))
-        .chain(read)
-        .filter(|&(_, shape)| shape != Shape::Word)
-        .collect();
-    let mut codes = BTreeMap::new();
-    while let Some((value, shape)) = open.pop() {
-        match function.node(value).op {
-            Op::Select {
-                then, otherwise, ..
-            } => open.extend([(then, shape), (otherwise, shape)]),
-            Op::Join { taken, otherwise } => open.extend([(taken, shape), (otherwise, shape)]),
-            Op::State(_) => {}
-            _ => continue,
-        }
-        codes.insert(value, shape);
-    }
-    codes
 }

@@ -1,7 +1,7 @@
 //! How tables lie in memory: alone, or side by side as the columns of rows that one index reads.
 
 use super::path::output;
-use crate::ir::{Function, Op, Paths, Program, Table, TableId, Value};
+use crate::ir::{Function, Op, Program, Table, TableId, Value};
 
 /// The row that a table is a column of, where it has company there or its entries have a type of their own.
 pub(super) fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
@@ -36,10 +36,10 @@ impl<'a> WholeCommand<'a> {
     /// Bytes of a command, and what it is aligned to.
     const SIZE: usize = 8;
 
-    /// The one that the normal path of the step gives, if it does. Where no leg is ever off there are no columns of
+    /// The one that the step gives, if it does. Where no leg is ever off there are no columns of
     /// states, and the command is put together.
-    pub(super) fn of(program: &'a Program, paths: &Paths) -> Option<Self> {
-        let path = &paths.normal;
+    pub(super) fn of(program: &'a Program) -> Option<Self> {
+        let path = &program.step;
         let outputs = [
             "compare_a",
             "compare_b",
@@ -70,7 +70,7 @@ impl<'a> WholeCommand<'a> {
         let mut kept = path.next_state.iter();
         let is_used =
             operands.any(|value| is_entry(&value)) || kept.any(|(_, value)| is_entry(value));
-        let mut elsewhere = program.setters.iter().chain(&paths.exit);
+        let mut elsewhere = program.setters.iter();
         let is_alone = tables.iter().all(|&table| reads(path, table) == 1)
             && elsewhere.all(|path| tables.iter().all(|&table| reads(path, table) == 0));
         let count = columns.first()?.values.len();
@@ -141,7 +141,7 @@ pub(super) fn padding(
 
 /// Bytes of all tables of a program.
 pub(super) fn bytes(program: &Program) -> usize {
-    let whole = WholeCommand::of(program, &program.step.paths(&program.tables));
+    let whole = WholeCommand::of(program);
     let whole = whole.as_ref();
     let mut known = vec![];
     let mut sum = 0;

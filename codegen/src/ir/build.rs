@@ -151,7 +151,7 @@ impl Function {
             next_state: vec![],
             next_params: vec![],
             quantities: vec![],
-            leave: vec![],
+            tracking: 0,
         }
     }
 }
@@ -200,17 +200,13 @@ impl<'p> FunctionBuilder<'p> {
             condition,
             joins: vec![],
             rare,
-            exit: false,
         });
     }
 
-    /// Opens the stage with which the function ends where `condition` holds; its joins are results of the function.
-    pub fn exit_stage(&mut self, name: &str, condition: Value, doc: &[&str]) {
-        self.guarded_stage(name, condition, true, doc);
-        let last = self.function.stages.len() - 1;
-        if let Some(guard) = &mut self.function.stages[last].guard {
-            guard.exit = true;
-        }
+    /// Ends the tracking: what follows runs in controlled periods only. A new stage must be opened.
+    pub fn end_tracking(&mut self) {
+        self.close();
+        self.function.tracking = self.function.nodes.len();
     }
 
     /// Closes the guarded stage: per result its name, the value from inside, and the value that holds

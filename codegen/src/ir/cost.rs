@@ -3,7 +3,7 @@
 //! Counted over the graph, so the same for every target. The normal path leaves out the stages that
 //! are marked rare; the worst path runs every stage.
 
-use super::graph::{Function, Stage, Table};
+use super::graph::{Function, Stage};
 use super::op::Op;
 use std::fmt;
 use std::ops::AddAssign;
@@ -100,9 +100,8 @@ impl AddAssign for Cost {
 }
 
 impl PathCost {
-    /// The operations of a function that looks up these tables; where it has an exit, of the path on which that is not taken.
-    pub fn of_function(function: &Function, tables: &[Table]) -> Self {
-        let function = &function.paths(tables).normal;
+    /// The operations of a function.
+    pub fn of_function(function: &Function) -> Self {
         let mut cost = Self::default();
         for stage in &function.stages {
             let of_stage = Cost::of_stage(function, stage);
@@ -202,7 +201,7 @@ mod tests {
             ..normal
         };
         assert_eq!(
-            PathCost::of_function(&function, &[]),
+            PathCost::of_function(&function),
             PathCost { normal, worst }
         );
         assert_eq!(

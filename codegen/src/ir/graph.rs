@@ -117,8 +117,6 @@ pub struct Guard {
     pub joins: Vec<Value>,
     /// Whether the stage is off the normal path, for the emitters (code placement) and op counts.
     pub rare: bool,
-    /// Whether the function ends where the guard holds: the joins are results, and no node reads them.
-    pub exit: bool,
 }
 
 /// A named group of consecutive nodes: one function of the emitted code.
@@ -157,8 +155,9 @@ pub struct Function {
     pub next_params: Vec<(ParamId, Value)>,
     /// Quantities whose error is stated.
     pub quantities: Vec<Quantity>,
-    /// Of the normal path of a function with an exit ([`Function::paths`]): the flags of which none holds on it.
-    pub leave: Vec<Value>,
+    /// How many of the nodes, the first ones, are tracking: they run in periods without control, too.
+    /// The whole of a function that knows no such periods.
+    pub tracking: usize,
 }
 
 /// A value that stands for a physical quantity whose error is stated.
@@ -176,7 +175,30 @@ pub struct Quantity {
     pub value: Value,
 }
 
+/// What a period without control leaves in a state word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtRest {
+    /// A value of the tracking.
+    Tracked(Value),
+    /// 0: what was commanded and believed is forgotten.
+    Forgotten,
+}
+
 impl Function {
+    /// Whether a value belongs to the tracking.
+    pub fn is_tracking(&self, value: Value) -> bool {
+        value.index() < self.tracking
+    }
+
+    /// What a period without control leaves in the state word that is `value` behind a controlled one.
+    pub fn at_rest(&self, value: Value) -> AtRest {
+        if self.is_tracking(value) {
+            AtRest::Tracked(value)
+        } else {
+            AtRest::Forgotten
+        }
+    }
+
     /// All values, in order.
     pub fn values(&self) -> impl Iterator<Item = Value> + use<> {
         (0..self.nodes.len() as u32).map(Value)

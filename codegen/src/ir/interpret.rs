@@ -4,7 +4,7 @@
 //! emitted code. A value that leaves its proven interval is reported: that would be a bug of the
 //! generator, and a test that runs the interpreter finds it.
 
-use super::graph::{Function, Program};
+use super::graph::{AtRest, Function, Program};
 use super::op::{Op, Value};
 use super::verify::VerifiedGraph;
 
@@ -69,6 +69,22 @@ impl<'g> Machine<'g> {
         self.run(0, &program.step, inputs)
     }
 
+    /// Runs a period without control: the step's tracking, and what it leaves.
+    ///
+    /// # Errors
+    /// [`Escape`] when a value leaves its proven interval.
+    pub fn rest(&mut self, inputs: &[i32]) -> Result<(), Escape> {
+        let function = &self.program.step;
+        self.evaluate_all(0, function, inputs, function.tracking)?;
+        for &(state, value) in &function.next_state {
+            self.state[state.index()] = match function.at_rest(value) {
+                AtRest::Tracked(value) => self.values[value.index()] as i32,
+                AtRest::Forgotten => 0,
+            };
+        }
+        Ok(())
+    }
+
     /// Runs the setter `name`; unknown names do nothing.
     ///
     /// # Errors
@@ -89,29 +105,7 @@ impl<'g> Machine<'g> {
         function: &Function,
         inputs: &[i32],
     ) -> Result<Vec<i32>, Escape> {
-        self.values.clear();
-        self.values.resize(function.nodes.len(), 0);
-        let mut node = 0;
-        for stage in &function.stages {
-            let runs = stage
-                .guard
-                .as_ref()
-                .is_none_or(|guard| self.values[guard.condition.index()] == 1);
-            if runs {
-                for index in stage.first..stage.end {
-                    self.evaluate(number, function, index, inputs)?;
-                }
-            }
-            node = stage.end;
-            for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
-                if let Op::Join { taken, otherwise } = function.node(*join).op {
-                    self.values[join.index()] =
-                        self.values[if runs { taken } else { otherwise }.index()];
-                }
-                node += 1;
-            }
-        }
-        debug_assert_eq!(node, function.nodes.len(), "stages cover all nodes");
+        self.evaluate_all(number, function, inputs, function.nodes.len())?;
         let word = |value: Value, values: &[i64]| values[value.index()] as i32;
         for &(state, value) in &function.next_state {
             self.state[state.index()] = word(value, &self.values);
@@ -124,6 +118,36 @@ impl<'g> Machine<'g> {
             .iter()
             .map(|&(_, value)| word(value, &self.values))
             .collect())
+    }
+
+    /// Computes the values of all stages before node `end`.
+    fn evaluate_all(
+        &mut self,
+        number: usize,
+        function: &Function,
+        inputs: &[i32],
+        end: usize,
+    ) -> Result<(), Escape> {
+        self.values.clear();
+        self.values.resize(function.nodes.len(), 0);
+        for stage in function.stages.iter().filter(|stage| stage.first < end) {
+            let runs = stage
+                .guard
+                .as_ref()
+                .is_none_or(|guard| self.values[guard.condition.index()] == 1);
+            if runs {
+                for index in stage.first..stage.end {
+                    self.evaluate(number, function, index, inputs)?;
+                }
+            }
+            for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
+                if let Op::Join { taken, otherwise } = function.node(*join).op {
+                    self.values[join.index()] =
+                        self.values[if runs { taken } else { otherwise }.index()];
+                }
+            }
+        }
+        Ok(())
     }
 
     #[inline]

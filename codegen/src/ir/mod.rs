@@ -1,7 +1,6 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
 //! [`graph`] defines it, [`op`] its one arithmetic, [`interval`] what is proven of a value, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
-//! `paths` takes a step apart at its exit,
 //! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`bounds`] says how far its values are from ideal ones,
 //! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
@@ -17,7 +16,6 @@ pub mod interval;
 #[cfg(test)]
 mod interval_tests;
 pub mod op;
-mod paths;
 mod prune;
 pub mod text;
 pub mod verify;
@@ -29,10 +27,9 @@ pub use build::FunctionBuilder;
 pub use cost::{Cost, PathCost, live_words};
 pub use error::{ErrorInterval, Exact, Real};
 pub use graph::{
-    Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
+    AtRest, Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
 };
 pub use interpret::{Escape, Machine};
 pub use interval::Interval;
 pub use op::{Comparison, ConstantId, Kind, Op, ParamId, StateId, TableId, Value};
-pub use paths::Paths;
 pub use verify::{VerifiedGraph, Violation, derived_interval, verify};

@@ -91,7 +91,7 @@ impl Function {
         self.quantities
             .iter_mut()
             .for_each(|quantity| quantity.value = moved(quantity.value));
-        self.leave.iter_mut().for_each(|flag| *flag = moved(*flag));
+        self.tracking = before(self.tracking);
     }
 
     /// Which nodes some result needs; a join needs its stage's guard.
@@ -109,8 +109,7 @@ impl Function {
             .iter()
             .map(|&(_, value)| value)
             .chain(self.next_params.iter().map(|&(_, value)| value));
-        let leave = self.leave.iter().copied();
-        let mut wanted: Vec<Value> = results.chain(words).chain(leave).collect();
+        let mut wanted: Vec<Value> = results.chain(words).collect();
         while let Some(value) = wanted.pop() {
             if std::mem::replace(&mut live[value.index()], true) {
                 continue;

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
-use super::graph::{Function, Program};
+use super::graph::{AtRest, Function, Program};
 use super::op::{Comparison, Kind, Op, Value};
 
 impl fmt::Display for Program {
@@ -51,14 +51,13 @@ impl Program {
             .collect();
         writeln!(f, "fn {}({})", function.name, inputs.join(", "))?;
         for stage in &function.stages {
+            if stage.first == function.tracking && function.tracking > 0 {
+                writeln!(f, "  controlled:")?;
+            }
             match &stage.guard {
                 None => writeln!(f, "  {}:", stage.name)?,
                 Some(guard) => {
-                    let rare = match (guard.exit, guard.rare) {
-                        (true, _) => "exit ",
-                        (false, true) => "rarely ",
-                        (false, false) => "",
-                    };
+                    let rare = if guard.rare { "rarely " } else { "" };
                     writeln!(
                         f,
                         "  {} ({rare}if {}):",
@@ -78,9 +77,13 @@ impl Program {
             writeln!(f, "  output {output} = {}", name(function, *value))?;
         }
         for (state, value) in &function.next_state {
+            let rests = match function.at_rest(*value) {
+                AtRest::Tracked(_) => "",
+                AtRest::Forgotten => ", at rest 0",
+            };
             writeln!(
                 f,
-                "  state {} = {}",
+                "  state {} = {}{rests}",
                 self.states[state.index()].name,
                 name(function, *value)
             )?;

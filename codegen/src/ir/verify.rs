@@ -17,13 +17,13 @@
 //!    word at most once. What is set lies in the word's interval, which holds its initial value and fits its
 //!    storage of 16 or 32 bits.
 //! 10. No dead nodes.
-//! 11. An exit is the last stage of its function, so there is at most one, and its joins are results. Only paths taken
-//!     from a verified function hold flags to leave by.
+//! 11. Tracking, which runs in periods without control, ends with a stage and reads no set-point word; every
+//!     state word that it does not set may be 0.
 
 use std::collections::HashSet;
 use std::fmt;
 
-use super::graph::{Function, Guard, Program, Word};
+use super::graph::{AtRest, Function, Program, Word};
 use super::interval::Interval;
 use super::op::{Kind, Op, Value};
 
@@ -189,7 +189,7 @@ impl FunctionCheck<'_> {
         // Everything below follows operands, so it needs them in place.
         if self.violations.0.is_empty() {
             self.check_stages();
-            self.check_exit();
+            self.check_tracking();
             self.check_nodes();
             self.check_names();
             self.check_results();
@@ -344,18 +344,26 @@ impl FunctionCheck<'_> {
         }
     }
 
-    fn check_exit(&mut self) {
+    fn check_tracking(&mut self) {
         let function = self.function;
-        let is_exit = |guard: &Guard| guard.exit;
-        for (number, stage) in function.stages.iter().enumerate() {
-            if stage.guard.as_ref().is_some_and(is_exit) && number + 1 < function.stages.len() {
-                self.violations
-                    .add(&stage.name, "an exit is followed by a stage");
+        let mut begins = function.stages.iter().map(|stage| stage.first);
+        let count = function.nodes.len();
+        if function.tracking != count && !begins.any(|first| first == function.tracking) {
+            self.violations
+                .add(&function.name, "tracking does not end with a stage");
+        }
+        for value in function.values().take(function.tracking) {
+            if matches!(function.node(value).op, Op::Param(_)) {
+                self.fail(value.index(), "tracking reads a set-point word");
             }
         }
-        if !function.leave.is_empty() {
-            self.violations
-                .add(&function.name, "only a path holds flags to leave by");
+        for &(state, value) in &function.next_state {
+            let word = &self.program.states[state.index()];
+            let is_forgotten = function.at_rest(value) == AtRest::Forgotten;
+            if is_forgotten && !word.interval.contains(Interval::point(0)) {
+                let what = format!("{}: forgotten at rest, but never 0", word.name);
+                self.violations.add(&function.name, &what);
+            }
         }
     }
 

@@ -249,13 +249,14 @@ fn there_are_no_dead_nodes() {
 }
 
 #[test]
-fn an_exit_comes_last_and_paths_alone_hold_its_flags() {
-    refused("an exit is followed by a stage", |program| {
-        let guard = program.step.stages[1].guard.as_mut().expect("a guard");
-        guard.exit = true;
+fn tracking_ends_with_a_stage_and_what_it_leaves_can_be_forgotten() {
+    refused("tracking does not end with a stage", |program| {
+        program.step.tracking = program.step.stages[1].first + 1;
     });
-    refused("only a path holds flags to leave by", |program| {
-        let large = value(&program.step, "large");
-        program.step.leave.push(large);
+    refused("tracking reads a set-point word", |program| {
+        program.step.tracking = program.step.nodes.len();
+    });
+    refused("forgotten at rest, but never 0", |program| {
+        program.states[0].interval = Interval::new(1, 1000);
     });
 }

@@ -12,7 +12,6 @@ mod number;
 mod rotor;
 pub mod set_point;
 mod speed;
-mod supervise;
 
 pub use emf::{Corner, FluxModel, ModelledEmf};
 pub use limit::Limited;
@@ -22,7 +21,6 @@ use number::round_half_up;
 pub use number::{Coefficient, product_bound, round_down};
 pub use rotor::{Rotor, RotorWords};
 pub use speed::{Regulated, SpeedState};
-pub use supervise::{Mode, Rest, SupervisorWords};
 
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
@@ -148,36 +146,16 @@ impl<'p> Lowering<'p> {
         self.b.program.state(name, initial, interval, doc)
     }
 
-    /// Offsets of the current converters that calibration accepts, words of current.
-    pub fn offset_range(&self) -> Interval {
-        let inverter = &self.spec.inverter;
-        let top = i64::from((1_u32 << inverter.adc_bits) - 1);
-        let (nominal, tolerance) = (
-            i64::from(inverter.adc_offset),
-            i64::from(inverter.offset_tolerance),
-        );
+    /// Currents of all counts at all offsets that calibration accepts, words of current.
+    pub fn current_range(&self) -> Interval {
+        let [low, high] = self.spec.inverter.current_counts();
         let bits = self.scale.current_bits;
-        Interval::new(
-            (nominal - tolerance).max(0) << bits,
-            (nominal + tolerance).min(top) << bits,
-        )
-    }
-
-    /// Magnitudes of the currents at the ADC's two ends, count 0 and the largest one, whatever the offset: the least.
-    pub fn current_at_ends(&self) -> i64 {
-        let (offset, top) = (self.offset_range(), self.largest_count());
-        offset.low.min(top - offset.high)
+        Interval::new(i64::from(low) << bits, i64::from(high) << bits)
     }
 
     /// Greatest magnitude of a phase current in words of current.
     pub fn current_span(&self) -> i64 {
-        let (offset, top) = (self.offset_range(), self.largest_count());
-        offset.high.max(top - offset.low)
-    }
-
-    /// The ADC's largest count in words of current.
-    fn largest_count(&self) -> i64 {
-        i64::from((1_u32 << self.spec.inverter.adc_bits) - 1) << self.scale.current_bits
+        self.current_range().magnitude()
     }
 
     /// Full timer period in words of voltage: the nominal bus.

@@ -66,6 +66,18 @@ pub struct Commutation {
 }
 
 impl Lowering<'_> {
+    /// Ends the step with a command, and with the words that the next step needs.
+    pub fn close_step(&mut self, command: &Command, remembered: &[(StateId, Value)]) {
+        let compares = ["compare_a", "compare_b", "compare_c"].into_iter();
+        let legs = ["leg_a", "leg_b", "leg_c"].into_iter();
+        for (name, value) in compares.zip(command.compares).chain(legs.zip(command.legs)) {
+            self.b.output(name, value);
+        }
+        for &(state, value) in remembered {
+            self.b.set_state(state, value);
+        }
+    }
+
     /// Three centred pulses from a limited voltage, lifted where the bus is fixed; `shifts` are against the dead time.
     pub fn modulate(&mut self, limited: Limited, bus: Bus, shifts: Option<[Value; 3]>) -> Command {
         self.b.stage(

@@ -208,7 +208,12 @@ impl Lowering<'_> {
     }
 
     /// Angle and speed from the edges.
-    pub fn track_rotor(&mut self, words: RotorWords, hall: &Hall) -> Rotor {
+    pub fn track_rotor(
+        &mut self,
+        words: RotorWords,
+        hall: &Hall,
+        hall_ticks: Option<Value>,
+    ) -> Rotor {
         let spec = self.spec;
         let age_max = i64::from(spec.age_max());
         let ticks = PeriodTicks::of(spec.inverter.hall_capture);
@@ -237,19 +242,14 @@ impl Lowering<'_> {
         let intervals = words.intervals.map(|word| self.b.state(word));
         let rev = self.b.state(words.rev);
         let omega = self.b.state(words.omega);
-        let age = match spec.inverter.hall_capture {
-            HallCapture::Sampled => {
+        let age = match hall_ticks {
+            None => {
                 let one = self.b.literal(1);
                 let limit = self.number("age_limit", age_max + 1, "Ages are counted no further.");
                 let older = self.b.min(age_before, limit);
                 self.b.select(hall.edge, one, older)
             }
-            HallCapture::Timer { .. } => {
-                let counted = self.b.input(
-                    "hall_ticks",
-                    Interval::new(0, i64::from(u16::MAX)),
-                    "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, stopping at 65535; one snapshot with `hall`.",
-                );
+            Some(counted) => {
                 // Code and ticks that are read on either side of an edge contradict each other.
                 let recent = self.number(
                     "ticks_recent",

@@ -46,6 +46,15 @@ impl Spec {
         (self.ticks_per_second() * TAU / omega_e).floor().max(12.0) as u32
     }
 
+    /// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+    pub fn hall_sectors(&self) -> [u8; 8] {
+        let mut sectors = [0; 8];
+        for (sector, &code) in (1..).zip(&self.motor.hall_codes) {
+            sectors[usize::from(code & 7)] = sector;
+        }
+        sectors
+    }
+
     fn ticks_per_second(&self) -> f64 {
         self.inverter.hall_capture.ticks_per_period() / self.inverter.t_s
     }
@@ -203,6 +212,31 @@ impl InverterSpec {
         match self.bus {
             BusSource::Fixed => self.v_bus,
             BusSource::Measured { max, .. } => max,
+        }
+    }
+
+    /// Largest count of the phase-current ADC.
+    pub fn adc_max(&self) -> u32 {
+        (1 << self.adc_bits) - 1
+    }
+
+    /// Least and greatest offset that calibration accepts, counts.
+    pub fn offsets(&self) -> [u32; 2] {
+        let (offset, tolerance) = (self.adc_offset, self.offset_tolerance);
+        [
+            offset.saturating_sub(tolerance),
+            (offset + tolerance).min(self.adc_max()),
+        ]
+    }
+
+    /// Least and greatest current of any count at any such offset, counts.
+    pub fn current_counts(&self) -> [i32; 2] {
+        let [least, most] = self.offsets().map(|offset| offset as i32);
+        let top = self.adc_max() as i32;
+        if self.adc_gain < 0.0 {
+            [least - top, most]
+        } else {
+            [-most, top - least]
         }
     }
 

@@ -190,9 +190,9 @@ impl CurrentLoop<'_, '_> {
                 None => l.b.add(left, sampled),
             };
             l.b.name(["due_a_now", "due_b_now"][x], due_next);
-            remembered.push((held.due[x], ["due_a_next", "due_b_next"][x], due_next));
+            remembered.push((held.due[x], due_next));
             if let (Some(words), Some(both)) = (held.later, left_over.both) {
-                remembered.push((words[x], ["later_a_next", "later_b_next"][x], both[x]));
+                remembered.push((words[x], both[x]));
             }
         }
         remembered

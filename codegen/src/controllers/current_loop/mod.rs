@@ -17,8 +17,7 @@ pub use words::{EmfUse, Needs, Words};
 use crate::ir::{Program, StateId, Value};
 use crate::lower::set_point::{SetPointWords, setters};
 use crate::lower::{
-    Applied, Bus, Coefficient, Command, Commutation, Corner, Currents, Lowering, OffLeg, Rest,
-    Scale,
+    Applied, Bus, Coefficient, Command, Commutation, Corner, Currents, Lowering, OffLeg, Scale,
 };
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
@@ -84,8 +83,6 @@ pub struct Front {
     pub words: Words,
     /// Phase currents.
     pub currents: Currents,
-    /// Whether the drive rests.
-    pub rest: Rest,
     /// Sector in force, with its advance.
     pub sector: Value,
     /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
@@ -124,8 +121,8 @@ fn asked_for(l: &mut Lowering<'_>, x: usize, volts: Value) -> Value {
     l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
 }
 
-/// State words and their new values while the drive runs; zero otherwise.
-pub type Remembered = Vec<(StateId, &'static str, Value)>;
+/// State words and their new values.
+pub type Remembered = Vec<(StateId, Value)>;
 
 impl CurrentLoop<'_, '_> {
     /// Steps 1 to 8.
@@ -133,9 +130,8 @@ impl CurrentLoop<'_, '_> {
         let words = self.declare(set_point);
         let options = *self.options;
         let l = &mut *self.lowering;
-        let sample = l.read_sample();
-        let currents = l.measure(&sample, words.supervisor.offsets);
-        let word = words.supervisor.sector_prev;
+        let sample = l.sample();
+        let word = words.sector_prev;
         let hall = word.map(|word| l.find_sector(&sample, word));
         // Read here, in an open stage: the stage that senses the direction is a guarded one.
         for word in words
@@ -145,21 +141,8 @@ impl CurrentLoop<'_, '_> {
         {
             l.b.state(word);
         }
-        let j = l.b.param(set_point.j);
-        let demand = set_point
-            .speed
-            .map_or(j, |speed| l.b.param(speed.reference));
-        let rest = l.supervise(words.supervisor, &sample, &currents, hall.as_ref(), demand);
         let rotor = words.rotor.zip(hall.as_ref());
-        let rotor = rotor.map(|(words, hall)| l.track_rotor(words, hall));
-        let regulated = match (options.speed, set_point.speed, words.speed, &rotor) {
-            (Some(options), Some(words), Some(state), Some(rotor)) => {
-                let inputs = [rotor.direction, rotor.omega, j];
-                Some(l.regulate_speed(options, set_point.stiffness, words, state, inputs))
-            }
-            _ => None,
-        };
-        let j = regulated.map_or(j, |regulated| regulated.j);
+        let rotor = rotor.map(|(words, hall)| l.track_rotor(words, hall, sample.hall_ticks));
         let timeout = options.commutation_timeout;
         let advances = options.advance > 0.0;
         // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
@@ -177,11 +160,28 @@ impl CurrentLoop<'_, '_> {
                 (rotor.as_ref().map(|rotor| rotor.direction), None)
             }
         };
-        let sector_seen = hall.map_or(sample.sector, |hall| hall.sector);
-        let sector = match &rotor {
-            Some(rotor) if advances => l.advanced_sector(options.advance, sector_seen, rotor),
-            _ => sector_seen,
+        let ahead = match (&rotor, &hall) {
+            (Some(rotor), Some(hall)) if advances => {
+                Some(l.advanced_sector(options.advance, hall.sector, rotor))
+            }
+            _ => None,
         };
+        l.b.end_tracking();
+        let currents = l.third_current(&sample);
+        let sector_seen = match hall {
+            Some(hall) => hall.sector,
+            None => l.sector_of(&sample),
+        };
+        let sector = ahead.unwrap_or(sector_seen);
+        let j = l.b.param(set_point.j);
+        let regulated = match (options.speed, set_point.speed, words.speed, &rotor) {
+            (Some(options), Some(words), Some(state), Some(rotor)) => {
+                let inputs = [rotor.direction, rotor.omega, j];
+                Some(l.regulate_speed(options, set_point.stiffness, words, state, inputs))
+            }
+            _ => None,
+        };
+        let j = regulated.map_or(j, |regulated| regulated.j);
         let (commutation, outgoing) = match (words.pair, direction.zip(hall)) {
             (Some(pair), Some((direction, hall))) => {
                 let kept = kept.unwrap_or_else(|| {
@@ -243,7 +243,6 @@ impl CurrentLoop<'_, '_> {
         Front {
             words,
             currents,
-            rest,
             sector,
             direction,
             set_point: j,
@@ -401,27 +400,21 @@ impl CurrentLoop<'_, '_> {
             remembered.extend(self.fold(held, left_over));
         }
         if let Some((state, integral)) = front.speed_integral {
-            remembered.push((state, "speed_integral_next", integral));
+            remembered.push((state, integral));
         }
         if let (Some(commutation), Some(pair)) = (front.commutation, words.pair) {
             if let Some(sector_prev) = pair.sector_prev {
-                self.lowering.b.set_state(sector_prev, front.sector);
+                remembered.push((sector_prev, front.sector));
             }
-            remembered.push((pair.left, "commutation_left_next", commutation.left));
+            remembered.push((pair.left, commutation.left));
         }
         if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
-            for ((state, name), value) in terminals
-                .into_iter()
-                .zip(["t_a_cmd_next", "t_b_cmd_next", "t_c_cmd_next"])
-                .zip(applied.terminals)
-            {
-                remembered.push((state, name, value));
-            }
-            remembered.push((off, "off_cmd_next", applied.off));
+            remembered.extend(terminals.into_iter().zip(applied.terminals));
+            remembered.push((off, applied.off));
         }
         if let (Some(words), Some(v_cmd)) = (words.v_cmd, v_cmd) {
-            remembered.push((words[0], "v_a_cmd_next", v_cmd[0]));
-            remembered.push((words[1], "v_b_cmd_next", v_cmd[1]));
+            remembered.push((words[0], v_cmd[0]));
+            remembered.push((words[1], v_cmd[1]));
         }
         if let Some(v_prev) = words.v_prev {
             let volts = match (front.now, applied, front.e) {
@@ -438,8 +431,8 @@ impl CurrentLoop<'_, '_> {
                 _ => v_cmd,
             };
             if let Some(volts) = volts {
-                remembered.push((v_prev[0], "v_a_prev_next", volts[0]));
-                remembered.push((v_prev[1], "v_b_prev_next", volts[1]));
+                remembered.push((v_prev[0], volts[0]));
+                remembered.push((v_prev[1], volts[1]));
             }
         }
         if let Some(off_prev) = words.off_prev {
@@ -447,21 +440,20 @@ impl CurrentLoop<'_, '_> {
                 (Some((_, off_cmd)), _) => Some(self.lowering.b.state(off_cmd)),
                 (None, applied) => applied.map(|applied| applied.off),
             };
-            remembered.extend(off.map(|off| (off_prev, "off_prev_next", off)));
+            remembered.extend(off.map(|off| (off_prev, off)));
         }
         if let (Some(e_prev), Some(e)) = (words.e_prev, front.e_expected) {
-            remembered.push((e_prev[0], "e_a_prev_next", e[0]));
-            remembered.push((e_prev[1], "e_b_prev_next", e[1]));
+            remembered.push((e_prev[0], e[0]));
+            remembered.push((e_prev[1], e[1]));
         }
         if let (Some(words), Some(integral)) = (words.integral, front.integral) {
-            remembered.push((words[0], "integral_a_next", integral[0]));
-            remembered.push((words[1], "integral_b_next", integral[1]));
+            remembered.push((words[0], integral[0]));
+            remembered.push((words[1], integral[1]));
         }
-        let l = &mut *self.lowering;
         if let Some(i_prev) = words.i_prev {
-            l.b.set_state(i_prev[0], front.currents.phases[0]);
-            l.b.set_state(i_prev[1], front.currents.phases[1]);
+            remembered.push((i_prev[0], front.currents.phases[0]));
+            remembered.push((i_prev[1], front.currents.phases[1]));
         }
-        l.hold_at_rest(front.rest, command, &remembered);
+        self.lowering.close_step(command, &remembered);
     }
 }

@@ -3,7 +3,7 @@
 use super::CurrentLoop;
 use crate::ir::{Interval, StateId};
 use crate::lower::set_point::SetPointWords;
-use crate::lower::{PairModulation, RotorWords, SpeedState, SupervisorWords};
+use crate::lower::{PairModulation, RotorWords, SpeedState};
 use crate::spec::{EmfSource, Reference};
 
 /// What a law needs of the step around it.
@@ -43,8 +43,8 @@ pub enum EmfUse {
 
 /// State words of the shared step.
 pub struct Words {
-    /// Modes, faults, offsets.
-    pub supervisor: SupervisorWords,
+    /// Sector of the last sample, where anything follows the edges.
+    pub sector_prev: Option<StateId>,
     /// Direction of rotation, where no rotor words hold it.
     pub direction: Option<StateId>,
     /// Timing of Hall edges.
@@ -91,7 +91,7 @@ impl CurrentLoop<'_, '_> {
         let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;
         let volts = Interval::symmetric(bus);
-        let supervisor = l.supervisor_words(needs_rotor || needs.commutation);
+        let sector_prev = (needs_rotor || needs.commutation).then(|| l.sector_word());
         let rotor = needs_rotor.then(|| l.rotor_words());
         let direction = (needs.commutation && !needs_rotor).then(|| l.direction_word());
         let speed = set_point.speed.map(|words| l.speed_state(words.top));
@@ -173,7 +173,7 @@ impl CurrentLoop<'_, '_> {
             })
         });
         Words {
-            supervisor,
+            sector_prev,
             direction,
             rotor,
             speed,

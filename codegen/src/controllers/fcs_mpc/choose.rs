@@ -6,7 +6,7 @@
 
 use super::weighted::{Changes, better_with_changes, zero_with_changes};
 use crate::controllers::current_loop::{CurrentLoop, Front};
-use crate::controllers::whole_vectors::{ALL_LOW, Numbers, unless_lost, zero_vectors};
+use crate::controllers::whole_vectors::{ALL_LOW, zero_vectors};
 use crate::ir::{Comparison, TableId, Value};
 use crate::lower::Lowering;
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
@@ -101,7 +101,7 @@ impl CurrentLoop<'_, '_> {
             },
         };
         Choice {
-            vector: unless_lost(&mut *self.lowering, front.sector, vector, Numbers::Vectors),
+            vector: self.lowering.b.name("vector", vector),
             u: phases,
             is_low,
             heights: [high, depth],
@@ -136,12 +136,8 @@ impl CurrentLoop<'_, '_> {
         l.b.name("vector_pair", pair);
         l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
         let (three, _) = nearest_three_phase(l, phases, front.bus.volts);
-        let [nearest] = l.b.join([("vector_nearest", three, pair)]);
-        l.b.stage(
-            "know_sector",
-            &["No vector before the first valid Hall code."],
-        );
-        unless_lost(l, front.sector, nearest, Numbers::Vectors)
+        let [vector] = l.b.join([("vector", three, pair)]);
+        vector
     }
 
     /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
@@ -155,8 +151,7 @@ impl CurrentLoop<'_, '_> {
         let beyond = any_beyond(l, phases, 3, front.bus.volts);
         let all = l.b.literal(ALL_LOW);
         let pattern = l.b.select(beyond, low_legs, all);
-        l.b.name("pattern_nearest", pattern);
-        unless_lost(l, front.sector, pattern, Numbers::LowLegs)
+        l.b.name("pattern", pattern)
     }
 
     /// Where each leg would sit if it were off in the target period.

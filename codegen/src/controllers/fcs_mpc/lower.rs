@@ -40,7 +40,7 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
                 step.lowering.state("vector_prev", 0, Interval::new(0, 15), doc)
             });
             let vector = step.choose_weighted(options, &front, u, memory);
-            let remembered = memory.map(|memory| (memory, "vector_prev_next", vector));
+            let remembered = memory.map(|memory| (memory, vector));
             let remembered = remembered.into_iter().collect();
             step.apply_vector(&front, vector, numbers, remembered);
             return;

@@ -5,7 +5,7 @@
 
 use super::choose::{Candidate, state_score_over_bus};
 use crate::controllers::current_loop::{CurrentLoop, Front};
-use crate::controllers::whole_vectors::{Numbers, sixths, unless_lost, vector_legs};
+use crate::controllers::whole_vectors::{sixths, vector_legs};
 use crate::ir::{Comparison, Value};
 use crate::lower::{Coefficient, Lowering};
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
@@ -120,7 +120,7 @@ impl CurrentLoop<'_, '_> {
             Some(best) => best.vector,
             None => l.zero(),
         };
-        unless_lost(l, front.sector, vector, Numbers::Vectors)
+        l.b.name("vector", vector)
     }
 }
 

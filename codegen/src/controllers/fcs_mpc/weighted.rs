@@ -8,7 +8,7 @@ use super::choose::{
     Candidate, OffLegs, PAIRS, SCORE, first_least, state_score_over_bus, zero_of_pair,
 };
 use crate::controllers::current_loop::{CurrentLoop, Front};
-use crate::controllers::whole_vectors::{Numbers, unless_lost, vector_legs};
+use crate::controllers::whole_vectors::vector_legs;
 use crate::diagnostics::engineering;
 use crate::ir::{Comparison, StateId, Value};
 use crate::lower::{Coefficient, Lowering};
@@ -83,7 +83,7 @@ impl CurrentLoop<'_, '_> {
             }
             changes => self.try_all(options, front, phases, off_legs.as_ref(), changes.as_ref()),
         };
-        unless_lost(&mut *self.lowering, front.sector, vector, Numbers::Vectors)
+        self.lowering.b.name("vector", vector)
     }
 
     /// The folded choice, with a weight of switching alone.

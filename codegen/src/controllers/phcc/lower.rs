@@ -60,10 +60,9 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
             (false, false) => Numbers::WithoutPairs,
         };
         let number = look_up(step.lowering, options, &front, falls, numbers);
-        let names = ["h_a_next", "h_b_next"];
-        let words = memory.iter().flatten().zip(names).zip(axes);
+        let words = memory.iter().flatten().zip(axes);
         let remembered = words
-            .filter_map(|((&(word, _), name), axis)| Some((word, name, axis.memory?)))
+            .filter_map(|(&(word, _), axis)| Some((word, axis.memory?)))
             .collect();
         step.apply_vector(&front, number, numbers, remembered);
     })

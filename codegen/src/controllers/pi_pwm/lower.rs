@@ -92,11 +92,7 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
                 ["distance_b", "integral_b_now"],
             ][x];
             let held = integrate(l, range, k_i, [sums[x], target], names);
-            remembered.push((
-                integrals[x],
-                ["integral_a_next", "integral_b_next"][x],
-                held,
-            ));
+            remembered.push((integrals[x], held));
         }
         let command = l.modulate(limited, front.bus, shifts);
         step.remember(&front, &command, Some(limited.u), None, remembered);
@@ -215,6 +211,6 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
         &command,
         None,
         None,
-        vec![(integral, "integral_next", held)],
+        vec![(integral, held)],
     );
 }

@@ -1,38 +1,18 @@
 //! Expressions as Rust, with the parentheses that grammar and readers need.
 
 use super::super::expression::{Expression, Operator, Primitive, Scope};
-use super::super::signal::{Code, Shape};
+use super::super::signal::{Leg, Shape};
 use super::names::{loaded, number, screaming, snake, stored};
 use super::source::{Source, quote};
 use super::tables::look_up;
 use crate::ir::{Program, Value, Word};
 
-/// A number as the state word keeps it.
-pub(super) fn initial(word: &Word, raw: i32) -> Source {
-    let literal = number(i64::from(raw));
-    match Shape::of_state(word).code(raw) {
-        Some(code) => stored(word, &coded(code)),
-        None if word.storage_bits == 16 => literal,
-        None => quote!(Word(#literal)),
-    }
-}
-
-/// The name of a number that has one.
-pub(super) fn coded(code: Code) -> Source {
-    match code {
-        Code::Run => quote!(mode::RUN),
-        Code::Calibrate => quote!(mode::CALIBRATE),
-        Code::Precharge => quote!(mode::PRECHARGE),
-        Code::Tripped => quote!(mode::TRIPPED),
-        Code::NoFault => quote!(Fault::None.word()),
-        Code::AdcRange => quote!(Fault::AdcRange.word()),
-        Code::OverCurrent => quote!(Fault::OverCurrent.word()),
-        Code::Hall => quote!(Fault::Hall.word()),
-        Code::Stall => quote!(Fault::Stall.word()),
-        Code::Offset => quote!(Fault::Offset.word()),
-        Code::Pulsed => quote!(LegState::Pulsed),
-        Code::Low => quote!(LegState::Low),
-        Code::Off => quote!(LegState::Off),
+/// The state of a leg by its name.
+pub(super) fn leg_state(leg: Leg) -> Source {
+    match leg {
+        Leg::Pulsed => quote!(LegState::Pulsed),
+        Leg::Low => quote!(LegState::Low),
+        Leg::Off => quote!(LegState::Off),
     }
 }
 
@@ -61,19 +41,19 @@ impl RustScope for Scope<'_> {
 
     fn kept(&self, word: &Word, value: Value) -> Source {
         if let Some(literal) = self.literal(value) {
-            return initial(word, literal);
+            let literal = number(i64::from(literal));
+            return if word.storage_bits == 16 {
+                literal
+            } else {
+                quote!(Word(#literal))
+            };
         }
-        let value = self.in_shape(value, Shape::of_state(word));
-        let value = written(self.context.program, &value);
+        let value = written(self.context.program, &self.value(value));
         stored(word, &value.within(Binding::Atom))
     }
 
     fn bound(&self, value: Value) -> Source {
-        let definition = match self.context.shape(value) {
-            Shape::Alarm => self.alarm(value),
-            _ => self.definition(value),
-        };
-        written(self.context.program, &definition).tokens
+        written(self.context.program, &self.definition(value)).tokens
     }
 
     fn receiver(&self, value: Value) -> Source {
@@ -88,7 +68,6 @@ enum Binding {
     Or,
     And,
     Compare,
-    BitOr,
     Shift,
     Sum,
     Product,
@@ -101,7 +80,6 @@ impl Binding {
         match operator {
             Operator::Add | Operator::Sub | Operator::AngleAdd | Operator::AngleSub => Self::Sum,
             Operator::Mul => Self::Product,
-            Operator::BitOr => Self::BitOr,
             Operator::And => Self::And,
             Operator::Or => Self::Or,
             _ => Self::Compare,
@@ -176,7 +154,7 @@ fn written(program: &Program, expression: &Expression) -> Written {
             let literal = number(i64::from(*literal));
             Written::atom(quote!(Word(#literal)))
         }
-        Expression::Code(code) => Written::atom(coded(*code)),
+        Expression::Leg(leg) => Written::atom(leg_state(*leg)),
         Expression::Negated(a) => {
             let a = of(a).within(Binding::Atom);
             Written::new(quote!(-#a), Binding::Unary)
@@ -226,7 +204,6 @@ fn sign(operator: Operator) -> Source {
         Operator::Add | Operator::AngleAdd => quote!(+),
         Operator::Sub | Operator::AngleSub => quote!(-),
         Operator::Mul => quote!(*),
-        Operator::BitOr => quote!(|),
         Operator::Less => quote!(<),
         Operator::LessEqual => quote!(<=),
         Operator::Greater => quote!(>),
@@ -273,7 +250,6 @@ fn call(
         Primitive::Lesser => return method(quote!(lesser)),
         Primitive::Greater => return method(quote!(greater)),
         Primitive::Clamp => return method(quote!(clamp)),
-        Primitive::Exceeding => quote!(exceeding),
         Primitive::MulRound => quote!(mul_round),
         Primitive::MulRoundNarrow => quote!(mul_round_narrow),
         Primitive::MulFloor => quote!(mul_floor),

@@ -1,278 +1,344 @@
-//! The step and the setters: stage calls in order, then what they leave behind.
+//! The entries of the law: stage calls in order, then what they leave behind.
 
 use super::super::expression::Scope;
-use super::super::path::StageCode as _;
 use super::super::path::{
-    Kept, beside, inputs_read, kept, leaves_behind, output, params_read, words_read, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, writes,
 };
-use super::super::plan::{Context, StagePlan};
+use super::super::plan::Context;
 use super::super::rows::WholeCommand;
 use super::super::signal::Shape;
 use super::expression::RustScope;
-use super::groups::array;
-use super::names::{docs, loaded, number, snake};
+use super::groups::{array, rust_type};
+use super::names::{docs, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
 use super::tables::look_up_command;
-use crate::ir::{Function, Paths, Program, Word};
+use crate::ir::{AtRest, Function, Program, Value};
 
-/// A function and the functions of its stages.
-pub(super) struct Emitted {
-    /// The function itself.
-    pub main: Source,
-    /// Its stages, in order of their calls.
+/// The step of a program as entries of a law.
+pub(super) struct Entries {
+    /// `track`, `rest` and `step`.
+    pub entries: Source,
+    /// The type of what `track` hands over to the others.
+    pub rotor: Source,
+    /// Its definition, where it has one.
+    pub rotor_definition: Source,
+    /// The stages, in order of their calls.
     pub stages: Source,
 }
 
-/// A setter of set-point words.
-pub(super) struct Setter {
-    /// The method of the set-point.
-    pub method: Source,
-    /// The method of the drive, which calls it.
-    pub delegate: Source,
-    /// Its stages, in order of their calls.
-    pub stages: Source,
-}
-
-/// The control step, `fn step(state, set-point, inputs) -> Legs`, and what takes over where it rests: there alone mode and
-/// fault change, so there they are published.
-///
-/// A command that is looked up as a `whole` goes out from its row.
-pub(super) fn emit_step(
-    program: &Program,
-    Paths { normal, exit }: &Paths,
-    whole: Option<&WholeCommand<'_>>,
-) -> Emitted {
-    let context = Context::watched(program, normal, whole);
-    let path = PathFunctions::new(&context, &[]);
-    let exit = exit
-        .as_ref()
-        .map(|exit| Context::beside(program, exit, &context));
-    let exit = exit
-        .as_ref()
-        .map(|exit| PathFunctions::new(exit, &path.stages));
-    let read: Vec<usize> = exit
+/// The entries of a program's step. A command that is looked up as a `whole` goes out from its row.
+pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> Entries {
+    let context = Context::of_step(program, whole);
+    let plans = context.plan();
+    let stages = plans
         .iter()
-        .flat_map(|exit| params_read(exit.context.function))
-        .collect();
-    let words = param_pattern(program, normal, &read);
-    let inputs = normal.inputs.iter().map(|input| {
-        let name = snake(&input.name);
-        quote!(#name: Word)
-    });
-    let doc = docs(&normal.doc);
-    let leave = exit.as_ref().map(PathFunctions::call_rest);
-    let (body, legs) = (path.body(leave.as_ref()), path.legs(whole));
-    let main = quote! {
-        #doc
-        #[inline]
-        fn step(state: &mut State, set_point: &SetPoint, #(#inputs),*) -> Legs {
-            let #words = set_point.words();
-            #body
-            #legs
-        }
+        .map(|plan| StageFunction::new(&context, plan.clone(), &plan.stage.name));
+    let step = StepFunctions {
+        context: &context,
+        stages: stages.collect(),
+        rotor: context.handed_over(),
     };
-    let stages = path.definitions();
-    let at_rest = exit.as_ref().map(PathFunctions::rest);
-    Emitted {
-        main,
-        stages: quote!(#stages #at_rest),
+    let (track, rest, control) = (step.track(), step.rest(), step.control(whole));
+    Entries {
+        entries: quote!(#track #rest #control),
+        rotor: step.rotor_type(),
+        rotor_definition: step.rotor_definition(),
+        stages: step.stages.iter().map(StageFunction::definition).collect(),
     }
 }
 
-/// One path of the step.
-struct PathFunctions<'a> {
+struct StepFunctions<'a> {
     context: &'a Context<'a>,
     stages: Vec<StageFunction<'a>>,
-    /// Which stages are functions of the other path.
-    shared: Vec<bool>,
+    /// What the tracking hands over.
+    rotor: Vec<Value>,
 }
 
-impl<'a> PathFunctions<'a> {
-    /// The functions of a path beside those of another.
-    fn new(context: &'a Context<'a>, others: &[StageFunction<'a>]) -> Self {
-        let make = |plan: StagePlan<'a>, name: &str| StageFunction::new(context, plan, name);
-        let (stages, shared) = beside(context, others, make);
-        Self {
-            context,
-            stages,
-            shared,
+impl<'a> StepFunctions<'a> {
+    fn function(&self) -> &'a Function {
+        self.context.function
+    }
+
+    fn stages(&self, part: Part) -> impl Iterator<Item = &StageFunction<'a>> {
+        let function = self.function();
+        self.stages
+            .iter()
+            .filter(move |stage| part.has(function, stage.plan()))
+    }
+
+    fn has_rotor(&self) -> bool {
+        !self.rotor.is_empty()
+    }
+
+    fn rotor_names(&self) -> Vec<Source> {
+        let names = self.rotor.iter();
+        names
+            .map(|&value| snake(&self.function().node(value).name))
+            .collect()
+    }
+
+    fn rotor_type(&self) -> Source {
+        if self.has_rotor() {
+            quote!(Rotor)
+        } else {
+            quote!(())
         }
     }
 
-    /// The statement that leaves the step for this path. Where what it hands over fits the registers that carry
-    /// arguments, as it does without set-point words, the compiler ends the step with a jump.
-    fn call_rest(&self) -> Source {
-        let inputs = self.inputs().into_iter().map(|pair| match pair.as_slice() {
-            [only] => quote!(#only),
-            both => quote!([#(#both.to_u16()),*]),
-        });
-        let words = self.words();
-        quote!(return rest(state, set_point, #(#inputs,)* #(#words),*);)
-    }
-
-    /// This path as a function of its own, which publishes what the drive is doing from here on. No leg pulses at
-    /// rest, and all are alike.
-    fn rest(&self) -> Source {
-        let words = self.words();
-        let (mut parameters, mut widened) = (vec![], vec![]);
-        for pair in self.inputs() {
-            match pair.as_slice() {
-                [only] => parameters.push(quote!(#only: Word)),
-                both => {
-                    parameters.push(quote!([#(#both),*]: [u16; 2]));
-                    widened.push(quote!(let [#(#both),*] = [#(Word::from(#both)),*];));
-                }
-            }
+    fn rotor_definition(&self) -> Source {
+        if !self.has_rotor() {
+            return Source::new();
         }
-        let (body, stages) = (self.body(None), self.definitions());
-        let leg = self.leg("leg_a");
+        let names = self.rotor_names();
+        let kinds = self
+            .rotor
+            .iter()
+            .map(|&value| rust_type(self.context.shape(value)));
         quote! {
-            /// One control period without current control, in start-up or with a fault: what all legs do. Publishes
-            /// what the drive is doing from here on.
-            #[cold]
-            #[inline(never)]
-            fn rest(state: &mut State, set_point: &SetPoint, #(#parameters,)* #(#words: Word),*) -> Legs {
-                #(#widened)*
-                #body
-                set_point.status.store(state.status());
-                Legs::at_rest(#leg)
-            }
-            #stages
+            /// What tracking tells of the rotor.
+            #[derive(Clone, Copy)]
+            pub struct Rotor { #(#names: #kinds),* }
         }
     }
 
-    /// Names of the set-point words that it reads.
-    fn words(&self) -> Vec<Source> {
-        let names = words_read(self.context.program, self.context.function);
-        names.into_iter().map(snake).collect()
+    /// The sample's words that some values are.
+    fn inputs(&self, values: impl Iterator<Item = Value>) -> (Source, bool) {
+        let names = inputs_used(self.function(), values);
+        let is_read = !names.is_empty();
+        let reads = names.into_iter().map(|name| {
+            let (binding, method) = (snake(name), Source::of(name));
+            quote!(let #binding = sample.#method();)
+        });
+        (reads.collect(), is_read)
     }
 
-    /// Names of the inputs that it reads, by twos: an input is a halfword, and two share a register.
-    fn inputs(&self) -> Vec<Vec<Source>> {
-        let names: Vec<Source> = inputs_read(self.context.function)
-            .into_iter()
-            .map(snake)
+    /// The values from outside that a part's calls and stores name.
+    fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
+        let function = self.function();
+        let stages = self.stages(part).map(StageFunction::plan);
+        let mut used: Vec<Value> = stages
+            .flat_map(|plan| {
+                let guard = plan.stage.guard.as_ref().map(|guard| guard.condition);
+                let otherwise = plan.outcomes.iter().filter_map(|outcome| outcome.otherwise);
+                let arguments = plan.arguments.iter().copied();
+                arguments.chain(guard).chain(otherwise)
+            })
             .collect();
-        names.chunks(2).map(<[Source]>::to_vec).collect()
+        used.extend(kept.words.iter().map(|&(_, value)| value));
+        if part == Part::Control {
+            used.extend(function.outputs.iter().map(|&(_, value)| value));
+        }
+        used
     }
 
-    /// What is seen behind the stages: old state words that go out of the step are read under their names before
-    /// any is written.
-    fn scope(&self) -> Scope<'a> {
-        Scope {
+    /// Calls of a part's stages, and the words that it keeps.
+    fn body(&self, part: Part, kept: Kept<'_>) -> Source {
+        let calls = self.stages(part).map(StageFunction::call);
+        let scope = |reads_state| Scope {
+            context: self.context,
+            reads_state,
+        };
+        let (outside, named) = (scope(true), scope(false));
+        let Kept { reads, words } = kept;
+        let reads = reads.into_iter().map(|value| {
+            let name = snake(&self.function().node(value).name);
+            let value = outside.whole(value);
+            quote!(let #name = #value;)
+        });
+        let writes = words.into_iter().map(|(word, value)| {
+            let field = snake(&word.name);
+            let value = named.kept(word, value);
+            quote!(state.#field = #value;)
+        });
+        quote! { #(#calls)* #(#reads)* #(#writes)* }
+    }
+
+    fn kept(&self, part: Part) -> Kept<'a> {
+        let plans: Vec<_> = self.stages.iter().map(|stage| stage.plan().clone()).collect();
+        kept(self.context, &plans, part)
+    }
+
+    fn reads_state(&self, part: Part) -> bool {
+        let mut plans = self.stages(part).map(StageFunction::plan);
+        plans.any(|plan| !plan.reads.is_empty() || !plan.stores.is_empty())
+    }
+
+    fn track(&self) -> Source {
+        let kept = self.kept(Part::Tracking);
+        let used = self.used(Part::Tracking, &kept);
+        let (inputs, has_inputs) = self.inputs(used.into_iter());
+        let has_state = self.reads_state(Part::Tracking)
+            || !kept.words.is_empty()
+            || !kept.reads.is_empty();
+        let body = self.body(Part::Tracking, kept);
+        let (state, sample) = (named("state", has_state), named("sample", has_inputs));
+        let signature = quote!(#state: &mut State, #sample: &Checked);
+        if !self.has_rotor() {
+            return quote! {
+                #[inline]
+                fn track(#signature) { #inputs #body }
+            };
+        }
+        let names = self.rotor_names();
+        quote! {
+            #[inline]
+            fn track(#signature) -> Rotor {
+                #inputs
+                #body
+                Rotor { #(#names),* }
+            }
+        }
+    }
+
+    fn rest(&self) -> Source {
+        let kept = kept_at_rest(self.context);
+        let tracked = kept.iter().filter_map(|&(_, at_rest)| match at_rest {
+            AtRest::Tracked(value) => Some(value),
+            AtRest::Forgotten => None,
+        });
+        let tracked: Vec<Value> = tracked.collect();
+        let (inputs, has_inputs) = self.inputs(tracked.iter().copied());
+        let handed = self.rotor.iter().filter(|value| tracked.contains(value));
+        let handed: Vec<Source> = handed
+            .map(|&value| snake(&self.function().node(value).name))
+            .collect();
+        let pattern = (!handed.is_empty()).then(|| quote!(let Rotor { #(#handed,)* .. } = rotor;));
+        let scope = Scope {
             context: self.context,
             reads_state: false,
+        };
+        let stores = kept.iter().map(|&(word, at_rest)| {
+            let field = snake(&word.name);
+            let value = match at_rest {
+                AtRest::Tracked(value) => scope.kept(word, value),
+                AtRest::Forgotten if word.storage_bits == 16 => quote!(0),
+                AtRest::Forgotten => quote!(Word(0)),
+            };
+            quote!(state.#field = #value;)
+        });
+        let state = named("state", !kept.is_empty());
+        let sample = named("sample", has_inputs);
+        let rotor = named("rotor", !handed.is_empty());
+        let kind = self.rotor_type();
+        quote! {
+            fn rest(#state: &mut State, #sample: &Checked, #rotor: #kind) {
+                #inputs
+                #pattern
+                #(#stores)*
+            }
         }
     }
 
-    fn leg(&self, name: &str) -> Source {
-        match output(self.context.function, name) {
-            None => quote!(LegState::Off),
-            Some(value) => self.scope().shaped(value, Shape::Leg),
+    fn control(&self, whole: Option<&WholeCommand<'_>>) -> Source {
+        let kept = self.kept(Part::Control);
+        let used = self.used(Part::Control, &kept);
+        let (inputs, has_inputs) = self.inputs(used.into_iter());
+        let has_state = self.reads_state(Part::Control)
+            || !kept.words.is_empty()
+            || !kept.reads.is_empty();
+        let body = self.body(Part::Control, kept);
+        let names = self.rotor_names();
+        let pattern = self
+            .has_rotor()
+            .then(|| quote!(let Rotor { #(#names),* } = rotor;));
+        let words = read_words(self.context.program, &params_read(self.function()));
+        let set_point = named("set_point", !words.as_str().is_empty());
+        let (state, sample) = (named("state", has_state), named("sample", has_inputs));
+        let rotor = named("rotor", self.has_rotor());
+        let kind = self.rotor_type();
+        let legs = self.legs(whole);
+        quote! {
+            #[inline]
+            fn step(
+                #state: &mut State,
+                #set_point: &Words<Self>,
+                #sample: &Checked,
+                #rotor: #kind,
+            ) -> Legs {
+                #words
+                #inputs
+                #pattern
+                #body
+                #legs
+            }
         }
     }
 
     fn legs(&self, whole: Option<&WholeCommand<'_>>) -> Source {
-        let scope = self.scope();
+        // Old state words that go out of the step are read under their names before any is written.
+        let scope = Scope {
+            context: self.context,
+            reads_state: false,
+        };
         if let Some(whole) = whole {
             return look_up_command(whole, &scope.whole(whole.index));
         }
+        let function = self.function();
         let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
-            match output(self.context.function, name) {
-                None => quote!(0),
-                Some(value) => scope.literal(value).map_or_else(
-                    || {
-                        let value = scope.receiver(value);
-                        quote!(#value.to_u16())
-                    },
-                    |literal| number(i64::from(literal)),
-                ),
-            }
+            let Some(value) = output(function, name) else {
+                return quote!(0);
+            };
+            scope.literal(value).map_or_else(
+                || {
+                    let value = scope.receiver(value);
+                    quote!(#value.to_u16())
+                },
+                |literal| number(i64::from(literal)),
+            )
         });
-        let states = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
+        let states = ["leg_a", "leg_b", "leg_c"].map(|name| match output(function, name) {
+            None => quote!(LegState::Off),
+            Some(value) => scope.shaped(value, Shape::Leg),
+        });
         let states = array(&states);
         quote!(Legs::new([#(#compare),*], #states))
     }
+}
 
-    /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.
-    fn body(&self, leave: Option<&Source>) -> Source {
-        let (function, scope) = (self.context.function, self.scope());
-        // Alarms wait for the last of them: one branch for all.
-        let mut alarms: Vec<(bool, Source)> = vec![];
-        let last = function.leave.iter().map(|flag| flag.index()).max();
-        let calls = self.stages.iter().map(|stage| {
-            let call = stage.call();
-            let mut flags: Vec<Source> = vec![];
-            for flag in leaves_behind(function, stage.plan()) {
-                match self.context.shape(flag) {
-                    Shape::Alarm => {
-                        alarms.push((!scope.is_sign(flag), scope.shaped(flag, Shape::Alarm)));
-                    }
-                    _ => flags.push(scope.whole(flag)),
-                }
+/// A parameter, with an underscore before it where it is not used.
+fn named(name: &str, is_used: bool) -> Source {
+    Source::of(if is_used {
+        name.to_owned()
+    } else {
+        format!("_{name}")
+    })
+}
+
+/// The statements that read these words of the set-point; an underscore stands for one that comes along.
+fn read_words(program: &Program, read: &[usize]) -> Source {
+    let place = |name: &str| program.params.iter().position(|word| word.name == name);
+    let is_read = |name: &str| place(name).is_some_and(|place| read.contains(&place));
+    let single = [("j", "current"), ("speed_ref", "speed")];
+    let single = single.into_iter().filter(|(name, _)| is_read(name));
+    let single = single.map(|(name, method)| {
+        let (name, method) = (snake(name), Source::of(method));
+        quote!(let #name = set_point.#method();)
+    });
+    let bus = ["v_bus", "ratio"];
+    let reads_bus = bus.into_iter().any(is_read).then(|| {
+        let known = bus.into_iter().filter(|name| place(name).is_some());
+        let names = known.map(|name| {
+            if is_read(name) {
+                snake(name)
+            } else {
+                quote!(_)
             }
-            if last.is_some_and(|last| stage.plan().stage.end > last) && !alarms.is_empty() {
-                // Signs stand together, so that one shift does for them.
-                alarms.sort_by_key(|&(is_last, _)| is_last);
-                let words: Vec<Source> = alarms.drain(..).map(|(_, word)| word).collect();
-                flags.push(match words.as_slice() {
-                    [only] => quote!(#only != 0),
-                    many => quote!((#(#many)|*) != 0),
-                });
-            }
-            let leaves = (!flags.is_empty()).then(|| quote!(if #(#flags)||* { #leave }));
-            quote!(#call #leaves)
         });
-        let keep = keep_state(self.context, &self.stages);
-        quote! { #(#calls)* #keep }
-    }
-
-    fn definitions(&self) -> Source {
-        let own = self.stages.iter().zip(&self.shared);
-        let own = own.filter(|&(_, &shared)| !shared);
-        own.map(|(stage, _)| stage.definition()).collect()
-    }
+        quote!(let [#(#names),*] = set_point.bus();)
+    });
+    quote!(#(#single)* #reads_bus)
 }
 
-/// The set-point words by name; an underscore for one that the function neither reads nor keeps.
-fn param_pattern(program: &Program, function: &Function, kept: &[usize]) -> Source {
-    let read = params_read(function);
-    let read = |index: usize| kept.contains(&index) || read.contains(&index);
-    let names = program.params.iter().enumerate().map(|(index, word)| {
-        let name = snake(&word.name);
-        if read(index) {
-            quote!(#name)
-        } else {
-            quote!(_)
-        }
-    });
-    quote!([#(#names),*])
+/// A setter: a function of a word that makes those of the set-point.
+pub(super) struct Setter {
+    /// The function.
+    pub function: Source,
+    /// Its stages, where they are functions of their own.
+    pub stages: Source,
 }
 
-/// The new state words, each written once at the end.
-fn keep_state(context: &Context<'_>, stages: &[StageFunction<'_>]) -> Source {
-    let scope = |reads_state| Scope {
-        context,
-        reads_state,
-    };
-    let (outside, named) = (scope(true), scope(false));
-    let Kept { reads, words } = kept(context, stages);
-    let reads = reads.into_iter().map(|value| {
-        let name = snake(&context.function.node(value).name);
-        let value = outside.whole(value);
-        quote!(let #name = #value;)
-    });
-    let writes = words.into_iter().map(|(word, value)| {
-        let field = snake(&word.name);
-        let value = named.kept(word, value);
-        quote!(state.#field = #value;)
-    });
-    quote!(#(#reads)* #(#writes)*)
-}
-
-/// A setter: a method of the set-point. Stages of a setter that has several become functions named
-/// after it.
+/// The setter as `fn name(word) -> words`.
 pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
     let context = Context::new(program, function);
     let plans = context.plan();
@@ -293,115 +359,42 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         context: &context,
         reads_state: true,
     };
-    let mut kept = vec![];
-    let mut stores = Source::new();
-    // The watch over the bus voltage is told of calls that take effect.
-    let told = (function.name == "set_bus").then(|| quote!(self.bus_watch.told();));
-    for (shared, values) in writes(program, function) {
-        let values = shared
-            .words
-            .iter()
-            .zip(values)
-            .map(|(&(word, known), value)| {
-                if let Some(value) = value {
-                    return scope.whole(value);
-                }
-                // Of words that are replaced together, what this setter leaves alone stays.
-                kept.push(word);
-                let name = snake(&known.name);
-                quote!(#name)
-            });
-        let values: Vec<Source> = values.collect();
-        let name = snake(&shared.name);
-        stores.insert(&match (values.as_slice(), &told) {
-            ([only], told) => quote!(self.#name.store(#only); #told),
-            (many, None) => quote!(self.#name.store([#(#many),*]);),
-            (many, Some(told)) => quote!(if self.#name.store([#(#many),*]) { #told }),
-        });
-    }
-    let reads = (!kept.is_empty() || !params_read(function).is_empty()).then(|| {
-        let words = param_pattern(program, function, &kept);
-        quote!(let #words = self.words();)
-    });
-    let Arguments {
-        typed,
-        names,
-        conversion,
-    } = setter_arguments(function);
-    let (name, doc) = (snake(&function.name), docs(&function.doc));
-    let method = quote! {
-        #doc
-        pub fn #name(&self, #typed) {
-            #conversion
-            #reads
-            #body
-            #stores
-        }
-    };
-    let delegate = quote! {
-        #doc
-        pub fn #name(&self, #typed) {
-            self.set_point.#name(#names);
-        }
-    };
-    let stages = if single {
-        Source::new()
-    } else {
-        stages.iter().map(StageFunction::definition).collect()
-    };
-    Setter {
-        method,
-        delegate,
-        stages,
-    }
-}
-
-/// The arguments of a setter.
-struct Arguments {
-    /// With their types.
-    typed: Source,
-    /// Without.
-    names: Source,
-    /// What makes words of them.
-    conversion: Source,
-}
-
-fn setter_arguments(function: &Function) -> Arguments {
-    let quantity = match function.name.as_str() {
-        "set_current" => Some(snake("current")),
-        "set_torque" => Some(snake("torque")),
-        "set_speed" => Some(snake("speed")),
-        _ => None,
-    };
-    if let (Some(quantity), [input]) = (quantity, function.inputs.as_slice()) {
-        let name = snake(&input.name);
-        return Arguments {
-            typed: quote!(#quantity: I16F16),
-            names: quote!(#quantity),
-            conversion: quote!(let #name = Word(#quantity.to_bits());),
-        };
-    }
-    let names: Vec<_> = function
-        .inputs
-        .iter()
-        .map(|input| snake(&input.name))
+    let name = function.name.trim_start_matches("set_");
+    let values: Vec<Source> = writes(function)
+        .into_iter()
+        .map(|value| scope.whole(value))
         .collect();
-    let types = function.inputs.iter().map(|input| {
-        let narrow = input.interval.low >= 0 && input.interval.high <= i64::from(u16::MAX);
-        if narrow { quote!(u16) } else { quote!(i32) }
+    let (kind, result) = match (name, values.as_slice()) {
+        ("bus", words) => {
+            let count = words.len();
+            (quote!([Word; #count]), quote!([#(#words),*]))
+        }
+        (_, [only]) => (quote!(Word), only.clone()),
+        // The empty shape of a drive whose specification has errors.
+        _ => (quote!(Word), quote!(Word(0))),
+    };
+    let inputs = function.inputs.iter().map(|input| {
+        let is_used = params_used(function, &input.name);
+        named(&snake(&input.name).to_string(), is_used)
     });
-    let conversions = names
-        .iter()
-        .map(|name| quote!(let #name = Word::from(#name);));
-    Arguments {
-        typed: quote!(#(#names: #types),*),
-        names: quote!(#(#names),*),
-        conversion: conversions.collect(),
+    let (name, doc) = (snake(name), docs(&function.doc));
+    Setter {
+        function: quote! {
+            #doc
+            fn #name(#(#inputs: Word),*) -> #kind {
+                #body
+                #result
+            }
+        },
+        stages: if single {
+            Source::new()
+        } else {
+            stages.iter().map(StageFunction::definition).collect()
+        },
     }
 }
 
-/// A state word read at its place, for methods of the state.
-pub(super) fn state_word(word: &Word) -> Source {
-    let field = snake(&word.name);
-    loaded(word, &quote!(self.#field))
+fn params_used(function: &Function, name: &str) -> bool {
+    let all = inputs_used(function, function.values());
+    all.contains(&name)
 }

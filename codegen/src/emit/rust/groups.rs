@@ -50,10 +50,10 @@ pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
 /// single signals, then the arrays.
 pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
-        for shape in [Shape::Word, Shape::Flag, Shape::Alarm, Shape::Leg] {
+        for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
             if groups.len() > limit {
                 let fits = |group: &Group| {
-                    share_type(group.shape, shape) && (!singles || group.members.len() == 1)
+                    group.shape == shape && (!singles || group.members.len() == 1)
                 };
                 let members: Vec<usize> = groups
                     .iter()
@@ -115,15 +115,10 @@ pub(super) fn array(elements: &[Source]) -> Source {
     }
 }
 
-/// Whether values of both shapes may stand in one array.
-fn share_type(one: Shape, other: Shape) -> bool {
-    one == other || one.is_word() && other.is_word()
-}
-
 /// `Word`, `bool` or `LegState`.
 pub(super) fn rust_type(shape: Shape) -> Source {
     match shape {
-        Shape::Word | Shape::Mode | Shape::Fault | Shape::Alarm => quote!(Word),
+        Shape::Word => quote!(Word),
         Shape::Flag => quote!(bool),
         Shape::Leg => quote!(LegState),
     }

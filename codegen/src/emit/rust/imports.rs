@@ -1,41 +1,40 @@
-//! The names of a module that come from outside, and what happens where the user's type has one of
+//! The names of emitted code that come from outside, and what happens where the user's type has one of
 //! them.
 //!
 //! Emitted code uses short names: `Word`, `Legs`, `Drive`. A motor may be called like that, too;
-//! then its type has the name, and the other item is `HexagenWord` in this one module.
+//! then its type has the name, and the other item is `HexagenWord` in this one place.
 
 use super::interface::fixed_type;
 use super::names::HELPERS;
 use super::source::{Source, quote};
-use crate::interface::{Interface, PublicValue};
-use proc_macro2::{Group, Ident, TokenStream, TokenTree};
-use std::cmp::Reverse;
-use std::collections::{BTreeSet, HashSet};
+use proc_macro2::{Group, Ident, Spacing, TokenStream, TokenTree};
+use std::collections::HashSet;
 
 /// Stands for the user's type where that has a name of another item, until all names are settled.
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 15] = [
-    "BusWatch",
-    "DoubleBuffer",
-    "Drive",
-    "DriveLoop",
-    "DriveSetPoint",
-    "Fault",
+const SHARED: [&str; 16] = [
+    "Checked",
+    "Control",
+    "FixedBus",
     "Format",
     "LegState",
     "Legs",
+    "Limits",
+    "MeasuredBus",
+    "Observation",
     "Rounding",
-    "Sample",
-    "SharedWord",
-    "Status",
-    "mode",
+    "SpeedLoop",
+    "ToldBus",
+    "Unit",
+    "Units",
+    "Words",
     "pairs_from_bits",
 ];
 
-/// Types that the module defines beside the user's; besides them the results of large stages and the rows of tables.
-const OWN: [&str; 3] = ["ControlLoop", "SetPoint", "State"];
+/// Types that the code defines besides the user's; besides them the results of large stages and the rows of tables.
+const OWN: [&str; 2] = ["Rotor", "State"];
 
 /// The user's type in a body that [`settle`] has not seen yet.
 pub(super) fn unsettled(name: &str) -> Source {
@@ -54,7 +53,6 @@ pub(super) fn settle(body: TokenStream, name: &str) -> TokenStream {
 /// Whether another item of the module has this name.
 fn clashes(taken: &str) -> bool {
     taken == "Word"
-        || taken == "Default"
         || SHARED.contains(&taken)
         || OWN.contains(&taken)
         || taken.ends_with("Results")
@@ -64,25 +62,35 @@ fn clashes(taken: &str) -> bool {
 
 fn replace(tokens: TokenStream, name: &str, alias: &str) -> TokenStream {
     let named = |name: &str, ident: &Ident| Ident::new(name, ident.span());
+    // Behind `type` and `::` stand names of other scopes: associated types, items of crates.
+    let (mut is_foreign, mut is_joint) = (false, false);
     tokens
         .into_iter()
-        .map(|token| match token {
-            TokenTree::Ident(ident) if ident == PLACEHOLDER => named(name, &ident).into(),
-            TokenTree::Ident(ident) if ident == name => named(alias, &ident).into(),
-            // Links of the documentation follow.
-            TokenTree::Literal(literal) => {
-                let text = literal.to_string();
-                let link = format!("[`{name}::");
-                let text = text.replace(&link, &format!("[`{alias}::"));
-                TokenTree::Literal(text.parse().unwrap_or(literal))
+        .map(|token| {
+            let was_foreign = std::mem::take(&mut is_foreign);
+            let was_joint = std::mem::take(&mut is_joint);
+            match token {
+                TokenTree::Ident(ident) if ident == PLACEHOLDER => named(name, &ident).into(),
+                TokenTree::Ident(ident) if ident == name && !was_foreign => {
+                    named(alias, &ident).into()
+                }
+                TokenTree::Ident(ident) => {
+                    is_foreign = ident == "type";
+                    ident.into()
+                }
+                TokenTree::Punct(punct) => {
+                    is_foreign = was_joint && punct.as_char() == ':';
+                    is_joint = punct.spacing() == Spacing::Joint;
+                    punct.into()
+                }
+                TokenTree::Group(group) => {
+                    let mut replaced =
+                        Group::new(group.delimiter(), replace(group.stream(), name, alias));
+                    replaced.set_span(group.span());
+                    replaced.into()
+                }
+                token @ TokenTree::Literal(_) => token,
             }
-            TokenTree::Group(group) => {
-                let mut replaced =
-                    Group::new(group.delimiter(), replace(group.stream(), name, alias));
-                replaced.set_span(group.span());
-                replaced.into()
-            }
-            token => token,
         })
         .collect()
 }
@@ -97,7 +105,7 @@ fn is_fixed(name: &str) -> bool {
 }
 
 /// The imports of a body that holds `names`; `name` is the user's type.
-pub(super) fn imports(names: &HashSet<&str>, interface: &Interface, name: &str) -> Source {
+pub(super) fn imports(names: &HashSet<&str>, name: &str) -> Source {
     let import = |item: &str| {
         if name == item {
             Source::of(format!("{item} as {}", alias(item)))
@@ -113,31 +121,17 @@ pub(super) fn imports(names: &HashSet<&str>, interface: &Interface, name: &str) 
     let arith = std::iter::once("Word").chain(HELPERS.into_iter().filter(used));
     let arith = list(arith.map(import).collect());
     // In the order of their integer bits, as rustfmt has them.
-    let mut frac_bits: BTreeSet<Reverse<u32>> = interface
-        .constants
-        .iter()
-        .filter_map(|constant| match constant.value {
-            PublicValue::Fixed { frac_bits, .. } | PublicValue::Vectors { frac_bits, .. } => {
-                Some(Reverse(frac_bits))
-            }
-            _ => None,
-        })
-        .collect();
-    // The set-point's type.
-    frac_bits.insert(Reverse(16));
-    let fixed = frac_bits
-        .into_iter()
-        .map(|Reverse(frac_bits)| import(fixed_type(frac_bits).as_str()));
-    let fixed = list(fixed.collect());
-    let shared = list(SHARED.into_iter().filter(used).map(import).collect());
-    let standard = (name == "Default").then(|| {
-        let import = import("Default");
-        quote!(use ::core::default::#import;)
+    let fixed = (0..=32).rev().map(fixed_type);
+    let fixed = fixed.filter(|fixed| names.contains(fixed.as_str()));
+    let fixed: Vec<Source> = fixed.map(|fixed| import(fixed.as_str())).collect();
+    let fixed = (!fixed.is_empty()).then(|| {
+        let fixed = list(fixed);
+        quote!(use ::hexagen::fixed::types::#fixed;)
     });
+    let shared = list(SHARED.into_iter().filter(used).map(import).collect());
     quote! {
-        #standard
         use ::hexagen::arith::#arith;
-        use ::hexagen::fixed::types::#fixed;
+        #fixed
         use ::hexagen::#shared;
     }
 }

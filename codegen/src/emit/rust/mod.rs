@@ -1,7 +1,7 @@
-//! The Rust emitter: from a verified graph to a module that reads as if written by hand.
+//! The Rust emitter: from a verified graph to a type that reads as if written by hand.
 //!
 //! `stage` makes a function of each planned stage, `function` strings the calls together, `expression` writes
-//! operators, `interface`, `set_point` and `traits` the types around them.
+//! operators, `interface` the type around them.
 //! The same graph gives the same tokens, whoever asks; nothing here can fail.
 
 mod expression;
@@ -11,11 +11,9 @@ mod groups;
 mod imports;
 mod interface;
 mod names;
-mod set_point;
 mod source;
 mod stage;
 mod tables;
-mod traits;
 
 extern crate proc_macro;
 
@@ -26,10 +24,10 @@ use super::texts;
 use crate::at_once::at_once;
 use crate::interface::Interface;
 use crate::ir::{Program, VerifiedGraph};
-use function::{emit_setter, emit_step};
+use function::{Setter, emit_setter, emit_step};
 use imports::{imports, settle};
 use interface::Types;
-use names::{docs, inner_docs, item_names, module_ident, number, screaming};
+use names::{docs, item_names, number, screaming};
 use proc_macro2::{Ident, Span, TokenStream};
 use source::{Source, quote};
 use std::collections::HashSet;
@@ -42,9 +40,9 @@ pub struct Surface {
     pub name: Ident,
     /// `pub`, `pub(crate)` or nothing.
     pub visibility: TokenStream,
-    /// Attributes of the whole: `#[cfg(…)]`. They stand on the module and on its re-export.
+    /// Attributes of the whole: `#[cfg(…)]`. They stand on the type and on its code.
     pub attributes: TokenStream,
-    /// Attributes of the type: further documentation.
+    /// Attributes of the type: the user's own documentation, which stands first.
     pub type_attributes: TokenStream,
 }
 
@@ -60,18 +58,18 @@ impl Surface {
     }
 }
 
-/// A drive's module as text, around the name that the user gave its type: all that this emitter works out.
+/// A drive's code as text, around the name that the user gave its type: all that this emitter works out.
 pub struct RustText {
     type_name: String,
-    /// Documentation of the module, and its imports.
-    head: Source,
-    /// Constants, tables, and documentation of the type.
-    before: Source,
-    /// The type's fields, and everything behind them.
+    /// Documentation of the type.
+    docs: Source,
+    /// Imports.
+    imports: Source,
+    /// All items behind them.
     body: Source,
 }
 
-/// The text of one drive's module.
+/// The text of one drive's code.
 pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str) -> RustText {
     let program = graph.program();
     let types = Types {
@@ -79,47 +77,35 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         interface,
         name: type_name,
     };
-    let around = || {
-        let setters: Vec<_> = program
-            .setters
-            .iter()
-            .map(|setter| emit_setter(program, setter))
-            .collect();
-        let drive = types.drive(&setters);
-        let set_point = types.set_point(&setters);
-        let control_loop = types.control_loop();
-        let setter_stages = setters.iter().map(|setter| &setter.stages);
-        let state = types.state();
-        let drive_trait = types.drive_trait();
-        let header = inner_docs(&texts::header(program, interface));
-        let before = quote!(#drive #set_point #control_loop);
-        let behind = quote!(#(#setter_stages)* #state #drive_trait);
-        (header, before, behind, docs(&interface.doc))
+    let whole = WholeCommand::of(program);
+    let setters = || -> Vec<(&str, Setter)> {
+        let setters = program.setters.iter();
+        setters
+            .map(|setter| (setter.name.as_str(), emit_setter(program, setter)))
+            .collect()
     };
-    let paths = program.step.paths(&program.tables);
-    let whole = WholeCommand::of(program, &paths);
-    let step = || emit_step(program, &paths, whole.as_ref());
-    let (step, (header, before, behind, docs)) = at_once(step, around);
-    let (step_main, step_stages) = (&step.main, &step.stages);
-    let body = quote! {
-        #before
-        #step_main
-        #step_stages
-        #behind
-    };
-    let names = item_names(&body);
-    let imports = imports(&names, interface, type_name);
+    let step = || emit_step(program, whole.as_ref());
+    let (step, setters) = at_once(step, setters);
+    let control = types.control(&step, &setters);
+    let public = types.constants();
+    let setter_stages = setters.iter().map(|(_, setter)| &setter.stages);
+    let (state, rotor, stages) = (types.state(), &step.rotor_definition, &step.stages);
+    let code = quote!(#state #rotor #control #stages #(#setter_stages)*);
+    let names = item_names(&code);
     let constants = constants(program, whole.as_ref(), &names);
+    let body = quote!(#public #constants #code);
+    let imports = imports(&item_names(&body), type_name);
     RustText {
         type_name: type_name.to_owned(),
-        head: quote!(#header #imports),
-        before: quote!(#constants #docs),
+        docs: docs(&texts::of_type(program, interface)),
+        imports,
         body,
     }
 }
 
 impl RustText {
-    /// The module with the re-export of its type, as it appears to the code around it.
+    /// The type and its code, as it appears to the code around it. All but the type stands in an anonymous constant,
+    /// whose names nobody else can take.
     pub fn into_tokens(self, surface: &Surface) -> TokenStream {
         let Surface {
             name,
@@ -127,27 +113,26 @@ impl RustText {
             attributes,
             type_attributes,
         } = surface;
-        let head = tokens(&self.head);
-        let before = settle(tokens(&self.before), &self.type_name);
+        let docs = tokens(&self.docs);
+        let imports = tokens(&self.imports);
         let body = settle(tokens(&self.body), &self.type_name);
-        let module = module_ident(&self.type_name);
         quote::quote! {
             #attributes
-            #visibility use #module::#name;
+            #type_attributes
+            #docs
+            #[derive(Clone, Copy, Debug)]
+            #visibility struct #name;
 
             #attributes
-            #visibility mod #module {
-                #head
-                #before
-                #type_attributes
-                pub struct #name
+            const _: () = {
+                #imports
                 #body
-            }
+            };
         }
     }
 }
 
-/// The module of one drive, and the re-export of its type.
+/// The code of one drive.
 pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface) -> TokenStream {
     write_rust(graph, interface, &surface.name.to_string()).into_tokens(surface)
 }

@@ -1,18 +1,15 @@
 //! How names, numbers and documentation look in emitted Rust.
 
-use super::super::names::module_name;
 use super::source::{Source, quote};
 use crate::ir::Word;
-use proc_macro2::{Ident, Span};
 use std::collections::HashSet;
 
 /// Functions of `hexagen::arith`; emitted code imports those that it uses.
-pub(super) const HELPERS: [&str; 14] = [
+pub(super) const HELPERS: [&str; 13] = [
     "angle_fraction",
     "angle_index",
     "divide",
     "divide_narrow",
-    "exceeding",
     "lookup",
     "mul_add_floor",
     "mul_floor",
@@ -25,7 +22,7 @@ pub(super) const HELPERS: [&str; 14] = [
 ];
 
 /// What else a local name would hide: names that the emitted functions use themselves.
-const RESERVED: [&str; 4] = ["rest", "set_point", "state", "step"];
+const RESERVED: [&str; 4] = ["rotor", "sample", "set_point", "state"];
 
 /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind
 /// it where that name is taken.
@@ -50,15 +47,6 @@ const KEYWORDS: [&str; 53] = [
 /// Whether the language keeps the word for itself.
 fn is_keyword(name: &str) -> bool {
     KEYWORDS.binary_search(&name).is_ok()
-}
-
-/// The identifier of a type's module: `loop_` for `Loop`.
-pub(super) fn module_ident(type_name: &str) -> Ident {
-    let mut name = module_name(type_name);
-    if is_keyword(&name) {
-        name.push('_');
-    }
-    Ident::new(&name, Span::call_site())
 }
 
 /// The identifier of a constant or table.
@@ -117,25 +105,81 @@ pub(super) fn doc(line: &str) -> Source {
     docs(&[line])
 }
 
-/// Documentation lines of the module around them.
-pub(super) fn inner_docs<T: AsRef<str>>(lines: &[T]) -> Source {
-    comments("//!", lines)
-}
+/// Documentation of 100 columns where it is indented twice.
+const COLUMNS: usize = 88;
 
-/// A comment ends at the end of its line, and the user's own words may have several.
+/// Paragraphs are broken anew; tables, lists, headings and code keep their lines.
 fn comments<T: AsRef<str>>(sign: &str, lines: &[T]) -> Source {
-    let mut text = String::new();
+    let mut text = Comment {
+        sign,
+        text: String::new(),
+        width: 0,
+    };
     for line in lines {
+        // A comment ends at the end of its line, and the user's own words may have several.
         for line in line.as_ref().split('\n').flat_map(|line| line.split('\r')) {
-            text.push_str(sign);
-            if !line.is_empty() {
-                text.push(' ');
-                text.push_str(line);
-            }
-            text.push('\n');
+            text.add(line);
         }
     }
-    Source::of(text)
+    text.end();
+    Source::of(text.text)
+}
+
+struct Comment<'s> {
+    sign: &'s str,
+    text: String,
+    /// Columns of the open line; 0 where none is open.
+    width: usize,
+}
+
+impl Comment<'_> {
+    fn add(&mut self, line: &str) {
+        let begins = line.starts_with(['|', '#', '-', ' ', '`']) || is_numbered(line);
+        if line.is_empty() || begins {
+            self.end();
+        }
+        if line.is_empty() || line.starts_with(['|', '#']) {
+            self.text.push_str(self.sign);
+            if !line.is_empty() {
+                self.text.push(' ');
+                self.text.push_str(line);
+            }
+            self.text.push('\n');
+            return;
+        }
+        let indent = if begins && !line.starts_with('`') { 2 } else { 0 };
+        for word in line.split_whitespace() {
+            let columns = word.chars().count();
+            if self.width > 0 && self.width + 1 + columns > COLUMNS {
+                self.end();
+                self.begin(indent);
+            } else if self.width == 0 {
+                self.begin(0);
+            }
+            self.text.push(' ');
+            self.text.push_str(word);
+            self.width += 1 + columns;
+        }
+    }
+
+    fn begin(&mut self, indent: usize) {
+        self.text.push_str(self.sign);
+        self.text.push_str(&"  "[..indent]);
+        self.width = self.sign.len() + indent;
+    }
+
+    fn end(&mut self) {
+        if self.width > 0 {
+            self.text.push('\n');
+        }
+        self.width = 0;
+    }
+}
+
+/// `1. …`
+fn is_numbered(line: &str) -> bool {
+    let rest = line.trim_start_matches(|letter: char| letter.is_ascii_digit());
+    rest.len() < line.len() && rest.starts_with(". ")
 }
 
 /// The type that stores a word.

@@ -1,7 +1,6 @@
 //! One stage as one function, and its call.
 
 use super::super::expression::Scope;
-use super::super::path::StageCode;
 use super::super::plan::{Context, Outcome, StagePlan};
 use super::super::signal::Signal;
 use super::super::texts;
@@ -20,7 +19,6 @@ const COMPLEXITY: usize = 250;
 pub(super) struct StageFunction<'a> {
     context: &'a Context<'a>,
     plan: StagePlan<'a>,
-    own_name: String,
     name: Source,
     arguments: Vec<Group>,
     argument_signals: Vec<Signal>,
@@ -132,12 +130,16 @@ impl<'a> StageFunction<'a> {
         Self {
             context,
             plan,
-            own_name: name.to_owned(),
             name: snake(name),
             arguments,
             argument_signals,
             results,
         }
+    }
+
+    /// What it is planned as.
+    pub(super) fn plan(&self) -> &StagePlan<'a> {
+        &self.plan
     }
 
     fn scope(&self, reads_state: bool) -> Scope<'a> {
@@ -316,19 +318,5 @@ impl<'a> StageFunction<'a> {
             outcomes,
             name,
         ))
-    }
-}
-
-impl StageCode for StageFunction<'_> {
-    fn name(&self) -> &str {
-        &self.own_name
-    }
-
-    fn plan(&self) -> &StagePlan<'_> {
-        &self.plan
-    }
-
-    fn text(&self) -> String {
-        self.definition().to_string()
     }
 }

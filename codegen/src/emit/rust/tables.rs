@@ -2,12 +2,12 @@
 //!
 //! One address then leads to all entries of a row, where tables of their own would each need theirs.
 
-use super::expression::coded;
+use super::expression::leg_state;
 use super::groups::array;
 use super::names::{camel, docs, number, screaming, snake};
 use super::source::{Source, quote};
 use crate::emit::rows::{WholeCommand, columns, padding, row_of, size};
-use crate::emit::signal::Shape;
+use crate::emit::signal::Leg;
 use crate::ir::{Program, Table, TableId};
 
 /// The entry of a table at an index: a word, or the state of a leg.
@@ -180,6 +180,9 @@ fn is_unsigned(table: &Table) -> bool {
 }
 
 fn entry(table: &Table, value: i32) -> Source {
-    let code = table.holds_legs.then(|| Shape::Leg.code(value)).flatten();
-    code.map_or_else(|| number(i64::from(value)), coded)
+    if table.holds_legs {
+        leg_state(Leg::of(value))
+    } else {
+        number(i64::from(value))
+    }
 }

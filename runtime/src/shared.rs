@@ -6,25 +6,20 @@ use core::sync::atomic::{AtomicI32, Ordering};
 /// A word that may be stored and loaded from the main program and from interrupts alike, in one
 /// instruction each: a load sees one store whole, and the last store stays.
 #[derive(Debug)]
-pub struct SharedWord(AtomicI32);
+pub(crate) struct SharedWord(AtomicI32);
 
 impl SharedWord {
-    /// A shared word that holds `word`.
-    #[must_use]
-    pub const fn new(word: Word) -> Self {
+    pub(crate) const fn new(word: Word) -> Self {
         Self(AtomicI32::new(word.0))
     }
 
-    /// The word last stored.
     #[inline]
-    #[must_use]
-    pub fn load(&self) -> Word {
+    pub(crate) fn load(&self) -> Word {
         Word(self.0.load(Ordering::Relaxed))
     }
 
-    /// Replaces the word.
     #[inline]
-    pub fn store(&self, word: Word) {
+    pub(crate) fn store(&self, word: Word) {
         self.0.store(word.0, Ordering::Relaxed);
     }
 }

@@ -1,0 +1,149 @@
+//! What a control period reads.
+
+use crate::arith::Word;
+
+/// The measurements at the begin of a control period, as the hardware gives them.
+///
+/// ADC counts of the phase currents, and the rotor's position: a Hall code or an electrical angle.
+///
+/// ```
+/// use hexagen::Sample;
+///
+/// // Two current sensors and Hall sensors: code 101, 312 ticks of the edge timer after its edge.
+/// let sample = Sample::with_hall([2048, 2100], 0b101).hall_ticks(312);
+/// // Three current sensors and an encoder.
+/// let turned = Sample::with_angle([2048, 2100], 0x4000_0000).third_current(1996);
+/// assert_ne!(sample, turned);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sample {
+    pub(crate) adc: [u16; 3],
+    pub(crate) hall: u8,
+    pub(crate) hall_ticks: u16,
+    pub(crate) angle: u32,
+}
+
+impl Sample {
+    /// ADC counts of the currents of phases a and b, which rise with the current into the motor
+    /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2.
+    ///
+    /// Any code may be given: one that Hall sensors cannot have (0, 7 and above) trips the drive.
+    #[inline]
+    #[must_use]
+    pub const fn with_hall([adc_a, adc_b]: [u16; 2], hall: u8) -> Self {
+        Self {
+            adc: [adc_a, adc_b, 0],
+            hall,
+            hall_ticks: 0,
+            angle: 0,
+        }
+    }
+
+    /// The same with an electrical angle in place of a Hall code, 2^32 a turn, 0 where the EMF of
+    /// phase a rises through 0. It has no Hall code: a drive that needs one trips.
+    #[inline]
+    #[must_use]
+    pub const fn with_angle([adc_a, adc_b]: [u16; 2], angle: u32) -> Self {
+        Self {
+            adc: [adc_a, adc_b, 0],
+            hall: 0,
+            hall_ticks: 0,
+            angle,
+        }
+    }
+
+    /// Timer ticks from the last Hall edge to this sample, rounded down, stopping at 65535, for
+    /// drives with `hall_capture: timer`; their clock is `HALL_TIMER_HZ`.
+    ///
+    /// Code and ticks are one snapshot, which no edge may tear apart: latch both in the capture
+    /// interrupt, or read the ticks, the code, and the ticks again, until the second count is not
+    /// below the first.
+    #[inline]
+    #[must_use]
+    pub const fn hall_ticks(self, ticks: u16) -> Self {
+        Self {
+            hall_ticks: ticks,
+            ..self
+        }
+    }
+
+    /// The ADC count of the current of phase c, for drives with three sensors.
+    #[inline]
+    #[must_use]
+    pub const fn third_current(self, adc_c: u16) -> Self {
+        let [adc_a, adc_b, _] = self.adc;
+        Self {
+            adc: [adc_a, adc_b, adc_c],
+            ..self
+        }
+    }
+
+    /// ADC counts of phases a, b, c; 0 where there is no sensor.
+    #[inline]
+    #[must_use]
+    pub const fn adc(&self) -> [u16; 3] {
+        self.adc
+    }
+
+    /// The Hall code; 0 where there is an angle.
+    #[inline]
+    #[must_use]
+    pub const fn hall(&self) -> u8 {
+        self.hall
+    }
+
+    /// Ticks since the last Hall edge.
+    #[inline]
+    #[must_use]
+    pub const fn ticks(&self) -> u16 {
+        self.hall_ticks
+    }
+
+    /// The electrical angle, 2^32 a turn; 0 where there is a Hall code.
+    #[inline]
+    #[must_use]
+    pub const fn angle(&self) -> u32 {
+        self.angle
+    }
+}
+
+/// A sample that the [`Supervisor`](crate::Supervisor) has looked at; nothing else makes one.
+///
+/// The currents lie in [`Limits::currents`](crate::Limits::currents) for whatever was sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checked {
+    pub(crate) i: [Word; 2],
+    pub(crate) hall: Word,
+    pub(crate) hall_ticks: Word,
+}
+
+impl Checked {
+    /// Current of phase a into the motor, ADC counts with the drive's fraction bits.
+    #[inline]
+    #[must_use]
+    pub const fn i_a(&self) -> Word {
+        self.i[0]
+    }
+
+    /// Current of phase b, likewise.
+    #[inline]
+    #[must_use]
+    pub const fn i_b(&self) -> Word {
+        self.i[1]
+    }
+
+    /// The Hall code, 1 to 6; at rest 0 where the sensors gave none.
+    #[inline]
+    #[must_use]
+    pub const fn hall(&self) -> Word {
+        self.hall
+    }
+
+    /// Ticks since the last Hall edge, 0 to 65535.
+    #[inline]
+    #[must_use]
+    pub const fn hall_ticks(&self) -> Word {
+        self.hall_ticks
+    }
+}

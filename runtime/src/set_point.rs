@@ -1,0 +1,197 @@
+//! The half of a drive that the main program has.
+
+use crate::arith::{Word, mul_round};
+use crate::bus::Bus;
+use crate::control::Words;
+use crate::shared::SharedWord;
+use crate::signals::{Port, Signals};
+use crate::{Control, MeasuredBus, SpeedLoop, Status};
+use core::fmt;
+use fixed::types::I16F16;
+
+/// The half of a drive that the main program shares with the control interrupt, which may interrupt
+/// it at any place. All on one core.
+///
+/// Setters of current, torque and speed may be called from anywhere, interrupts included: the last
+/// call wins, and none disturbs another setter. What an option of the specification brings, such as
+/// [`set_speed`](Self::set_speed), exists only for drives that have the option.
+pub struct SetPoint<C: Control> {
+    pub(crate) words: Words<C>,
+    pub(crate) status: SharedWord,
+    pub(crate) signals: Port,
+}
+
+impl<C: Control> SetPoint<C> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            words: Words {
+                current: SharedWord::new(C::SET_POINT),
+                speed: SharedWord::new(Word(0)),
+                bus: C::BUS,
+            },
+            status: SharedWord::new(Word(0)),
+            signals: Port::new(),
+        }
+    }
+
+    /// Sets the current in amperes, peak of the quasi-square wave; saturates at the specification's
+    /// `max_current` to both sides.
+    ///
+    /// A positive one makes torque forward, a negative one backward, whichever way the rotor turns;
+    /// against the rotation it brakes into the bus ([`conventions`](crate::conventions)). With a
+    /// speed loop it is the greatest current that the loop asks for to either side; its sign plays
+    /// no part.
+    #[inline]
+    pub fn set_current(&self, current: I16F16) {
+        self.words.current.store(C::current(Word(current.to_bits())));
+    }
+
+    /// [`set_current`](Self::set_current) in milliamperes.
+    #[inline]
+    pub fn set_current_ma(&self, current: i32) {
+        self.set_current(thousandths(current));
+    }
+
+    /// Sets the torque in newton metres; sign, saturation and speed loop as with
+    /// [`set_current`](Self::set_current).
+    #[inline]
+    pub fn set_torque(&self, torque: I16F16) {
+        self.words.current.store(C::torque(Word(torque.to_bits())));
+    }
+
+    /// [`set_torque`](Self::set_torque) in millinewton metres.
+    #[inline]
+    pub fn set_torque_mnm(&self, torque: i32) {
+        self.set_torque(thousandths(torque));
+    }
+
+    /// Sets the speed in rpm, forward positive; saturates at the specification's `max_speed` to both
+    /// sides.
+    #[inline]
+    pub fn set_speed(&self, speed: I16F16)
+    where
+        C: SpeedLoop,
+    {
+        self.words.speed.store(C::speed(Word(speed.to_bits())));
+    }
+
+    /// [`set_speed`](Self::set_speed) in whole rpm.
+    #[inline]
+    pub fn set_speed_rpm(&self, speed: i32)
+    where
+        C: SpeedLoop,
+    {
+        self.set_speed(I16F16::saturating_from_num(speed));
+    }
+
+    /// Tells the bus voltage as an ADC count.
+    ///
+    /// A voltage outside `bus_min` to `bus_max` of the specification counts as the nearer of these,
+    /// without a fault; until the first call the nominal voltage holds. Where calls cease, the
+    /// status says so from 100 ms on ([`Status::bus_is_stale`]).
+    ///
+    /// A call that interrupts another one has no effect; one that was interrupted for good keeps
+    /// later calls from having an effect for 65,536 control periods. From an interrupt that can
+    /// interrupt the control loop: at most once per control period.
+    #[inline]
+    pub fn set_bus(&self, counts: u16)
+    where
+        C: MeasuredBus,
+    {
+        self.words.bus.tell(C::bus(counts.into()));
+    }
+
+    /// What the drive is doing and what tripped it, as of the last control period: from anywhere,
+    /// while the control loop goes on.
+    #[inline]
+    #[must_use]
+    pub fn status(&self) -> Status {
+        Status::from_bits(self.status.load().0, self.words.bus.is_stale())
+    }
+
+    /// Whether the set-point is not 0: the speed of a drive with a speed loop, else the current.
+    #[inline]
+    pub(crate) fn is_demanded(&self) -> bool {
+        let set_point = if C::HAS_SPEED_LOOP {
+            &self.words.speed
+        } else {
+            &self.words.current
+        };
+        set_point.load() != 0
+    }
+
+    /// Sets it to 0.
+    pub(crate) fn clear(&self) {
+        let set_point = if C::HAS_SPEED_LOOP {
+            &self.words.speed
+        } else {
+            &self.words.current
+        };
+        set_point.store(Word(0));
+    }
+
+    /// The signals of one controlled period, which belong together; asks for those of the next one
+    /// where none are at hand, and gives none then.
+    ///
+    /// The control loop answers in its next controlled period. So a program that asks until it gets
+    /// an answer has signals of a period that began after it first asked:
+    ///
+    /// ```
+    /// # use hexagen::{Control, SetPoint, Signals};
+    /// /// To be called every few control periods.
+    /// fn log<C: Control>(set_point: &SetPoint<C>) {
+    ///     if let Some(Signals { currents: [a, b, c], .. }) = set_point.signals() {
+    ///         // Send them.
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// From one context of the main program; neither side ever waits for the other.
+    #[must_use]
+    pub fn signals(&self) -> Option<Signals> {
+        self.signals.take().map(|words| words.signals(&C::UNITS))
+    }
+}
+
+/// A number of thousandths as a number with 16 fraction bits, rounded to the nearest; saturates.
+fn thousandths(number: i32) -> I16F16 {
+    const MOST: i32 = 32_767_999;
+    // 2^16/1000, 24 fraction bits.
+    let per_thousandth = Word(1_099_511_628);
+    let number = Word(number).clamp(-MOST, MOST);
+    I16F16::from_bits(mul_round(per_thousandth, number, 24).0)
+}
+
+impl<C: Control> fmt::Debug for SetPoint<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        debug::<C>("SetPoint", self.status(), f)
+    }
+}
+
+/// A drive or one of its halves: the controller's name and the status.
+pub(crate) fn debug<C: Control>(
+    part: &str,
+    status: Status,
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    write!(f, "{part}<{}> ", C::NAME)?;
+    fmt::Debug::fmt(&status, f)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::thousandths;
+    use fixed::types::I16F16;
+
+    #[test]
+    fn thousandths_round_to_the_nearest_bit_and_saturate() {
+        for number in (-32_767_999..=32_767_999).step_by(997) {
+            let exact = f64::from(number) * 65.536;
+            let found = f64::from(thousandths(number).to_bits());
+            assert!((found - exact).abs() < 0.51, "{number}: {found} for {exact}");
+        }
+        assert_eq!(thousandths(5_000), I16F16::lit("5"));
+        assert_eq!(thousandths(i32::MAX), thousandths(32_767_999));
+        assert_eq!(thousandths(i32::MIN), thousandths(-32_767_999));
+    }
+}

@@ -1,0 +1,201 @@
+//! Signals of one control period for people: handed over on demand, so that periods in which nobody
+//! asks do no more than look whether somebody does.
+
+use crate::arith::Word;
+use crate::control::{Observation, Unit, Units};
+use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
+use fixed::types::I16F16;
+
+/// What a drive saw, believed and commanded in one control period, in SI units and rpm.
+///
+/// Numbers saturate at 32768 to both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Signals {
+    /// Currents of phases a, b, c into the motor at the begin of the period, ampere.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub currents: [I16F16; 3],
+    /// Mean terminal voltages that the period commands, volt against the negative rail at the
+    /// nominal bus; none of a leg that is off.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub voltages: [Option<I16F16>; 3],
+    /// EMF of phases a, b, c that the law believes in, volt; none of a law that keeps none.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub emf: Option<[I16F16; 3]>,
+    /// Speed in rpm, forward positive, 0 while it is unknown; none of a law that follows no edges.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub speed: Option<I16F16>,
+    /// Sector 1 to 6.
+    pub sector: u8,
+}
+
+impl Unit {
+    /// A word of this unit; saturates.
+    fn of(self, word: Word) -> I16F16 {
+        let Self { factor, shift } = self;
+        let product = i64::from(factor).wrapping_mul(i64::from(word.0));
+        let bits = product.wrapping_shr(shift);
+        let bits = bits.clamp(i64::from(i32::MIN), i64::from(i32::MAX));
+        I16F16::from_bits(bits as i32)
+    }
+
+    /// Three values of zero sum, of which two are given.
+    fn of_phases(self, [a, b]: [Word; 2]) -> [I16F16; 3] {
+        [a, b, -(a + b)].map(|word| self.of(word))
+    }
+}
+
+/// A period's signals in words, as the control loop hands them over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PeriodWords {
+    pub currents: [Word; 2],
+    pub hall: Word,
+    /// Timer counts for which the upper switches are on; none of a leg that is off.
+    pub on: [Option<u16>; 3],
+    pub observation: Observation,
+}
+
+impl PeriodWords {
+    pub(crate) fn signals(&self, units: &Units) -> Signals {
+        let Units {
+            ampere,
+            volt,
+            volt_per_count,
+            rpm,
+            sectors,
+        } = units;
+        let Observation { emf, speed } = self.observation;
+        let voltage = |on: u16| volt_per_count.of(on.into());
+        Signals {
+            currents: ampere.of_phases(self.currents),
+            voltages: self.on.map(|on| on.map(voltage)),
+            emf: emf.map(|emf| volt.of_phases(emf)),
+            speed: speed.map(|speed| rpm.of(speed)),
+            sector: sectors[self.hall.0 as usize & 7],
+        }
+    }
+
+    const NONE: i32 = i32::MIN;
+
+    fn to_words(self) -> [i32; WORDS] {
+        let [i_a, i_b] = self.currents.map(|word| word.0);
+        let [on_a, on_b, on_c] = self.on.map(|on| on.map_or(Self::NONE, i32::from));
+        let Observation { emf, speed } = self.observation;
+        let [e_a, e_b] = emf.map_or([Self::NONE; 2], |emf| emf.map(|word| word.0));
+        let speed = speed.map_or(Self::NONE, |word| word.0);
+        [i_a, i_b, self.hall.0, on_a, on_b, on_c, e_a, e_b, speed]
+    }
+
+    fn from_words([i_a, i_b, hall, on_a, on_b, on_c, e_a, e_b, speed]: [i32; WORDS]) -> Self {
+        let some = |word: i32| (word != Self::NONE).then_some(word);
+        Self {
+            currents: [Word(i_a), Word(i_b)],
+            hall: Word(hall),
+            on: [on_a, on_b, on_c].map(|on| some(on).map(|on| on as u16)),
+            observation: Observation {
+                emf: some(e_a).map(|e_a| [Word(e_a), Word(e_b)]),
+                speed: some(speed).map(Word),
+            },
+        }
+    }
+}
+
+/// Words that go over.
+const WORDS: usize = 9;
+
+/// Nobody has asked.
+const IDLE: i32 = 0;
+/// Somebody waits for the next controlled period's words.
+const ASKED: i32 = 1;
+/// The words are there.
+const ANSWERED: i32 = 2;
+
+/// Where the words go over. The control loop writes while it is asked, and at no other time; the
+/// main program reads while it is answered.
+#[derive(Debug)]
+pub(crate) struct Port {
+    turn: AtomicI32,
+    words: [AtomicI32; WORDS],
+}
+
+impl Port {
+    pub(crate) const fn new() -> Self {
+        Self {
+            turn: AtomicI32::new(IDLE),
+            words: [const { AtomicI32::new(0) }; WORDS],
+        }
+    }
+
+    /// Whether the words of this period are wanted.
+    #[inline]
+    pub(crate) fn is_asked(&self) -> bool {
+        self.turn.load(Ordering::Relaxed) == ASKED
+    }
+
+    /// The words of this period, where they are wanted.
+    pub(crate) fn answer(&self, words: PeriodWords) {
+        for (place, word) in self.words.iter().zip(words.to_words()) {
+            place.store(word, Ordering::Relaxed);
+        }
+        compiler_fence(Ordering::Release);
+        self.turn.store(ANSWERED, Ordering::Relaxed);
+    }
+
+    /// The words that are there; else asks for them.
+    pub(crate) fn take(&self) -> Option<PeriodWords> {
+        if self.turn.load(Ordering::Relaxed) != ANSWERED {
+            self.turn.store(ASKED, Ordering::Relaxed);
+            return None;
+        }
+        compiler_fence(Ordering::Acquire);
+        let words = PeriodWords::from_words(core::array::from_fn(|index| {
+            self.words
+                .get(index)
+                .map_or(0, |place| place.load(Ordering::Relaxed))
+        }));
+        compiler_fence(Ordering::Release);
+        self.turn.store(IDLE, Ordering::Relaxed);
+        Some(words)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Observation, PeriodWords, Port, Unit};
+    use crate::arith::Word;
+    use fixed::types::I16F16;
+
+    const WORDS: PeriodWords = PeriodWords {
+        currents: [Word(3), Word(-4)],
+        hall: Word(5),
+        on: [Some(7), None, Some(u16::MAX)],
+        observation: Observation {
+            emf: Some([Word(-8), Word(9)]),
+            speed: None,
+        },
+    };
+
+    #[test]
+    fn words_go_over_whole_where_they_are_asked_for() {
+        let port = Port::new();
+        assert!(!port.is_asked());
+        assert_eq!(port.take(), None);
+        assert!(port.is_asked());
+        assert_eq!(port.take(), None);
+        port.answer(WORDS);
+        assert!(!port.is_asked());
+        assert_eq!(port.take(), Some(WORDS));
+        assert!(!port.is_asked());
+    }
+
+    #[test]
+    fn a_unit_scales_rounds_down_and_saturates() {
+        let half = Unit { factor: 1, shift: 1 };
+        assert_eq!(half.of(Word(5)), I16F16::from_bits(2));
+        assert_eq!(half.of(Word(-5)), I16F16::from_bits(-3));
+        let huge = Unit { factor: i32::MAX, shift: 1 };
+        assert_eq!(huge.of(Word(i32::MAX)), I16F16::MAX);
+        assert_eq!(huge.of(Word(i32::MIN)), I16F16::MIN);
+    }
+}
