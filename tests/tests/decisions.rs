@@ -4,16 +4,16 @@
 //! Costs are those of the ideal model from the same state, enumerated here. `HEXAGEN_DECISIONS` in the environment is
 //! the number of steps of all drives together.
 
-use hexagen::{Legs, Sample};
+use hexagen::{Legs, Sample, Supervisor};
 use hexagen_codegen::ir::stated_errors;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_lab::formats;
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{
     BitTrue, Candidates, Controller, DiscretePhase, FormatTable, Ideal, Mode, OffLeg,
     PhysicalState, Spec, Trace,
 };
-use hexagen_tests::interpreter::formats;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use rayon::prelude::*;
 use std::env;
@@ -89,7 +89,7 @@ struct Subject {
     eps_u: f64,
     /// One word of current, ampere.
     current_word: f64,
-    /// Intervals of the words of state.
+    /// Intervals of the words of state; the supervisor's stay.
     intervals: Vec<[i64; 2]>,
 }
 
@@ -248,6 +248,8 @@ impl Subject {
         };
         let current = table.iter().find(|format| format.name == "current");
         let bits = current.expect("a format of currents").frac_bits;
+        let law = program.states.iter();
+        let law = law.map(|state| [state.interval.low, state.interval.high]);
         Some(Self {
             name: format!("{name}, {variant}"),
             ideal: Ideal::new(&spec).expect("a model"),
@@ -255,11 +257,7 @@ impl Subject {
             eps,
             eps_u,
             current_word: spec.inverter.adc_gain.abs() * f64::from(-i32::from(bits)).exp2(),
-            intervals: program
-                .states
-                .iter()
-                .map(|state| [state.interval.low, state.interval.high])
-                .collect(),
+            intervals: Supervisor::NAMES.iter().map(|_| [0; 2]).chain(law).collect(),
             spec,
         })
     }

@@ -1,7 +1,7 @@
 //! The comparison notices every fault planted in the text of emitted code, but for those that
 //! change nothing.
 
-use hexagen::Drive;
+use hexagen::{Control, Drive, Legs};
 use hexagen_reference::verify::{Compiled, verify};
 use hexagen_tests::cases::{Record, replay};
 use hexagen_tests::interpreter::record_states;
@@ -37,8 +37,9 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[(
     "the table has 96 entries, padded to a power of two",
 )];
 
-fn is_noticed<D: Drive>(record: &Record) -> bool {
-    replay(record, D::STATE_NAMES, Compiled(D::new())).is_err() || verify::<D>(STEPS, 1).is_err()
+fn is_noticed<C: Control<Command = Legs>>(record: &Record) -> bool {
+    let names: Vec<_> = Drive::<C>::state_names().collect();
+    replay(record, &names, Compiled::<C>::new()).is_err() || verify::<C>(STEPS, 1).is_err()
 }
 
 #[test]

@@ -228,7 +228,7 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
             .inputs
             .iter()
             .map(|input| match input.name.as_str() {
-                "adc_a" | "adc_b" => 2048,
+                "i_a" | "i_b" => 0,
                 "hall" => hall,
                 _ => since as i32,
             });

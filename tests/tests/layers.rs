@@ -7,6 +7,7 @@ use std::path::Path;
 /// Modules of the generator, each with those that it may import besides itself.
 const IMPORTS: [(&str, &[&str]); 15] = [
     ("at_once", &[]),
+    ("derive", &[]),
     ("stopwatch", &[]),
     ("diagnostics", &[]),
     ("interface", &[]),
@@ -47,7 +48,6 @@ const IMPORTS: [(&str, &[&str]); 15] = [
             "stopwatch",
         ],
     ),
-    ("interpreted", &["interface", "ir", "lower"]),
     ("emit", &["at_once", "diagnostics", "interface", "ir"]),
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
     (

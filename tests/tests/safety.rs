@@ -1,10 +1,10 @@
 //! What a drive does with input that must not be believed, and how start-up runs: one scenario each, on the
 //! step that firmware calls.
 
-use hexagen::arith::Word;
 use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Fault, LegState, Legs, Mode, Sample};
-use hexagen_codegen::InterpretedDrive;
+use hexagen::{Control, Drive, Fault, LegState, Legs, Mode, Sample};
+use hexagen_lab::Interpreted;
+use hexagen_reference::verify::Subject;
 use hexagen_tests::library::{PAPER_MOTOR, motor};
 use hexagen_tests::options::generate_toml;
 
@@ -40,19 +40,23 @@ hexagen::controller! {
 const ZERO: u16 = 2048;
 const HALL: u8 = 0b101;
 
-fn quiet(drive: &mut Guarded, periods: usize) -> Legs {
-    (0..periods).fold(Legs::OFF, |_, _| drive.step(ZERO, ZERO, HALL))
+fn step<C: Control<Command = Legs>>(drive: &mut Drive<C>, adc: [u16; 2], hall: u8) -> Legs {
+    drive.step(&Sample::with_hall(adc, hall))
+}
+
+fn quiet(drive: &mut Drive<Guarded>, periods: usize) -> Legs {
+    (0..periods).fold(Legs::OFF, |_, _| step(drive, [ZERO; 2], HALL))
 }
 
 #[test]
 fn a_converter_at_an_end_of_its_range_trips_at_once() {
     for count in [0, 4095, 4096, u16::MAX] {
         for on_a in [true, false] {
-            let mut drive = Guarded::new();
+            let mut drive = Drive::<Guarded>::new();
             quiet(&mut drive, 3);
-            let (a, b) = if on_a { (count, ZERO) } else { (ZERO, count) };
-            let legs = drive.step(a, b, HALL);
-            assert_eq!(drive.fault(), Fault::AdcRange, "{count}");
+            let adc = if on_a { [count, ZERO] } else { [ZERO, count] };
+            let legs = step(&mut drive, adc, HALL);
+            assert_eq!(drive.status().fault, Some(Fault::AdcRange), "{count}");
             assert_eq!(legs, Legs::OFF);
             assert_eq!(quiet(&mut drive, 100), Legs::OFF, "the trip is latched");
         }
@@ -87,24 +91,19 @@ hexagen::controller! {
 }
 
 /// With every offset that calibration accepts, a count at an end trips, told from an over-current.
-fn check_ends<D: Drive>() {
-    let sample = |adc_a, adc_b| Sample {
-        adc_a,
-        adc_b,
-        hall: HALL,
-        ..Sample::default()
-    };
+fn check_ends<C: Control<Command = Legs>>() {
     for offset in [ZERO - 102, ZERO, ZERO + 102] {
         for count in [0, 4095] {
-            for [a, b] in [[count, offset], [offset, count]] {
-                let mut drive = D::new();
+            for adc in [[count, offset], [offset, count]] {
+                let mut drive = Drive::<C>::new();
                 drive.calibrate();
                 for _ in 0..100 {
-                    drive.step(&sample(offset, offset));
+                    step(&mut drive, [offset; 2], HALL);
                 }
-                assert!(drive.is_running());
-                assert_eq!(drive.step(&sample(a, b)), Legs::OFF, "{offset}: {a} {b}");
-                assert_eq!(drive.fault(), Fault::AdcRange, "{offset}: {a} {b}");
+                assert!(drive.status().is_running());
+                assert_eq!(step(&mut drive, adc, HALL), Legs::OFF, "{offset}: {adc:?}");
+                let fault = drive.status().fault;
+                assert_eq!(fault, Some(Fault::AdcRange), "{offset}: {adc:?}");
             }
         }
     }
@@ -134,25 +133,25 @@ fn a_converter_at_an_end_trips_with_any_tolerance_of_offsets() {
         let program = generated.graph.program();
         for offset in [2048 - tolerance, 2048, 2048 + tolerance] {
             for count in [0, 1, 4094, 4095, 4096] {
-                for [a, b] in [[count, offset], [offset, count]] {
-                    let mut drive = InterpretedDrive::new(program, &generated.interface);
+                for adc in [[count, offset], [offset, count]] {
+                    let mut drive = Interpreted::new(program, &generated.interface);
                     drive.calibrate();
-                    let mut step = |a: i32, b: i32| {
-                        let sample = [a, b, HALL.into(), 0];
-                        drive.step(sample).expect("stays in its intervals");
-                        Fault::from_word(Word(drive.fault()))
+                    let mut step = |adc: [u16; 2]| {
+                        drive.step(&Sample::with_hall(adc, HALL));
+                        assert_eq!(drive.escape(), None);
+                        drive.fault()
                     };
                     for _ in 0..100 {
-                        assert_eq!(step(offset, offset), Fault::None, "{tolerance}");
+                        assert_eq!(step([offset; 2]), None, "{tolerance}");
                     }
                     let fault = if [0, 4095, 4096].contains(&count) {
-                        Fault::AdcRange
-                    } else if (count - offset).abs() > TRIP {
-                        Fault::OverCurrent
+                        Some(Fault::AdcRange)
+                    } else if i32::from(count.abs_diff(offset)) > TRIP {
+                        Some(Fault::OverCurrent)
                     } else {
-                        Fault::None
+                        None
                     };
-                    assert_eq!(step(a, b), fault, "{tolerance} {offset}: {a} {b}");
+                    assert_eq!(step(adc), fault, "{tolerance} {offset}: {adc:?}");
                 }
             }
         }
@@ -162,61 +161,61 @@ fn a_converter_at_an_end_trips_with_any_tolerance_of_offsets() {
 #[test]
 fn over_current_trips_by_either_phase_and_by_the_third() {
     // 38 A are 1945.6 counts; i_c = -(i_a + i_b).
-    for (a, b) in [
-        (ZERO + 1946, ZERO),
-        (ZERO, ZERO - 1946),
-        (ZERO + 980, ZERO + 980),
+    for adc in [
+        [ZERO + 1946, ZERO],
+        [ZERO, ZERO - 1946],
+        [ZERO + 980, ZERO + 980],
     ] {
-        let mut drive = Guarded::new();
-        assert_eq!(drive.step(a, b, HALL), Legs::OFF);
-        assert_eq!(drive.fault(), Fault::OverCurrent);
+        let mut drive = Drive::<Guarded>::new();
+        assert_eq!(step(&mut drive, adc, HALL), Legs::OFF);
+        assert_eq!(drive.status().fault, Some(Fault::OverCurrent));
     }
-    let mut drive = Guarded::new();
-    drive.step(ZERO + 1940, ZERO, HALL);
-    assert_eq!(drive.fault(), Fault::None);
+    let mut drive = Drive::<Guarded>::new();
+    step(&mut drive, [ZERO + 1940, ZERO], HALL);
+    assert_eq!(drive.status().fault, None);
 }
 
 #[test]
 fn impossible_hall_codes_trip() {
     // A code of more than three bits is none, whatever its lower three say.
     for hall in [0, 7, 8, 0b1000 | HALL, 0b1111, 0x80 | HALL, u8::MAX] {
-        let mut drive = Guarded::new();
-        assert_eq!(drive.step(ZERO, ZERO, hall), Legs::OFF);
-        assert_eq!(drive.fault(), Fault::Hall);
+        let mut drive = Drive::<Guarded>::new();
+        assert_eq!(step(&mut drive, [ZERO; 2], hall), Legs::OFF);
+        assert_eq!(drive.status().fault, Some(Fault::Hall));
         // Beside an over-current, too.
-        let mut drive = Guarded::new();
-        assert_eq!(drive.step(ZERO + 1946, ZERO, hall), Legs::OFF);
-        assert_eq!(drive.fault(), Fault::Hall);
+        let mut drive = Drive::<Guarded>::new();
+        assert_eq!(step(&mut drive, [ZERO + 1946, ZERO], hall), Legs::OFF);
+        assert_eq!(drive.status().fault, Some(Fault::Hall));
     }
 }
 
 #[test]
 fn calibration_averages_then_charges_then_runs() {
-    let mut drive = Guarded::new();
+    let mut drive = Drive::<Guarded>::new();
     drive.calibrate();
     for _ in 0..16 {
-        assert_eq!(drive.step(ZERO + 100, ZERO - 50, HALL), Legs::OFF);
-        assert!(!drive.is_running());
+        assert_eq!(step(&mut drive, [ZERO + 100, ZERO - 50], HALL), Legs::OFF);
+        assert!(!drive.status().is_running());
     }
     for period in 0..4 {
-        assert!(!drive.is_running(), "{period}");
-        assert_eq!(drive.step(ZERO + 100, ZERO - 50, HALL), Legs::LOW);
+        assert!(!drive.status().is_running(), "{period}");
+        assert_eq!(step(&mut drive, [ZERO + 100, ZERO - 50], HALL), Legs::LOW);
     }
-    assert!(drive.is_running());
+    assert!(drive.status().is_running());
     // The new zero is 2148 and 1998 counts: no current, so the legs stand at half.
-    let legs = drive.step(ZERO + 100, ZERO - 50, HALL);
+    let legs = step(&mut drive, [ZERO + 100, ZERO - 50], HALL);
     assert_eq!(legs.compare(), [900; 3]);
 }
 
 /// The offsets in force, in counts: a new drive has the nominal ones.
-fn offsets(drive: &Guarded) -> [i32; 2] {
-    let words = |drive: &Guarded| {
-        let mut words = vec![0; Guarded::STATE_NAMES.len()];
+fn offsets(drive: &Drive<Guarded>) -> [i32; 2] {
+    let words = |drive: &Drive<Guarded>| {
+        let mut words = vec![0; Drive::<Guarded>::state_names().count()];
         drive.state_words(&mut words);
-        let place = |name| Guarded::STATE_NAMES.iter().position(|known| *known == name);
+        let place = |name| Drive::<Guarded>::state_names().position(|known| known == name);
         ["offset_a", "offset_b"].map(|name| words[place(name).expect("a word of every drive")])
     };
-    let unit = words(&Guarded::new())[0] / i32::from(ZERO);
+    let unit = words(&Drive::<Guarded>::new())[0] / i32::from(ZERO);
     words(drive).map(|word| {
         assert_eq!(word % unit, 0, "{word}");
         word / unit
@@ -226,19 +225,19 @@ fn offsets(drive: &Guarded) -> [i32; 2] {
 /// A whole start-up with these offsets, and what it must show: the samples of pre-charge and
 /// control are others.
 #[track_caller]
-fn starts_up(drive: &mut Guarded, a: u16, b: u16) {
+fn starts_up(drive: &mut Drive<Guarded>, a: u16, b: u16) {
     for _ in 0..16 {
         assert_eq!(drive.status().mode, Mode::Calibrate);
-        assert_eq!(drive.step(a, b, HALL), Legs::OFF);
+        assert_eq!(step(drive, [a, b], HALL), Legs::OFF);
     }
     assert_eq!(offsets(drive), [a, b].map(i32::from));
     for _ in 0..4 {
         assert_eq!(drive.status().mode, Mode::Precharge);
-        assert_eq!(drive.step(ZERO - 18, ZERO + 12, HALL), Legs::LOW);
+        assert_eq!(step(drive, [ZERO - 18, ZERO + 12], HALL), Legs::LOW);
     }
     for _ in 0..15 {
-        assert!(drive.is_running());
-        let legs = drive.step(ZERO - 8, ZERO + 2, HALL);
+        assert!(drive.status().is_running());
+        let legs = step(drive, [ZERO - 8, ZERO + 2], HALL);
         assert_eq!(legs.state(), [LegState::Pulsed; 3]);
     }
     assert_eq!(offsets(drive), [a, b].map(i32::from));
@@ -246,7 +245,7 @@ fn starts_up(drive: &mut Guarded, a: u16, b: u16) {
 
 #[test]
 fn every_calibration_averages_its_own_samples_once() {
-    let mut drive = Guarded::new();
+    let mut drive = Drive::<Guarded>::new();
     drive.calibrate();
     assert_eq!(drive.status().mode, Mode::Calibrate, "published at once");
     starts_up(&mut drive, ZERO + 100, ZERO - 50);
@@ -255,14 +254,14 @@ fn every_calibration_averages_its_own_samples_once() {
     // Halfway: nothing of the first half counts.
     drive.calibrate();
     for _ in 0..8 {
-        drive.step(ZERO + 100, ZERO - 100, HALL);
+        step(&mut drive, [ZERO + 100, ZERO - 100], HALL);
     }
     drive.calibrate();
     starts_up(&mut drive, ZERO + 20, ZERO - 40);
     // In pre-charge.
     drive.calibrate();
     for _ in 0..18 {
-        drive.step(ZERO + 100, ZERO - 100, HALL);
+        step(&mut drive, [ZERO + 100, ZERO - 100], HALL);
     }
     assert_eq!(drive.status().mode, Mode::Precharge);
     drive.calibrate();
@@ -273,19 +272,19 @@ fn every_calibration_averages_its_own_samples_once() {
 #[test]
 fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
     for (a, b, fault) in [
-        (ZERO + 102, ZERO - 102, Fault::None),
-        (ZERO + 103, ZERO, Fault::Offset),
-        (ZERO, ZERO - 103, Fault::Offset),
-        (3990, ZERO, Fault::Offset),
+        (ZERO + 102, ZERO - 102, None),
+        (ZERO + 103, ZERO, Some(Fault::Offset)),
+        (ZERO, ZERO - 103, Some(Fault::Offset)),
+        (3990, ZERO, Some(Fault::Offset)),
     ] {
-        let mut drive = Guarded::new();
+        let mut drive = Drive::<Guarded>::new();
         drive.calibrate();
         for _ in 0..16 {
-            drive.step(a, b, HALL);
+            step(&mut drive, [a, b], HALL);
         }
-        assert_eq!(drive.fault(), fault, "{a} {b}");
+        assert_eq!(drive.status().fault, fault, "{a} {b}");
         drive.reset();
-        if fault != Fault::None {
+        if fault.is_some() {
             assert_eq!(
                 quiet(&mut drive, 1).compare(),
                 [900; 3],
@@ -297,7 +296,7 @@ fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
 
 #[test]
 fn start_up_is_not_cut_short() {
-    let mut drive = Guarded::new();
+    let mut drive = Drive::<Guarded>::new();
     drive.calibrate();
     quiet(&mut drive, 3);
     drive.reset();
@@ -305,7 +304,7 @@ fn start_up_is_not_cut_short() {
     assert_eq!(quiet(&mut drive, 12), Legs::OFF, "calibration went on");
     quiet(&mut drive, 1);
     drive.reset();
-    assert!(!drive.is_running(), "pre-charge went on");
+    assert!(!drive.status().is_running(), "pre-charge went on");
     assert_eq!(quiet(&mut drive, 2).state(), [LegState::Low; 3]);
     drive.calibrate();
     assert_eq!(
@@ -317,30 +316,43 @@ fn start_up_is_not_cut_short() {
 
 #[test]
 fn a_tripped_drive_obeys_reset_only() {
-    let mut drive = Guarded::new();
+    let mut drive = Drive::<Guarded>::new();
     drive.set_current(I16F16::from_num(10));
-    drive.step(ZERO, ZERO, 0);
+    step(&mut drive, [ZERO; 2], 0);
     drive.calibrate();
     drive.precharge();
     assert_eq!(quiet(&mut drive, 40), Legs::OFF);
-    assert_eq!(drive.fault(), Fault::Hall);
+    assert_eq!(drive.status().fault, Some(Fault::Hall));
     drive.reset();
-    assert_eq!(drive.fault(), Fault::None);
-    assert!(drive.is_running());
+    assert_eq!(drive.status().fault, None);
+    assert!(drive.status().is_running());
+}
+
+#[test]
+fn a_reset_leaves_nothing_asked_for() {
+    let mut drive = Drive::<Guarded>::new();
+    drive.set_current(I16F16::from_num(10));
+    let driven = quiet(&mut drive, 1);
+    assert_ne!(driven.compare(), [900; 3]);
+    step(&mut drive, [ZERO; 2], 0);
+    drive.reset();
+    assert_eq!(quiet(&mut drive, 1).compare(), [900; 3]);
+    drive.set_current(I16F16::from_num(10));
+    assert_eq!(quiet(&mut drive, 1), driven);
 }
 
 #[test]
 fn a_stall_is_counted_under_demand_while_running() {
-    let mut drive = Guarded::new();
+    let mut drive = Drive::<Guarded>::new();
     quiet(&mut drive, 100);
-    assert_eq!(drive.fault(), Fault::None, "no demand, no stall");
+    assert_eq!(drive.status().fault, None, "no demand, no stall");
     drive.set_current(I16F16::from_num(1));
     drive.calibrate();
     quiet(&mut drive, 16 + 3);
-    assert_eq!(drive.fault(), Fault::None, "start-up is no stall");
+    assert_eq!(drive.status().fault, None, "start-up is no stall");
     // 1 ms are 20 periods, the first of which ends the pre-charge.
     quiet(&mut drive, 20);
-    assert_eq!(drive.fault(), Fault::None);
+    assert_eq!(drive.status().fault, None);
     quiet(&mut drive, 1);
-    assert_eq!(drive.fault(), Fault::Stall);
+    assert_eq!(drive.status().fault, Some(Fault::Stall));
 }
