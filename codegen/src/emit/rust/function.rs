@@ -350,28 +350,34 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             StageFunction::new(&context, plan, &name)
         })
         .collect();
-    let body: Source = if single {
-        stages.iter().flat_map(StageFunction::statements).collect()
-    } else {
-        stages.iter().map(StageFunction::call).collect()
-    };
     let scope = Scope {
         context: &context,
         reads_state: true,
     };
     let name = function.name.trim_start_matches("set_");
-    let values: Vec<Source> = writes(function)
-        .into_iter()
-        .map(|value| scope.whole(value))
-        .collect();
+    let written = writes(function);
+    let mut values: Vec<Source> = written.iter().map(|&value| scope.whole(value)).collect();
+    let body: Source = if single {
+        let mut statements: Vec<Source> =
+            stages.iter().flat_map(StageFunction::statements).collect();
+        // The last value is not bound to its name first.
+        let last = function.values().last();
+        if let ([only], [value]) = (written.as_slice(), values.as_mut_slice())
+            && last == Some(*only)
+        {
+            statements.pop();
+            *value = scope.bound(*only);
+        }
+        statements.into_iter().collect()
+    } else {
+        stages.iter().map(StageFunction::call).collect()
+    };
     let (kind, result) = match (name, values.as_slice()) {
-        ("bus", words) => {
+        (name, [only]) if name != "bus" => (quote!(Word), only.clone()),
+        (_, words) => {
             let count = words.len();
             (quote!([Word; #count]), quote!([#(#words),*]))
         }
-        (_, [only]) => (quote!(Word), only.clone()),
-        // The empty shape of a drive whose specification has errors.
-        _ => (quote!(Word), quote!(Word(0))),
     };
     let inputs = function.inputs.iter().map(|input| {
         let is_used = params_used(function, &input.name);

@@ -31,9 +31,13 @@ impl Types<'_> {
 
     /// The words that outlive a control period.
     pub(super) fn state(&self) -> Source {
+        let mut before = String::new();
         let fields = self.program.states.iter().map(|word| {
             let (name, kind) = (snake(&word.name), storage_type(word));
-            let doc = doc(&format!("{} In `{}`.", word.doc, word.interval));
+            let text = format!("{} In `{}`.", word.doc, word.interval);
+            // Phases of one quantity stand together.
+            let doc = (text != before).then(|| doc(&text));
+            before = text;
             let initial = (word.initial != 0).then(|| {
                 let initial = number(i64::from(word.initial));
                 quote!(# [initial(#initial)])

@@ -105,8 +105,8 @@ pub(super) fn doc(line: &str) -> Source {
     docs(&[line])
 }
 
-/// Documentation of 100 columns where it is indented twice.
-const COLUMNS: usize = 88;
+/// Columns of documentation, 100 where it is indented twice.
+const COLUMNS: usize = 92;
 
 /// Paragraphs are broken anew; tables, lists, headings and code keep their lines.
 fn comments<T: AsRef<str>>(sign: &str, lines: &[T]) -> Source {
@@ -148,7 +148,7 @@ impl Comment<'_> {
             return;
         }
         let indent = if begins && !line.starts_with('`') { 2 } else { 0 };
-        for word in line.split_whitespace() {
+        for word in words(line) {
             let columns = word.chars().count();
             if self.width > 0 && self.width + 1 + columns > COLUMNS {
                 self.end();
@@ -174,6 +174,21 @@ impl Comment<'_> {
         }
         self.width = 0;
     }
+}
+
+/// The words of a line; code stays together.
+fn words(line: &str) -> Vec<&str> {
+    let (mut words, mut begin, mut is_code) = (vec![], 0, false);
+    for (at, letter) in line.char_indices() {
+        is_code ^= letter == '`';
+        if letter == ' ' && !is_code {
+            words.push(&line[begin..at]);
+            begin = at + 1;
+        }
+    }
+    words.push(&line[begin..]);
+    words.retain(|word| !word.is_empty());
+    words
 }
 
 /// `1. …`
