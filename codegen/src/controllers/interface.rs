@@ -269,7 +269,7 @@ fn constants(
         fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
         fixed("I_TRIP", inverter.trip_current, "A", "Trip level of the phase currents"),
         fixed("TORQUE_CONSTANT", spec.torque_constant(), "Nm/A", "Torque per ampere of set-point, k_t"),
-        integer("START_SPEED_RPM", "u32", start_rpm(spec, design), "Greatest speed of the rotor at which control may begin with set-point 0, rpm: of the motor as stated no sampled current reaches the trip level, before the EMF is met or after; where the bus is measured, at any voltage from `bus_min` to `bus_max` that `set_bus` has told. Not of pre-charge, which shorts the windings."),
+        integer("START_SPEED_RPM", "u32", start_rpm(spec, design), "Greatest speed of the rotor at which control may begin, at set-point 0 and a bus within its limits, rpm: no sampled current reaches the trip level. (Pre-charge shorts the windings.)"),
         fixed("POLE", design.plant.pole, "", "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))"),
         fixed("GAIN", design.plant.gain, "A/V", "Gain b of the discrete plant"),
         fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),

@@ -85,7 +85,8 @@ fn separate_items(text: &str) -> String {
             ""
         };
         if ends_item(before)
-            && (!item.is_empty() && !stays_close(last, item) || begins_ending(before, line))
+            && (!item.is_empty() && (before.ends_with('}') || !stays_close(last, item))
+                || begins_ending(before, line))
         {
             separated.push('\n');
         }

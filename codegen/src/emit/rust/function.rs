@@ -13,7 +13,7 @@ use super::names::{docs, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
 use super::tables::look_up_command;
-use crate::ir::{AtRest, Function, Program, Value};
+use crate::ir::{AtRest, Function, Op, Program, Value};
 
 /// The step of a program as entries of a law.
 pub(super) struct Entries {
@@ -198,7 +198,7 @@ impl<'a> StepFunctions<'a> {
             AtRest::Forgotten => None,
         });
         let tracked: Vec<Value> = tracked.collect();
-        let (inputs, has_inputs) = self.inputs(tracked.iter().copied());
+        let has_inputs = !inputs_used(self.function(), tracked.iter().copied()).is_empty();
         let handed = self.rotor.iter().filter(|value| tracked.contains(value));
         let handed: Vec<Source> = handed
             .map(|&value| snake(&self.function().node(value).name))
@@ -211,7 +211,13 @@ impl<'a> StepFunctions<'a> {
         let stores = kept.iter().map(|&(word, at_rest)| {
             let field = snake(&word.name);
             let value = match at_rest {
-                AtRest::Tracked(value) => scope.kept(word, value),
+                AtRest::Tracked(value) => match self.function().node(value).op {
+                    Op::Input(n) => {
+                        let method = Source::of(&*self.function().inputs[n as usize].name);
+                        quote!(sample.#method())
+                    }
+                    _ => scope.kept(word, value),
+                },
                 AtRest::Forgotten if word.storage_bits == 16 => quote!(0),
                 AtRest::Forgotten => quote!(Word(0)),
             };
@@ -223,7 +229,6 @@ impl<'a> StepFunctions<'a> {
         let kind = self.rotor_type();
         quote! {
             fn rest(#state: &mut State, #sample: &Checked, #rotor: #kind) {
-                #inputs
                 #pattern
                 #(#stores)*
             }
