@@ -112,7 +112,7 @@ impl<C: Control> SetPoint<C> {
     /// Whether the set-point is not 0: the speed of a drive with a speed loop, else the current.
     #[inline]
     pub(crate) fn is_demanded(&self) -> bool {
-        let set_point = if C::HAS_SPEED_LOOP {
+        let set_point = if C::SPEED.is_some() {
             &self.words.speed
         } else {
             &self.words.current
@@ -122,7 +122,7 @@ impl<C: Control> SetPoint<C> {
 
     /// Sets it to 0.
     pub(crate) fn clear(&self) {
-        let set_point = if C::HAS_SPEED_LOOP {
+        let set_point = if C::SPEED.is_some() {
             &self.words.speed
         } else {
             &self.words.current

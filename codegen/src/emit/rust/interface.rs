@@ -78,7 +78,6 @@ impl Types<'_> {
         let (bus_type, bus) = self.bus();
         let demand = self.word("j").map_or(0, |word| word.initial);
         let demand = number(i64::from(demand));
-        let has_speed = Source::of(self.has_speed().to_string());
         let of = |wanted: &str| {
             let mut setters = setters.iter();
             setters
@@ -86,6 +85,15 @@ impl Types<'_> {
                 .map(|(_, setter)| &setter.function)
         };
         let (current, torque) = (of("set_current"), of("set_torque"));
+        let speed_word = of("set_speed").map(|_| {
+            quote!(const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);)
+        });
+        let told_words = of("set_bus").map(|_| {
+            let count = self.bus_words().len();
+            quote! {
+                const TOLD_BUS: Option<fn(Word) -> [Word; #count]> = Some(<Self as MeasuredBus>::bus);
+            }
+        });
         let speed = of("set_speed").map(|function| {
             quote!(impl SpeedLoop for #name { #function })
         });
@@ -114,7 +122,8 @@ impl Types<'_> {
                 };
                 const SET_POINT: Word = Word(#demand);
                 const BUS: #bus_type = #bus;
-                const HAS_SPEED_LOOP: bool = #has_speed;
+                #speed_word
+                #told_words
 
                 #current
                 #torque
@@ -131,19 +140,16 @@ impl Types<'_> {
         self.program.params.iter().find(|word| word.name == name)
     }
 
-    fn has_speed(&self) -> bool {
-        let mut setters = self.program.setters.iter();
-        setters.any(|setter| setter.name == "set_speed")
+    /// Initial words of a bus voltage that is told.
+    fn bus_words(&self) -> Vec<Source> {
+        let words = ["v_bus", "ratio"].map(|name| self.word(name));
+        let words = words.into_iter().flatten();
+        words.map(|word| number(i64::from(word.initial))).collect()
     }
 
     /// Type and initial value of the bus voltage.
     fn bus(&self) -> (Source, Source) {
-        let words = ["v_bus", "ratio"].map(|name| self.word(name));
-        let words: Vec<Source> = words
-            .into_iter()
-            .flatten()
-            .map(|word| number(i64::from(word.initial)))
-            .collect();
+        let words = self.bus_words();
         let Some(periods) = self.interface.bus_periods else {
             return (quote!(FixedBus), quote!(FixedBus));
         };
