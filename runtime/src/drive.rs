@@ -2,11 +2,9 @@
 
 use crate::arith::Word;
 use crate::bus::Bus;
-use crate::signals::PeriodWords;
 use crate::set_point::debug;
-use crate::{
-    Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor,
-};
+use crate::signals::PeriodWords;
+use crate::{Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor};
 use core::fmt;
 use core::ops::Deref;
 
@@ -44,7 +42,12 @@ impl<C: Control> Drive<C> {
     /// A drive that was not run yet.
     #[must_use]
     pub const fn new() -> Self {
-        const { assert!(C::LIMITS.hold(), "limits of a controller contradict each other") };
+        const {
+            assert!(
+                C::LIMITS.hold(),
+                "limits of a controller contradict each other"
+            )
+        };
         Self {
             set_point: SetPoint::new(),
             core: Core {

@@ -20,14 +20,22 @@ pub use names::module_name;
 #[cfg(test)]
 mod tests;
 
-pub struct C99Sources { pub name: String, pub header: String, pub source: String }
+pub struct C99Sources {
+    pub name: String,
+    pub header: String,
+    pub source: String,
+}
 
 /// Stands in for the emitter of C99 until that follows the runtime.
 pub mod c99 {
     pub use super::C99Sources as Sources;
 
     /// None yet.
-    pub fn emit_c99(_: &crate::ir::VerifiedGraph, _: &crate::interface::Interface, _: &str) -> Sources {
+    pub fn emit_c99(
+        _: &crate::ir::VerifiedGraph,
+        _: &crate::interface::Interface,
+        _: &str,
+    ) -> Sources {
         unimplemented!("C99 does not follow the runtime yet")
     }
 }

@@ -257,7 +257,9 @@ fn set_j(
         Some(_) => "greatest ",
         None => "",
     };
-    let doc = format!("Set-point word of the {greatest}{quantity}; saturates at {physical} to both sides.");
+    let doc = format!(
+        "Set-point word of the {greatest}{quantity}; saturates at {physical} to both sides."
+    );
     let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc]);
     b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
@@ -286,9 +288,8 @@ fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
         ],
     );
     let physical = significant(most);
-    let doc = format!(
-        "Set-point word of the speed in rpm; saturates at {physical} rpm to both sides."
-    );
+    let doc =
+        format!("Set-point word of the speed in rpm; saturates at {physical} rpm to both sides.");
     let mut b = FunctionBuilder::new(lowering.b.program, "set_speed", &[&doc]);
     b.stage(
         "set_speed",

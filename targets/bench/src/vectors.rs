@@ -295,7 +295,7 @@ impl<'g> Recorder<'g> {
     }
 
     /// Why the drive is tripped.
-    pub fn fault(&self) -> Fault {
+    pub fn fault(&self) -> Option<Fault> {
         self.host.subject.fault()
     }
 
@@ -312,7 +312,7 @@ impl<'g> Recorder<'g> {
         for _ in 0..STRETCH {
             let context = Context {
                 offset: [offset; 2],
-                tripped: self.fault() != Fault::None,
+                tripped: self.fault().is_some(),
             };
             let (action, sample) = stimulus.next(&context);
             match action {

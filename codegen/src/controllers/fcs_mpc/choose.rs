@@ -161,7 +161,9 @@ impl CurrentLoop<'_, '_> {
         front: &Front,
         u: [Value; 3],
     ) -> Option<OffLegs> {
-        let e = front.e.filter(|_| options.floating() && front.commutation.is_some())?;
+        let e = front
+            .e
+            .filter(|_| options.floating() && front.commutation.is_some())?;
         let threshold_volts = if options.common.delay == 1 {
             self.design.k_hold / self.design.plant.pole
         } else {

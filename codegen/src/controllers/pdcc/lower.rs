@@ -45,9 +45,9 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
         let bus = (front.bus, front.third);
         // Of a pair the centred voltages are needed as they are, and of a measured bus before their scaling.
         let lifts = !pair && front.bus.ratio.is_none();
-        let limited = step
-            .lowering
-            .limit_voltage(Priority::of(options.saturation, emf), u, bus, lifts);
+        let limited =
+            step.lowering
+                .limit_voltage(Priority::of(options.saturation, emf), u, bus, lifts);
         let (command, applied) = match front.commutation {
             None => (step.lowering.modulate(limited, front.bus, shifts), None),
             Some(commutation) => {

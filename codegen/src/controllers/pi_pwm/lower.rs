@@ -207,11 +207,5 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
         compares: pulses.compares,
         legs: pulses.legs,
     };
-    step.remember(
-        front,
-        &command,
-        None,
-        None,
-        vec![(integral, held)],
-    );
+    step.remember(front, &command, None, None, vec![(integral, held)]);
 }

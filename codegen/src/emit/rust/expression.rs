@@ -194,12 +194,17 @@ fn written(program: &Program, expression: &Expression) -> Written {
         }
         Expression::Choice(parts) => {
             let [condition, then, otherwise] = &**parts;
-            let nests = [then, otherwise].into_iter().any(|arm| matches!(arm, Expression::Choice(_)));
+            let nests = [then, otherwise]
+                .into_iter()
+                .any(|arm| matches!(arm, Expression::Choice(_)));
             let written = choice(of(condition), of(then), of(otherwise));
             match written.embedded {
                 // Among three values: one call within the other takes a line, branches take seven.
                 Some(selected) if nests => Written::atom(selected),
-                embedded => Written { embedded, ..written },
+                embedded => Written {
+                    embedded,
+                    ..written
+                },
             }
         }
     }

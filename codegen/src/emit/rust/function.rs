@@ -155,7 +155,11 @@ impl<'a> StepFunctions<'a> {
     }
 
     fn kept(&self, part: Part) -> Kept<'a> {
-        let plans: Vec<_> = self.stages.iter().map(|stage| stage.plan().clone()).collect();
+        let plans: Vec<_> = self
+            .stages
+            .iter()
+            .map(|stage| stage.plan().clone())
+            .collect();
         kept(self.context, &plans, part)
     }
 
@@ -168,9 +172,8 @@ impl<'a> StepFunctions<'a> {
         let kept = self.kept(Part::Tracking);
         let used = self.used(Part::Tracking, &kept);
         let (inputs, has_inputs) = self.inputs(used.into_iter());
-        let has_state = self.reads_state(Part::Tracking)
-            || !kept.words.is_empty()
-            || !kept.reads.is_empty();
+        let has_state =
+            self.reads_state(Part::Tracking) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Tracking, kept);
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let signature = quote!(#state: &mut State, #sample: &Checked);
@@ -239,9 +242,8 @@ impl<'a> StepFunctions<'a> {
         let kept = self.kept(Part::Control);
         let used = self.used(Part::Control, &kept);
         let (inputs, has_inputs) = self.inputs(used.into_iter());
-        let has_state = self.reads_state(Part::Control)
-            || !kept.words.is_empty()
-            || !kept.reads.is_empty();
+        let has_state =
+            self.reads_state(Part::Control) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Control, kept);
         let names = self.rotor_names();
         let pattern = self

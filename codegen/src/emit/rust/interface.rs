@@ -67,14 +67,12 @@ impl Types<'_> {
         let spec = raw_text(spec_toml);
         let formats = formats.iter().map(format);
         let limits = limits_of(limits);
-        let [ampere, volt, volt_per_count, rpm] = [
-            units.ampere,
-            units.volt,
-            units.volt_per_count,
-            units.rpm,
-        ]
-        .map(unit);
-        let sectors = units.sectors.iter().map(|&sector| number(i64::from(sector)));
+        let [ampere, volt, volt_per_count, rpm] =
+            [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
+        let sectors = units
+            .sectors
+            .iter()
+            .map(|&sector| number(i64::from(sector)));
         let (bus_type, bus) = self.bus();
         let demand = self.word("j").map_or(0, |word| word.initial);
         let demand = number(i64::from(demand));
@@ -86,7 +84,9 @@ impl Types<'_> {
         };
         let (current, torque) = (of("set_current"), of("set_torque"));
         let speed_word = of("set_speed").map(|_| {
-            quote!(const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);)
+            quote!(
+                const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);
+            )
         });
         let told_words = of("set_bus").map(|_| {
             let count = self.bus_words().len();
@@ -94,12 +94,8 @@ impl Types<'_> {
                 const TOLD_BUS: Option<fn(Word) -> [Word; #count]> = Some(<Self as MeasuredBus>::bus);
             }
         });
-        let speed = of("set_speed").map(|function| {
-            quote!(impl SpeedLoop for #name { #function })
-        });
-        let told = of("set_bus").map(|function| {
-            quote!(impl MeasuredBus for #name { #function })
-        });
+        let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
+        let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
         let Entries { entries, rotor, .. } = step;
         let observe = self.observe();
         quote! {
@@ -236,7 +232,10 @@ fn limits_of(limits: &Limits) -> Source {
 }
 
 fn unit(unit: Unit) -> Source {
-    let (factor, shift) = (number(i64::from(unit.factor)), number(i64::from(unit.shift)));
+    let (factor, shift) = (
+        number(i64::from(unit.factor)),
+        number(i64::from(unit.shift)),
+    );
     quote!(Unit { factor: #factor, shift: #shift })
 }
 

@@ -9,7 +9,7 @@ mod listed;
 /// In the place of the crate that the list names: its macro makes drives, this one lists them.
 mod hexagen_firmware {
     macro_rules! drives {
-        ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* };)*) => {
+        ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* } $(, $call:ident)?;)*) => {
             /// Symbol, motor file, kind of controller and options of each, as the list writes them.
             const WRITTEN: &[[&str; 4]] = &[
                 $([stringify!($symbol), $motor, stringify!($kind), stringify!($($options)*)],)*

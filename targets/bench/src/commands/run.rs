@@ -95,12 +95,8 @@ pub fn in_full(drive: &Prepared, place: usize) -> Result<String, BenchError> {
     let mut text = String::from("step: adc_a adc_b hall ticks | compare_a _b _c | legs\n");
     let mut step = 0;
     each_step(drive, &stretch, |sample, legs| {
-        let Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        } = sample;
+        let [adc_a, adc_b, _] = sample.adc();
+        let (hall, hall_ticks) = (sample.hall(), sample.ticks());
         let ([a, b, c], state) = (legs.compare(), legs.state());
         // Writing to a string does not fail.
         let _ = writeln!(
