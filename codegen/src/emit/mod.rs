@@ -3,6 +3,7 @@
 //! Each knows the graph, its tables and its naming, never the specification and never another
 //! emitter, and none can fail.
 
+mod comment;
 pub mod datasheet;
 mod expression;
 pub mod gappa;
