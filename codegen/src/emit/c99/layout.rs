@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-/// Longest line of code.
-const WIDTH: usize = 100;
+/// Longest line.
+pub(super) const WIDTH: usize = 100;
 
 /// One level of nesting.
 pub(super) const INDENT: &str = "    ";
