@@ -11,7 +11,7 @@ use super::layout::{INDENT, words, wrapped};
 use super::names::Names;
 use super::stage::{StageFunction, kind};
 use crate::emit::signal::Leg;
-use crate::ir::{AtRest, Function, Program, Value};
+use crate::ir::{AtRest, Function, Op, Program, Value};
 
 /// The static functions of a step, and how they are called.
 pub(super) struct Step {
@@ -237,13 +237,16 @@ impl<'a> StepFunctions<'a> {
             AtRest::Forgotten => None,
         });
         let tracked: Vec<Value> = tracked.collect();
-        let mut body = self.inputs(tracked.iter().copied());
+        let mut body = String::new();
         let handed = self.rotor.iter().filter(|value| tracked.contains(value));
         body.push_str(&self.rotor_words(handed));
         let printer = self.printer(false);
         for (word, at_rest) in kept {
             let value = match at_rest {
-                AtRest::Tracked(value) => printer.kept(word, value),
+                AtRest::Tracked(value) => match self.function().node(value).op {
+                    Op::Input(n) => format!("sample->{}", self.function().inputs[n as usize].name),
+                    _ => printer.kept(word, value),
+                },
                 AtRest::Forgotten => "0".to_owned(),
             };
             let field = self.names.local(&word.name);
@@ -358,13 +361,22 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
         },
         names,
     };
-    let words = writes(function).into_iter();
-    let words = words.map(|value| printer.whole(value)).collect();
+    let written = writes(function);
+    let mut words: Vec<String> = written.iter().map(|&value| printer.whole(value)).collect();
     if single {
         let statements = stages.iter().flat_map(StageFunction::statements);
+        let mut statements: Vec<String> = statements.collect();
+        // The last value is not bound to its name first.
+        let last = function.values().last();
+        if let ([only], [word]) = (written.as_slice(), words.as_mut_slice())
+            && last == Some(*only)
+        {
+            statements.pop();
+            *word = printer.bound(*only);
+        }
         return Setter {
             stages: String::new(),
-            body: statements.map(|line| wrapped(INDENT, &line)).collect(),
+            body: statements.iter().map(|line| wrapped(INDENT, line)).collect(),
             words,
         };
     }

@@ -11,7 +11,10 @@ impl Drive<'_> {
     /// The whole header.
     pub(super) fn header(&self) -> String {
         let names = self.names;
-        let mut text = names.comment("", &texts::of_type(self.program, self.interface));
+        let doc = texts::of_type(self.program, self.interface);
+        let place = format!("the specification in `{}.c`", names.prefix);
+        let doc: Vec<String> = doc.iter().map(|line| line.replace("`SPEC`", &place)).collect();
+        let mut text = names.comment("", &doc);
         let guard = names.public_upper("H");
         let prefix = &names.prefix;
         text.push_str(&format!(
@@ -75,8 +78,14 @@ impl Drive<'_> {
         let names = self.names;
         let mut text = names.comment("", &["What the law keeps from one control period to the next."]);
         text.push_str("typedef struct {\n");
+        let mut before = String::new();
         for word in &self.program.states {
-            text.push_str(&names.comment(INDENT, &[meaning(word)]));
+            let meaning = meaning(word);
+            // Phases of one quantity stand together.
+            if meaning != before {
+                text.push_str(&names.comment(INDENT, &[&meaning]));
+            }
+            before = meaning;
             let kind = if word.storage_bits == 16 {
                 "uint16_t"
             } else {
