@@ -1,7 +1,7 @@
 //! The generator's interpreter as a drive.
 
-use crate::limits;
-use hexagen::{Checked, Fault, LegState, Legs, Limits, Sample, Supervisor};
+use crate::{Inputs, limits};
+use hexagen::{Fault, LegState, Legs, Limits, Sample, Supervisor};
 use hexagen_codegen::interface::Interface;
 use hexagen_codegen::ir::{Escape, Machine, Program};
 use hexagen_reference::verify::Subject;
@@ -44,41 +44,10 @@ impl BusWatch {
     }
 }
 
-/// What the supervisor has let pass, as an input of the step.
-#[derive(Clone, Copy, Debug)]
-enum Input {
-    CurrentA,
-    CurrentB,
-    Hall,
-    HallTicks,
-}
-
-impl Input {
-    fn named(name: &str) -> Option<Self> {
-        Some(match name {
-            "i_a" => Self::CurrentA,
-            "i_b" => Self::CurrentB,
-            "hall" => Self::Hall,
-            "hall_ticks" => Self::HallTicks,
-            _ => return None,
-        })
-    }
-
-    fn of(self, checked: &Checked) -> i32 {
-        let word = match self {
-            Self::CurrentA => checked.i_a(),
-            Self::CurrentB => checked.i_b(),
-            Self::Hall => checked.hall(),
-            Self::HallTicks => checked.hall_ticks(),
-        };
-        word.0
-    }
-}
-
 /// Places of the words that a drive knows by name.
 #[derive(Clone, Debug)]
 struct Places {
-    inputs: Vec<Input>,
+    inputs: Inputs,
     compare: [usize; 3],
     legs: [usize; 3],
     /// The set-point that a reset sets to 0, among the set-point words.
@@ -93,11 +62,8 @@ impl Places {
         };
         let three = |[a, b, c]: [&str; 3]| Some([output(a)?, output(b)?, output(c)?]);
         let word = |name: &str| program.params.iter().position(|word| word.name == name);
-        let inputs = program.step.inputs.iter();
         Some(Self {
-            inputs: inputs
-                .map(|input| Input::named(&input.name))
-                .collect::<Option<_>>()?,
+            inputs: Inputs::of(program)?,
             compare: three(["compare_a", "compare_b", "compare_c"])?,
             legs: three(["leg_a", "leg_b", "leg_c"])?,
             set_point: word("speed_ref").or_else(|| word("j"))?,
@@ -158,17 +124,13 @@ impl<'g> Interpreted<'g> {
             places,
             ..
         } = self;
-        let inputs = |checked: &Checked| -> Vec<i32> {
-            let inputs = places.inputs.iter();
-            inputs.map(|input| input.of(checked)).collect()
-        };
         let is_demanded = machine.params[places.set_point] != 0;
         let Some(checked) = supervisor.check(limits, sample, || is_demanded) else {
             let (checked, leg) = supervisor.rest(limits, sample);
-            machine.rest(&inputs(&checked))?;
+            machine.rest(&places.inputs.words(&checked))?;
             return Ok(Legs::all(leg));
         };
-        let results = machine.step(&inputs(&checked))?;
+        let results = machine.step(&places.inputs.words(&checked))?;
         Ok(Legs::new(
             places.compare.map(|place| results[place] as u16),
             places

@@ -4,8 +4,10 @@
 //! The generator's tables of formats and limits come over in the runtime's types here, too: nothing
 //! else knows both.
 
+mod inputs;
 mod interpreted;
 mod tables;
 
+pub use inputs::Inputs;
 pub use interpreted::Interpreted;
 pub use tables::{formats, limits, state_names};
