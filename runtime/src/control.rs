@@ -72,8 +72,10 @@ pub trait Control: Sized + 'static {
     const SET_POINT: Word;
     /// The bus voltage of a drive that begins.
     const BUS: Self::Bus;
-    /// Whether a speed loop asks for the current.
-    const HAS_SPEED_LOOP: bool;
+    /// [`SpeedLoop::speed`] of a drive whose speed loop asks for the current; none of others.
+    const SPEED: Option<fn(Word) -> Word> = None;
+    /// [`MeasuredBus::bus`] of a drive that is told its bus voltage; none of others.
+    const TOLD_BUS: Option<fn(Word) -> <Self::Bus as Bus>::Words> = None;
 
     /// The set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;

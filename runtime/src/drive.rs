@@ -1,11 +1,10 @@
 //! A drive: a controller with its supervisor and its set-point, whole or split into two halves.
 
+use crate::arith::Word;
 use crate::bus::Bus;
-use crate::signals::PeriodWords;
 use crate::set_point::debug;
-use crate::{
-    Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor,
-};
+use crate::signals::PeriodWords;
+use crate::{Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor};
 use core::fmt;
 use core::ops::Deref;
 
@@ -43,7 +42,12 @@ impl<C: Control> Drive<C> {
     /// A drive that was not run yet.
     #[must_use]
     pub const fn new() -> Self {
-        const { assert!(C::LIMITS.hold(), "limits of a controller contradict each other") };
+        const {
+            assert!(
+                C::LIMITS.hold(),
+                "limits of a controller contradict each other"
+            )
+        };
         Self {
             set_point: SetPoint::new(),
             core: Core {
@@ -90,6 +94,22 @@ impl<C: Control> Drive<C> {
     /// See [`ControlLoop::precharge`].
     pub fn precharge(&mut self) {
         self.control().precharge();
+    }
+
+    /// Sets the speed, bits of an `I16F16` in rpm; does nothing without a speed loop. For
+    /// verification, which treats all drives alike; firmware has [`SetPoint::set_speed`].
+    pub fn set_speed_bits(&self, bits: i32) {
+        if let Some(speed) = C::SPEED {
+            self.set_point.words.speed.store(speed(Word(bits)));
+        }
+    }
+
+    /// Tells the bus voltage as an ADC count; does nothing with a fixed bus. For verification, which
+    /// treats all drives alike; firmware has [`SetPoint::set_bus`].
+    pub fn set_bus_counts(&self, counts: u16) {
+        if let Some(words) = C::TOLD_BUS {
+            self.set_point.words.bus.tell(words(counts.into()));
+        }
     }
 
     /// Names of the words that outlive a control period: the supervisor's, then the law's. For

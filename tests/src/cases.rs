@@ -2,8 +2,9 @@
 //! compared with any number of subjects.
 
 use crate::states::States;
-use hexagen::{Fault, Format, Legs, Sample};
-use hexagen_codegen::ir::Program;
+use hexagen::{Fault, Legs, Sample};
+use hexagen_codegen::pipeline::Generated;
+use hexagen_lab::formats;
 use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
 use std::f64::consts::TAU;
@@ -71,7 +72,7 @@ impl Set {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Answer {
     legs: Legs,
-    fault: Fault,
+    fault: Option<Fault>,
     words: Vec<i32>,
 }
 
@@ -95,26 +96,17 @@ impl Record {
     }
 }
 
-/// The cases of `steps` steps from arbitrary states of a drive, for any number of subjects: its
-/// specification, its formats and the generated program.
+/// The cases of `steps` steps from arbitrary states of a drive, for any number of subjects.
 ///
 /// # Errors
 /// When no model can be built.
-pub fn record(
-    spec: &str,
-    formats: &[Format],
-    program: &Program,
-    steps: u64,
-    seed: u64,
-) -> Result<Record, String> {
-    let spec = Spec::from_toml(spec).map_err(|error| error.to_string())?;
-    let formats = FormatTable::new(formats);
+pub fn record(generated: &Generated, steps: u64, seed: u64) -> Result<Record, String> {
+    let interface = &generated.interface;
+    let spec = Spec::from_toml(&interface.spec_toml).map_err(|error| error.to_string())?;
+    let formats = FormatTable::new(&formats(&interface.formats));
     let mut model = BitTrue::new(&spec, &formats).map_err(|error| error.to_string())?;
     let names = model.state_names();
-    let count_bits = formats
-        .frac_bits("current")
-        .map_err(|error| error.to_string())?;
-    let mut states = States::new(&spec, count_bits, &names, program, seed);
+    let mut states = States::new(&spec, generated, &names, seed);
     let most_current = spec.inverter.max_current * 65_536.0;
     let most_speed = spec.inverter.omega_max * 60.0 / TAU * 65_536.0;
     let most_torque = most_current * spec.motor.torque_constant;
@@ -162,10 +154,7 @@ pub fn record(
 
 /// The sample of the next period.
 fn next(sample: Sample) -> Sample {
-    Sample {
-        hall_ticks: sample.hall_ticks.saturating_add(1),
-        ..sample
-    }
+    sample.hall_ticks(sample.ticks().saturating_add(1))
 }
 
 /// Compares the fresh subject with what was recorded; `names` are those of the state words.

@@ -4,8 +4,9 @@
 //! The program says where its comparisons are; what it computes there is told by the model.
 
 use crate::cases::Set;
-use hexagen::Sample;
+use hexagen::{Limits, Sample, Supervisor};
 use hexagen_codegen::ir::{Machine, Op, Program, Value};
+use hexagen_lab::Inputs;
 
 /// Values of an operand pair that are met often enough by chance.
 const FEW: i64 = 1 << 10;
@@ -62,8 +63,8 @@ impl Comparisons {
         self.unguarded.is_empty()
     }
 
-    /// The program in a sample's period, with the bus voltage as set.
-    pub fn probe(&self, sample: &Sample, set: Set) -> Probe<'_> {
+    /// The program in a sample's period, with the bus voltage as set, behind a supervisor.
+    pub fn probe(&self, limits: Limits, sample: Sample, set: Set) -> Probe<'_> {
         let mut machine = Machine::of_program(&self.probe);
         if let Some(counts) = set.bus {
             // A value that leaves its interval shows in the comparison with the model.
@@ -72,20 +73,15 @@ impl Comparisons {
         if let Some(bits) = set.speed {
             let _ = machine.set("set_speed", &[bits]);
         }
-        let inputs = self.probe.step.inputs.iter();
-        let inputs = inputs.map(|input| match input.name.as_str() {
-            "adc_a" => i32::from(sample.adc_a),
-            "adc_b" => i32::from(sample.adc_b),
-            "hall" => i32::from(sample.hall),
-            _ => i32::from(sample.hall_ticks),
-        });
         Probe {
             setter: if set.is_torque {
                 "set_torque"
             } else {
                 "set_current"
             },
-            inputs: inputs.collect(),
+            inputs: Inputs::of(&self.probe).expect("the program of a drive"),
+            limits,
+            sample,
             unguarded: &self.unguarded,
             machine,
         }
@@ -97,18 +93,24 @@ impl Comparisons {
 pub struct Probe<'p> {
     machine: Machine<'p>,
     setter: &'static str,
-    inputs: Vec<i32>,
+    inputs: Inputs,
+    limits: Limits,
+    sample: Sample,
     unguarded: &'p [bool],
 }
 
 impl Probe<'_> {
     /// By how much the first operand of a comparison is greater with a set-point and in a state, whose words
-    /// follow it; none where the comparison is not made.
+    /// follow it; none where the comparison is not made, or the period is not controlled.
     pub fn difference(&mut self, comparison: usize, words: &[i32]) -> Option<i64> {
         let (bits, words) = words.split_first()?;
         self.machine.set(self.setter, &[*bits]).ok()?;
-        self.machine.state.copy_from_slice(words);
-        let results = self.machine.step(&self.inputs).ok()?;
+        let (supervisor_words, law) = words.split_first_chunk()?;
+        let mut supervisor = Supervisor::new(&self.limits);
+        supervisor.set_words(*supervisor_words);
+        let checked = supervisor.check(&self.limits, &self.sample, || *bits != 0)?;
+        self.machine.state.copy_from_slice(law);
+        let results = self.machine.step(&self.inputs.words(&checked)).ok()?;
         let [a, b, guard] = results[RESULTS * comparison..][..RESULTS] else {
             return None;
         };

@@ -6,13 +6,12 @@
 //! on its ways; a proof ends when as many states again as it took to get there have added nothing to any operation. Every
 //! value has to be what is known of it, and every step that of the plain model.
 
-use crate::interpreter::formats;
 use crate::states::States;
 use hexagen::Format;
-use hexagen_codegen::ir;
 use hexagen_codegen::pipeline::Generated;
 use hexagen_exactness::ledger::{self, Findings};
 use hexagen_exactness::{BitTrue, FormatTable, Spec};
+use hexagen_lab::formats;
 use hexagen_reference as reference;
 use std::f64::consts::TAU;
 
@@ -37,23 +36,19 @@ pub fn prove_exact_in(generated: &Generated, table: &[Format]) -> Result<Finding
 }
 
 fn prove(generated: &Generated, table: &[Format], compares: bool) -> Result<Findings, String> {
-    let program = generated.graph.program();
     let toml = &generated.interface.spec_toml;
     let spec = reference::Spec::from_toml(toml).map_err(|error| error.to_string())?;
     let plain = reference::BitTrue::new(&spec, &reference::FormatTable::new(table));
     let mut plain = plain.map_err(|error| error.to_string())?;
-    let own_table = reference::FormatTable::new(&formats(&generated.interface.formats));
-    let count_bits = own_table.frac_bits("current");
-    let count_bits = count_bits.map_err(|error| error.to_string())?;
     ledger::begin();
     let own = Spec::from_toml(toml).map_err(|error| error.to_string())?;
     let model = BitTrue::new(&own, &FormatTable::new(table));
     let mut model = model.map_err(|error| error.to_string())?;
     ledger::open();
     let names = model.state_names();
-    let mut states = States::new(&spec, count_bits, &names, program, 1);
-    let ends = |word: &ir::Word| [word.interval.low, word.interval.high].map(|end| end as f64);
-    let intervals: Vec<[f64; 2]> = program.states.iter().map(ends).collect();
+    let mut states = States::new(&spec, generated, &names, 1);
+    let ends = |&(low, high): &(i32, i32)| [low, high].map(f64::from);
+    let intervals: Vec<[f64; 2]> = states.ranges().iter().map(ends).collect();
     let most_current = spec.inverter.max_current * 65_536.0;
     let most_speed = spec.inverter.omega_max * 60.0 / TAU * 65_536.0;
     let mut words = vec![0; names.len()];

@@ -129,22 +129,25 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
     found
 }
 
-/// Lines of the step's constants and stages: no documentation, no interface, no state access.
+/// Lines of the law: its constants, its tables, its entries and their stages. No documentation, no
+/// interface, nothing that is told to people.
 fn code_lines(text: &str) -> Vec<Range<usize>> {
     let mut lines = vec![];
     let (mut start, mut in_step) = (0, true);
     for line in text.split_inclusive('\n') {
         let trimmed = line.trim_start();
-        // The types around the step are told by `pub`; the step and its stages are private.
-        if line.starts_with("    pub ")
-            || line.starts_with("    impl")
-            || line.starts_with("    struct State")
-        {
+        let begins = |starts: &[&str]| starts.iter().any(|start| line.starts_with(start));
+        // Items for the user and the runtime are `pub`, the law's are private; of what the runtime is
+        // given all but the functions that it runs is left out.
+        if begins(&[
+            "    pub ",
+            "    impl",
+            "        const ",
+            "        type ",
+            "        fn observe",
+        ]) {
             in_step = false;
-        } else if line.starts_with("    fn ")
-            || line.starts_with("    const ")
-            || line.starts_with("    static ")
-        {
+        } else if begins(&["    fn ", "    const ", "    static ", "        fn "]) {
             in_step = true;
         }
         if in_step && !trimmed.starts_with("//") && !trimmed.starts_with('#') {
@@ -322,11 +325,13 @@ fn swapped_branches(text: &str, code: &[Range<usize>]) -> Vec<Edit> {
 mod tests {
     use super::mutants;
 
-    const TEXT: &str = "pub mod drive {\n    /// K - 1 is < 2.\n    const K: Word = Word(1_000);\n    \
+    const TEXT: &str = "pub struct Drive;\nconst _: () = {\n    /// K - 1 is < 2.\n    const K: Word = Word(1_000);\n    \
         static TABLE: [i8; 2] = [0, -1];\n    static ROWS: [Row; 2] = [\n        Row {\n            first: 1,\n        },\n        Row {\n            \
         first: 2,\n        },\n    ];\n    fn step(a: Word) -> Word {\n        \
         let b = mul_round(K, a - 1, 14) + (a >> 2);\n        select(a < b, a.max(b), b)\n    }\n    \
-        pub struct Drive {\n        x: i32,\n    }\n    impl Drive {\n        fn new() -> Self { 1 + 1 }\n    }\n}\n";
+        impl Drive {\n        pub const T: Word = Word(1);\n    }\n    impl Control for Drive {\n        const SET_POINT: Word = Word(1);\n        \
+        fn current(bits: Word) -> Word {\n            bits >> 4\n        }\n        \
+        fn observe() -> Word {\n            1 >> 1\n        }\n    }\n};\n";
 
     fn changed(kind: &str) -> Vec<String> {
         let all = mutants(TEXT, 9);
@@ -388,7 +393,7 @@ mod tests {
         );
         assert_eq!(
             changed("right shift"),
-            ["let b = mul_round(K, a - 1, 14) + (a >> 3);"]
+            ["let b = mul_round(K, a - 1, 14) + (a >> 3);", "bits >> 5"]
         );
         assert_eq!(
             changed("- for +"),

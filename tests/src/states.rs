@@ -9,8 +9,9 @@ use crate::cases::Set;
 use crate::edges::{self, Watched};
 use crate::equality::{Comparisons, seek_zero};
 use fastrand::Rng;
-use hexagen::Sample;
-use hexagen_codegen::ir::Program;
+use hexagen::{Limits, Sample, Supervisor};
+use hexagen_codegen::pipeline::Generated;
+use hexagen_lab::limits;
 use hexagen_reference::{BitTrue, HallCapture, Spec};
 
 /// Generator of states and of the samples that go with them.
@@ -18,9 +19,10 @@ use hexagen_reference::{BitTrue, HallCapture, Spec};
 pub struct States<'a> {
     random: Rng,
     names: &'a [&'static str],
-    /// Proven intervals of the state words.
+    limits: Limits,
+    /// Intervals of the state words: the supervisor's, and those that are proven of the law's.
     ranges: Vec<(i32, i32)>,
-    /// Constants of the program, and the trip level.
+    /// Constants of the program, trip level and stall time-out.
     constants: Vec<i32>,
     comparisons: Comparisons,
     /// Least and greatest sum of calibration samples that is good enough.
@@ -40,42 +42,43 @@ pub struct States<'a> {
 }
 
 impl<'a> States<'a> {
-    /// States of a drive: its specification, fraction bits of a current, names of its state words,
-    /// and its program.
-    pub fn new(
-        spec: &Spec,
-        count_bits: u32,
-        names: &'a [&'static str],
-        program: &Program,
-        seed: u64,
-    ) -> Self {
+    /// States of a drive: its specification, what was generated of it, and the names of its state
+    /// words.
+    pub fn new(spec: &Spec, generated: &Generated, names: &'a [&'static str], seed: u64) -> Self {
         let inverter = &spec.inverter;
+        let program = generated.graph.program();
+        let limits = limits(&generated.interface.limits);
         let words = program.states.iter();
+        let words = words.map(|word| (word.interval.low as i32, word.interval.high as i32));
         let constants = program.constants.iter().map(|constant| constant.raw);
-        let trip = (inverter.trip_current / inverter.adc_gain.abs()) as i64;
+        let of_limits = [limits.trip, limits.stall_periods];
+        let samples = |count: u16| i64::from(count) << limits.calibration_log2;
         Self {
             random: Rng::with_seed(seed),
             names,
-            ranges: words
-                .map(|word| (word.interval.low as i32, word.interval.high as i32))
+            ranges: supervisor_ranges(&limits)
+                .into_iter()
+                .chain(words)
                 .collect(),
-            constants: constants.chain([(trip << count_bits) as i32]).collect(),
+            constants: constants.chain(of_limits).collect(),
             comparisons: Comparisons::of(program),
-            calibration: ["calibration_sum_least", "calibration_sum_most"].map(|name| {
-                let mut constants = program.constants.iter();
-                let found = constants.find(|constant| constant.name == name);
-                found.map_or(0, |constant| constant.raw.into())
-            }),
-            count_bits,
+            calibration: limits.offsets.map(samples),
+            count_bits: limits.current_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
             inverted: inverter.adc_gain < 0.0,
-            trip,
+            trip: i64::from(limits.trip) >> limits.current_bits,
+            limits,
             codes: spec.motor.hall_codes,
             age_max: inverter.age_max,
             ticks: inverter.ticks as i32,
             timer: inverter.hall_capture == HallCapture::Timer,
             v_bus: inverter.v_bus,
         }
+    }
+
+    /// Least and greatest value of every state word.
+    pub fn ranges(&self) -> &[(i32, i32)] {
+        &self.ranges
     }
 
     /// A set-point, bits of an `I16F16`; `most` is the greatest that the drive follows.
@@ -131,16 +134,13 @@ impl<'a> States<'a> {
 
     /// Fills in a state; returns a sample for it.
     pub fn fill(&mut self, words: &mut [i32]) -> Sample {
-        let mut sample = Sample {
-            hall: match self.random.u8(..64) {
-                0 => 0,
-                1 => 7,
-                2 => self.codes[self.random.usize(..6)] | 8,
-                _ => self.codes[self.random.usize(..6)],
-            },
-            hall_ticks: self.age() as u16,
-            ..Sample::default()
+        let mut hall = match self.random.u8(..64) {
+            0 => 0,
+            1 => 7,
+            2 => self.codes[self.random.usize(..6)] | 8,
+            _ => self.codes[self.random.usize(..6)],
         };
+        let hall_ticks = self.age() as u16;
         for (index, word) in words.iter_mut().enumerate() {
             let (low, high) = self.ranges[index];
             let (low, high) = (i64::from(low), i64::from(high));
@@ -156,7 +156,13 @@ impl<'a> States<'a> {
                 .checked_sub(1)
                 .and_then(|sector| self.codes.get(sector))
         {
-            sample.hall = *code;
+            hall = *code;
+        }
+        if self.random.bool()
+            && let Some(place) = self.place("hall_prev")
+        {
+            let (low, high) = self.ranges[place];
+            words[place] = i32::from(hall).clamp(low, high);
         }
         // Phases that are equal or opposite put maxima and differences on their ties.
         for index in 0..words.len() {
@@ -174,7 +180,8 @@ impl<'a> States<'a> {
             }
         }
         let is_slow = self.random.u8(..16) == 0;
-        self.fill_currents(words, &mut sample, is_slow);
+        let counts = self.fill_currents(words, is_slow);
+        let sample = Sample::with_hall(counts, hall).hall_ticks(hall_ticks);
         if is_slow {
             self.slow_down(words);
         }
@@ -194,7 +201,7 @@ impl<'a> States<'a> {
             return;
         };
         let age = if self.timer {
-            i32::from(sample.hall_ticks)
+            i32::from(sample.ticks())
         } else {
             words[place].saturating_add(self.ticks)
         };
@@ -275,9 +282,9 @@ impl<'a> States<'a> {
         age.clamp(0, 65_535)
     }
 
-    /// Currents of any value, by the offsets; most of them below the trip level.
+    /// Counts for currents of any value, by the offsets; most of them below the trip level.
     /// `is_slow` leaves no current.
-    fn fill_currents(&mut self, words: &mut [i32], sample: &mut Sample, is_slow: bool) {
+    fn fill_currents(&mut self, words: &mut [i32], is_slow: bool) -> [u16; 2] {
         let span = self.adc_max << self.count_bits;
         let trip = (self.trip << self.count_bits) + 1;
         let mut currents = [0; 2];
@@ -299,6 +306,7 @@ impl<'a> States<'a> {
         if is_slow {
             currents = [0; 2];
         }
+        let mut counts = [0; 2];
         for (phase, name) in ["a", "b"].into_iter().enumerate() {
             let current = if self.inverted {
                 -currents[phase]
@@ -326,12 +334,7 @@ impl<'a> States<'a> {
                 2 => self.adc_max,
                 _ => count,
             };
-            let count = count.clamp(0, 65_535) as u16;
-            *(if phase == 0 {
-                &mut sample.adc_a
-            } else {
-                &mut sample.adc_b
-            }) = count;
+            counts[phase] = count.clamp(0, 65_535) as u16;
             if let Some(place) = self.place(&format!("i_{name}_prev"))
                 && self.random.u8(..4) != 0
             {
@@ -345,6 +348,7 @@ impl<'a> States<'a> {
                 words[place] = before as i32;
             }
         }
+        counts
     }
 
     /// What holds between state words in every state that a drive can be in.
@@ -401,7 +405,8 @@ impl<'a> States<'a> {
         }
         words[countdown] = self.random.i32(0..3);
         let [least, most] = self.calibration;
-        for (place, count) in [(sum_a, sample.adc_a), (sum_b, sample.adc_b)] {
+        let [adc_a, adc_b, _] = sample.adc();
+        for (place, count) in [(sum_a, adc_a), (sum_b, adc_b)] {
             let sum = match self.random.u8(..8) {
                 0 => least + self.random.i64(-1..=1),
                 1 => most + self.random.i64(-1..=1),
@@ -450,7 +455,7 @@ impl<'a> States<'a> {
         let comparison = self.random.usize(..self.comparisons.len());
         let mut free = self.free(words);
         free.push(words.len());
-        let mut probe = self.comparisons.probe(&sample, *set);
+        let mut probe = self.comparisons.probe(self.limits, sample, *set);
         let mut all = [&[set.bits], &*words].concat();
         for _ in 0..3 {
             // The set-point is before the words of the state.
@@ -519,4 +524,24 @@ impl<'a> States<'a> {
             words[index] = words[index].saturating_add(way).clamp(least, most);
         }
     }
+}
+
+/// Least and greatest value of each of the supervisor's words.
+fn supervisor_ranges(limits: &Limits) -> [(i32, i32); Supervisor::NAMES.len()] {
+    let samples = 1 << limits.calibration_log2;
+    let full = i32::from(limits.adc_max) << limits.calibration_log2;
+    let [least, most] = limits
+        .offsets
+        .map(|offset| i32::from(offset) << limits.current_bits);
+    Supervisor::NAMES.map(|name| match name {
+        "mode" => (0, 3),
+        "fault" => (0, 5),
+        "countdown" => (0, samples.max(limits.precharge_periods.into())),
+        "sum_a" | "sum_b" => (0, full),
+        "offset_a" | "offset_b" => (least, most),
+        "stall_count" => (0, limits.stall_periods),
+        "hall_prev" if limits.stall_periods > 0 => (0, 6),
+        "hall_prev" => (0, 0),
+        other => unreachable!("a word that no supervisor has: {other}"),
+    })
 }

@@ -2,8 +2,8 @@
 
 use hexagen_exactness::exact::{Coefficient, floor, input, known, word};
 use hexagen_exactness::ledger;
+use hexagen_lab::formats;
 use hexagen_tests::exactness::{prove_exact, prove_exact_in};
-use hexagen_tests::interpreter::formats;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{generate_toml, kind, kinds};
 use rayon::prelude::*;

@@ -3,7 +3,8 @@
 //! Each knows the graph, its tables and its naming, never the specification and never another
 //! emitter, and none can fail.
 
-// pub mod c99;
+pub mod c99;
+mod comment;
 pub mod datasheet;
 mod expression;
 pub mod gappa;
@@ -20,5 +21,3 @@ pub use names::module_name;
 
 #[cfg(test)]
 mod tests;
-
-pub struct C99Sources { pub name: String, pub header: String, pub source: String }

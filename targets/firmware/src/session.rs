@@ -75,11 +75,7 @@ pub fn replay_drive<C: OptionalCalls<Command = Legs>>(
 ///
 /// # Errors
 /// When the exchange ends early.
-pub fn replay<D: Subject>(
-    step: StepFn<D>,
-    link: &mut dyn Link,
-    task: &Task,
-) -> Result<(), Broken> {
+pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
     let mut replayed = Replayed {
         drive: D::new(),
         step,

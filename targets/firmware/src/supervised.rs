@@ -5,8 +5,8 @@ use core::marker::PhantomData;
 use hexagen::arith::Word;
 use hexagen::fixed::types::I16F16;
 use hexagen::{
-    Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, SetPoint, State,
-    Units, Words,
+    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, SetPoint,
+    State, Units, Words,
 };
 
 /// The supervision of `C` around a law that pulses all legs and keeps nothing.
@@ -39,7 +39,8 @@ impl<C: Control> Control for Supervised<C> {
     const UNITS: Units = C::UNITS;
     const SET_POINT: Word = C::SET_POINT;
     const BUS: C::Bus = C::BUS;
-    const HAS_SPEED_LOOP: bool = C::HAS_SPEED_LOOP;
+    const SPEED: Option<fn(Word) -> Word> = C::SPEED;
+    const TOLD_BUS: Option<fn(Word) -> <Self::Bus as Bus>::Words> = C::TOLD_BUS;
 
     fn current(bits: Word) -> Word {
         C::current(bits)

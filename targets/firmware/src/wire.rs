@@ -196,11 +196,16 @@ impl Digest {
         ];
     }
 
-    /// Takes in what a step put out.
-    pub fn answer(&mut self, legs: Legs, fault: Option<Fault>) {
+    /// Takes in the command of a step.
+    pub fn command(&mut self, legs: Legs) {
         for (compare, state) in legs.compare().into_iter().zip(legs.state()) {
             self.word(u32::from(compare) | (state as u32) << 16);
         }
+    }
+
+    /// Takes in what a step put out.
+    pub fn answer(&mut self, legs: Legs, fault: Option<Fault>) {
+        self.command(legs);
         self.word(u32::from(number(fault)));
     }
 

@@ -31,9 +31,13 @@ impl Types<'_> {
 
     /// The words that outlive a control period.
     pub(super) fn state(&self) -> Source {
+        let mut before = String::new();
         let fields = self.program.states.iter().map(|word| {
             let (name, kind) = (snake(&word.name), storage_type(word));
-            let doc = doc(&format!("{} In `{}`.", word.doc, word.interval));
+            let text = format!("{} In `{}`.", word.doc, word.interval);
+            // Phases of one quantity stand together.
+            let doc = (text != before).then(|| doc(&text));
+            before = text;
             let initial = (word.initial != 0).then(|| {
                 let initial = number(i64::from(word.initial));
                 quote!(# [initial(#initial)])
@@ -63,18 +67,15 @@ impl Types<'_> {
         let spec = raw_text(spec_toml);
         let formats = formats.iter().map(format);
         let limits = limits_of(limits);
-        let [ampere, volt, volt_per_count, rpm] = [
-            units.ampere,
-            units.volt,
-            units.volt_per_count,
-            units.rpm,
-        ]
-        .map(unit);
-        let sectors = units.sectors.iter().map(|&sector| number(i64::from(sector)));
+        let [ampere, volt, volt_per_count, rpm] =
+            [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
+        let sectors = units
+            .sectors
+            .iter()
+            .map(|&sector| number(i64::from(sector)));
         let (bus_type, bus) = self.bus();
         let demand = self.word("j").map_or(0, |word| word.initial);
         let demand = number(i64::from(demand));
-        let has_speed = Source::of(self.has_speed().to_string());
         let of = |wanted: &str| {
             let mut setters = setters.iter();
             setters
@@ -82,12 +83,19 @@ impl Types<'_> {
                 .map(|(_, setter)| &setter.function)
         };
         let (current, torque) = (of("set_current"), of("set_torque"));
-        let speed = of("set_speed").map(|function| {
-            quote!(impl SpeedLoop for #name { #function })
+        let speed_word = of("set_speed").map(|_| {
+            quote!(
+                const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);
+            )
         });
-        let told = of("set_bus").map(|function| {
-            quote!(impl MeasuredBus for #name { #function })
+        let told_words = of("set_bus").map(|_| {
+            let count = self.bus_words().len();
+            quote! {
+                const TOLD_BUS: Option<fn(Word) -> [Word; #count]> = Some(<Self as MeasuredBus>::bus);
+            }
         });
+        let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
+        let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
         let Entries { entries, rotor, .. } = step;
         let observe = self.observe();
         quote! {
@@ -110,7 +118,8 @@ impl Types<'_> {
                 };
                 const SET_POINT: Word = Word(#demand);
                 const BUS: #bus_type = #bus;
-                const HAS_SPEED_LOOP: bool = #has_speed;
+                #speed_word
+                #told_words
 
                 #current
                 #torque
@@ -127,19 +136,16 @@ impl Types<'_> {
         self.program.params.iter().find(|word| word.name == name)
     }
 
-    fn has_speed(&self) -> bool {
-        let mut setters = self.program.setters.iter();
-        setters.any(|setter| setter.name == "set_speed")
+    /// Initial words of a bus voltage that is told.
+    fn bus_words(&self) -> Vec<Source> {
+        let words = ["v_bus", "ratio"].map(|name| self.word(name));
+        let words = words.into_iter().flatten();
+        words.map(|word| number(i64::from(word.initial))).collect()
     }
 
     /// Type and initial value of the bus voltage.
     fn bus(&self) -> (Source, Source) {
-        let words = ["v_bus", "ratio"].map(|name| self.word(name));
-        let words: Vec<Source> = words
-            .into_iter()
-            .flatten()
-            .map(|word| number(i64::from(word.initial)))
-            .collect();
+        let words = self.bus_words();
         let Some(periods) = self.interface.bus_periods else {
             return (quote!(FixedBus), quote!(FixedBus));
         };
@@ -226,7 +232,10 @@ fn limits_of(limits: &Limits) -> Source {
 }
 
 fn unit(unit: Unit) -> Source {
-    let (factor, shift) = (number(i64::from(unit.factor)), number(i64::from(unit.shift)));
+    let (factor, shift) = (
+        number(i64::from(unit.factor)),
+        number(i64::from(unit.shift)),
+    );
     quote!(Unit { factor: #factor, shift: #shift })
 }
 

@@ -29,7 +29,7 @@ pub use trace::{PeriodRow, Trace, quasi_square};
 pub use trip::{Cause, Trip};
 
 use crate::plant::{Observer, Plant, Truth};
-use hexagen::{Drive, Fault, Legs, Sample};
+use hexagen::{Control, Drive, Fault, Legs, Sample};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -40,8 +40,8 @@ pub trait CurrentLoop {
     fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs;
 
     /// What tripped the controller, where it has a supervision that does.
-    fn fault(&self) -> Fault {
-        Fault::None
+    fn fault(&self) -> Option<Fault> {
+        None
     }
 }
 
@@ -53,15 +53,15 @@ impl<F: FnMut(&Sample, &Truth) -> Legs> CurrentLoop for F {
 
 /// A generated drive in the loop; sees the sample only.
 #[derive(Debug)]
-pub struct DriveLoop<D>(pub D);
+pub struct DriveLoop<C: Control>(pub Drive<C>);
 
-impl<D: Drive> CurrentLoop for DriveLoop<D> {
+impl<C: Control<Command = Legs>> CurrentLoop for DriveLoop<C> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         self.0.step(sample)
     }
 
-    fn fault(&self) -> Fault {
-        self.0.fault()
+    fn fault(&self) -> Option<Fault> {
+        self.0.status().fault
     }
 }
 
@@ -169,8 +169,8 @@ impl<C: CurrentLoop> ClosedLoop<C> {
             let truth = self.plant.truth();
             let command = self.controller.step(&sample, &truth);
             if self.tripped.is_none() {
-                self.tripped = Cause::of(self.controller.fault()).map(|fault| Trip {
-                    fault,
+                self.tripped = self.controller.fault().map(|fault| Trip {
+                    fault: Cause::of(fault),
                     time_s: truth.t,
                     rpm: truth.omega_m * 60.0 / TAU,
                 });

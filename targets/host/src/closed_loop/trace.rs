@@ -314,13 +314,14 @@ impl Recorder for Trace {
         let after = step.plant.truth();
         let (v_alpha_mean, v_beta_mean) = clarke(after.mean_voltages);
         let turn_ons = step.plant.turn_ons();
+        let [adc_a, adc_b, _] = step.sample.adc();
         self.periods.push(PeriodRow {
             t: step.truth.t,
             theta_e: step.truth.theta_e,
             omega_m: step.truth.omega_m,
             sector: step.truth.sector,
-            hall: step.sample.hall,
-            adc: [step.sample.adc_a, step.sample.adc_b],
+            hall: step.sample.hall(),
+            adc: [adc_a, adc_b],
             currents: step.truth.currents,
             compare: step.applied.compare(),
             state: step.applied.state().map(|state| state as u8),

@@ -15,7 +15,7 @@ pub struct Trip {
     pub rpm: f64,
 }
 
-/// A fault that is one.
+/// A fault, as reports name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -32,15 +32,18 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// The cause of a fault; none of [`Fault::None`].
-    pub fn of(fault: Fault) -> Option<Self> {
+    /// The cause of a fault.
+    ///
+    /// # Panics
+    /// Of a fault that this program does not know.
+    pub fn of(fault: Fault) -> Self {
         match fault {
-            Fault::None => None,
-            Fault::AdcRange => Some(Self::AdcRange),
-            Fault::OverCurrent => Some(Self::OverCurrent),
-            Fault::Hall => Some(Self::Hall),
-            Fault::Stall => Some(Self::Stall),
-            Fault::Offset => Some(Self::Offset),
+            Fault::AdcRange => Self::AdcRange,
+            Fault::OverCurrent => Self::OverCurrent,
+            Fault::Hall => Self::Hall,
+            Fault::Stall => Self::Stall,
+            Fault::Offset => Self::Offset,
+            other => unreachable!("a fault that no drive told yet: {other:?}"),
         }
     }
 }

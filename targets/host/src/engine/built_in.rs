@@ -1,6 +1,6 @@
 //! The motor library and the drives that are compiled into this program by its build script.
 
-use hexagen::{Drive, Fault, Format, Legs, Sample};
+use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
 use hexagen_reference::verify::{Compiled, Subject};
 use std::fmt;
 
@@ -25,19 +25,19 @@ pub struct BuiltIn {
     /// Formats of signals and coefficients.
     pub formats: &'static [Format],
     /// Names of the state words.
-    pub state_names: &'static [&'static str],
+    pub state_names: fn() -> Vec<&'static str>,
     /// A drive at rest with zero set-point.
     pub new: fn() -> Box<dyn Subject + Send>,
 }
 
 impl BuiltIn {
-    const fn of<D: Drive + Send + 'static>(motor: &'static str) -> Self {
+    const fn of<C: Control<Command = Legs>>(motor: &'static str) -> Self {
         Self {
             motor,
-            spec: D::SPEC,
-            formats: D::FORMATS,
-            state_names: D::STATE_NAMES,
-            new: || Box::new(Compiled(D::new())),
+            spec: C::SPEC,
+            formats: C::FORMATS,
+            state_names: || Drive::<C>::state_names().collect(),
+            new: || Box::new(Compiled::<C>::new()),
         }
     }
 }
@@ -101,7 +101,7 @@ impl Subject for AnySubject {
         self.0.precharge();
     }
     #[inline]
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         self.0.fault()
     }
     #[inline]

@@ -6,7 +6,6 @@
 
 mod built_in;
 mod external;
-mod interpreter;
 mod motor;
 mod plant;
 mod prepared;
@@ -14,7 +13,6 @@ mod verifier;
 
 pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
 pub use external::BuildError;
-pub use interpreter::Interpreted;
 pub use motor::{MotorSource, SourceError};
 pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
@@ -23,6 +21,7 @@ pub use verifier::Verifier;
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
 use hexagen::{Fault, Legs, Sample};
+use hexagen_lab::Interpreted;
 use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
@@ -119,7 +118,7 @@ impl CurrentLoop for Engine<'_> {
     }
 
     #[inline]
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         match self {
             Self::Compiled(drive) => drive.fault(),
             Self::Interpreted(drive) => drive.fault(),

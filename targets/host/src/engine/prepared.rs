@@ -1,20 +1,17 @@
 //! A drive taken through the generator, with the models that go with it.
 
 use super::{
-    AnySubject, BuiltIn, Engine, EngineKind, Interpreted, Model, MotorSource, Verifier, built_in,
-    reach_of,
+    AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, reach_of,
 };
 use crate::plant::Truth;
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
-use hexagen_codegen::interface::{self, Interface};
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
 };
+use hexagen_lab::{Interpreted, formats, state_names};
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
-use std::collections::BTreeSet;
-use std::sync::{Mutex, PoisonError};
 
 /// One drive: specification, generated program and reference models at rest.
 #[derive(Clone, Debug)]
@@ -75,7 +72,7 @@ pub fn prepare_ast(
     let (spec, origins) = check(&ast)?;
     let generated = generate(&spec, &origins)?;
     let warnings = warnings(&spec, &origins);
-    let formats = format_table(&generated.interface);
+    let formats = formats(&generated.interface.formats);
     let models = models(&generated.interface.spec_toml, &formats);
     let (reference, bit_true, ideal) = models.map_err(|error| {
         // Both sides read the same normalised text: a disagreement is a bug of one of them.
@@ -124,7 +121,7 @@ impl Prepared {
 
     /// The interpreted program at rest.
     pub fn interpreted(&self) -> Interpreted<'_> {
-        Interpreted::new(&self.generated)
+        Interpreted::new(self.generated.graph.program(), &self.generated.interface)
     }
 
     /// The bit-true model at rest.
@@ -192,8 +189,7 @@ impl Prepared {
 
     /// Names of the state words.
     pub fn state_names(&self) -> Vec<&str> {
-        let states = &self.generated.graph.program().states;
-        states.iter().map(|word| word.name.as_str()).collect()
+        state_names(self.generated.graph.program())
     }
 
     /// The bit-for-bit test of this drive.
@@ -240,32 +236,4 @@ impl Prepared {
     pub(super) fn built_in(&self) -> Option<&'static BuiltIn> {
         self.built_in
     }
-}
-
-/// The format table in the types of the hardware's boundary. Widths and shifts of a verified
-/// program fit them.
-fn format_table(interface: &Interface) -> Vec<Format> {
-    let convert = |entry: &interface::FormatEntry| Format {
-        name: interned(&entry.name),
-        storage_bits: entry.storage_bits as u8,
-        frac_bits: entry.frac_bits as i8,
-        rounding: match entry.rounding {
-            interface::Rounding::Floor => hexagen::Rounding::Floor,
-            interface::Rounding::RoundHalfUp => hexagen::Rounding::RoundHalfUp,
-        },
-        segments: entry.segments.unwrap_or(0) as u8,
-    };
-    interface.formats.iter().map(convert).collect()
-}
-
-/// Names of formats live as long as the program, as those of compiled drives do; there are few.
-fn interned(name: &str) -> &'static str {
-    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = names.get(name) {
-        return known;
-    }
-    let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
-    names.insert(kept);
-    kept
 }

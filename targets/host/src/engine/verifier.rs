@@ -1,6 +1,8 @@
 //! The bit-for-bit test of one drive, with the best there is to run its fixed-point program.
 
-use super::external::{Binding, BuildError, External, Terms, compile, compile_c99, verify};
+use super::external::{
+    Binding, BuildError, External, Terms, compile, compile_c99, derived, verify,
+};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
 use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
@@ -43,7 +45,7 @@ impl<'p> Verifier<'p> {
         let sources = emit_c99(&generated.graph, interface, &interface.type_name);
         let mut setters = program.setters.iter();
         let binding = Binding {
-            state_words: program.states.len(),
+            state_words: drive.state_names().len(),
             has_hall_ticks: interface.timer_capture,
             has_bus: interface.bus_periods.is_some(),
             has_speed: setters.any(|setter| setter.name == "set_speed"),
@@ -83,7 +85,7 @@ impl<'p> Verifier<'p> {
             Runner::BuiltIn(built_in) => verify_subject(
                 built_in.spec,
                 built_in.formats,
-                built_in.state_names,
+                &(built_in.state_names)(),
                 || AnySubject((built_in.new)()),
                 steps,
                 seed,
@@ -112,5 +114,5 @@ fn compile_emitted(drive: &Prepared) -> Result<External, BuildError> {
     let name = &generated.interface.type_name;
     let surface = Surface::public(name);
     let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
-    compile(&format_rust(&tokens), name)
+    compile(&format_rust(&derived(tokens)), name)
 }

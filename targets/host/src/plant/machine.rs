@@ -146,12 +146,9 @@ impl Plant {
     pub fn sample(&self) -> Sample {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
-        Sample {
-            adc_a: adc::convert(&self.params.adc[0], self.currents[0]),
-            adc_b: adc::convert(&self.params.adc[1], self.currents[1]),
-            hall: self.sensors.code(self.theta_e),
-            hall_ticks: ticks.clamp(0.0, f64::from(u16::MAX)) as u16,
-        }
+        let count = |phase: usize| adc::convert(&self.params.adc[phase], self.currents[phase]);
+        Sample::with_hall([count(0), count(1)], self.sensors.code(self.theta_e))
+            .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
     }
 
     /// Runs one PWM period under a command.

@@ -163,10 +163,14 @@ impl BitTrue {
         [self.j, self.v_bus, self.ratio, self.speed_ref]
     }
 
-    /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
-    /// calibration or pre-charge runs.
+    /// Clears a trip and all control state, and sets the set-point to 0 (the speed where it is
+    /// regulated, else the current); keeps the offsets. Ignored while calibration or pre-charge runs.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
+            match self.speed {
+                Some(_) => self.speed_ref = word(0.0),
+                None => self.j = word(0.0),
+            }
             self.state = State {
                 offset: self.state.offset,
                 ..State::default()
@@ -185,7 +189,7 @@ impl BitTrue {
     }
 
     /// Why the drive is tripped.
-    pub fn fault(&self) -> Fault {
+    pub fn fault(&self) -> Option<Fault> {
         self.state.supervisor.fault
     }
 
@@ -246,7 +250,8 @@ impl BitTrue {
         }
         let k = &self.k;
         // 1 measure
-        let adc = [input(sample.adc_a), input(sample.adc_b)];
+        let [adc_a, adc_b, _] = sample.adc();
+        let adc = [input(adc_a), input(adc_b)];
         let counted = |x: usize| {
             (lesser(adc[x], self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
         };
@@ -254,14 +259,13 @@ impl BitTrue {
         let i_c = -(i[0] + i[1]);
 
         // 2 hall, 3 supervise
-        let event = HallEvent::new(&self.hall_sectors, sample.hall, self.state.sector_prev);
+        let event = HallEvent::new(&self.hall_sectors, sample.hall(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
             i: [i[0], i[1], i_c],
-            code: event.code,
-            edge: event.edge,
+            hall: sample.hall(),
             demand: match self.speed {
                 Some(_) => self.speed_ref != 0.0,
                 None => self.j != 0.0,
@@ -284,12 +288,9 @@ impl BitTrue {
             ..rotor::Angle::default()
         };
         if self.variant.rotor {
-            self.state.timing.step(
-                &self.clock,
-                &event,
-                direction_before,
-                input(sample.hall_ticks),
-            );
+            self.state
+                .timing
+                .step(&self.clock, &event, direction_before, input(sample.ticks()));
             angle = rotor::angle(&self.clock, k, &self.state, &event);
             self.state.omega = angle.omega;
         }

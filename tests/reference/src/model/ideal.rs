@@ -175,10 +175,14 @@ impl Ideal {
         }
     }
 
-    /// Clears a trip and all control state; keeps the offsets and the set-point. Ignored while
-    /// calibration or pre-charge runs.
+    /// Clears a trip and all control state, and sets the set-point to 0 (the speed where it is
+    /// regulated, else the current); keeps the offsets. Ignored while calibration or pre-charge runs.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
+            match self.speed_loop {
+                Some(_) => self.speed = 0.0,
+                None => self.current = 0.0,
+            }
             self.state = PhysicalState {
                 offset: self.state.offset,
                 ..PhysicalState::default()
@@ -197,7 +201,7 @@ impl Ideal {
     }
 
     /// Why the controller is tripped.
-    pub fn fault(&self) -> Fault {
+    pub fn fault(&self) -> Option<Fault> {
         self.state.supervisor.fault
     }
 
@@ -214,21 +218,21 @@ impl Ideal {
     /// One control period: reads the sample, returns the exact command.
     pub fn step(&mut self, sample: &Sample) -> Duties {
         // 1 measure
-        let adc = [sample.adc_a, sample.adc_b].map(f64::from);
+        let [adc_a, adc_b, _] = sample.adc();
+        let adc = [adc_a, adc_b].map(f64::from);
         let [i_a, i_b] =
             [0, 1].map(|x| (adc[x].min(self.limits.adc_max) - self.state.offset[x]) * self.gain);
         let i_abc = Vector3::new(i_a, i_b, -(i_a + i_b));
         let i = clarke(&i_abc);
 
         // 2 hall, 3 supervise
-        let event = HallEvent::new(&self.hall_sectors, sample.hall, self.state.sector_prev);
+        let event = HallEvent::new(&self.hall_sectors, sample.hall(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
             i: i_abc.into(),
-            code: event.code,
-            edge: event.edge,
+            hall: sample.hall(),
             demand: match self.speed_loop {
                 Some(_) => self.speed != 0.0,
                 None => self.current != 0.0,
@@ -251,7 +255,7 @@ impl Ideal {
                 &self.clock,
                 &event,
                 direction_before,
-                f64::from(sample.hall_ticks),
+                f64::from(sample.ticks()),
             );
             self.angle(sector)
         } else {

@@ -29,8 +29,6 @@ pub fn hall_sectors(motor: &Motor) -> [usize; 8] {
 /// What a Hall sample says (section 2).
 #[derive(Clone, Copy, Debug)]
 pub struct HallEvent {
-    /// Sector of the code itself; 0 for an invalid code.
-    pub code: usize,
     /// Sector now; the last one while the code is invalid.
     pub sector: usize,
     /// The sector differs from the last sample's.
@@ -51,7 +49,6 @@ impl HallEvent {
         let forward = NEXT[sector_prev] == sector;
         let backward = NEXT[sector] == sector_prev;
         Self {
-            code,
             sector,
             edge,
             forward,

@@ -33,15 +33,28 @@ impl Mode {
     }
 }
 
-/// The fault of a state word.
-pub fn fault_from_word(word: i32) -> Fault {
-    match word {
+/// The fault of a state word; 0 is none.
+pub fn fault_from_word(word: i32) -> Option<Fault> {
+    Some(match word {
         1 => Fault::AdcRange,
         2 => Fault::OverCurrent,
         3 => Fault::Hall,
         4 => Fault::Stall,
         5 => Fault::Offset,
-        _ => Fault::None,
+        _ => return None,
+    })
+}
+
+/// The state word of a fault.
+pub fn fault_to_word(fault: Option<Fault>) -> i32 {
+    match fault {
+        None => 0,
+        Some(Fault::AdcRange) => 1,
+        Some(Fault::OverCurrent) => 2,
+        Some(Fault::Hall) => 3,
+        Some(Fault::Stall) => 4,
+        Some(Fault::Offset) => 5,
+        Some(other) => unreachable!("a fault that no model tells: {other:?}"),
     }
 }
 
@@ -134,10 +147,8 @@ pub struct Observation {
     pub adc: [Word; 2],
     /// Phase currents.
     pub i: [Word; 3],
-    /// Sector of the Hall code, 0 for an invalid code.
-    pub code: usize,
-    /// A Hall edge was seen.
-    pub edge: bool,
+    /// Hall code as read.
+    pub hall: u8,
     /// The set-point is not zero.
     pub demand: bool,
 }
@@ -165,10 +176,24 @@ pub struct Verdict {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Supervisor {
     pub mode: Mode,
-    pub fault: Fault,
+    pub fault: Option<Fault>,
     pub countdown: Word,
     pub sum: [Word; 2],
+    /// Periods without an edge under demand; 0 where no stall is watched for.
     pub stall_count: Word,
+    /// The last Hall code that was one, where a stall is watched for; 0 before the first.
+    pub hall_prev: HallCode,
+}
+
+/// A Hall code, or 0 for none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HallCode(pub u8);
+
+impl HallCode {
+    /// That of a sample: the codes that three sensors can have are 1 to 6.
+    fn of(hall: u8) -> Option<Self> {
+        (1..=6).contains(&hall).then_some(Self(hall))
+    }
 }
 
 impl Supervisor {
@@ -198,36 +223,33 @@ impl Supervisor {
     /// One period.
     #[inline]
     pub fn step(&mut self, limits: &Limits, seen: &Observation) -> Verdict {
+        let code = HallCode::of(seen.hall);
         if limits.stall_periods > 0.0 {
-            self.stall_count = if seen.edge || !seen.demand || self.mode != Mode::Run {
-                word(0.0)
-            } else {
-                (self.stall_count + 1.0).min(limits.stall_periods)
-            };
+            self.count_stall(limits, code.unwrap_or(self.hall_prev), seen.demand);
         }
         let i_max = seen.i[0].abs().max(seen.i[1].abs()).max(seen.i[2].abs());
-        let fault_now = if seen
+        let found = if seen
             .adc
             .iter()
             .any(|&adc| adc == 0.0 || adc >= limits.adc_max)
         {
-            Fault::AdcRange
-        } else if seen.code == 0 {
-            Fault::Hall
+            Some(Fault::AdcRange)
+        } else if code.is_none() {
+            Some(Fault::Hall)
         } else if i_max > limits.i_trip {
-            Fault::OverCurrent
+            Some(Fault::OverCurrent)
         } else if limits.stall_periods > 0.0 && self.stall_count == limits.stall_periods {
-            Fault::Stall
+            Some(Fault::Stall)
         } else {
-            Fault::None
+            None
         };
-        if self.mode == Mode::Run && fault_now == Fault::None {
+        if self.mode == Mode::Run && found.is_none() {
             return Verdict {
                 period: Period::Control,
                 calibrated: false,
             };
         }
-        let period = if self.mode == Mode::Precharge && fault_now == Fault::None {
+        let period = if self.mode == Mode::Precharge && found.is_none() {
             Period::Precharge
         } else {
             Period::Off
@@ -246,7 +268,7 @@ impl Supervisor {
                 };
                 if self.countdown == 0.0 && self.sum.iter().any(is_far) {
                     self.mode = Mode::Tripped;
-                    self.fault = Fault::Offset;
+                    self.fault = Some(Fault::Offset);
                 } else if self.countdown == 0.0 {
                     calibrated = true;
                     self.countdown = word(limits.precharge_periods);
@@ -264,10 +286,22 @@ impl Supervisor {
                 }
             }
         }
-        if fault_now != Fault::None && self.mode != Mode::Tripped {
+        if found.is_some() && self.mode != Mode::Tripped {
             self.mode = Mode::Tripped;
-            self.fault = fault_now;
+            self.fault = found;
         }
         Verdict { period, calibrated }
+    }
+
+    /// Counts periods under demand since the last change of the Hall code.
+    fn count_stall(&mut self, limits: &Limits, code: HallCode, demand: bool) {
+        let is_first = self.hall_prev == HallCode::default();
+        let is_edge = code != self.hall_prev && !is_first;
+        self.hall_prev = code;
+        self.stall_count = if is_edge || !demand || self.mode != Mode::Run {
+            word(0.0)
+        } else {
+            (self.stall_count + 1.0).min(limits.stall_periods)
+        };
     }
 }

@@ -56,12 +56,8 @@ pub struct Difference {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        } = self.sample;
+        let [adc_a, adc_b, _] = self.sample.adc();
+        let (hall, hall_ticks) = (self.sample.hall(), self.sample.ticks());
         writeln!(
             f,
             "step {} of seed {} ({:?} inputs) differs",

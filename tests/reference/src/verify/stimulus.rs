@@ -71,6 +71,8 @@ pub struct Stimulus {
     delay: u32,
     pending: Legs,
     sector: usize,
+    /// The last call was a reset, which leaves the set-point at 0.
+    is_reset: bool,
     /// Ticks since the last Hall edge.
     age: f64,
     codes: [u8; 6],
@@ -107,6 +109,7 @@ impl Stimulus {
             delay: spec.loop_options().delay,
             pending: Legs::OFF,
             sector: 0,
+            is_reset: false,
             age: 0.0,
             codes: spec.motor.hall_codes,
             ticks: inverter.ticks,
@@ -180,11 +183,14 @@ impl Stimulus {
         let dice = self.random.u32(..);
         let action = if context.tripped && dice.is_multiple_of(2) {
             Some(Action::Reset)
+        } else if self.is_reset && dice & 14 != 0 {
+            Some(self.demand())
         } else if dice >> 25 == 0 {
             self.action()
         } else {
             None
         };
+        self.is_reset = action == Some(Action::Reset);
         let sample = match self.stream {
             Stream::StartUp => self.at_rest(),
             Stream::Arbitrary => self.arbitrary(context),
@@ -198,12 +204,7 @@ impl Stimulus {
     fn at_rest(&mut self) -> Sample {
         let noise = [0; 2].map(|_: i32| self.random.i32(-1..=1));
         let [adc_a, adc_b] = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
-        Sample {
-            adc_a,
-            adc_b,
-            hall: self.codes[self.sector],
-            hall_ticks: u16::MAX,
-        }
+        Sample::with_hall([adc_a, adc_b], self.codes[self.sector]).hall_ticks(u16::MAX)
     }
 
     /// Takes the drive's answer to the last sample.
@@ -214,6 +215,14 @@ impl Stimulus {
             self.motor.advance(applied);
         }
         self.pending = legs;
+    }
+
+    /// What firmware asks for behind a reset.
+    fn demand(&mut self) -> Action {
+        match self.speed_bits {
+            Some(most) => Action::SetSpeed(self.set_point(most)),
+            None => Action::SetCurrent(self.set_point(self.i_max_bits)),
+        }
     }
 
     fn action(&mut self) -> Option<Action> {
@@ -327,12 +336,7 @@ impl Stimulus {
                 )
             }
         };
-        Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        }
+        Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks)
     }
 
     fn motor(&mut self, context: &Context) -> Sample {
@@ -355,12 +359,7 @@ impl Stimulus {
         } else {
             self.codes[sector]
         };
-        Sample {
-            adc_a: count(0),
-            adc_b: count(1),
-            hall,
-            hall_ticks: self.age as u16,
-        }
+        Sample::with_hall([count(0), count(1)], hall).hall_ticks(self.age as u16)
     }
 
     fn corners(&mut self, context: &Context) -> Sample {
@@ -382,11 +381,6 @@ impl Stimulus {
         // One past the converter's range is a corner, too.
         let [adc_a, adc_b] =
             counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
-        Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        }
+        Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks)
     }
 }

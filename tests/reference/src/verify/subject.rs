@@ -1,7 +1,7 @@
 //! Anything that can be compared with the bit-true model.
 
 use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Fault, Legs, Sample};
+use hexagen::{Control, Drive, Fault, Legs, Sample};
 
 /// A computation of a drive's steps: compiled code, an interpreter, a remote target.
 pub trait Subject {
@@ -21,8 +21,8 @@ pub trait Subject {
     fn calibrate(&mut self);
     /// Starts bootstrap pre-charge.
     fn precharge(&mut self);
-    /// Why the drive is tripped.
-    fn fault(&self) -> Fault;
+    /// What tripped the drive.
+    fn fault(&self) -> Option<Fault>;
     /// Whether the bus voltage, where it is measured, is no longer told.
     fn bus_is_stale(&self) -> bool;
     /// Copies the state words, in the order of their names, to `words`.
@@ -32,10 +32,23 @@ pub trait Subject {
 }
 
 /// A compiled drive.
-#[derive(Clone, Debug)]
-pub struct Compiled<D>(pub D);
+#[derive(Debug)]
+pub struct Compiled<C: Control>(pub Drive<C>);
 
-impl<D: Drive> Subject for Compiled<D> {
+impl<C: Control> Compiled<C> {
+    /// The drive before its first period.
+    pub const fn new() -> Self {
+        Self(Drive::new())
+    }
+}
+
+impl<C: Control> Default for Compiled<C> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<C: Control<Command = Legs>> Subject for Compiled<C> {
     #[inline]
     fn step(&mut self, sample: &Sample) -> Legs {
         self.0.step(sample)
@@ -50,11 +63,11 @@ impl<D: Drive> Subject for Compiled<D> {
     }
 
     fn set_speed(&mut self, bits: i32) {
-        self.0.set_speed(I16F16::from_bits(bits));
+        self.0.set_speed_bits(bits);
     }
 
     fn set_bus(&mut self, counts: u16) {
-        self.0.set_bus(counts);
+        self.0.set_bus_counts(counts);
     }
 
     fn reset(&mut self) {
@@ -70,8 +83,8 @@ impl<D: Drive> Subject for Compiled<D> {
     }
 
     #[inline]
-    fn fault(&self) -> Fault {
-        self.0.fault()
+    fn fault(&self) -> Option<Fault> {
+        self.0.status().fault
     }
 
     #[inline]
@@ -85,8 +98,6 @@ impl<D: Drive> Subject for Compiled<D> {
     }
 
     fn set_state_words(&mut self, words: &[i32]) {
-        for (index, word) in words.iter().enumerate() {
-            self.0.set_state_word(index, *word);
-        }
+        self.0.set_state_words(words);
     }
 }

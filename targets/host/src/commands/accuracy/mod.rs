@@ -43,7 +43,7 @@ impl CurrentLoop for SameWords {
     }
 
     /// It follows the drive that it is compared with, into a trip, too.
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         self.bit_true.fault()
     }
 }
@@ -60,7 +60,7 @@ impl CurrentLoop for Noting<'_> {
         self.engine.step(sample, truth)
     }
 
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         self.engine.fault()
     }
 }

@@ -54,23 +54,28 @@ impl BuildError {
 }
 
 /// The runtime's sources.
-const RUNTIME: [(&str, &str); 10] = [
+const RUNTIME: [(&str, &str); 17] = [
     ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
     (
         "arith.rs",
         include_str!("../../../../../runtime/src/arith.rs"),
     ),
-    (
-        "boundary.rs",
-        include_str!("../../../../../runtime/src/boundary.rs"),
-    ),
+    ("bus.rs", include_str!("../../../../../runtime/src/bus.rs")),
     (
         "bus_watch.rs",
         include_str!("../../../../../runtime/src/bus_watch.rs"),
     ),
     (
+        "command.rs",
+        include_str!("../../../../../runtime/src/command.rs"),
+    ),
+    (
         "constants.rs",
         include_str!("../../../../../runtime/src/constants.rs"),
+    ),
+    (
+        "control.rs",
+        include_str!("../../../../../runtime/src/control.rs"),
     ),
     (
         "double_buffer.rs",
@@ -81,12 +86,32 @@ const RUNTIME: [(&str, &str); 10] = [
         include_str!("../../../../../runtime/src/drive.rs"),
     ),
     (
-        "shared_word.rs",
-        include_str!("../../../../../runtime/src/shared_word.rs"),
+        "format.rs",
+        include_str!("../../../../../runtime/src/format.rs"),
+    ),
+    (
+        "sample.rs",
+        include_str!("../../../../../runtime/src/sample.rs"),
+    ),
+    (
+        "set_point.rs",
+        include_str!("../../../../../runtime/src/set_point.rs"),
+    ),
+    (
+        "shared.rs",
+        include_str!("../../../../../runtime/src/shared.rs"),
+    ),
+    (
+        "signals.rs",
+        include_str!("../../../../../runtime/src/signals.rs"),
     ),
     (
         "status.rs",
         include_str!("../../../../../runtime/src/status.rs"),
+    ),
+    (
+        "supervisor.rs",
+        include_str!("../../../../../runtime/src/supervisor.rs"),
     ),
     (
         "word.rs",
@@ -97,17 +122,26 @@ const RUNTIME: [(&str, &str); 10] = [
 const DRIVER: &str = include_str!("driver.rs");
 const DRIVER_C: &str = include_str!("driver.c");
 
-/// The macros that the runtime re-exports; emitted code calls none.
-const MACROS: &str = "#[macro_export] macro_rules! controller { () => {} }\n\
-    #[macro_export] macro_rules! verify { () => {} }\n";
+/// The macros that the runtime re-exports; emitted code whose derives are written out calls none.
+const MACROS: &str = "#![allow(non_snake_case)]\n\
+    #[macro_export] macro_rules! controller { () => {} }\n\
+    #[macro_export] macro_rules! verify { () => {} }\n\
+    #[macro_export] macro_rules! State { () => {} }\n";
 
-/// The `fixed` crate's signed 32-bit types, with `from_bits` and `to_bits`.
+/// The `fixed` crate's signed 32-bit types, with what the runtime uses of them.
 fn fixed_types() -> String {
     let mut text = String::from(
         "#![no_std]\n\
          pub struct FixedI32<Frac>(i32, core::marker::PhantomData<Frac>);\n\
          impl<Frac> Clone for FixedI32<Frac> { fn clone(&self) -> Self { *self } }\n\
          impl<Frac> Copy for FixedI32<Frac> {}\n\
+         impl<Frac> PartialEq for FixedI32<Frac> { fn eq(&self, other: &Self) -> bool { self.0 == other.0 } }\n\
+         impl<Frac> Eq for FixedI32<Frac> {}\n\
+         impl<Frac> core::fmt::Debug for FixedI32<Frac> {\n\
+         fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result { self.0.fmt(f) }\n}\n\
+         impl FixedI32<types::U16> {\n\
+         pub fn saturating_from_num(number: i32) -> Self {\n\
+         Self::from_bits(number.saturating_mul(1 << 16))\n}\n}\n\
          impl<Frac> FixedI32<Frac> {\n\
          pub const fn from_bits(bits: i32) -> Self { Self(bits, core::marker::PhantomData) }\n\
          pub const fn to_bits(self) -> i32 { self.0 }\n}\n\

@@ -32,8 +32,8 @@ impl Calls<'_> {
 
 fn main() {
     let (mut input, mut output) = (std::io::stdin().lock(), std::io::stdout().lock());
-    let mut state = vec![0; TheDrive::STATE_NAMES.len()];
-    let mut drive = <TheDrive as Drive>::new();
+    let mut state = vec![0; Drive::<TheDrive>::state_names().count()];
+    let mut drive = Drive::<TheDrive>::new();
     let (mut batch, mut answers) = (Vec::new(), Vec::new());
     let mut length = [0; 4];
     while input.read_exact(&mut length).is_ok() {
@@ -43,36 +43,31 @@ fn main() {
         let mut calls = Calls(&batch);
         while !calls.0.is_empty() {
             match calls.bytes::<1>()[0] {
-                0 => drive = <TheDrive as Drive>::new(),
+                0 => drive = Drive::new(),
                 1 => {
-                    let sample = Sample {
-                        adc_a: calls.half(),
-                        adc_b: calls.half(),
-                        hall: calls.bytes::<1>()[0],
-                        hall_ticks: calls.half(),
-                    };
-                    let legs = Drive::step(&mut drive, &sample);
+                    let adc = [calls.half(), calls.half()];
+                    let [hall] = calls.bytes();
+                    let legs = drive.step(&Sample::with_hall(adc, hall).hall_ticks(calls.half()));
                     for compare in legs.compare() {
                         answers.extend(compare.to_le_bytes());
                     }
                     answers.extend(legs.state().map(|state| state as u8));
-                    answers.push(Drive::fault(&drive) as u8);
-                    answers.push(u8::from(Drive::status(&drive).bus_is_stale));
-                    Drive::state_words(&drive, &mut state);
+                    let status = drive.status();
+                    answers.push(status.fault.map_or(0, |fault| fault as u8));
+                    answers.push(u8::from(status.bus_is_stale));
+                    drive.state_words(&mut state);
                     answers.extend(state.iter().flat_map(|word| word.to_le_bytes()));
                 }
-                2 => Drive::set_current(&drive, I16F16::from_bits(calls.word())),
-                3 => Drive::set_torque(&drive, I16F16::from_bits(calls.word())),
-                4 => Drive::set_bus(&drive, calls.half()),
-                5 => Drive::reset(&mut drive),
-                6 => Drive::calibrate(&mut drive),
-                7 => Drive::precharge(&mut drive),
-                9 => Drive::set_speed(&drive, I16F16::from_bits(calls.word())),
+                2 => drive.set_current(I16F16::from_bits(calls.word())),
+                3 => drive.set_torque(I16F16::from_bits(calls.word())),
+                4 => drive.set_bus_counts(calls.half()),
+                5 => drive.reset(),
+                6 => drive.calibrate(),
+                7 => drive.precharge(),
+                9 => drive.set_speed_bits(calls.word()),
                 _ => {
-                    for index in 0..state.len() {
-                        let word = calls.word();
-                        Drive::set_state_word(&mut drive, index, word);
-                    }
+                    state.fill_with(|| calls.word());
+                    drive.set_state_words(&state);
                 }
             }
         }

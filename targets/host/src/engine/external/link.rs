@@ -119,10 +119,11 @@ impl Link {
 
     fn send_step(&mut self, sample: Sample) {
         self.calls.push(1);
-        self.calls.extend(sample.adc_a.to_le_bytes());
-        self.calls.extend(sample.adc_b.to_le_bytes());
-        self.calls.push(sample.hall);
-        self.calls.extend(sample.hall_ticks.to_le_bytes());
+        let [adc_a, adc_b, _] = sample.adc();
+        self.calls.extend(adc_a.to_le_bytes());
+        self.calls.extend(adc_b.to_le_bytes());
+        self.calls.push(sample.hall());
+        self.calls.extend(sample.ticks().to_le_bytes());
         self.pending += 1;
     }
 
@@ -131,7 +132,7 @@ impl Link {
         &mut self,
         sample: Sample,
         legs: Legs,
-        (fault, bus_is_stale): (Fault, bool),
+        (fault, bus_is_stale): (Option<Fault>, bool),
         words: &[i32],
     ) {
         self.send_step(sample);
@@ -142,7 +143,8 @@ impl Link {
                 .flat_map(|compare| compare.to_le_bytes()),
         );
         expected.extend(legs.state().map(|state| state as u8));
-        expected.extend([fault as u8, u8::from(bus_is_stale)]);
+        let fault = fault.map_or(0, |fault| fault as u8);
+        expected.extend([fault, u8::from(bus_is_stale)]);
         expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         if self.pending >= BATCH {
             self.compare();
@@ -154,7 +156,7 @@ impl Link {
         &mut self,
         sample: Sample,
         words: &mut [i32],
-    ) -> Option<(Legs, Fault, bool)> {
+    ) -> Option<(Legs, Option<Fault>, bool)> {
         self.send_step(sample);
         self.exchange();
         self.done += self.pending;
@@ -176,7 +178,7 @@ impl Link {
             [compare(0), compare(1), compare(2)],
             [state(0), state(1), state(2)],
         );
-        let fault = Fault::from_word(hexagen::arith::Word(i32::from(answer[9])));
+        let fault = Fault::from_number(answer[9].into());
         Some((legs, fault, answer[10] != 0))
     }
 

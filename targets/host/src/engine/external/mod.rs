@@ -5,9 +5,11 @@
 //! just these takes its place, which changes no arithmetic.
 
 mod build;
+mod derive;
 mod link;
 
 pub use build::{Binding, BuildError, External, compile, compile_c99};
+pub use derive::derived;
 
 use hexagen::{Fault, Format, LegState, Legs, Sample};
 use hexagen_reference::BitTrue;
@@ -54,7 +56,7 @@ pub(super) fn verify(
                 link,
                 model: is_batched.then(|| terms.model.clone()),
                 words: vec![0; terms.state_names.len()],
-                fault: Fault::None,
+                fault: None,
                 bus_is_stale: false,
             }
         };
@@ -84,7 +86,7 @@ struct Remote<'l> {
     link: &'l RefCell<Link>,
     model: Option<BitTrue>,
     words: Vec<i32>,
-    fault: Fault,
+    fault: Option<Fault>,
     bus_is_stale: bool,
 }
 
@@ -150,7 +152,7 @@ impl Subject for Remote<'_> {
         self.call(Call::Precharge, BitTrue::precharge);
     }
 
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         self.fault
     }
 

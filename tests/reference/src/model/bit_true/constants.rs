@@ -271,11 +271,7 @@ impl Constants {
         let slope = motion.per_product * w / two_v * pow2(word - factors * q);
         Ok(Self {
             parts: Parts::new(&[
-                (
-                    Part::Edges,
-                    inverter.stall_periods > 0 || rotor || commutation.is_some(),
-                ),
-                (Part::Stall, inverter.stall_periods > 0),
+                (Part::Edges, rotor || commutation.is_some()),
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
                 (Part::Speed, variant.options.has_speed_loop()),

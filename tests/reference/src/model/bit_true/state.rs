@@ -4,7 +4,7 @@ use super::constants::Constants;
 use crate::exact::{Word, input, to_i32, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
-use crate::model::supervision::{Mode, Supervisor, fault_from_word};
+use crate::model::supervision::{HallCode, Mode, Supervisor, fault_from_word, fault_to_word};
 use crate::model::trace::Past;
 use hexagen::Fault;
 
@@ -42,7 +42,6 @@ pub struct Vector(pub usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     Edges,
-    Stall,
     Direction,
     Rotor,
     Speed,
@@ -165,10 +164,10 @@ impl WordValue for Mode {
     }
 }
 
-impl WordValue for Fault {
+impl WordValue for Option<Fault> {
     #[inline]
     fn to_word(&self) -> i32 {
-        *self as i32
+        fault_to_word(*self)
     }
 
     fn set_word(&mut self, word: i32) {
@@ -176,7 +175,19 @@ impl WordValue for Fault {
     }
 }
 
-/// Calls `$show!(name, place)` for every word of a variant, in the order of the semantics' list.
+impl WordValue for HallCode {
+    #[inline]
+    fn to_word(&self) -> i32 {
+        self.0.into()
+    }
+
+    fn set_word(&mut self, word: i32) {
+        self.0 = word.clamp(0, 6) as u8;
+    }
+}
+
+/// Calls `$show!(name, place)` for every word of a variant: the supervisor's, then the law's in the
+/// order of the semantics' list.
 macro_rules! for_each_word {
     ($state:expr, $parts:expr, $show:ident) => {
         $show!("mode", $state.supervisor.mode);
@@ -186,11 +197,10 @@ macro_rules! for_each_word {
         $show!("sum_b", $state.supervisor.sum[1]);
         $show!("offset_a", $state.offset[0]);
         $show!("offset_b", $state.offset[1]);
+        $show!("stall_count", $state.supervisor.stall_count);
+        $show!("hall_prev", $state.supervisor.hall_prev);
         if $parts.has(Part::Edges) {
             $show!("sector_prev", $state.sector_prev);
-        }
-        if $parts.has(Part::Stall) {
-            $show!("stall_count", $state.supervisor.stall_count);
         }
         if $parts.has(Part::Direction) {
             $show!("direction", $state.timing.direction);

@@ -1,0 +1,44 @@
+//! What the supervisor has let pass, as the inputs of a step.
+
+use hexagen::Checked;
+use hexagen_codegen::ir::Program;
+
+/// The inputs of a program's step, in its order.
+#[derive(Clone, Debug)]
+pub struct Inputs(Vec<Input>);
+
+#[derive(Clone, Copy, Debug)]
+enum Input {
+    CurrentA,
+    CurrentB,
+    Hall,
+    HallTicks,
+}
+
+impl Inputs {
+    /// Those of a drive's program; none where it has others.
+    pub fn of(program: &Program) -> Option<Self> {
+        let inputs = program.step.inputs.iter();
+        let inputs = inputs.map(|input| {
+            Some(match input.name.as_str() {
+                "i_a" => Input::CurrentA,
+                "i_b" => Input::CurrentB,
+                "hall" => Input::Hall,
+                "hall_ticks" => Input::HallTicks,
+                _ => return None,
+            })
+        });
+        inputs.collect::<Option<_>>().map(Self)
+    }
+
+    /// The words of a period.
+    pub fn words(&self, checked: &Checked) -> Vec<i32> {
+        let word = |input: &Input| match input {
+            Input::CurrentA => checked.i_a().0,
+            Input::CurrentB => checked.i_b().0,
+            Input::Hall => checked.hall().0,
+            Input::HallTicks => checked.hall_ticks().0,
+        };
+        self.0.iter().map(word).collect()
+    }
+}

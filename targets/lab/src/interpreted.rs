@@ -1,0 +1,220 @@
+//! The generator's interpreter as a drive.
+
+use crate::{Inputs, limits};
+use hexagen::{Fault, LegState, Legs, Limits, Sample, Supervisor};
+use hexagen_codegen::interface::Interface;
+use hexagen_codegen::ir::{Escape, Machine, Program};
+use hexagen_reference::verify::Subject;
+use std::sync::{Arc, OnceLock};
+
+/// A drive whose law is interpreted; its supervisor is that of every emitted drive.
+///
+/// A value outside its proven interval, which would be a bug of the generator, trips nothing: it is
+/// kept for [`Interpreted::escape`], and all legs go off.
+#[derive(Clone, Debug)]
+pub struct Interpreted<'g> {
+    program: &'g Program,
+    machine: Machine<'g>,
+    supervisor: Supervisor,
+    limits: Limits,
+    bus: Option<BusWatch>,
+    places: Places,
+    escape: Arc<OnceLock<Escape>>,
+}
+
+/// The watch over a bus voltage that is told.
+#[derive(Clone, Copy, Debug)]
+struct BusWatch {
+    /// Since the last period.
+    told: bool,
+    /// Periods until it is stale.
+    left: i32,
+    /// Periods for which it is fresh.
+    periods: i32,
+}
+
+impl BusWatch {
+    fn pass_period(&mut self) {
+        self.left = if self.told {
+            self.periods
+        } else {
+            (self.left - 1).max(0)
+        };
+        self.told = false;
+    }
+}
+
+/// Places of the words that a drive knows by name.
+#[derive(Clone, Debug)]
+struct Places {
+    inputs: Inputs,
+    compare: [usize; 3],
+    legs: [usize; 3],
+    /// The set-point that a reset sets to 0, among the set-point words.
+    set_point: usize,
+}
+
+impl Places {
+    fn of(program: &Program) -> Option<Self> {
+        let output = |name: &str| {
+            let mut outputs = program.step.outputs.iter();
+            outputs.position(|(known, _)| known == name)
+        };
+        let three = |[a, b, c]: [&str; 3]| Some([output(a)?, output(b)?, output(c)?]);
+        let word = |name: &str| program.params.iter().position(|word| word.name == name);
+        Some(Self {
+            inputs: Inputs::of(program)?,
+            compare: three(["compare_a", "compare_b", "compare_c"])?,
+            legs: three(["leg_a", "leg_b", "leg_c"])?,
+            set_point: word("speed_ref").or_else(|| word("j"))?,
+        })
+    }
+}
+
+impl<'g> Interpreted<'g> {
+    /// The drive before its first period. The program need not pass verification: planted faults are
+    /// run as well.
+    ///
+    /// # Panics
+    /// When the program is none of a drive (inputs, outputs or words are missing), or its limits
+    /// contradict each other.
+    pub fn new(program: &'g Program, interface: &Interface) -> Self {
+        let limits = limits(&interface.limits);
+        assert!(limits.hold(), "limits contradict each other: {limits:?}");
+        Self {
+            program,
+            machine: Machine::of_program(program),
+            supervisor: Supervisor::new(&limits),
+            limits,
+            bus: interface.bus_periods.map(|periods| BusWatch {
+                told: false,
+                left: 0,
+                periods,
+            }),
+            places: Places::of(program).expect("the program of a drive"),
+            escape: Arc::default(),
+        }
+    }
+
+    /// The same, with the first value that leaves its interval told to `place`, which several drives
+    /// may share.
+    #[must_use]
+    pub fn telling(self, place: &Arc<OnceLock<Escape>>) -> Self {
+        Self {
+            escape: Arc::clone(place),
+            ..self
+        }
+    }
+
+    /// The first value that left its proven interval, if any did.
+    pub fn escape(&self) -> Option<&Escape> {
+        self.escape.get()
+    }
+
+    /// What the supervisor says.
+    pub fn supervisor(&self) -> &Supervisor {
+        &self.supervisor
+    }
+
+    fn try_step(&mut self, sample: &Sample) -> Result<Legs, Escape> {
+        let Self {
+            machine,
+            supervisor,
+            limits,
+            places,
+            ..
+        } = self;
+        let is_demanded = machine.params[places.set_point] != 0;
+        let Some(checked) = supervisor.check(limits, sample, || is_demanded) else {
+            let (checked, leg) = supervisor.rest(limits, sample);
+            machine.rest(&places.inputs.words(&checked))?;
+            return Ok(Legs::all(leg));
+        };
+        let results = machine.step(&places.inputs.words(&checked))?;
+        Ok(Legs::new(
+            places.compare.map(|place| results[place] as u16),
+            places
+                .legs
+                .map(|place| LegState::from_number(results[place])),
+        ))
+    }
+
+    fn set(&mut self, setter: &str, word: i32) {
+        if let Err(escape) = self.machine.set(setter, &[word]) {
+            self.escape.get_or_init(|| escape);
+        }
+    }
+}
+
+impl Subject for Interpreted<'_> {
+    fn step(&mut self, sample: &Sample) -> Legs {
+        if let Some(bus) = &mut self.bus {
+            bus.pass_period();
+        }
+        self.try_step(sample).unwrap_or_else(|escape| {
+            self.escape.get_or_init(|| escape);
+            Legs::OFF
+        })
+    }
+
+    fn set_current(&mut self, bits: i32) {
+        self.set("set_current", bits);
+    }
+
+    fn set_torque(&mut self, bits: i32) {
+        self.set("set_torque", bits);
+    }
+
+    fn set_speed(&mut self, bits: i32) {
+        self.set("set_speed", bits);
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.set("set_bus", counts.into());
+        if let Some(bus) = &mut self.bus {
+            bus.told = true;
+        }
+    }
+
+    fn reset(&mut self) {
+        if self.supervisor.reset(&self.limits) {
+            let words = self.program.states.iter();
+            self.machine.state = words.map(|word| word.initial).collect();
+            self.machine.params[self.places.set_point] = 0;
+        }
+    }
+
+    fn calibrate(&mut self) {
+        self.supervisor.calibrate(&self.limits);
+    }
+
+    fn precharge(&mut self) {
+        self.supervisor.precharge(&self.limits);
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        self.supervisor.status().fault
+    }
+
+    fn bus_is_stale(&self) -> bool {
+        self.bus.is_some_and(|bus| bus.left == 0)
+    }
+
+    fn state_words(&self, words: &mut [i32]) {
+        let supervisor = self.supervisor.words();
+        let own = supervisor.iter().chain(&self.machine.state);
+        for (word, own) in words.iter_mut().zip(own) {
+            *word = *own;
+        }
+    }
+
+    fn set_state_words(&mut self, words: &[i32]) {
+        let Some((supervisor, law)) = words.split_first_chunk() else {
+            return;
+        };
+        self.supervisor.set_words(*supervisor);
+        for (word, given) in self.machine.state.iter_mut().zip(law) {
+            *word = *given;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Tables of a generated drive in the types of the runtime.
+
+use hexagen::{Format, Limits, Rounding, Supervisor};
+use hexagen_codegen::interface::{self, FormatEntry};
+use hexagen_codegen::ir::Program;
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+/// Names of the words that outlive a control period, as `hexagen::Drive::state_names` has them: the
+/// supervisor's, then the law's.
+pub fn state_names(program: &Program) -> Vec<&str> {
+    let law = program.states.iter().map(|word| word.name.as_str());
+    Supervisor::NAMES.into_iter().chain(law).collect()
+}
+
+/// What the supervisor judges samples by.
+pub fn limits(limits: &interface::Limits) -> Limits {
+    let interface::Limits {
+        adc_max,
+        adc_inverted,
+        current_bits,
+        offset,
+        offsets,
+        trip,
+        currents,
+        calibration_log2,
+        precharge_periods,
+        stall_periods,
+    } = *limits;
+    Limits {
+        adc_max,
+        adc_inverted,
+        current_bits,
+        offset,
+        offsets,
+        trip,
+        currents,
+        calibration_log2,
+        precharge_periods,
+        stall_periods,
+    }
+}
+
+/// The format table. Widths and shifts of a verified program fit it.
+pub fn formats(table: &[FormatEntry]) -> Vec<Format> {
+    let convert = |entry: &FormatEntry| Format {
+        name: interned(&entry.name),
+        storage_bits: entry.storage_bits as u8,
+        frac_bits: entry.frac_bits as i8,
+        rounding: match entry.rounding {
+            interface::Rounding::Floor => Rounding::Floor,
+            interface::Rounding::RoundHalfUp => Rounding::RoundHalfUp,
+        },
+        segments: entry.segments.unwrap_or(0) as u8,
+    };
+    table.iter().map(convert).collect()
+}
+
+/// Names of formats live as long as the process, as those of compiled drives do; there are few.
+fn interned(name: &str) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name) {
+        return known;
+    }
+    let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
+    names.insert(kept);
+    kept
+}
