@@ -5,7 +5,7 @@
 )]
 
 use crate::board::REGISTERS;
-use core::cell::RefCell;
+use core::cell::Cell;
 use critical_section::Mutex;
 use hexagen_firmware::hexagen::{self, ControlLoop, Drive, SetPoint};
 use hexagen_firmware::interrupt::control_period;
@@ -22,19 +22,25 @@ hexagen::controller! {
 static DRIVE: StaticCell<Drive<HubDrive>> = StaticCell::new();
 
 /// The drive's control loop, which the interrupt alone takes once the timer runs.
-static CONTROL: Mutex<RefCell<Option<ControlLoop<'static, HubDrive>>>> =
-    Mutex::new(RefCell::new(None));
+static CONTROL: Mutex<Cell<Option<ControlLoop<'static, HubDrive>>>> = Mutex::new(Cell::new(None));
 
 /// The drive's halves: the set-point for `main`, the control loop for the interrupt. Once, before the timer starts.
 pub fn hand_over() -> &'static SetPoint<HubDrive> {
     let (set_point, control) = DRIVE.init(Drive::new()).split();
-    critical_section::with(|token| CONTROL.replace(token, Some(control)));
+    critical_section::with(|token| CONTROL.borrow(token).set(Some(control)));
     set_point
 }
 
-/// A call of the control loop.
+/// A call of the control loop, once it is handed over.
+#[inline]
 pub fn with_control(call: impl FnOnce(&mut ControlLoop<'static, HubDrive>)) {
-    critical_section::with(|token| CONTROL.borrow_ref_mut(token).as_mut().map(call));
+    critical_section::with(|token| {
+        let place = CONTROL.borrow(token);
+        if let Some(mut control) = place.take() {
+            call(&mut control);
+            place.set(Some(control));
+        }
+    });
 }
 
 /// What the timer's interrupt does. Nothing interrupts it, so that the critical section delays nothing.

@@ -18,8 +18,7 @@ macro_rules! drives_for {
             TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
             TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
 
-            HurstPdccSpeed, step_hurst_long_pdcc_speed:
-                "../motors/hurst-long.toml", pdcc { speed_loop: on }, set_speed;
+            HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
 
             // The variants that the goals of the cost table are about, each with the words that suit the core.
             TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:

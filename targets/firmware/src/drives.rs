@@ -2,8 +2,7 @@
 
 use crate::session::{Broken, Link};
 use crate::wire::Task;
-use hexagen::fixed::types::I16F16;
-use hexagen::{Control, LegState, Legs, Sample, SetPoint, State, Supervisor};
+use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 
 /// A step function as it stands in the ELF: drive, counts of phases a and b, Hall code, ticks since the last
 /// Hall edge.
@@ -106,12 +105,6 @@ pub const fn state_names<C: Control>() -> [&'static [&'static str]; 2] {
     [&Supervisor::NAMES, C::State::NAMES]
 }
 
-/// The calls that options bring, to a drive that may lack them.
-pub trait OptionalCalls: Control {
-    /// Sets the speed, where there is a speed loop.
-    fn set_speed(_set_point: &SetPoint<Self>, _speed: I16F16) {}
-}
-
 /// Six decimal digits.
 fn decimal(mut number: usize) -> [u8; 6] {
     let mut digits = [b'0'; 6];
@@ -125,14 +118,10 @@ fn decimal(mut number: usize) -> [u8; 6] {
 /// The drives of a firmware: for each a type by `hexagen::controller!`, its step function in the ELF, and a row of
 /// the list `DRIVES`.
 ///
-/// The line `Name, symbol: "motor file", controller { options };` makes a type `Name` and a function `symbol`. Behind
-/// options with a speed loop stands `, set_speed`.
+/// The line `Name, symbol: "motor file", controller { options };` makes a type `Name` and a function `symbol`.
 #[macro_export]
 macro_rules! drives {
-    ($(
-        $name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* }
-        $(, $set_speed:ident)?;
-    )*) => {
+    ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* };)*) => {
         $(
             $crate::hexagen::controller! {
                 pub $name { motor: $motor, controller: $kind { $($options)* } }
@@ -151,16 +140,6 @@ macro_rules! drives {
                 drive.step(&sample.hall_ticks(hall_ticks))
             }
 
-            impl $crate::OptionalCalls for $name {
-                $(
-                    fn $set_speed(
-                        set_point: &$crate::hexagen::SetPoint<Self>,
-                        speed: $crate::hexagen::fixed::types::I16F16,
-                    ) {
-                        set_point.$set_speed(speed);
-                    }
-                )?
-            }
         )*
 
         /// All drives of this firmware.

@@ -1,12 +1,12 @@
 //! The core's end of the test bench: reads a task, replays its records, answers.
 
 use crate::counter::{count, sound, trace};
-use crate::drives::{Drives, OptionalCalls, StepFn};
+use crate::drives::{Drives, StepFn};
 use crate::peers::Peer;
 use crate::subject::Subject;
 use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
-use hexagen::{Drive, Legs, Sample};
+use hexagen::{Control, Drive, Legs, Sample};
 
 /// Room for the state words of any drive here.
 pub(crate) const MOST_WORDS: usize = 64;
@@ -58,7 +58,7 @@ pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
 ///
 /// # Errors
 /// When the exchange ends early.
-pub fn replay_drive<C: OptionalCalls<Command = Legs>>(
+pub fn replay_drive<C: Control<Command = Legs>>(
     step: extern "C" fn(&mut Drive<C>, u16, u16, u8, u16) -> Legs,
     link: &mut dyn Link,
     task: &Task,

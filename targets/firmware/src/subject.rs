@@ -1,9 +1,8 @@
 //! A drive that a session replays, in Rust or in C.
 
-use crate::drives::OptionalCalls;
 use crate::session::MOST_WORDS;
 use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Fault, Legs, State, Supervisor};
+use hexagen::{Control, Drive, Fault, Legs, State, Supervisor};
 
 /// A drive that a session replays, besides its step function.
 pub trait Subject {
@@ -34,7 +33,7 @@ pub trait Subject {
     fn set_state_word(&mut self, index: usize, value: i32);
 }
 
-impl<C: OptionalCalls<Command = Legs>> Subject for Drive<C> {
+impl<C: Control<Command = Legs>> Subject for Drive<C> {
     const WORDS: usize = Supervisor::NAMES.len() + C::State::NAMES.len();
 
     fn new() -> Self {
@@ -50,11 +49,12 @@ impl<C: OptionalCalls<Command = Legs>> Subject for Drive<C> {
     }
 
     fn set_speed(&mut self, bits: i32) {
-        C::set_speed(self.set_point(), I16F16::from_bits(bits));
+        self.set_speed_bits(bits);
     }
 
-    /// No drive here measures its bus.
-    fn set_bus(&mut self, _counts: u16) {}
+    fn set_bus(&mut self, counts: u16) {
+        self.set_bus_counts(counts);
+    }
 
     fn reset(&mut self) {
         self.control().reset();

@@ -1,12 +1,10 @@
 //! A drive with an empty law: what its step costs is supervision.
 
-use crate::drives::OptionalCalls;
 use core::marker::PhantomData;
 use hexagen::arith::Word;
-use hexagen::fixed::types::I16F16;
 use hexagen::{
-    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, SetPoint,
-    State, Units, Words,
+    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, State,
+    Units, Words,
 };
 
 /// The supervision of `C` around a law that pulses all legs and keeps nothing.
@@ -64,10 +62,6 @@ impl<C: Control> Control for Supervised<C> {
     fn observe(_: &Nothing) -> Observation {
         Observation::default()
     }
-}
-
-impl<C: OptionalCalls> OptionalCalls for Supervised<C> {
-    fn set_speed(_: &SetPoint<Self>, _: I16F16) {}
 }
 
 /// One control period of such a drive, called as a step function is.
