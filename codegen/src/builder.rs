@@ -4,7 +4,7 @@
 //! The same core as the macro's and the same tokens; the file is formatted for readers.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
-// use crate::emit::c99::emit_c99;
+use crate::emit::c99::{RUNTIME, Sources, emit_c99};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
@@ -248,7 +248,8 @@ impl Builder {
     }
 
     /// Writes C99 in place of Rust, for parts of a firmware that another compiler builds: the type `HubDrive` becomes
-    /// `hub_drive.h` and `hub_drive.c`, the same step bit for bit.
+    /// `hub_drive.h` and `hub_drive.c`, the same step bit for bit. What all drives share comes beside them, `hexagen.h`
+    /// and `hexagen.c`, which is to be compiled once.
     #[must_use]
     pub fn c99(mut self) -> Self {
         self.language = Language::C99;
@@ -287,6 +288,11 @@ impl Builder {
             return Err(BuildError::Specification(errors));
         }
         check_written(&sources)?;
+        if self.language == Language::C99 {
+            for (name, text) in RUNTIME {
+                write_whole(&out_dir.join(name), text)?;
+            }
+        }
         for warning in sources.iter().flat_map(|(_, source)| &source.warnings) {
             println!("cargo:warning={warning}");
         }
@@ -486,11 +492,14 @@ impl Source {
 
     fn add_c99(&mut self, generated: &Generated, name: &str) {
         let Generated { graph, interface } = generated;
-        let sources: crate::emit::C99Sources = todo!();
-        let file = |ending: &str| PathBuf::from(format!("{}.{ending}", sources.name));
-        let (header, source) = (file("h"), file("c"));
-        self.files.push((header, sources.header));
-        self.files.push((source, sources.source));
+        let Sources {
+            name,
+            header,
+            source,
+        } = emit_c99(graph, interface, name);
+        let file = |ending: &str| PathBuf::from(format!("{name}.{ending}"));
+        let files = [(file("h"), header), (file("c"), source)];
+        self.files.extend(files);
     }
 
     /// Writes all files.

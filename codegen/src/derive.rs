@@ -158,8 +158,22 @@ mod tests {
 
     #[test]
     fn a_law_may_keep_nothing_and_other_items_are_refused() {
-        assert!(derive_state(quote!(pub struct State {})).to_string().contains("INITIAL"));
-        for item in [quote!(enum State {}), quote!(struct State { age: }), quote!(struct State(u16);)] {
+        assert!(
+            derive_state(quote!(
+                pub struct State {}
+            ))
+            .to_string()
+            .contains("INITIAL")
+        );
+        for item in [
+            quote!(
+                enum State {}
+            ),
+            quote!(struct State { age: }),
+            quote!(
+                struct State(u16);
+            ),
+        ] {
             assert!(derive_state(item).to_string().contains("compile_error"));
         }
     }

@@ -155,7 +155,9 @@ impl Unit {
     pub fn of(value: f64) -> Self {
         let factor = value * 65536.0;
         // The largest shift at which the factor fits.
-        let shift = (30.0 - factor.abs().max(1e-9).log2()).floor().clamp(1.0, 62.0);
+        let shift = (30.0 - factor.abs().max(1e-9).log2())
+            .floor()
+            .clamp(1.0, 62.0);
         let bits = (factor * shift.exp2()).round();
         Self {
             factor: bits.clamp(f64::from(i32::MIN), f64::from(i32::MAX)) as i32,

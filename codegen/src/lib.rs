@@ -25,8 +25,8 @@
 
 mod at_once;
 mod builder;
-mod derive;
 pub mod controllers;
+mod derive;
 pub mod design;
 pub mod diagnostics;
 pub mod emit;

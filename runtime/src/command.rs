@@ -219,7 +219,11 @@ impl Command for Intervals {
 
     fn on(self) -> [Option<u16>; 3] {
         let [first, second, third] = self.ends;
-        let lengths = [first, second.wrapping_sub(first), third.wrapping_sub(second)];
+        let lengths = [
+            first,
+            second.wrapping_sub(first),
+            third.wrapping_sub(second),
+        ];
         let [one, two, three] = self.state;
         let on = |[one, two, three]: [LegState; 3]| {
             let states = [one, two, three];

@@ -2,11 +2,9 @@
 
 use crate::arith::Word;
 use crate::bus::Bus;
-use crate::signals::PeriodWords;
 use crate::set_point::debug;
-use crate::{
-    Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor,
-};
+use crate::signals::PeriodWords;
+use crate::{Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor};
 use core::fmt;
 use core::ops::Deref;
 
@@ -44,7 +42,12 @@ impl<C: Control> Drive<C> {
     /// A drive that was not run yet.
     #[must_use]
     pub const fn new() -> Self {
-        const { assert!(C::LIMITS.hold(), "limits of a controller contradict each other") };
+        const {
+            assert!(
+                C::LIMITS.hold(),
+                "limits of a controller contradict each other"
+            )
+        };
         Self {
             set_point: SetPoint::new(),
             core: Core {
@@ -177,12 +180,12 @@ impl<C: Control> ControlLoop<'_, C> {
         set_point.words.bus.pass_period();
         let is_demanded = || set_point.is_demanded();
         let Some(checked) = core.supervisor.check(&C::LIMITS, sample, is_demanded) else {
-            return rest(set_point, core, sample);
+            return rest(set_point, core, *sample);
         };
         let rotor = C::track(&mut core.law, &checked);
         let command = C::step(&mut core.law, &set_point.words, &checked, rotor);
         if set_point.signals.is_asked() {
-            tell(set_point, &core.law, &checked, command);
+            tell(set_point, &core.law, checked, command);
         }
         command
     }
@@ -230,24 +233,24 @@ impl<C: Control> ControlLoop<'_, C> {
 }
 
 /// A period without control, in start-up or with a fault. Here alone mode and fault change, so here
-/// they are published.
+/// they are published. The sample goes by value, so that it stands in memory on this path alone.
 #[cold]
 #[inline(never)]
-fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: &Sample) -> C::Command {
-    let (checked, leg) = core.supervisor.rest(&C::LIMITS, sample);
+fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> C::Command {
+    let (checked, leg) = core.supervisor.rest(&C::LIMITS, &sample);
     let rotor = C::track(&mut core.law, &checked);
     C::rest(&mut core.law, &checked, rotor);
     set_point.status.store(core.supervisor.status_bits().into());
     C::Command::at_rest(leg)
 }
 
-/// Answers a main program that has asked for the signals of a period.
+/// Answers a main program that has asked for the signals of a period; by value as in [`rest`].
 #[cold]
 #[inline(never)]
 fn tell<C: Control>(
     set_point: &SetPoint<C>,
     law: &C::State,
-    checked: &Checked,
+    checked: Checked,
     command: C::Command,
 ) {
     set_point.signals.answer(PeriodWords {

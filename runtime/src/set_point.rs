@@ -43,7 +43,9 @@ impl<C: Control> SetPoint<C> {
     /// no part.
     #[inline]
     pub fn set_current(&self, current: I16F16) {
-        self.words.current.store(C::current(Word(current.to_bits())));
+        self.words
+            .current
+            .store(C::current(Word(current.to_bits())));
     }
 
     /// [`set_current`](Self::set_current) in milliamperes.
@@ -190,7 +192,10 @@ mod tests {
         for number in (-32_767_999..=32_767_999).step_by(997) {
             let exact = f64::from(number) * 65.536;
             let found = f64::from(thousandths(number).to_bits());
-            assert!((found - exact).abs() < 0.51, "{number}: {found} for {exact}");
+            assert!(
+                (found - exact).abs() < 0.51,
+                "{number}: {found} for {exact}"
+            );
         }
         assert_eq!(thousandths(5_000), I16F16::lit("5"));
         assert_eq!(thousandths(i32::MAX), thousandths(32_767_999));

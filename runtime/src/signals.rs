@@ -191,10 +191,16 @@ mod tests {
 
     #[test]
     fn a_unit_scales_rounds_down_and_saturates() {
-        let half = Unit { factor: 1, shift: 1 };
+        let half = Unit {
+            factor: 1,
+            shift: 1,
+        };
         assert_eq!(half.of(Word(5)), I16F16::from_bits(2));
         assert_eq!(half.of(Word(-5)), I16F16::from_bits(-3));
-        let huge = Unit { factor: i32::MAX, shift: 1 };
+        let huge = Unit {
+            factor: i32::MAX,
+            shift: 1,
+        };
         assert_eq!(huge.of(Word(i32::MAX)), I16F16::MAX);
         assert_eq!(huge.of(Word(i32::MIN)), I16F16::MIN);
     }

@@ -229,7 +229,11 @@ impl Supervisor {
                 limits.current(count_a, offset_a),
                 limits.current(count_b, offset_b),
             ],
-            hall: if has_code { sample.hall.into() } else { Word(0) },
+            hall: if has_code {
+                sample.hall.into()
+            } else {
+                Word(0)
+            },
             hall_ticks: sample.hall_ticks.into(),
         };
         let found = if limits.is_at_end(adc_a) || limits.is_at_end(adc_b) {
@@ -374,8 +378,17 @@ impl Supervisor {
 
     /// Overwrites all words with those of [`Self::words`]. For verification.
     pub fn set_words(&mut self, words: [i32; Self::NAMES.len()]) {
-        let [mode, fault, countdown, sum_a, sum_b, offset_a, offset_b, stall_count, hall_prev] =
-            words;
+        let [
+            mode,
+            fault,
+            countdown,
+            sum_a,
+            sum_b,
+            offset_a,
+            offset_b,
+            stall_count,
+            hall_prev,
+        ] = words;
         *self = Self {
             mode: Mode::from_number(mode),
             fault: Fault::from_number(fault),

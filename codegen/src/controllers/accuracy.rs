@@ -113,13 +113,8 @@ pub fn accuracy_constants(program: &Program, inverter: &InverterSpec) -> Vec<Pub
 /// What the bounds mean, for the type's documentation.
 pub fn accuracy_notes() -> Vec<String> {
     [
-        "",
-        "# Accuracy",
-        "",
-        "The constants that end in `_ERROR` bound the distance of one step from the ideal one: from the same inputs, state and",
-        "set-point words, with the coefficients that the specification makes in double precision, nothing rounded, and the same decisions.",
-        "A decision is that of the ideal step wherever what it compares differs by more than its tie band (data sheet). `hexagen prove`",
-        "has every bound, and that no value leaves its word, proved by a checker.",
+        "Constants that end in `_ERROR` bound the distance of one step from the ideal one, which has exact coefficients,",
+        "rounds nothing and takes the same decisions (`hexagen::conventions`).",
     ]
     .map(str::to_owned)
     .to_vec()

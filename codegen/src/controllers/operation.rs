@@ -85,7 +85,9 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     ];
     lines.push(match inverter.stall_periods {
         0 => "A rotor that stands under demand does not (`stall_timeout` is off).".to_owned(),
-        periods => format!("So do {periods} periods without a Hall edge while the set-point is not 0."),
+        periods => {
+            format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
+        }
     });
     if let BusSource::Measured { min, max, .. } = inverter.bus {
         lines.push(format!(

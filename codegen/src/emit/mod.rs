@@ -3,6 +3,8 @@
 //! Each knows the graph, its tables and its naming, never the specification and never another
 //! emitter, and none can fail.
 
+pub mod c99;
+mod comment;
 pub mod datasheet;
 mod expression;
 pub mod gappa;
@@ -19,15 +21,3 @@ pub use names::module_name;
 
 #[cfg(test)]
 mod tests;
-
-pub struct C99Sources { pub name: String, pub header: String, pub source: String }
-
-/// Stands in for the emitter of C99 until that follows the runtime.
-pub mod c99 {
-    pub use super::C99Sources as Sources;
-
-    /// None yet.
-    pub fn emit_c99(_: &crate::ir::VerifiedGraph, _: &crate::interface::Interface, _: &str) -> Sources {
-        unimplemented!("C99 does not follow the runtime yet")
-    }
-}

@@ -126,7 +126,10 @@ impl<'a> Context<'a> {
             User::Leg | User::Other => true,
         };
         let is_own = self.function.is_tracking(value)
-            && !matches!(self.function.node(value).op, Op::Input(_) | Op::Literal(_) | Op::Constant(_));
+            && !matches!(
+                self.function.node(value).op,
+                Op::Input(_) | Op::Literal(_) | Op::Constant(_)
+            );
         let mut old = self.function.values().filter(is_old);
         is_own && !old.any(|old| self.users[old.index()].iter().any(read_behind))
     }

@@ -49,9 +49,6 @@ pub(super) fn stage<'o>(
             .into_iter()
             .map(|(names, range)| format!("{names} in `{range}`"))
             .collect();
-        if !lines.is_empty() {
-            lines.push(String::new());
-        }
         lines.push(format!("Proven: {}.", ranges.join("; ")));
     }
     lines

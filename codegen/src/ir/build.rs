@@ -432,6 +432,12 @@ impl<'p> FunctionBuilder<'p> {
         self.push("", Op::Clamp { x, low, high })
     }
 
+    /// min(max(x, -limit), limit)
+    pub fn clamp_both(&mut self, x: Value, limit: Value) -> Value {
+        let low = self.neg(limit);
+        self.clamp(x, low, limit)
+    }
+
     /// min(floor(numerator 2^shift / denominator), limit)
     pub fn divide(
         &mut self,

@@ -200,10 +200,7 @@ mod tests {
             multiplications: 1,
             ..normal
         };
-        assert_eq!(
-            PathCost::of_function(&function),
-            PathCost { normal, worst }
-        );
+        assert_eq!(PathCost::of_function(&function), PathCost { normal, worst });
         assert_eq!(
             worst.to_string(),
             "1 addition, 1 multiplication, 1 comparison, no look-ups, no divisions"

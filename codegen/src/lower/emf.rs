@@ -228,11 +228,7 @@ impl Lowering<'_> {
             };
             let doc =
                 "Largest EMF that is believed, one and a half times that of the greatest speed";
-            let (low, high) = (
-                self.voltage("e_min", -limit, doc),
-                self.voltage("e_max", limit, doc),
-            );
-            let e = self.b.clamp(volts, low, high);
+            let e = self.within_volts(volts, "e_max", limit, doc);
             self.b.name(names[x], e)
         })
     }

@@ -36,6 +36,28 @@ struct Free {
     middle: Value,
 }
 
+/// What gives way, and what it needs for that: `E` is an EMF, or a way to find it.
+#[derive(Clone, Copy, Debug)]
+pub enum Priority<E> {
+    /// The magnitude: the voltage keeps its angle.
+    Angle,
+    /// Whatever is nearest.
+    Nearest,
+    /// What makes no torque: the component along this EMF stays.
+    Torque(E),
+}
+
+impl<E> Priority<E> {
+    /// A rule of the specification. A law without an EMF knows no torque, and takes the nearest point.
+    pub fn of(rule: LimitRule, emf: Option<E>) -> Self {
+        match (rule, emf) {
+            (LimitRule::KeepAngle, _) => Self::Angle,
+            (LimitRule::TorquePriority, Some(emf)) => Self::Torque(emf),
+            (LimitRule::TorquePriority, None) | (LimitRule::Nearest, _) => Self::Nearest,
+        }
+    }
+}
+
 /// Fraction bits of the ratio in keep_angle.
 const SCALE_BITS: u32 = 30;
 /// Torque priority needs an EMF of at least the bus over 2 to this power.
@@ -46,13 +68,12 @@ const LIMITED: [&str; 2] = ["u_a_limited", "u_b_limited"];
 const BLEND_BITS: u32 = 15;
 
 impl Lowering<'_> {
-    /// Limits the voltage `u` (phases a, b) to the hexagon; `e` says the EMF (phases a, b), off the normal path and
-    /// where the rule asks for it. `lifts`: centres the voltages at half the period rather than at 0.
-    pub fn limit_voltage(
+    /// Limits the voltage `u` (phases a, b) to the hexagon; the EMF (phases a, b) is found off the normal path.
+    /// `lifts`: centres the voltages at half the period rather than at 0.
+    pub fn limit_voltage<E: FnOnce(&mut Self) -> [Value; 2]>(
         &mut self,
-        rule: LimitRule,
+        priority: Priority<E>,
         u: [Value; 2],
-        e: impl FnOnce(&mut Self) -> [Value; 2],
         (bus, third): (Bus, Coefficient),
         lifts: bool,
     ) -> Limited {
@@ -86,8 +107,8 @@ impl Lowering<'_> {
         });
         let saturated = self.b.compare(Comparison::Less, bus.volts, spread);
         self.b.name("saturated", saturated);
-        let (legs, middle) = match rule {
-            LimitRule::KeepAngle => {
+        let (legs, middle) = match priority {
+            Priority::Angle => {
                 self.b.guarded_stage(
                     "limit_keep_angle",
                     saturated,
@@ -113,7 +134,7 @@ impl Lowering<'_> {
                 let scaled_c = self.third_phase("u_c_limited", scaled[0], scaled[1]);
                 (Legs::ZeroSum([scaled[0], scaled[1], scaled_c]), None)
             }
-            LimitRule::Nearest => {
+            Priority::Nearest => {
                 self.b.guarded_stage(
                     "limit_nearest",
                     saturated,
@@ -125,7 +146,7 @@ impl Lowering<'_> {
                 self.b.name("terminal_middle", half);
                 (Legs::Any(self.nearest(free, bus)), Some(half))
             }
-            LimitRule::TorquePriority => {
+            Priority::Torque(emf) => {
                 self.b.guarded_stage(
                     "limit_torque_priority",
                     saturated,
@@ -138,7 +159,7 @@ impl Lowering<'_> {
                         "Past the reachable component the result goes over to the nearest point without a jump.",
                     ],
                 );
-                let e = e(self);
+                let e = emf(self);
                 (Legs::Any(self.torque_priority(free, e, bus)), None)
             }
         };

@@ -94,8 +94,7 @@ impl Lowering<'_> {
 
     /// The sector of a sample, for laws that follow no edges.
     pub fn sector_of(&mut self, sample: &Sample) -> Value {
-        self.b
-            .stage("find_sector", &["Sector from the Hall code."]);
+        self.b.stage("find_sector", &["Sector from the Hall code."]);
         let sector = self.decoded(sample.hall);
         self.b.name("sector", sector)
     }

@@ -14,7 +14,7 @@ pub mod set_point;
 mod speed;
 
 pub use emf::{Corner, FluxModel, ModelledEmf};
-pub use limit::Limited;
+pub use limit::{Limited, Priority};
 pub use measure::{Currents, Hall, Sample};
 pub use modulate::{Applied, Command, Commutation, OffLeg, PairModulation, PairPulses};
 use number::round_half_up;

@@ -63,6 +63,8 @@ pub struct Commutation {
     pub word: Value,
     /// Samples for which it may last behind this one.
     pub left: Value,
+    /// Direction of rotation, 1 or -1; 0 before the first edge.
+    pub direction: Value,
 }
 
 impl Lowering<'_> {
@@ -311,7 +313,13 @@ impl Lowering<'_> {
         let zero = self.zero();
         let flag = self.b.compare(Comparison::NotEqual, word, zero);
         self.b.name("in_commutation", flag);
-        (Commutation { flag, word, left }, phase)
+        let commutation = Commutation {
+            flag,
+            word,
+            left,
+            direction,
+        };
+        (commutation, phase)
     }
 
     /// The value of the phase numbered 0 to 2 by `phase`.

@@ -123,15 +123,13 @@ impl Lowering<'_> {
         }
         let (raw, shift) = rounded.unwrap_or((0, 0));
         let error = f64::from(raw) / f64::from(shift).exp2() / value - 1.0;
-        let mut lines = vec![doc.to_owned(), String::new()];
-        lines.extend(scaled.is_some().then(|| format!("{physical}.")));
-        let own = scaled.unwrap_or(physical);
+        let mut lines = vec![doc.to_owned()];
         let error = if error == 0.0 {
             "exact".to_owned()
         } else {
             format!("relative error {error:.1e}")
         };
-        lines.push(format!("{own}; `i{word}`, {shift} fraction bits, {error}."));
+        lines.push(format!("{physical}; {shift} fraction bits, {error}."));
         // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
         let id = self.b.program.rounded_constant(name, raw, exact, &lines);
@@ -176,6 +174,12 @@ impl Lowering<'_> {
         let volt = engineering(raw as f64 / self.scale.voltage(), "V");
         let doc = format!("{doc}: {volt}, words of voltage.");
         self.rounded_number(name, raw, Exact::Within(1), &doc)
+    }
+
+    /// A value held within a named voltage to both sides.
+    pub fn within_volts(&mut self, value: Value, name: &str, limit: i64, doc: &str) -> Value {
+        let high = self.voltage(name, limit, doc);
+        self.b.clamp_both(value, high)
     }
 
     /// A named integer constant; `doc` says what it counts. Currents and voltages have functions of their

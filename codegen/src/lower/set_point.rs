@@ -6,7 +6,7 @@ use super::{Bus, Coefficient, Lowering, Scale, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Function, FunctionBuilder, Interval, ParamId, Program, Value};
-use crate::spec::{BUS_FRESH, BusSource, ControllerSpec, Spec};
+use crate::spec::{BusSource, ControllerSpec, Spec};
 use std::f64::consts::TAU;
 
 /// Fraction bits of the ratio of nominal to measured bus.
@@ -251,27 +251,20 @@ fn set_j(
     let range = lowering.b.program.params[j.index()].interval;
     let quantity = match name {
         "set_torque" => "torque in newton metres",
-        _ => "current in amperes, peak of the quasi-square wave",
+        _ => "current in amperes",
     };
-    let (greatest, sign) = match lowering.spec.controller.common().speed {
-        Some(_) => (
-            "greatest ",
-            "The regulator asks for it to either side; the sign plays no part.",
-        ),
-        None => (
-            "",
-            "Positive makes torque forward, negative backward, whichever way the rotor turns.",
-        ),
+    let greatest = match lowering.spec.controller.common().speed {
+        Some(_) => "greatest ",
+        None => "",
     };
-    let doc = format!("Sets the {greatest}{quantity}; saturates at {physical} to both sides.");
-    let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc, "", sign]);
+    let doc = format!(
+        "Set-point word of the {greatest}{quantity}; saturates at {physical} to both sides."
+    );
+    let mut b = FunctionBuilder::new(lowering.b.program, name, &[&doc]);
     b.stage(name, &["Clamps the set-point and turns it into a voltage."]);
     let input = b.input("bits", Interval::WORD, input_doc);
-    let docs = [
-        format!("{meaning}: {physical}, 16 fraction bits."),
-        format!("{meaning}, negative: -{physical}, 16 fraction bits."),
-    ];
-    let volts = limited_product(&mut b, input, (limit, *bits, docs), coefficient);
+    let doc = format!("{meaning}: {physical}, 16 fraction bits.");
+    let volts = limited_product(&mut b, input, (limit, *bits, doc), coefficient);
     b.name("j_new", volts);
     debug_assert!(b.interval(volts).magnitude() <= range.magnitude() || range.bits() > 32);
     b.set_param(j, volts);
@@ -295,9 +288,8 @@ fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
         ],
     );
     let physical = significant(most);
-    let doc = format!(
-        "Sets the speed in rpm, forward positive; saturates at {physical} rpm to both sides."
-    );
+    let doc =
+        format!("Set-point word of the speed in rpm; saturates at {physical} rpm to both sides.");
     let mut b = FunctionBuilder::new(lowering.b.program, "set_speed", &[&doc]);
     b.stage(
         "set_speed",
@@ -308,30 +300,25 @@ fn set_speed(lowering: &mut Lowering<'_>, words: SpeedWords) -> Function {
         Interval::WORD,
         "Speed, bits of a number with 16 fraction bits, rpm.",
     );
-    let docs =
-        ["", "-"].map(|sign| format!("Greatest speed, {sign}{physical} rpm, 16 fraction bits."));
-    let limit = ("speed_max_bits", round_down(most * 65536.0), docs);
+    let doc = format!("Greatest speed, {physical} rpm, 16 fraction bits.");
+    let limit = ("speed_max_bits", round_down(most * 65536.0), doc);
     let speed = limited_product(&mut b, input, limit, k_rpm);
     b.name("speed_ref_new", speed);
     b.set_param(words.reference, speed);
     b.finish()
 }
 
-/// A coefficient times `input` within `bits` to both sides. `limit` names the constant of the upper limit; the docs
-/// are those of the upper and the lower one.
+/// A coefficient times `input` within `bits` to both sides. `limit` names the constant of the limit, `doc` is its own.
 fn limited_product(
     b: &mut FunctionBuilder<'_>,
     input: Value,
-    (limit, bits, docs): (&str, f64, [String; 2]),
+    (limit, bits, doc): (&str, f64, String),
     coefficient: Coefficient,
 ) -> Value {
     let bits = bits.clamp(0.0, f64::from(i32::MAX)) as i32;
-    let [high_doc, low_doc] = docs;
-    let high = b.program.constant(limit, bits, &[high_doc]);
-    let low = limit.replace("max", "min");
-    let low = b.program.constant(&low, -bits, &[low_doc]);
-    let (low, high) = (b.constant(low), b.constant(high));
-    let clamped = b.clamp(input, low, high);
+    let most = b.program.constant(limit, bits, &[doc]);
+    let most = b.constant(most);
+    let clamped = b.clamp_both(input, most);
     let factor = b.constant(coefficient.id);
     b.mul(factor, clamped, coefficient.shift)
 }
@@ -358,25 +345,20 @@ fn set_bus(
     );
     let [doc, stage_doc] = match words.ratio {
         Some(_) => [
-            "Tells the bus voltage as an ADC count; the only division of the set-point path is here.",
+            "Words of the bus voltage, an ADC count; the only division of the set-point path is here.",
             "Bus voltage from its ADC count, and the ratio that scales voltages to timer counts.",
         ],
         None => [
-            "Tells the bus voltage as an ADC count.",
+            "Word of the bus voltage, an ADC count.",
             "Bus voltage from its ADC count.",
         ],
     };
     let limits_doc = format!(
-        "A voltage outside {} to {}, that of a dead sensor too, counts as the nearer of these, without a fault. Until the first call it is {}.",
+        "A voltage outside {} to {}, that of a dead sensor too, counts as the nearer of these.",
         engineering(min, "V"),
         engineering(max, "V"),
-        engineering(v_bus, "V")
     );
-    let stale_doc = format!(
-        "Until then, and where {} pass without a call that takes effect, the status says `bus_is_stale`.",
-        engineering(BUS_FRESH, "s")
-    );
-    let doc = [doc, "", &limits_doc, &stale_doc];
+    let doc = [doc, &limits_doc];
     let mut b = FunctionBuilder::new(lowering.b.program, "set_bus", &doc);
     b.stage("set_bus", &[stage_doc]);
     let counts = b.input(

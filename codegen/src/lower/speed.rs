@@ -114,8 +114,9 @@ impl Lowering<'_> {
             "Greatest error of speed that counts, {}: it asks for twice the greatest current, words of speed.",
             engineering(raw as f64 * word, "rad/s")
         );
-        let [low, high] = self.two_sided(["error_min", "error_max"], raw, most_error, &doc);
-        let error = self.b.clamp(error, low, high);
+        let exact = Exact::Number(Real::of(most_error));
+        let limit = self.rounded_number("error_max", raw, exact, &doc);
+        let error = self.b.clamp_both(error, limit);
         self.b.name("speed_error", error);
         let part = self.times(k_speed, error);
         self.b.name("speed_part", part);
@@ -141,27 +142,14 @@ impl Lowering<'_> {
             * stiffness
             * self.scale.voltage()
             * f64::from(state.extra).exp2();
-        let [low, high] = self.two_sided(
-            ["speed_integral_min", "speed_integral_max"],
-            top,
-            exact,
-            "The integral that alone asks for the greatest current.",
-        );
-        let moved = self.b.clamp(moved, low, high);
+        let doc = "The integral that alone asks for the greatest current.";
+        let exact = Exact::Number(Real::of(exact));
+        let limit = self.rounded_number("speed_integral_max", top, exact, doc);
+        let moved = self.b.clamp_both(moved, limit);
         self.b.name("speed_integral_moved", moved);
         Regulated {
             j,
             integral: (state.integral, moved),
         }
-    }
-
-    /// A limit to both sides that stands for the real number `exact`.
-    fn two_sided(&mut self, names: [&str; 2], raw: i64, exact: f64, doc: &str) -> [Value; 2] {
-        let sides = [(-1, format!("{doc} Negative.")), (1, doc.to_owned())];
-        [0, 1].map(|side| {
-            let (sign, doc) = &sides[side];
-            let exact = Exact::Number(Real::of(f64::from(*sign) * exact));
-            self.rounded_number(names[side], i64::from(*sign) * raw, exact, doc)
-        })
     }
 }

@@ -25,9 +25,8 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
     let mut drives = Vec::new();
     while let Some(first) = lines.next() {
         let symbol = first.strip_prefix("drive ")?.to_owned();
-        let file = lines.next()?.strip_prefix("motor ")?;
-        let motor = file.rsplit('/').next()?.strip_suffix(".toml")?.to_owned();
-        let kind = lines.next()?.strip_prefix("kind ")?.replace('_', "-");
+        let motor = motor(lines.next()?.strip_prefix("motor ")?)?.to_owned();
+        let kind = lines.next()?.strip_prefix("kind ")?;
         let mut written = lines.next()?.strip_prefix("options")?.to_owned();
         // The compiler breaks a long list of tokens into lines.
         let words = loop {
@@ -37,7 +36,6 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
                 None => written.push_str(line),
             }
         };
-        let options = options(&written);
         let size = lines.next()?.strip_prefix("size ")?.parse().ok()?;
         let mut spec = String::new();
         loop {
@@ -53,11 +51,7 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
             place: u16::try_from(drives.len()).ok()?,
             symbol,
             motor,
-            variant: if options.is_empty() {
-                kind
-            } else {
-                format!("{kind}:{options}")
-            },
+            variant: variant(kind, &written),
             words: words.split_whitespace().map(str::to_owned).collect(),
             size,
             spec,
@@ -66,10 +60,19 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
     Some(drives)
 }
 
-/// Options of a macro call (`saturation : keep_angle, emf_filter : 1`) as the command line writes them.
-fn options(written: &str) -> String {
-    let dense: String = written.chars().filter(|c| !c.is_whitespace()).collect();
-    dense.replace(':', "=").trim_end_matches(',').to_owned()
+/// The library's name of a motor's file; none where it is no such file.
+pub fn motor(file: &str) -> Option<&str> {
+    file.rsplit('/').next()?.strip_suffix(".toml")
+}
+
+/// Kind and options of a macro call (`pdcc`, `saturation : keep_angle, emf_filter : 1`) as the command line writes them.
+pub fn variant(kind: &str, options: &str) -> String {
+    let kind = kind.replace('_', "-");
+    let dense: String = options.chars().filter(|c| !c.is_whitespace()).collect();
+    match dense.replace(':', "=").trim_end_matches(',') {
+        "" => kind,
+        options => format!("{kind}:{options}"),
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The test bench: builds the firmware of every target, runs it on emulated cores, compares every word with the host,
-//! counts what a step costs.
+//! counts what a step costs; compares on the host what the drives command with what they did before.
 //!
-//! `cargo xtask firmware`, `cargo xtask pil` and `cargo xtask cost` come here.
+//! `cargo xtask firmware`, `cargo xtask pil`, `cargo xtask cost` and `cargo xtask commands` come here.
 
+mod commands;
 mod cost;
 mod firmware;
 mod listing;
@@ -39,6 +40,8 @@ enum Command {
     Pil(pil::Options),
     /// Counts instructions, code, tables, state and stack of every step
     Cost(cost::Options),
+    /// Compares a million steps of commands of every counted drive, in closed loop on the host, with the expected ones
+    Commands(commands::Options),
 }
 
 /// Why the bench stopped.
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Command::Firmware => targets.iter().try_for_each(|&target| demonstrate(target)),
         Command::Pil(options) => pil::run(&targets, &options),
         Command::Cost(options) => cost::run(&targets, &options),
+        Command::Commands(options) => commands::run(&options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

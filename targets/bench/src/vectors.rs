@@ -47,15 +47,23 @@ pub struct Answer {
 /// # Errors
 /// When the host makes another drive of the same motor and options, or none.
 pub fn drive_of(listed: &Listed) -> Result<Prepared, BenchError> {
-    let motor = MotorSource::of_library(&listed.motor)
-        .ok_or_else(|| BenchError::Motor(listed.motor.clone()))?;
-    let drive = prepare(&motor, Some(&listed.variant))
-        .map_err(|errors| BenchError::Drive(listed.symbol.clone(), errors.to_string()))?;
+    let drive = prepared(&listed.symbol, &listed.motor, &listed.variant)?;
     let nameless = |spec: &str| spec.split_once('\n').map(|(_, rest)| rest.to_owned());
     if nameless(&drive.generated.interface.spec_toml) != nameless(&listed.spec) {
         return Err(BenchError::Other(listed.symbol.clone()));
     }
     Ok(drive)
+}
+
+/// The drive of a motor of the library, with the symbol that messages name it by.
+///
+/// # Errors
+/// When there is no such motor, or no such drive of it.
+pub fn prepared(symbol: &str, motor: &str, variant: &str) -> Result<Prepared, BenchError> {
+    let motor =
+        MotorSource::of_library(motor).ok_or_else(|| BenchError::Motor(motor.to_owned()))?;
+    prepare(&motor, Some(variant))
+        .map_err(|errors| BenchError::Drive(symbol.to_owned(), errors.to_string()))
 }
 
 /// Records a run of at least `steps` steps; with the full answers of one block, if asked for.
@@ -64,28 +72,57 @@ pub fn drive_of(listed: &Listed) -> Result<Prepared, BenchError> {
 /// When the plant cannot be made, which a specification that generates does not cause.
 pub fn record(drive: &Prepared, steps: usize, full: Option<usize>) -> Result<Vectors, BenchError> {
     let mut recorder = Recorder::new(drive, full);
-    let mut random = fastrand::Rng::with_seed(1);
+    let mut stretches = Stretches::default();
     let mut stretch = 0;
     while recorder.vectors.steps < steps {
         if stretch % 10 == 9 {
-            recorder.edges(drive, stretch as u64)?;
+            recorder.edges(drive, stretch)?;
         } else {
-            let speed = match stretch {
-                0 => 0.0,
-                _ => 1.3 * (2.0 * random.f64() - 1.0),
-            };
-            let currents = [random.f64(), random.f64()].map(|share| 2.0 * share - 1.0);
-            let stretch = Stretch {
-                starts_up: stretch == 0,
-                speed,
-                currents,
-                steps: STRETCH,
-            };
-            recorder.closed_loop(drive, &stretch)?;
+            stretches.draw().close(drive, &mut recorder)?;
         }
         stretch += 1;
     }
     Ok(recorder.finish())
+}
+
+/// What a stretch calls: a drive, and whoever takes notes.
+pub trait Called {
+    /// A call other than a step.
+    fn call(&mut self, record: Record);
+
+    /// A control period.
+    fn step(&mut self, sample: Sample) -> Legs;
+}
+
+/// The stretches of a run in closed loop, always the same ones: start-up at standstill, then speeds and set-points of
+/// both signs, up to past the speed limit.
+#[derive(Clone, Debug)]
+pub struct Stretches {
+    random: fastrand::Rng,
+    starts_up: bool,
+}
+
+impl Default for Stretches {
+    fn default() -> Self {
+        Self {
+            random: fastrand::Rng::with_seed(1),
+            starts_up: true,
+        }
+    }
+}
+
+impl Stretches {
+    /// The next one.
+    pub fn draw(&mut self) -> Stretch {
+        let starts_up = std::mem::take(&mut self.starts_up);
+        let mut share = || 2.0 * self.random.f64() - 1.0;
+        Stretch {
+            starts_up,
+            speed: if starts_up { 0.0 } else { 1.3 * share() },
+            currents: [share(), share()],
+            steps: STRETCH,
+        }
+    }
 }
 
 /// A stretch in closed loop.
@@ -122,6 +159,35 @@ impl Stretch {
         ClosedLoop::new(self.plant(drive)?, controller, delay(drive)).run(self.steps, &mut ());
         Ok(())
     }
+
+    /// Runs a drive on its plant, from rest on. Set-points are given behind start-up, which need not keep them.
+    ///
+    /// # Errors
+    /// When the plant cannot be made.
+    pub fn close(&self, drive: &Prepared, called: &mut impl Called) -> Result<(), BenchError> {
+        called.call(Record::New);
+        if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
+            called.call(Record::SetBus(counts));
+        }
+        let inverter = &drive.spec.inverter;
+        let mut closed = ClosedLoop::new(self.plant(drive)?, InLoop(called), delay(drive));
+        if self.starts_up {
+            closed.controller().0.call(Record::Calibrate);
+            closed.run(1 << inverter.calibration_log2, &mut ());
+            closed.controller().0.call(Record::Precharge);
+            closed.run(inverter.precharge_periods as usize, &mut ());
+        }
+        if drive.spec.controller.common().speed.is_some() {
+            let wanted = Record::SetSpeed(self.wanted_rpm(drive));
+            closed.controller().0.call(wanted);
+        }
+        for share in self.currents {
+            let bits = (share * inverter.max_current * 65_536.0) as i32;
+            closed.controller().0.call(Record::SetCurrent(bits));
+            closed.run(self.steps / 2, &mut ());
+        }
+        Ok(())
+    }
 }
 
 /// When a drive's commands reach the plant.
@@ -132,43 +198,72 @@ fn delay(drive: &Prepared) -> Delay {
     }
 }
 
-/// A recorder in the place of the controller.
-struct InLoop<'r, 'g>(&'r mut Recorder<'g>);
+/// What a stretch calls, in the place of the controller.
+struct InLoop<'c, C>(&'c mut C);
 
-impl CurrentLoop for InLoop<'_, '_> {
+impl<C: Called> CurrentLoop for InLoop<'_, C> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         self.0.step(*sample)
     }
 }
 
+/// A drive on the host: compiled code where it is built in, else the interpreted program, which equals it.
+pub struct OnHost<'g> {
+    drive: &'g Prepared,
+    subject: Box<dyn Subject + 'g>,
+}
+
+impl<'g> OnHost<'g> {
+    /// At rest.
+    pub fn new(drive: &'g Prepared) -> Self {
+        let subject: Box<dyn Subject + 'g> = match drive.compiled() {
+            Some(compiled) => Box::new(compiled),
+            None => Box::new(drive.interpreted()),
+        };
+        Self { drive, subject }
+    }
+}
+
+impl Called for OnHost<'_> {
+    fn call(&mut self, record: Record) {
+        match record {
+            Record::New => *self = Self::new(self.drive),
+            Record::SetCurrent(bits) => self.subject.set_current(bits),
+            Record::SetTorque(bits) => self.subject.set_torque(bits),
+            Record::SetSpeed(bits) => self.subject.set_speed(bits),
+            Record::SetBus(counts) => self.subject.set_bus(counts),
+            Record::Reset => self.subject.reset(),
+            Record::Calibrate => self.subject.calibrate(),
+            Record::Precharge => self.subject.precharge(),
+            Record::Step(_) | Record::SetStateWord { .. } => {}
+        }
+    }
+
+    fn step(&mut self, sample: Sample) -> Legs {
+        self.subject.step(&sample)
+    }
+}
+
 /// A drive of the host that notes all calls and answers.
 pub struct Recorder<'g> {
-    subject: Box<dyn Subject + 'g>,
+    host: OnHost<'g>,
     words: Vec<i32>,
     digest: Digest,
     in_block: usize,
     full: Option<usize>,
     vectors: Vectors,
-    fresh: Box<dyn Fn() -> Box<dyn Subject + 'g> + 'g>,
 }
 
 impl<'g> Recorder<'g> {
-    /// A drive at rest; compiled code where it is built in, else the interpreted program, which equals it.
+    /// A drive at rest.
     pub fn new(drive: &'g Prepared, full: Option<usize>) -> Self {
-        let fresh = move || -> Box<dyn Subject + 'g> {
-            match drive.compiled() {
-                Some(compiled) => Box::new(compiled),
-                None => Box::new(drive.interpreted()),
-            }
-        };
         Self {
-            subject: fresh(),
+            host: OnHost::new(drive),
             words: vec![0; drive.state_names().len()],
             digest: Digest::default(),
             in_block: 0,
             full,
             vectors: Vectors::default(),
-            fresh: Box::new(fresh),
         }
     }
 
@@ -190,87 +285,18 @@ impl<'g> Recorder<'g> {
         self.vectors.records.extend(record.encode());
     }
 
-    /// A call other than a step.
-    pub fn call(&mut self, record: Record) {
-        self.note(record);
-        match record {
-            Record::New => self.subject = (self.fresh)(),
-            Record::SetCurrent(bits) => self.subject.set_current(bits),
-            Record::SetTorque(bits) => self.subject.set_torque(bits),
-            Record::SetSpeed(bits) => self.subject.set_speed(bits),
-            Record::SetBus(counts) => self.subject.set_bus(counts),
-            Record::Reset => self.subject.reset(),
-            Record::Calibrate => self.subject.calibrate(),
-            Record::Precharge => self.subject.precharge(),
-            Record::Step(_) | Record::SetStateWord { .. } => {}
-        }
-    }
-
     /// Overwrites all state words.
     fn recall(&mut self, words: &[i32]) {
         for (index, &value) in words.iter().enumerate() {
             let index = index as u8;
             self.note(Record::SetStateWord { index, value });
         }
-        self.subject.set_state_words(words);
-    }
-
-    /// A control period.
-    pub fn step(&mut self, sample: Sample) -> Legs {
-        self.note(Record::Step(sample));
-        let legs = self.subject.step(&sample);
-        let fault = self.subject.fault();
-        self.subject.state_words(&mut self.words);
-        self.digest.answer(legs, fault);
-        for &word in &self.words {
-            self.digest.word(word as u32);
-        }
-        if self.full == Some(self.vectors.digests.len()) {
-            let words = self.words.iter().flat_map(|word| word.to_le_bytes());
-            self.vectors.full.push(Answer {
-                sample,
-                step: self.vectors.steps,
-                bytes: encode_outputs(legs, fault)
-                    .into_iter()
-                    .chain(words)
-                    .collect(),
-            });
-        }
-        self.vectors.steps += 1;
-        legs
+        self.host.subject.set_state_words(words);
     }
 
     /// Why the drive is tripped.
-    pub fn fault(&self) -> Fault {
-        self.subject.fault()
-    }
-
-    /// A stretch on the simulated plant, from a drive at rest on.
-    ///
-    /// # Errors
-    /// When the plant cannot be made.
-    pub fn closed_loop(&mut self, drive: &Prepared, stretch: &Stretch) -> Result<(), BenchError> {
-        self.call(Record::New);
-        if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
-            self.call(Record::SetBus(counts));
-        }
-        if drive.spec.controller.common().speed.is_some() {
-            self.call(Record::SetSpeed(stretch.wanted_rpm(drive)));
-        }
-        let inverter = &drive.spec.inverter;
-        let mut closed = ClosedLoop::new(stretch.plant(drive)?, InLoop(self), delay(drive));
-        if stretch.starts_up {
-            closed.controller().0.call(Record::Calibrate);
-            closed.run(1 << inverter.calibration_log2, &mut ());
-            closed.controller().0.call(Record::Precharge);
-            closed.run(inverter.precharge_periods as usize, &mut ());
-        }
-        for share in stretch.currents {
-            let bits = (share * inverter.max_current * 65_536.0) as i32;
-            closed.controller().0.call(Record::SetCurrent(bits));
-            closed.run(stretch.steps / 2, &mut ());
-        }
-        Ok(())
+    pub fn fault(&self) -> Option<Fault> {
+        self.host.subject.fault()
     }
 
     /// A stretch of the bit-for-bit test's stimulus: arbitrary words, corners, calls strewn in.
@@ -286,7 +312,7 @@ impl<'g> Recorder<'g> {
         for _ in 0..STRETCH {
             let context = Context {
                 offset: [offset; 2],
-                tripped: self.fault() != Fault::None,
+                tripped: self.fault().is_some(),
             };
             let (action, sample) = stimulus.next(&context);
             match action {
@@ -309,5 +335,36 @@ impl<'g> Recorder<'g> {
             stimulus.respond(legs);
         }
         Ok(())
+    }
+}
+
+impl Called for Recorder<'_> {
+    fn call(&mut self, record: Record) {
+        self.note(record);
+        self.host.call(record);
+    }
+
+    fn step(&mut self, sample: Sample) -> Legs {
+        self.note(Record::Step(sample));
+        let legs = self.host.step(sample);
+        let fault = self.host.subject.fault();
+        self.host.subject.state_words(&mut self.words);
+        self.digest.answer(legs, fault);
+        for &word in &self.words {
+            self.digest.word(word as u32);
+        }
+        if self.full == Some(self.vectors.digests.len()) {
+            let words = self.words.iter().flat_map(|word| word.to_le_bytes());
+            self.vectors.full.push(Answer {
+                sample,
+                step: self.vectors.steps,
+                bytes: encode_outputs(legs, fault)
+                    .into_iter()
+                    .chain(words)
+                    .collect(),
+            });
+        }
+        self.vectors.steps += 1;
+        legs
     }
 }

@@ -4,7 +4,6 @@
     reason = "peripherals lie at fixed addresses, and vectors have fixed names"
 )]
 
-use core::arch::asm;
 use hexagen_firmware::Registers;
 
 /// ADCs, Hall port and PWM timer.
@@ -53,6 +52,5 @@ pub fn start_timer() {
 
 /// Sleeps until an interrupt has run.
 pub fn wait_for_interrupt() {
-    // SAFETY: sleeping touches nothing.
-    unsafe { asm!("wfi") };
+    cortex_m::asm::wfi();
 }

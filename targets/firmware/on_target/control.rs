@@ -1,12 +1,15 @@
 //! The control loop of this firmware, and its interrupt.
 #![expect(
     unsafe_code,
-    reason = "the interrupt's function has a stable name, and a static of its own"
+    reason = "the bench finds the interrupt's function by its symbol"
 )]
 
 use crate::board::REGISTERS;
+use core::cell::Cell;
+use critical_section::Mutex;
+use hexagen_firmware::hexagen::{self, ControlLoop, Drive, SetPoint};
 use hexagen_firmware::interrupt::control_period;
-use hexagen_firmware::{Handed, hexagen};
+use static_cell::StaticCell;
 
 hexagen::controller! {
     /// The drive of this firmware, a type of its own beside those of the test bench.
@@ -16,32 +19,32 @@ hexagen::controller! {
     }
 }
 
-type Loop = <HubDrive as hexagen::Drive>::LoopHalf<'static>;
-type SetPoint = <HubDrive as hexagen::Drive>::SetPointHalf;
+static DRIVE: StaticCell<Drive<HubDrive>> = StaticCell::new();
 
-static DRIVE: Handed<HubDrive> = Handed::new();
-static CONTROL: Handed<Loop> = Handed::new();
+/// The drive's control loop, which the interrupt alone takes once the timer runs.
+static CONTROL: Mutex<Cell<Option<ControlLoop<'static, HubDrive>>>> = Mutex::new(Cell::new(None));
 
-/// The drive's halves: the set-point for `main`, the control loop for the interrupt, after `prepare` had it. Once,
-/// before the timer starts.
-pub fn hand_over(prepare: impl FnOnce(&mut Loop)) -> &'static SetPoint {
-    // SAFETY: called once, from `main`; the interrupt does not run yet.
-    let (set_point, control) = unsafe { DRIVE.hand_over(HubDrive::new()) }.split();
-    // SAFETY: likewise.
-    prepare(unsafe { CONTROL.hand_over(control) });
+/// The drive's halves: the set-point for `main`, the control loop for the interrupt. Once, before the timer starts.
+pub fn hand_over() -> &'static SetPoint<HubDrive> {
+    let (set_point, control) = DRIVE.init(Drive::new()).split();
+    critical_section::with(|token| CONTROL.borrow(token).set(Some(control)));
     set_point
 }
 
-/// What the timer's interrupt does; behind [`hand_over`] alone.
-#[unsafe(no_mangle)]
-pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
-    // SAFETY: the only one that takes the control loop; the timer starts behind the hand-over.
-    let control = unsafe { CONTROL.take_turn() };
-    control_period(control, &REGISTERS);
+/// A call of the control loop, once it is handed over.
+#[inline]
+pub fn with_control(call: impl FnOnce(&mut ControlLoop<'static, HubDrive>)) {
+    critical_section::with(|token| {
+        let place = CONTROL.borrow(token);
+        if let Some(mut control) = place.take() {
+            call(&mut control);
+            place.set(Some(control));
+        }
+    });
 }
 
-/// Begins again from rest; from where the interrupt's function is called, and behind [`hand_over`], too.
-pub fn reset() {
-    // SAFETY: as above.
-    unsafe { CONTROL.take_turn() }.reset();
+/// What the timer's interrupt does. Nothing interrupts it, so that the critical section delays nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
+    with_control(|control| control_period(control, &REGISTERS));
 }

@@ -52,8 +52,9 @@ fn call<D>(
     };
     let legs = (&raw mut legs).expose_provenance();
     let drive = core::ptr::from_mut(drive).expose_provenance();
-    let [adc_a, adc_b, ticks] = [sample.adc_a, sample.adc_b, sample.hall_ticks].map(usize::from);
-    let hall = usize::from(sample.hall);
+    let [adc_a, adc_b, _] = sample.adc();
+    let [adc_a, adc_b, ticks] = [adc_a, adc_b, sample.ticks()].map(usize::from);
+    let hall = usize::from(sample.hall());
     // Room for a structure comes before all other arguments.
     let (step, arguments) = match step {
         StepFn::Bits(step) => (step as *const c_void, [drive, adc_a, adc_b, hall, ticks, 0]),

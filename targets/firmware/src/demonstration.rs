@@ -1,8 +1,7 @@
 //! What a main program does while its interrupt controls the current: here, enough of it to see that it does.
 
 use crate::registers::Registers;
-use hexagen::fixed::types::I16F16;
-use hexagen::{DriveSetPoint, Mode, Sample};
+use hexagen::{Control, Mode, Sample, SetPoint};
 use semihosting::{eprintln, println, process};
 
 /// Hall codes of a rotor that turns forward, from sector 1 on.
@@ -14,20 +13,15 @@ const SECTOR: usize = 40;
 /// Control periods of the demonstration.
 const PERIODS: usize = 2400;
 
-/// Converters at their middle, and a rotor that turns.
+/// ADCs at their middle, and a rotor that turns.
 fn sample(period: usize) -> Sample {
-    Sample {
-        adc_a: 2048,
-        adc_b: 2048,
-        hall: CODES[period / SECTOR % CODES.len()],
-        hall_ticks: 0,
-    }
+    Sample::with_hall([2048; 2], CODES[period / SECTOR % CODES.len()])
 }
 
 /// Waits until the drive controls, asks for a current, turns the rotor, and ends the emulator: well, if the drive
 /// controlled all the time and pulsed its legs.
-pub fn run(
-    set_point: &impl DriveSetPoint,
+pub fn run<C: Control>(
+    set_point: &SetPoint<C>,
     registers: &Registers,
     start_timer: impl FnOnce(),
     wait_for_interrupt: impl Fn(),
@@ -41,7 +35,7 @@ pub fn run(
         let status = set_point.status();
         if status.mode == Mode::Run && started.is_none() {
             started = Some(period);
-            set_point.set_current(I16F16::from_num(2));
+            set_point.set_current_ma(2_000);
         }
     }
     let (status, legs) = (set_point.status(), registers.legs());

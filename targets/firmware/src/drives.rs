@@ -2,7 +2,7 @@
 
 use crate::session::{Broken, Link};
 use crate::wire::Task;
-use hexagen::{LegState, Legs, Sample};
+use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 
 /// A step function as it stands in the ELF: drive, counts of phases a and b, Hall code, ticks since the last
 /// Hall edge.
@@ -26,12 +26,8 @@ impl<D> Copy for StepFn<D> {}
 impl<D> StepFn<D> {
     /// One step.
     pub fn call(self, drive: &mut D, sample: Sample) -> Legs {
-        let Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        } = sample;
+        let [adc_a, adc_b, _] = sample.adc();
+        let (hall, hall_ticks) = (sample.hall(), sample.ticks());
         match self {
             Self::Bits(step) => step(drive, adc_a, adc_b, hall, hall_ticks),
             Self::Structure(step) => {
@@ -68,8 +64,8 @@ pub struct Listed {
     pub options: &'static str,
     /// Bytes of the drive's type.
     pub size: usize,
-    /// Names of the state words.
-    pub state_names: &'static [&'static str],
+    /// Names of the state words: the supervisor's, then the law's.
+    pub state_names: [&'static [&'static str]; 2],
     /// Normalised specification.
     pub spec: &'static str,
     /// Replays a task on this drive.
@@ -82,25 +78,31 @@ impl Listed {
     /// # Errors
     /// When the output cannot be written.
     pub fn list(&self, link: &mut dyn Link) -> Result<(), Broken> {
-        let mut line = |key: &str, values: &[&str]| {
+        let mut line = |key: &str, values: &[&[&str]]| {
             link.write(key.as_bytes())?;
-            for value in values {
+            for value in values.iter().copied().flatten() {
                 link.write(b" ")?;
                 link.write(value.as_bytes())?;
             }
             link.write(b"\n")
         };
-        line("drive", &[self.symbol])?;
-        line("motor", &[self.motor])?;
-        line("kind", &[self.kind])?;
-        line("options", &[self.options])?;
-        line("words", self.state_names)?;
+        line("drive", &[&[self.symbol]])?;
+        line("motor", &[&[self.motor]])?;
+        line("kind", &[&[self.kind]])?;
+        line("options", &[&[self.options]])?;
+        line("words", &self.state_names)?;
         link.write(b"size ")?;
         link.write(&decimal(self.size))?;
         link.write(b"\n")?;
         link.write(self.spec.as_bytes())?;
         link.write(b"end\n")
     }
+}
+
+/// Names of the words of a drive: its supervisor's, then its law's.
+#[must_use]
+pub const fn state_names<C: Control>() -> [&'static [&'static str]; 2] {
+    [&Supervisor::NAMES, C::State::NAMES]
 }
 
 /// Six decimal digits.
@@ -128,15 +130,16 @@ macro_rules! drives {
             /// One control period of the drive.
             #[unsafe(no_mangle)]
             pub extern "C" fn $symbol(
-                drive: &mut $name,
+                drive: &mut $crate::hexagen::Drive<$name>,
                 adc_a: u16,
                 adc_b: u16,
                 hall: u8,
                 hall_ticks: u16,
             ) -> $crate::hexagen::Legs {
-                let sample = $crate::hexagen::Sample { adc_a, adc_b, hall, hall_ticks };
-                $crate::hexagen::Drive::step(drive, &sample)
+                let sample = $crate::hexagen::Sample::with_hall([adc_a, adc_b], hall);
+                drive.step(&sample.hall_ticks(hall_ticks))
             }
+
         )*
 
         /// All drives of this firmware.
@@ -145,10 +148,10 @@ macro_rules! drives {
             motor: $motor,
             kind: stringify!($kind),
             options: stringify!($($options)*),
-            size: size_of::<$name>(),
-            state_names: <$name as $crate::hexagen::Drive>::STATE_NAMES,
-            spec: <$name as $crate::hexagen::Drive>::SPEC,
-            replay: |link, task| $crate::session::replay($crate::StepFn::Bits($symbol), link, task),
+            size: size_of::<$crate::hexagen::Drive<$name>>(),
+            state_names: $crate::state_names::<$name>(),
+            spec: <$name as $crate::hexagen::Control>::SPEC,
+            replay: |link, task| $crate::session::replay_drive::<$name>($symbol, link, task),
         },)*];
     };
 }

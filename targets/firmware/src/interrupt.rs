@@ -5,12 +5,15 @@ use crate::registers::Registers;
 use crate::session::{Broken, Link, measure};
 use crate::wire::{HEADER, Mode, RECORD, Record, Task};
 use hexagen::fixed::types::I16F16;
-use hexagen::{DriveLoop, DriveSetPoint};
+use hexagen::{Control, ControlLoop, Legs, SetPoint};
 
 /// One control period: two ADC registers and the Hall port are read, three compare registers and the output
 /// enables are written.
 #[inline]
-pub fn control_period(control: &mut impl DriveLoop, registers: &Registers) {
+pub fn control_period<C: Control<Command = Legs>>(
+    control: &mut ControlLoop<'_, C>,
+    registers: &Registers,
+) {
     let legs = control.step(&registers.sample());
     registers.apply(legs);
 }
@@ -20,9 +23,9 @@ pub fn control_period(control: &mut impl DriveLoop, registers: &Registers) {
 ///
 /// # Errors
 /// When the exchange ends early.
-pub fn serve(
+pub fn serve<C: Control>(
     link: &mut dyn Link,
-    set_point: &impl DriveSetPoint,
+    set_point: &SetPoint<C>,
     registers: &Registers,
     reset: impl Fn(),
     interrupt: extern "C" fn(),

@@ -11,16 +11,18 @@ mod counter;
 #[cfg(target_os = "none")]
 pub mod demonstration;
 mod drives;
-mod handed;
 pub mod interrupt;
 pub mod peers;
 mod registers;
 #[cfg(target_os = "none")]
 pub mod semihosted;
 pub mod session;
+mod subject;
+mod supervised;
 pub mod wire;
 
-pub use drives::{Drives, LegsInC, Listed, StepFn};
-pub use handed::Handed;
+pub use drives::{Drives, LegsInC, Listed, StepFn, state_names};
 pub use hexagen;
 pub use registers::Registers;
+pub use subject::Subject;
+pub use supervised::{Supervised, step_supervised};

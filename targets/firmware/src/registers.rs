@@ -8,7 +8,7 @@
 use core::sync::atomic::AtomicU16;
 use hexagen::{Legs, Sample};
 
-/// One register, of which a halfword is used, as data registers of converters and compare registers of timers have it.
+/// One register, of which a halfword is used, as data registers of ADCs and compare registers of timers have it.
 #[derive(Debug)]
 struct Register(AtomicU16);
 
@@ -54,16 +54,12 @@ impl Registers {
         }
     }
 
-    /// What the converters and the Hall port hold. The drives of the interrupts see edges at samples: no timer captures them.
+    /// What the ADCs and the Hall port hold. The drives of the interrupts see edges at samples: no timer captures them.
     #[inline]
     #[must_use]
     pub fn sample(&self) -> Sample {
-        Sample {
-            adc_a: self.adc_a.read(),
-            adc_b: self.adc_b.read(),
-            hall: self.hall.read() as u8,
-            hall_ticks: 0,
-        }
+        let adc = [self.adc_a.read(), self.adc_b.read()];
+        Sample::with_hall(adc, self.hall.read() as u8)
     }
 
     /// Writes the three compare values, and what the legs do besides into the timer's output enables.
@@ -82,10 +78,11 @@ impl Registers {
         Legs::from_bits(a | b << 16 | c << 32 | u64::from(self.legs.read()) << 48)
     }
 
-    /// Plays the converters and the Hall sensors.
+    /// Plays the ADCs and the Hall sensors.
     pub fn feed(&self, sample: &Sample) {
-        self.adc_a.write(sample.adc_a);
-        self.adc_b.write(sample.adc_b);
-        self.hall.write(sample.hall.into());
+        let [adc_a, adc_b, _] = sample.adc();
+        self.adc_a.write(adc_a);
+        self.adc_b.write(adc_b);
+        self.hall.write(sample.hall().into());
     }
 }

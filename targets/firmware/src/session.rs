@@ -3,12 +3,13 @@
 use crate::counter::{count, sound, trace};
 use crate::drives::{Drives, StepFn};
 use crate::peers::Peer;
+use crate::subject::Subject;
+use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
-use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Fault, Legs, Sample};
+use hexagen::{Control, Drive, Legs, Sample};
 
 /// Room for the state words of any drive here.
-const MOST_WORDS: usize = 64;
+pub(crate) const MOST_WORDS: usize = 64;
 
 /// Where a session reads its task and writes its answers.
 pub trait Link {
@@ -53,11 +54,28 @@ pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
     (drive.replay)(link, &task)
 }
 
+/// Replays the records of a task on a drive, or on one with its supervision alone.
+///
+/// # Errors
+/// When the exchange ends early.
+pub fn replay_drive<C: Control<Command = Legs>>(
+    step: extern "C" fn(&mut Drive<C>, u16, u16, u8, u16) -> Legs,
+    link: &mut dyn Link,
+    task: &Task,
+) -> Result<(), Broken> {
+    if task.mode != Mode::Supervision {
+        return replay(StepFn::Bits(step), link, task);
+    }
+    let mode = Mode::Count;
+    let step = StepFn::Bits(step_supervised::<Supervised<C>>);
+    replay(step, link, &Task { mode, ..*task })
+}
+
 /// Replays the records of a task on a drive.
 ///
 /// # Errors
 /// When the exchange ends early.
-pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
+pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
     let mut replayed = Replayed {
         drive: D::new(),
         step,
@@ -77,7 +95,7 @@ pub fn replay<D: Drive>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Re
             Mode::Count | Mode::Trace | Mode::Stack => {
                 replayed.measure(records, task.mode, link)?;
             }
-            Mode::Digest | Mode::List => {}
+            Mode::Digest | Mode::List | Mode::Supervision => {}
         }
         if length < BLOCK * RECORD {
             break;
@@ -107,7 +125,7 @@ pub fn replay_peer<P: Peer>(
             continue;
         };
         if task.mode == Mode::Full {
-            link.write(&encode_outputs(step.call(&mut peer, sample), Fault::None))?;
+            link.write(&encode_outputs(step.call(&mut peer, sample), None))?;
         } else {
             measure(task.mode, step, &mut peer, sample, &mut depth, link)?;
         }
@@ -137,7 +155,7 @@ pub(crate) fn measure<D>(
             *depth = (*depth).max(sound(step, drive, sample).ok_or(Broken::Uncounted)?);
             Ok(())
         }
-        Mode::List | Mode::Digest | Mode::Full => Err(Broken::Format),
+        Mode::List | Mode::Digest | Mode::Full | Mode::Supervision => Err(Broken::Format),
     }
 }
 
@@ -147,15 +165,15 @@ struct Replayed<D> {
     depth: u32,
 }
 
-impl<D: Drive> Replayed<D> {
+impl<D: Subject> Replayed<D> {
     /// The sample of a step; any other call is carried out.
     fn sample(&mut self, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
         match Record::decode(record).ok_or(Broken::Format)? {
             Record::Step(sample) => return Ok(Some(sample)),
             Record::New => self.drive = D::new(),
-            Record::SetCurrent(bits) => self.drive.set_current(I16F16::from_bits(bits)),
-            Record::SetTorque(bits) => self.drive.set_torque(I16F16::from_bits(bits)),
-            Record::SetSpeed(bits) => self.drive.set_speed(I16F16::from_bits(bits)),
+            Record::SetCurrent(bits) => self.drive.set_current(bits),
+            Record::SetTorque(bits) => self.drive.set_torque(bits),
+            Record::SetSpeed(bits) => self.drive.set_speed(bits),
             Record::SetBus(counts) => self.drive.set_bus(counts),
             Record::Reset => self.drive.reset(),
             Record::Calibrate => self.drive.calibrate(),
@@ -173,9 +191,9 @@ impl<D: Drive> Replayed<D> {
 
     /// The state words behind a step, in front of `words`.
     fn state_words<'w>(&self, words: &'w mut [i32; MOST_WORDS]) -> &'w [i32] {
-        const { assert!(D::STATE_NAMES.len() <= MOST_WORDS) };
+        const { assert!(D::WORDS <= MOST_WORDS) };
         self.drive.state_words(words);
-        &words[..D::STATE_NAMES.len()]
+        &words[..D::WORDS]
     }
 
     fn digest(&mut self, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {

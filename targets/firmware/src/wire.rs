@@ -38,6 +38,8 @@ pub enum Mode {
     Stack = 4,
     /// Calls each step as for a count, and answers nothing: the emulator logs the instructions.
     Trace = 5,
+    /// As [`Mode::Count`], on a drive with the same supervision and an empty law.
+    Supervision = 6,
 }
 
 /// Begin of the input.
@@ -76,6 +78,7 @@ impl Task {
                 3 => Mode::Count,
                 4 => Mode::Stack,
                 5 => Mode::Trace,
+                6 => Mode::Supervision,
                 _ => return None,
             },
             drive: u16::from_le_bytes([d0, d1]),
@@ -125,10 +128,11 @@ impl Record {
         match *self {
             Self::New => number(0, 0, 0),
             Self::Step(sample) => {
-                let [t0, t1] = sample.hall_ticks.to_le_bytes();
-                let [a0, a1] = sample.adc_a.to_le_bytes();
-                let [b0, b1] = sample.adc_b.to_le_bytes();
-                [STEP_RECORD, sample.hall, t0, t1, a0, a1, b0, b1]
+                let [adc_a, adc_b, _] = sample.adc();
+                let [t0, t1] = sample.ticks().to_le_bytes();
+                let [a0, a1] = adc_a.to_le_bytes();
+                let [b0, b1] = adc_b.to_le_bytes();
+                [STEP_RECORD, sample.hall(), t0, t1, a0, a1, b0, b1]
             }
             Self::SetCurrent(bits) => number(2, bits, 0),
             Self::SetTorque(bits) => number(3, bits, 0),
@@ -148,12 +152,11 @@ impl Record {
         let value = i32::from_le_bytes([v0, v1, v2, v3]);
         Some(match operation {
             0 => Self::New,
-            STEP_RECORD => Self::Step(Sample {
-                adc_a: u16::from_le_bytes([v0, v1]),
-                adc_b: u16::from_le_bytes([v2, v3]),
-                hall: index,
-                hall_ticks: u16::from_le_bytes([t0, t1]),
-            }),
+            STEP_RECORD => {
+                let adc = [[v0, v1], [v2, v3]].map(u16::from_le_bytes);
+                let ticks = u16::from_le_bytes([t0, t1]);
+                Self::Step(Sample::with_hall(adc, index).hall_ticks(ticks))
+            }
             2 => Self::SetCurrent(value),
             3 => Self::SetTorque(value),
             4 => Self::SetBus(value as u16),
@@ -193,12 +196,17 @@ impl Digest {
         ];
     }
 
-    /// Takes in what a step put out.
-    pub fn answer(&mut self, legs: Legs, fault: Fault) {
+    /// Takes in the command of a step.
+    pub fn command(&mut self, legs: Legs) {
         for (compare, state) in legs.compare().into_iter().zip(legs.state()) {
             self.word(u32::from(compare) | (state as u32) << 16);
         }
-        self.word(fault as u32);
+    }
+
+    /// Takes in what a step put out.
+    pub fn answer(&mut self, legs: Legs, fault: Option<Fault>) {
+        self.command(legs);
+        self.word(u32::from(number(fault)));
     }
 
     /// As bytes.
@@ -211,10 +219,15 @@ impl Digest {
     }
 }
 
+/// The number of a fault; 0 of none.
+fn number(fault: Option<Fault>) -> u8 {
+    fault.map_or(0, |fault| fault as u8)
+}
+
 /// A step's outputs as bytes; its state words follow.
 #[must_use]
-pub fn encode_outputs(legs: Legs, fault: Fault) -> [u8; ANSWER] {
+pub fn encode_outputs(legs: Legs, fault: Option<Fault>) -> [u8; ANSWER] {
     let [[a0, a1], [b0, b1], [c0, c1]] = legs.compare().map(u16::to_le_bytes);
     let [a, b, c] = legs.state().map(|state| state as u8);
-    [a0, a1, b0, b1, c0, c1, a, b, c, fault as u8]
+    [a0, a1, b0, b1, c0, c1, a, b, c, number(fault)]
 }

@@ -24,8 +24,8 @@ struct Arguments {
 enum Command {
     /// Format, lints, documentation and all tests
     Test,
-    /// `test`, then bit-for-bit verification of every library motor over many steps, all products of options, and the
-    /// proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
+    /// `test`, then bit-for-bit verification of every library motor over many steps, all products of options, `commands`,
+    /// and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -37,11 +37,14 @@ enum Command {
     Pil(Forwarded),
     /// What a step costs on every target: instructions, bytes, cycles (`--target`, `--only`, `--accept`)
     Cost(Forwarded),
+    /// Whether the counted drives command what they did: digests of a million steps each (`--only`, `--accept`)
+    Commands(Forwarded),
     /// Plants 300 faults and lists who notices each: interval verifier, Gappa, or the comparison with the bit-true model
     Faults,
     /// What 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,
-    /// Refreshes every recorded expectation (snapshots, compiler messages); read the diff afterwards
+    /// Refreshes every recorded expectation (snapshots, compiler messages) but that of `commands`, which changes only where
+    /// a drive is meant to act otherwise; read the diff afterwards
     Accept,
 }
 
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
+        Command::Commands(forwarded) => steps::run(&[steps::bench("commands", &forwarded.options)]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::CompileTime => compile_time::measure(steps::root()),
         Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),

@@ -237,6 +237,7 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
             )
         },
         on_target("pil", &["--steps", "1000000"]),
+        bench("commands", &[]),
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),

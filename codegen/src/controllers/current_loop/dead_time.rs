@@ -50,11 +50,7 @@ impl CurrentLoop<'_, '_> {
         [0, 1, 2].map(|x| {
             let shift = l.times(k_dead, [a, b, c][x]);
             let doc = format!("What {dead_time} of dead time cost");
-            let (low, high) = (
-                l.voltage("dead_min", -limit, &doc),
-                l.voltage("dead_max", limit, &doc),
-            );
-            let shift = l.b.clamp(shift, low, high);
+            let shift = l.within_volts(shift, "dead_max", limit, &doc);
             l.b.name(["shift_a", "shift_b", "shift_c"][x], shift)
         })
     }

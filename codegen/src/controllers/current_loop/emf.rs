@@ -34,11 +34,7 @@ const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
 /// An estimate of a phase's EMF, limited to what is believed; added to the open stage.
 pub(super) fn believed(l: &mut Lowering<'_>, e: Value) -> Value {
     let bus = l.bus_interval().high;
-    let (low, high) = (
-        l.voltage("e_min", -bus, BELIEVED),
-        l.voltage("e_max", bus, BELIEVED),
-    );
-    l.b.clamp(e, low, high)
+    l.within_volts(e, "e_max", bus, BELIEVED)
 }
 
 impl CurrentLoop<'_, '_> {
@@ -166,19 +162,15 @@ impl CurrentLoop<'_, '_> {
             let seen = self.see_emf(words, currents, sight, x);
             let l = &mut *self.lowering;
             let bus = l.bus_interval().high;
-            let (low, high) = (
-                l.voltage("integral_min", -bus, BELIEVED),
-                l.voltage("integral_max", bus, BELIEVED),
-            );
             let expected = l.b.state(e_prev[x]);
             let lack = l.b.sub(seen, expected);
-            let lack = l.b.clamp(lack, low, high);
+            let lack = l.within_volts(lack, "integral_max", bus, BELIEVED);
             l.b.name(["lack_a", "lack_b"][x], lack);
             let sum = l.b.state(integral[x]);
             let news = l.b.sub(lack, sum);
             let part = l.times(k_integral, news);
             let sum = l.b.add(sum, part);
-            let sum = l.b.clamp(sum, low, high);
+            let sum = l.within_volts(sum, "integral_max", bus, BELIEVED);
             let doc = "Integral of what the modelled EMF lacks, after one step";
             let word = 1.0 / l.scale.voltage();
             l.b.state_error("integral", sum, [doc, "V"], word);

@@ -157,11 +157,7 @@ impl CurrentLoop<'_, '_> {
     fn shifted_line(&mut self, names: [&str; 2], line: Value, range: LineRange) -> Value {
         let l = &mut *self.lowering;
         let doc = "Line EMF from which on its motion no longer grows";
-        let (low, high) = (
-            l.voltage("line_min", -range.limit, doc),
-            l.voltage("line_max", range.limit, doc),
-        );
-        let held = l.b.clamp(line, low, high);
+        let held = l.within_volts(line, "line_max", range.limit, doc);
         l.b.name(names[0], held);
         let factor = match range.shift {
             0 => held,

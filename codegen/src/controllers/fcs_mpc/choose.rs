@@ -72,8 +72,7 @@ impl CurrentLoop<'_, '_> {
             l.b.name("u_depth", depth);
         }
         let (three, is_low) = nearest_three_phase(l, phases, front.bus.volts);
-        let off_legs = (options.floating() && front.commutation.is_some())
-            .then(|| self.predict_off_legs(options, front, phases));
+        let off_legs = self.predict_off_legs(options, front, phases);
         if off_legs.is_none() {
             state_exact_scores(&mut *self.lowering, u_c);
         }
@@ -124,13 +123,14 @@ impl CurrentLoop<'_, '_> {
         l.b.stage("complete_voltage", &[doc]);
         let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
         let phases = [u[0], u[1], u_c];
-        let pair = if options.floating() {
-            let off_legs = self.predict_off_legs(options, front, phases);
-            self.nearest_physical(&off_legs, front, phases, None, None)
-        } else {
-            state_exact_scores(l, u_c);
-            pair_stage(l);
-            nearest_nominal(l, front, phases)
+        let pair = match self.predict_off_legs(options, front, phases) {
+            Some(off_legs) => self.nearest_physical(&off_legs, front, phases, None, None),
+            None => {
+                let l = &mut *self.lowering;
+                state_exact_scores(l, u_c);
+                pair_stage(l);
+                nearest_nominal(l, front, phases)
+            }
         };
         let l = &mut *self.lowering;
         l.b.name("vector_pair", pair);
@@ -154,13 +154,16 @@ impl CurrentLoop<'_, '_> {
         l.b.name("pattern", pattern)
     }
 
-    /// Where each leg would sit if it were off in the target period.
+    /// Where each leg would sit if it were off in the target period; none where a vector stands for its nominal voltage.
     pub(super) fn predict_off_legs(
         &mut self,
         options: &FcsMpcSpec,
         front: &Front,
         u: [Value; 3],
-    ) -> OffLegs {
+    ) -> Option<OffLegs> {
+        let e = front
+            .e
+            .filter(|_| options.floating() && front.commutation.is_some())?;
         let threshold_volts = if options.common.delay == 1 {
             self.design.k_hold / self.design.plant.pole
         } else {
@@ -174,7 +177,6 @@ impl CurrentLoop<'_, '_> {
                 "through a diode, else where its EMF puts it. h = K a i(k+1) = K i_ref + e - u needs no product.",
             ],
         );
-        let e = front.e.unwrap_or([u[0], u[1]]);
         let e_c = l.third_phase("e_c_off", e[0], e[1]);
         let e = [e[0], e[1], e_c];
         let h = [0, 1].map(|x| {
@@ -216,11 +218,11 @@ impl CurrentLoop<'_, '_> {
             offsets.push(offset);
             lifts.push(lift);
         }
-        OffLegs {
+        Some(OffLegs {
             conducting: [flags[0], flags[1], flags[2]],
             offsets: [offsets[0], offsets[1], offsets[2]],
             lifts: [lifts[0], lifts[1], lifts[2]],
-        }
+        })
     }
 
     /// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`, whose

@@ -29,8 +29,8 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
         };
         let front = step.front(set_point);
         let u = step.deadbeat(&front, false).u;
-        if options.horizon == 2 {
-            let vector = step.choose_two_steps(options, &front, u);
+        if let (2, Some(e)) = (options.horizon, front.e) {
+            let vector = step.choose_two_steps(options, &front, e, u);
             step.apply_vector(&front, vector, numbers, vec![]);
             return;
         }

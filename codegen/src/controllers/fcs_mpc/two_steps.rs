@@ -11,11 +11,12 @@ use crate::lower::{Coefficient, Lowering};
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
 impl CurrentLoop<'_, '_> {
-    /// The first vector of the best sequence of two.
+    /// The first vector of the best sequence of two; `e` is the EMF over the target period.
     pub(super) fn choose_two_steps(
         &mut self,
         options: &FcsMpcSpec,
         front: &Front,
+        e: [Value; 2],
         u: [Value; 2],
     ) -> Value {
         let pole = self.design.plant.pole;
@@ -52,7 +53,6 @@ impl CurrentLoop<'_, '_> {
                 "A first vector v moves it by -a v. z = u + a y is what the first vector is compared with in both periods.",
             ],
         );
-        let e = front.e.unwrap_or(u);
         let pairs = [0, 1].map(|x| {
             let open = l.b.sub(u[x], front.reference[x]);
             let left = l.times(k_pole, open);

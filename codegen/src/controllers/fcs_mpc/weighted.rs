@@ -75,8 +75,7 @@ impl CurrentLoop<'_, '_> {
         l.b.stage("third_phase", &["The deadbeat voltage of the third phase."]);
         let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
         let phases = [u[0], u[1], u_c];
-        let off_legs = (options.floating() && front.commutation.is_some())
-            .then(|| self.predict_off_legs(options, front, phases));
+        let off_legs = self.predict_off_legs(options, front, phases);
         let vector = match changes {
             Some(changes) if options.torque_weight <= 0.0 => {
                 self.fewest_changes(options, front, phases, off_legs.as_ref(), &changes)

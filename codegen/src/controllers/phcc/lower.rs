@@ -273,13 +273,13 @@ fn look_up(
         "look_up_vector",
         &["The switching table: rows by direction, sign of the set-point, sector and commutation, columns by the wishes."],
     );
-    let direction = front.direction.unwrap_or(front.set_point);
-    let turning = l.b.shift_left(direction, 7);
     let zero = l.zero();
     let negative = l.b.compare(Comparison::Less, front.set_point, zero);
-    let sector = l.b.shift_left(front.sector, 3);
-    let mut index = l.b.add(turning, sector);
+    let mut index = l.b.shift_left(front.sector, 3);
+    // Without a commutation no direction is known.
     if let Some(commutation) = front.commutation {
+        let turning = l.b.shift_left(commutation.direction, 7);
+        index = l.b.add(turning, index);
         let bit = l.b.shift_left(commutation.word, 2);
         index = l.b.add(index, bit);
     }

@@ -2,7 +2,7 @@
 
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::ir::{Interval, Value};
-use crate::lower::{Coefficient, Command, Lowering, Scale};
+use crate::lower::{Coefficient, Command, Lowering, Priority, Scale};
 use crate::scaling::Lowered;
 use crate::spec::{PiPwmSpec, Spec};
 
@@ -76,10 +76,11 @@ pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale
             _ => None,
         };
         let l = &mut *step.lowering;
-        let e = front.e.unwrap_or(u);
+        let emf = front.e.map(|e| move |_: &mut Lowering<'_>| e);
         let lifts = front.bus.ratio.is_none();
         let bus = (front.bus, front.third);
-        let limited = l.limit_voltage(options.saturation, u, |_| e, bus, lifts);
+        let priority = Priority::of(options.saturation, emf);
+        let limited = l.limit_voltage(priority, u, bus, lifts);
         l.b.stage("integrate", INTEGRATION);
         let mut remembered = vec![];
         for x in 0..2 {
@@ -206,11 +207,5 @@ fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options:
         compares: pulses.compares,
         legs: pulses.legs,
     };
-    step.remember(
-        front,
-        &command,
-        None,
-        None,
-        vec![(integral, held)],
-    );
+    step.remember(front, &command, None, None, vec![(integral, held)]);
 }

@@ -1,7 +1,7 @@
 //! Expressions as C, with the parentheses that grammar, compilers and readers need.
 
 use super::super::expression::{Expression, Operator, Primitive, Scope};
-use super::super::signal::{Code, Shape};
+use super::super::signal::{Leg, Shape};
 use super::names::{Names, number};
 use crate::ir::{Program, Table, Value, Word};
 
@@ -42,12 +42,6 @@ impl Printer<'_> {
         value.within(Binding::Or)
     }
 
-    /// A flag among others of which one suffices.
-    pub(super) fn alternative(&self, value: Value) -> String {
-        self.written(&self.scope.value(value))
-            .within(Binding::Compare)
-    }
-
     /// A value cast to a type.
     pub(super) fn cast(&self, kind: &str, value: Value) -> String {
         let value = self
@@ -58,8 +52,7 @@ impl Printer<'_> {
 
     /// A value as the state word keeps it.
     pub(super) fn kept(&self, word: &Word, value: Value) -> String {
-        let value = self.scope.in_shape(value, Shape::of_state(word));
-        let value = self.written(&value);
+        let value = self.written(&self.scope.value(value));
         if word.storage_bits == 16 && !value.is_literal {
             format!("(uint16_t){}", value.within(Binding::Unary))
         } else {
@@ -87,10 +80,7 @@ impl Printer<'_> {
                 Written::atom(self.names.constant(name))
             }
             Expression::Number(raw) => literal(*raw),
-            Expression::Code(code) => Written {
-                is_literal: true,
-                ..Written::atom(coded(*code, self.names))
-            },
+            Expression::Leg(leg) => Written::atom(leg_state(*leg).to_owned()),
             Expression::Negated(a) => {
                 let a = of(a).operand(Binding::Atom);
                 Written::new(format!("-{a}"), Binding::Unary)
@@ -100,8 +90,8 @@ impl Printer<'_> {
                 Written::new(format!("!{a}"), Binding::Unary)
             }
             Expression::Binary(operator, a, b) => binary(*operator, of(a), of(b)),
-            Expression::ShiftedLeft(a, bits) => shift("shift_left", of(a).text, *bits),
-            Expression::ShiftedRight(a, bits) => shift("shift_right", of(a).text, *bits),
+            Expression::ShiftedLeft(a, bits) => shift("hexagen_shift_left", of(a).text, *bits),
+            Expression::ShiftedRight(a, bits) => shift("hexagen_shift_right", of(a).text, *bits),
             Expression::Call(primitive, operands, parameter) => {
                 let operands = operands.iter().map(|operand| of(operand).text);
                 let parameter = parameter.map(|parameter| parameter.to_string());
@@ -119,7 +109,7 @@ impl Printer<'_> {
                     format!("{name}[(uint32_t){index} & {}U]", table.values.len() - 1)
                 };
                 if table.holds_legs {
-                    return Written::atom(format!("leg_of({text})"));
+                    return Written::atom(format!("hexagen_leg_of({text})"));
                 }
                 Written {
                     is_narrow: element(table) == "int16_t",
@@ -130,7 +120,7 @@ impl Printer<'_> {
                 let flag = of(flag).within(Binding::Unary);
                 Written::new(format!("{flag} ? 1 : 0"), Binding::Choice)
             }
-            Expression::LegOf(word) => Written::atom(format!("leg_of({})", of(word).text)),
+            Expression::LegOf(word) => Written::atom(format!("hexagen_leg_of({})", of(word).text)),
             Expression::Choice(parts) => {
                 let [condition, then, otherwise] = &**parts;
                 let condition = of(condition).within(Binding::Unary);
@@ -159,7 +149,6 @@ enum Binding {
     Choice,
     Or,
     And,
-    BitOr,
     Compare,
     Sum,
     Product,
@@ -225,12 +214,11 @@ fn literal(raw: i32) -> Written {
 
 fn binary(operator: Operator, a: Written, b: Written) -> Written {
     let sign = match operator {
-        Operator::AngleAdd => return wrapping("angle_add", &a, &b),
-        Operator::AngleSub => return wrapping("angle_sub", &a, &b),
+        Operator::AngleAdd => return wrapping("hexagen_angle_add", &a, &b),
+        Operator::AngleSub => return wrapping("hexagen_angle_sub", &a, &b),
         Operator::Add => "+",
         Operator::Sub => "-",
         Operator::Mul => "*",
-        Operator::BitOr => "|",
         Operator::Less => "<",
         Operator::LessEqual => "<=",
         Operator::Greater => ">",
@@ -249,12 +237,6 @@ fn binary(operator: Operator, a: Written, b: Written) -> Written {
         Operator::Mul => (
             Binding::Product,
             a.operand(Binding::Product),
-            b.operand(Binding::Unary),
-        ),
-        // Beside other operators it has parentheses, and so have they.
-        Operator::BitOr => (
-            Binding::BitOr,
-            a.operand(Binding::Unary),
             b.operand(Binding::Unary),
         ),
         Operator::And => (Binding::And, a.within(Binding::And), b.within(Binding::And)),
@@ -291,40 +273,29 @@ fn shift(name: &str, text: String, bits: u32) -> Written {
 
 fn called(primitive: Primitive) -> &'static str {
     match primitive {
-        Primitive::Abs => "abs_of",
-        Primitive::Exceeds => "exceeds",
-        Primitive::Exceeding => "exceeding",
-        Primitive::Min | Primitive::Lesser => "min_of",
-        Primitive::Max | Primitive::Greater => "max_of",
-        Primitive::Clamp => "clamp",
-        Primitive::MulRound => "mul_round",
-        Primitive::MulRoundNarrow => "mul_round_narrow",
-        Primitive::MulFloor => "mul_floor",
-        Primitive::MulAddFloor => "mul_add_floor",
-        Primitive::MulLimited => "mul_limited",
-        Primitive::Divide => "divide",
-        Primitive::DivideNarrow => "divide_narrow",
-        Primitive::TurnOver => "turn_over",
-        Primitive::AngleIndex => "angle_index",
-        Primitive::AngleFraction => "angle_fraction",
+        Primitive::Abs => "hexagen_abs",
+        Primitive::Exceeds => "hexagen_exceeds",
+        Primitive::Min | Primitive::Lesser => "hexagen_min",
+        Primitive::Max | Primitive::Greater => "hexagen_max",
+        Primitive::Clamp => "hexagen_clamp",
+        Primitive::MulRound => "hexagen_mul_round",
+        Primitive::MulRoundNarrow => "hexagen_mul_round_narrow",
+        Primitive::MulFloor => "hexagen_mul_floor",
+        Primitive::MulAddFloor => "hexagen_mul_add_floor",
+        Primitive::MulLimited => "hexagen_mul_limited",
+        Primitive::Divide => "hexagen_divide",
+        Primitive::DivideNarrow => "hexagen_divide_narrow",
+        Primitive::TurnOver => "hexagen_turn_over",
+        Primitive::AngleIndex => "hexagen_angle_index",
+        Primitive::AngleFraction => "hexagen_angle_fraction",
     }
 }
 
-/// The enumerator of a number that has a name.
-pub(super) fn coded(code: Code, names: &Names) -> String {
-    names.public_upper(match code {
-        Code::Run => "MODE_RUN",
-        Code::Calibrate => "MODE_CALIBRATE",
-        Code::Precharge => "MODE_PRECHARGE",
-        Code::Tripped => "MODE_TRIPPED",
-        Code::NoFault => "FAULT_NONE",
-        Code::AdcRange => "FAULT_ADC_RANGE",
-        Code::OverCurrent => "FAULT_OVER_CURRENT",
-        Code::Hall => "FAULT_HALL",
-        Code::Stall => "FAULT_STALL",
-        Code::Offset => "FAULT_OFFSET",
-        Code::Pulsed => "LEG_PULSED",
-        Code::Low => "LEG_LOW",
-        Code::Off => "LEG_OFF",
-    })
+/// The state of a leg by its name.
+pub(super) fn leg_state(leg: Leg) -> &'static str {
+    match leg {
+        Leg::Pulsed => "HEXAGEN_LEG_PULSED",
+        Leg::Low => "HEXAGEN_LEG_LOW",
+        Leg::Off => "HEXAGEN_LEG_OFF",
+    }
 }

@@ -1,131 +1,92 @@
-//! The step and the setters: stage calls in order, then what they leave behind.
+//! The entries of the law and the setters: stage calls in order, then what they leave behind.
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, StageCode as _, beside, inputs_read, kept, leaves_behind, output, params_read,
-    words_read, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, writes,
 };
-use super::super::plan::{Context, StagePlan};
-use super::super::set_point::shared;
-use super::super::signal::{Code, Shape};
-use super::super::texts::GIVEN_UP;
-use super::expression::{Printer, coded};
-use super::layout::{INDENT, wrapped};
-use super::names::{Names, typed_number};
-use super::stage::StageFunction;
-use crate::ir::{Function, Paths, Program};
-use std::fmt::Write as _;
+use super::super::plan::Context;
+use super::super::signal::Shape;
+use super::expression::{Printer, leg_state};
+use super::layout::{INDENT, words, wrapped};
+use super::names::Names;
+use super::stage::{StageFunction, kind};
+use crate::emit::signal::Leg;
+use crate::ir::{AtRest, Function, Op, Program, Value};
 
-/// The static functions of a step: its stages, what takes over where it rests, and the step itself.
-pub(super) fn emit_step(program: &Program, names: &Names) -> String {
-    let Paths { normal, exit } = program.step.paths(&program.tables);
-    let context = Context::new(program, &normal);
-    let path = PathFunctions::new(&context, names, &[]);
-    let exit = exit.as_ref().map(|exit| Context::new(program, exit));
-    let exit = exit
-        .as_ref()
-        .map(|exit| PathFunctions::new(exit, names, &path.stages));
-    let kept: Vec<usize> = exit
-        .iter()
-        .flat_map(|exit| params_read(exit.context.function))
-        .collect();
-    let mut text = path.definitions();
-    let leave = exit.as_ref().map(|exit| {
-        text.push_str(&exit.definitions());
-        text.push_str(&exit.rest());
-        exit.call_rest()
-    });
-    let inputs = normal.inputs.iter();
-    let inputs = inputs.map(|input| format!("int32_t {}", names.local(&input.name)));
-    let own = [
-        format!("{} *state", names.type_of("state")),
-        format!("{} *set_point", names.type_of("set_point")),
-    ];
-    let parameters: Vec<String> = own.into_iter().chain(inputs).collect();
-    let head = format!(
-        "static inline {} step({})",
-        names.type_of("legs"),
-        parameters.join(", ")
-    );
-    text.push_str(&names.comment("", &normal.doc));
-    text.push_str(&wrapped("", &head));
-    text.push_str("{\n");
-    text.push_str(&read_params(program, &normal, &kept, names));
-    text.push_str(&path.body(leave.as_deref()));
-    text.push('\n');
-    text.push_str(&path.legs());
-    text + "}\n\n"
+/// The static functions of a step, and how they are called.
+pub(super) struct Step {
+    /// The stages, in order of their calls, then `track`, `rest` and `step`.
+    pub definitions: String,
+    /// Whether `track` tells the others something.
+    pub has_rotor: bool,
+    /// Whether there is something to track.
+    pub tracks: bool,
+    /// Names of the arguments that `track`, `rest` and `step` take; none of a function that has nothing to do.
+    pub arguments: [Vec<&'static str>; 3],
 }
 
-/// One path of the step.
-struct PathFunctions<'a> {
+/// The entries of a program's step.
+pub(super) fn emit_step(program: &Program, names: &Names) -> Step {
+    let context = Context::of_step(program, None);
+    let plans = context.plan();
+    let stages = plans
+        .iter()
+        .map(|plan| StageFunction::new(&context, names, plan.clone(), &plan.stage.name));
+    let step = StepFunctions {
+        context: &context,
+        names,
+        stages: stages.collect(),
+        rotor: context.handed_over(),
+    };
+    let entries = [step.track(), step.rest(), step.control()];
+    let mut definitions: String = step.stages.iter().map(StageFunction::definition).collect();
+    definitions.push_str(&step.rotor_definition());
+    for entry in &entries {
+        definitions.push_str(&entry.definition);
+    }
+    Step {
+        definitions,
+        has_rotor: step.has_rotor(),
+        tracks: !entries[0].definition.is_empty(),
+        arguments: entries.map(|entry| entry.arguments),
+    }
+}
+
+/// An entry of the law.
+struct Entry {
+    /// Empty where there is nothing to do.
+    definition: String,
+    arguments: Vec<&'static str>,
+}
+
+struct StepFunctions<'a> {
     context: &'a Context<'a>,
     names: &'a Names,
     stages: Vec<StageFunction<'a>>,
-    /// Which stages are functions of the other path.
-    shared: Vec<bool>,
+    /// What the tracking hands over.
+    rotor: Vec<Value>,
 }
 
-impl<'a> PathFunctions<'a> {
-    /// The functions of a path beside those of another.
-    fn new(context: &'a Context<'a>, names: &'a Names, others: &[StageFunction<'a>]) -> Self {
-        let make = |plan: StagePlan<'a>, name: &str| StageFunction::new(context, names, plan, name);
-        let (stages, shared) = beside(context, others, make);
-        Self {
-            context,
-            names,
-            stages,
-            shared,
-        }
+impl<'a> StepFunctions<'a> {
+    fn function(&self) -> &'a Function {
+        self.context.function
     }
 
-    /// Names of the set-point words and inputs that it reads.
-    fn arguments(&self) -> Vec<String> {
-        let words = words_read(self.context.program, self.context.function).into_iter();
-        let names = words.chain(inputs_read(self.context.function));
-        names.map(|name| self.names.local(name)).collect()
+    fn stages(&self, part: Part) -> impl Iterator<Item = &StageFunction<'a>> {
+        let function = self.function();
+        self.stages
+            .iter()
+            .filter(move |stage| part.has(function, stage.plan()))
     }
 
-    /// The statement that leaves the step for this path.
-    fn call_rest(&self) -> String {
-        let own = ["state", "set_point"].map(str::to_owned);
-        let arguments: Vec<String> = own.into_iter().chain(self.arguments()).collect();
-        format!("return legs_at_rest(rest({}));", arguments.join(", "))
+    fn has_rotor(&self) -> bool {
+        !self.rotor.is_empty()
     }
 
-    /// This path as a function of its own. No leg pulses at rest, and all are alike.
-    fn rest(&self) -> String {
-        let names = self.names;
-        let own = [
-            format!("{} *state", names.type_of("state")),
-            format!("{} *set_point", names.type_of("set_point")),
-        ];
-        let arguments = self.arguments().into_iter();
-        let arguments = arguments.map(|name| format!("int32_t {name}"));
-        let parameters: Vec<String> = own.into_iter().chain(arguments).collect();
-        let mut text = names.comment(
-            "",
-            &[
-                "One control period without current control, in start-up or with a fault: what all legs do. Publishes",
-                "what the drive is doing from here on.",
-            ],
-        );
-        let head = format!(
-            "static {} rest({})",
-            names.type_of("leg"),
-            parameters.join(", ")
-        );
-        text.push_str(&names.cold());
-        text.push_str(&wrapped("", &head));
-        text.push_str("{\n");
-        text.push_str(&self.body(None));
-        let _ = writeln!(text, "{INDENT}set_point->status = status_of(state);");
-        text.push_str(&wrapped(INDENT, &format!("return {};", self.leg("leg_a"))));
-        text + "}\n\n"
+    fn local(&self, value: Value) -> String {
+        self.names.local(&self.function().node(value).name)
     }
 
-    /// What is seen behind the stages: old state words that go out of the step are read under their names before
-    /// any is written.
     fn printer(&self, reads_state: bool) -> Printer<'a> {
         Printer {
             scope: Scope {
@@ -136,68 +97,70 @@ impl<'a> PathFunctions<'a> {
         }
     }
 
-    fn leg(&self, name: &str) -> String {
-        match output(self.context.function, name) {
-            None => coded(Code::Off, self.names),
-            Some(value) => self.printer(false).shaped(value, Shape::Leg),
+    fn rotor_definition(&self) -> String {
+        if !self.has_rotor() {
+            return String::new();
         }
-    }
-
-    fn legs(&self) -> String {
-        let printer = self.printer(false);
-        let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
-            let value = output(self.context.function, name);
-            match value.map(|value| (value, printer.scope.literal(value))) {
-                None => "0".to_owned(),
-                Some((_, Some(literal))) => literal.to_string(),
-                Some((value, None)) => printer.cast("uint16_t", value),
-            }
+        let fields = self.rotor.iter().map(|&value| {
+            let (kind, name) = (kind(self.context.shape(value)), self.local(value));
+            format!("{INDENT}{kind} {name};\n")
         });
-        let state = ["leg_a", "leg_b", "leg_c"].map(|name| self.leg(name));
-        let kind = self.names.type_of("legs");
-        let inner = INDENT.repeat(2);
-        [
-            format!("{INDENT}const {kind} legs = {{\n"),
-            wrapped(&inner, &format!("{{ {} }},", compare.join(", "))),
-            wrapped(&inner, &format!("{{ {} }}", state.join(", "))),
-            format!("{INDENT}}};\n{INDENT}return legs;\n"),
-        ]
-        .concat()
+        let comment = self.names.comment("", &["What tracking tells of the rotor."]);
+        format!("{comment}typedef struct {{\n{}}} tracked;\n\n", fields.collect::<String>())
     }
 
-    /// Stage calls in order, with `leave` behind those that find a reason for it; then the new state.
-    fn body(&self, leave: Option<&str>) -> String {
-        let (function, outside) = (self.context.function, self.printer(true));
-        let mut text = String::new();
-        for stage in &self.stages {
-            text.push_str(&stage.call());
-            let flags = leaves_behind(function, stage.plan());
-            let flags = flags.into_iter().map(|flag| outside.alternative(flag));
-            let flags: Vec<String> = flags.collect();
-            if let (false, Some(leave)) = (flags.is_empty(), leave) {
-                let line = format!("if ({}) {{", flags.join(" || "));
-                text.push_str(&wrapped(INDENT, &line));
-                text.push_str(&wrapped(&INDENT.repeat(2), leave));
-                let _ = writeln!(text, "{INDENT}}}");
-            }
+    /// Reads the sample's words that some values are.
+    fn inputs(&self, values: impl Iterator<Item = Value>) -> String {
+        let names = inputs_used(self.function(), values).into_iter();
+        let read = |name: &str| {
+            let local = self.names.local(name);
+            format!("{INDENT}const int32_t {local} = sample->{name};\n")
+        };
+        names.map(read).collect()
+    }
+
+    /// Reads what the tracking handed over.
+    fn rotor_words<'v>(&self, values: impl Iterator<Item = &'v Value>) -> String {
+        let read = |&value: &Value| {
+            let (kind, name) = (kind(self.context.shape(value)), self.local(value));
+            format!("{INDENT}const {kind} {name} = rotor.{name};\n")
+        };
+        values.map(read).collect()
+    }
+
+    /// The values from outside that a part's calls and stores name.
+    fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
+        let function = self.function();
+        let stages = self.stages(part).map(StageFunction::plan);
+        let mut used: Vec<Value> = stages
+            .flat_map(|plan| {
+                let guard = plan.stage.guard.as_ref().map(|guard| guard.condition);
+                let otherwise = plan.outcomes.iter().filter_map(|outcome| outcome.otherwise);
+                let arguments = plan.arguments.iter().copied();
+                arguments.chain(guard).chain(otherwise)
+            })
+            .collect();
+        used.extend(kept.words.iter().map(|&(_, value)| value));
+        if part == Part::Control {
+            used.extend(function.outputs.iter().map(|&(_, value)| value));
         }
-        text + &self.keep_state()
+        used
     }
 
-    /// The new state words, each written once at the end.
-    fn keep_state(&self) -> String {
+    fn kept(&self, part: Part) -> Kept<'a> {
+        let plans: Vec<_> = self.stages.iter().map(|stage| stage.plan().clone()).collect();
+        kept(self.context, &plans, part)
+    }
+
+    /// Calls of a part's stages, and the words that it keeps.
+    fn body(&self, part: Part, kept: Kept<'_>) -> String {
         let (outside, named) = (self.printer(true), self.printer(false));
-        let Kept { reads, words } = kept(self.context, &self.stages);
-        let mut text = String::new();
+        let mut text: String = self.stages(part).map(StageFunction::call).collect();
+        let Kept { reads, words } = kept;
         for value in reads {
-            let name = self.names.local(&self.context.function.node(value).name);
-            let value = outside.whole(value);
-            text.push_str(&wrapped(
-                INDENT,
-                &format!("const int32_t {name} = {value};"),
-            ));
+            let line = format!("const int32_t {} = {};", self.local(value), outside.whole(value));
+            text.push_str(&wrapped(INDENT, &line));
         }
-        text.push('\n');
         for (word, value) in words {
             let field = self.names.local(&word.name);
             let line = format!("state->{field} = {};", named.kept(word, value));
@@ -206,47 +169,181 @@ impl<'a> PathFunctions<'a> {
         text
     }
 
-    fn definitions(&self) -> String {
-        let own = self.stages.iter().zip(&self.shared);
-        let own = own.filter(|&(_, &shared)| !shared);
-        own.map(|(stage, _)| stage.definition()).collect()
+    /// A function of this body, with those of the arguments that it names.
+    fn entry(
+        &self,
+        [result, name, doc]: [&str; 3],
+        arguments: &[&'static str],
+        body: &str,
+    ) -> Entry {
+        let state = self.names.state();
+        let is_whole = arguments.contains(&"drive");
+        let mut body = body.to_owned();
+        if is_whole && words(&body).contains("state") {
+            body.insert_str(0, &format!("{INDENT}{state} *const state = &drive->state;\n"));
+        }
+        let named = words(&body);
+        let arguments = arguments.iter().copied();
+        let arguments: Vec<&str> = arguments.filter(|&name| named.contains(name)).collect();
+        let parameters = arguments.iter().map(|&argument| match argument {
+            "drive" => format!("{} *drive", self.names.prefix),
+            "state" => format!("{state} *state"),
+            "rotor" => "tracked rotor".to_owned(),
+            _ => "const hexagen_checked *sample".to_owned(),
+        });
+        let parameters = match parameters.collect::<Vec<String>>() {
+            none if none.is_empty() => "void".to_owned(),
+            some => some.join(", "),
+        };
+        let head = wrapped("", &format!("static inline {result} {name}({parameters})"));
+        let comment = self.names.comment("", &[doc]);
+        Entry {
+            definition: format!("{comment}{head}{{\n{body}}}\n\n"),
+            arguments,
+        }
+    }
+
+    /// What runs in every period.
+    fn track(&self) -> Entry {
+        let kept = self.kept(Part::Tracking);
+        let used = self.used(Part::Tracking, &kept);
+        let mut body = self.inputs(used.into_iter()) + &self.body(Part::Tracking, kept);
+        let result = if self.has_rotor() {
+            let names: Vec<String> = self.rotor.iter().map(|&value| self.local(value)).collect();
+            body.push_str(&wrapped(
+                INDENT,
+                &format!("const tracked rotor = {{ {} }};", names.join(", ")),
+            ));
+            body.push_str(&format!("{INDENT}return rotor;\n"));
+            "tracked"
+        } else {
+            "void"
+        };
+        if body.is_empty() {
+            return Entry {
+                definition: String::new(),
+                arguments: vec![],
+            };
+        }
+        let doc = "Follows the rotor: in every period, at rest too.";
+        self.entry([result, "track", doc], &["state", "sample"], &body)
+    }
+
+    /// What a period without control leaves behind.
+    fn rest(&self) -> Entry {
+        let kept = kept_at_rest(self.context);
+        let tracked = kept.iter().filter_map(|&(_, at_rest)| match at_rest {
+            AtRest::Tracked(value) => Some(value),
+            AtRest::Forgotten => None,
+        });
+        let tracked: Vec<Value> = tracked.collect();
+        let mut body = String::new();
+        let handed = self.rotor.iter().filter(|value| tracked.contains(value));
+        body.push_str(&self.rotor_words(handed));
+        let printer = self.printer(false);
+        for (word, at_rest) in kept {
+            let value = match at_rest {
+                AtRest::Tracked(value) => match self.function().node(value).op {
+                    Op::Input(n) => format!("sample->{}", self.function().inputs[n as usize].name),
+                    _ => printer.kept(word, value),
+                },
+                AtRest::Forgotten => "0".to_owned(),
+            };
+            let field = self.names.local(&word.name);
+            body.push_str(&wrapped(INDENT, &format!("state->{field} = {value};")));
+        }
+        if body.is_empty() {
+            return Entry {
+                definition: String::new(),
+                arguments: vec![],
+            };
+        }
+        let doc = "A period without control: forgets what was commanded.";
+        self.entry(["void", "rest", doc], &["state", "sample", "rotor"], &body)
+    }
+
+    /// A controlled period.
+    fn control(&self) -> Entry {
+        let kept = self.kept(Part::Control);
+        let used = self.used(Part::Control, &kept);
+        let mut body = read_words(self.context.program, self.function(), self.names);
+        body.push_str(&self.inputs(used.into_iter()));
+        body.push_str(&self.rotor_words(self.rotor.iter()));
+        body.push_str(&self.body(Part::Control, kept));
+        body.push('\n');
+        body.push_str(&self.legs());
+        let head = ["hexagen_legs", "step", "A controlled period."];
+        self.entry(head, &["drive", "sample", "rotor"], &body)
+    }
+
+    /// The command. Old state words that go out of the step are read under their names before any is written.
+    fn legs(&self) -> String {
+        let printer = self.printer(false);
+        let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
+            let value = output(self.function(), name);
+            match value.map(|value| (value, printer.scope.literal(value))) {
+                None => "0".to_owned(),
+                Some((_, Some(literal))) => literal.to_string(),
+                Some((value, None)) => printer.cast("uint16_t", value),
+            }
+        });
+        let state = ["leg_a", "leg_b", "leg_c"].map(|name| {
+            output(self.function(), name).map_or_else(
+                || leg_state(Leg::Off).to_owned(),
+                |value| printer.shaped(value, Shape::Leg),
+            )
+        });
+        let inner = INDENT.repeat(2);
+        [
+            format!("{INDENT}const hexagen_legs legs = {{\n"),
+            wrapped(&inner, &format!("{{ {} }},", compare.join(", "))),
+            wrapped(&inner, &format!("{{ {} }}", state.join(", "))),
+            format!("{INDENT}}};\n{INDENT}return legs;\n"),
+        ]
+        .concat()
     }
 }
 
-/// Reads the set-point words that a function uses or keeps, under their names.
-fn read_params(program: &Program, function: &Function, kept: &[usize], names: &Names) -> String {
+/// Words of the bus voltage, in their places.
+pub(super) const BUS: [&str; 2] = ["v_bus", "ratio"];
+
+/// Reads the set-point words that a function uses, under their names.
+fn read_words(program: &Program, function: &Function, names: &Names) -> String {
     let read = params_read(function);
-    let is_read = |word: usize| read.contains(&word) || kept.contains(&word);
-    let mut text = String::new();
-    for shared in shared(program) {
-        let field = names.local(&shared.name);
-        let words = shared.words.iter().enumerate();
-        let words: Vec<_> = words.filter(|(_, (word, _))| is_read(*word)).collect();
-        if words.is_empty() {
-            continue;
-        }
-        let bank = format!("{field}_bank");
-        if shared.words.len() > 1 {
-            let _ = writeln!(
-                text,
-                "{INDENT}const volatile int32_t *{bank} = set_point->{field}.banks[(set_point->{field}.published == 0) ? 0 : 1];"
-            );
-        }
-        for (place, (_, word)) in words {
-            let name = names.local(&word.name);
-            let value = if shared.words.len() > 1 {
-                format!("{bank}[{place}]")
-            } else {
-                format!("set_point->{field}")
-            };
-            let _ = writeln!(text, "{INDENT}const int32_t {name} = {value};");
-        }
+    let is_read = |name: &str| {
+        let place = program.params.iter().position(|word| word.name == name);
+        place.is_some_and(|place| read.contains(&place))
+    };
+    let single = [("j", "current"), ("speed_ref", "speed")].into_iter();
+    let single = single.filter(|(name, _)| is_read(name)).map(|(name, field)| {
+        let name = names.local(name);
+        format!("{INDENT}const int32_t {name} = drive->{field};\n")
+    });
+    let mut text: String = single.collect();
+    if BUS.into_iter().any(is_read) {
+        text.push_str(INDENT);
+        text.push_str("const volatile int32_t *const bus = hexagen_bus_words(&drive->bus);\n");
     }
+    let told = BUS.into_iter().enumerate();
+    let told = told.filter(|(_, name)| is_read(name)).map(|(place, name)| {
+        let name = names.local(name);
+        format!("{INDENT}const int32_t {name} = bus[{place}];\n")
+    });
+    text.extend(told);
     text
 }
 
-/// A setter, as a static function of the set-point, and its stages where it has several.
-pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names) -> String {
+/// A setter: what it computes, and the words that it makes.
+pub(super) struct Setter {
+    /// Its stages, where they are functions of their own.
+    pub stages: String,
+    /// Statements.
+    pub body: String,
+    /// The words, in the order of the program's set-point words.
+    pub words: Vec<String>,
+}
+
+pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names) -> Setter {
     let context = Context::new(program, function);
     let plans = context.plan();
     let single = matches!(plans.as_slice(), [only] if only.stage.guard.is_none());
@@ -264,118 +361,28 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
         },
         names,
     };
-    let mut stores = String::new();
-    let is_bus = function.name == "set_bus";
-    let told = format!("{INDENT}set_point->bus_told = 1;\n");
-    let mut kept_words = vec![];
-    for (shared, values) in writes(program, function) {
-        let field = names.local(&shared.name);
-        let words = shared.words.iter().zip(values);
-        let values = words.map(|(&(word, known), value)| {
-            value.map_or_else(
-                // Of words that are replaced together, what this setter leaves alone stays.
-                || {
-                    kept_words.push(word);
-                    names.local(&known.name)
-                },
-                |value| printer.whole(value),
-            )
-        });
-        let values: Vec<String> = values.collect();
-        match values.as_slice() {
-            [only] => {
-                let line = format!("set_point->{field} = {only};");
-                stores.push_str(&wrapped(INDENT, &line));
-                if is_bus {
-                    stores.push_str(&told);
-                }
-            }
-            many => {
-                let call = format!(
-                    "store_{}(&set_point->{field}, {})",
-                    shared.name,
-                    many.join(", ")
-                );
-                if is_bus {
-                    stores.push_str(&wrapped(INDENT, &format!("if ({call}) {{")));
-                    let _ = writeln!(stores, "{INDENT}{told}{INDENT}}}");
-                } else {
-                    stores.push_str(&wrapped(INDENT, &format!("(void){call};")));
-                }
-            }
+    let written = writes(function);
+    let mut words: Vec<String> = written.iter().map(|&value| printer.whole(value)).collect();
+    if single {
+        let statements = stages.iter().flat_map(StageFunction::statements);
+        let mut statements: Vec<String> = statements.collect();
+        // The last value is not bound to its name first.
+        let last = function.values().last();
+        if let ([only], [word]) = (written.as_slice(), words.as_mut_slice())
+            && last == Some(*only)
+        {
+            statements.pop();
+            *word = printer.bound(*only);
         }
+        return Setter {
+            stages: String::new(),
+            body: statements.iter().map(|line| wrapped(INDENT, line)).collect(),
+            words,
+        };
     }
-    let mut text = String::new();
-    if !single {
-        text.extend(stages.iter().map(StageFunction::definition));
+    Setter {
+        stages: stages.iter().map(StageFunction::definition).collect(),
+        body: stages.iter().map(StageFunction::call).collect(),
+        words,
     }
-    let inputs = function.inputs.iter();
-    let inputs = inputs.map(|input| format!("int32_t {}", names.local(&input.name)));
-    let own = format!("{} *set_point", names.type_of("set_point"));
-    let parameters: Vec<String> = std::iter::once(own).chain(inputs).collect();
-    let head = format!(
-        "static void {}({})",
-        names.local(&function.name),
-        parameters.join(", ")
-    );
-    let doc = format!("What `{}()` writes.", function.name);
-    text.push_str(&names.comment("", &[doc]));
-    text.push_str(&wrapped("", &head));
-    text.push_str("{\n");
-    text.push_str(&read_params(program, function, &kept_words, names));
-    for stage in &stages {
-        if single {
-            let statements = stage.statements().into_iter();
-            text.extend(statements.map(|statement| wrapped(INDENT, &statement)));
-        } else {
-            text.push_str(&stage.call());
-        }
-    }
-    text.push_str(&stores);
-    text + "}\n\n"
-}
-
-/// The functions that replace words which belong together: each fills the bank that is not in use, and then publishes
-/// it, so that a reader that interrupts it gets the old words whole.
-pub(super) fn emit_stores(program: &Program, names: &Names) -> String {
-    let mut text = String::new();
-    for shared in shared(program) {
-        if shared.words.len() < 2 {
-            continue;
-        }
-        let words = shared.words.iter();
-        let words: Vec<String> = words.map(|(_, word)| names.local(&word.name)).collect();
-        let parameters: Vec<String> = words.iter().map(|word| format!("int32_t {word}")).collect();
-        let kind = names.type_of(&shared.name);
-        text.push_str(&names.comment(
-            "",
-            &[
-                "Replaces words as one: fills the bank that is not in use, and then publishes it. A reader that interrupts this",
-                "gets the old words whole; a call that interrupts this one does nothing, as its bank would be filled further.",
-                "Whether it did something.",
-            ],
-        ));
-        let head = format!(
-            "static bool store_{}({kind} *buffer, {})",
-            shared.name,
-            parameters.join(", ")
-        );
-        text.push_str(&wrapped("", &head));
-        let inner = INDENT.repeat(2);
-        let _ = writeln!(
-            text,
-            "{{\n{INDENT}if (buffer->storing != 0) {{\n{inner}return false;\n{INDENT}}}\n\
-             {INDENT}buffer->storing = {};\n\
-             {INDENT}const int32_t spare = (buffer->published == 0) ? 1 : 0;",
-            typed_number(GIVEN_UP)
-        );
-        for (place, word) in words.iter().enumerate() {
-            let _ = writeln!(text, "{INDENT}buffer->banks[spare][{place}] = {word};");
-        }
-        let _ = write!(
-            text,
-            "{INDENT}buffer->published = spare;\n{INDENT}buffer->storing = 0;\n{INDENT}return true;\n}}\n\n"
-        );
-    }
-    text
 }

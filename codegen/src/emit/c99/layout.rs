@@ -2,19 +2,21 @@
 
 use std::collections::BTreeSet;
 
-/// Longest line of code.
-const WIDTH: usize = 100;
+/// Longest line.
+pub(super) const WIDTH: usize = 100;
 
 /// One level of nesting.
 pub(super) const INDENT: &str = "    ";
 
 /// A statement or a function's head in lines of at most [`WIDTH`] letters, where it can be: broken behind commas and
-/// before operators, at the outermost place that fits.
+/// parentheses and before operators, at the outermost place that fits.
 pub(super) fn wrapped(indent: &str, text: &str) -> String {
     let mut lines = String::new();
     let (mut rest, mut lead) = (text, indent.to_owned());
     while lead.len() + rest.len() > WIDTH {
-        let Some(at) = break_of(rest, WIDTH.saturating_sub(lead.len())) else {
+        let room = [lead.len(), indent.len() + 2 * INDENT.len()];
+        let room = room.map(|indent| WIDTH.saturating_sub(indent));
+        let Some(at) = break_of(rest, room) else {
             break;
         };
         let (line, tail) = rest.split_at(at);
@@ -30,21 +32,33 @@ pub(super) fn wrapped(indent: &str, text: &str) -> String {
     lines
 }
 
-/// The last of the outermost places within `width` where a line may end.
-fn break_of(text: &str, width: usize) -> Option<usize> {
+/// The last of the outermost places within `width` where a line may end; a line behind it has room for `next`.
+fn break_of(text: &str, [width, next]: [usize; 2]) -> Option<usize> {
     let (mut depth, mut best) = (0_usize, None);
     let letters = text.as_bytes();
+    let mut offer = |cost: usize, at: usize| {
+        if best.is_none_or(|(least, _)| cost <= least) {
+            best = Some((cost, at));
+        }
+    };
     for (at, &letter) in letters.iter().enumerate().take(width + 1) {
         match letter {
-            b'(' | b'{' | b'[' => depth += 1,
+            b'(' => {
+                depth += 1;
+                let is_call = at > 0 && letters[at - 1].is_ascii_alphanumeric();
+                if is_call && at < width && letters.get(at + 1) != Some(&b')') {
+                    offer(3 * depth + 1, at + 1);
+                }
+            }
+            b'{' | b'[' => depth += 1,
             b')' | b'}' | b']' => depth = depth.saturating_sub(1),
             b' ' if at > 0 => {
-                let Some(looseness) = looseness(letters[at - 1], &text[at + 1..], depth) else {
-                    continue;
-                };
-                let cost = 3 * depth + looseness;
-                if best.is_none_or(|(least, _)| cost <= least) {
-                    best = Some((cost, at));
+                let behind = &text[at + 1..];
+                if letters[at - 1] == b'=' && depth == 0 {
+                    // Before what is nested is broken, if that need not be.
+                    offer(if behind.len() <= next { 2 } else { 5 }, at);
+                } else if let Some(looseness) = looseness(letters[at - 1], behind) {
+                    offer(3 * depth + looseness, at);
                 }
             }
             _ => {}
@@ -55,7 +69,7 @@ fn break_of(text: &str, width: usize) -> Option<usize> {
 
 /// How much worse than behind a comma it is to break a line between a letter and what follows; none where it is not
 /// broken.
-fn looseness(before: u8, behind: &str, depth: usize) -> Option<usize> {
+fn looseness(before: u8, behind: &str) -> Option<usize> {
     let begins = |operators: &[&str]| {
         operators
             .iter()
@@ -66,8 +80,7 @@ fn looseness(before: u8, behind: &str, depth: usize) -> Option<usize> {
     } else if begins(&["? ", "== ", "!= ", "< ", "> ", "<= ", ">= "]) {
         Some(1)
     } else {
-        // Behind `=`, before breaking what is nested.
-        (before == b'=' && depth == 0).then_some(2)
+        None
     }
 }
 

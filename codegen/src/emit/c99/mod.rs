@@ -1,26 +1,24 @@
 //! The C99 emitter: from a verified graph to a header and a source for toolchains without Rust.
 //!
-//! The same plan as the Rust emitter's, so the same stages under the same names with the same proven ranges. Portable
-//! by construction: exact widths of 16 bits and more, no signed overflow, no right shift of a negative number
-//! (`helpers`), nothing but `stdbool.h` and `stdint.h` included. Nothing here can fail.
+//! The same plan as the Rust emitter's, so the same stages under the same names with the same proven ranges, around the
+//! runtime in C (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed overflow, no right
+//! shift of a negative number. Nothing here can fail.
 
+mod drive;
 mod expression;
 mod function;
-mod helpers;
-mod interface;
+mod header;
 mod layout;
-mod methods;
 mod names;
 mod stage;
 
 use crate::interface::Interface;
 use crate::ir::{Constant, Table, VerifiedGraph};
+use drive::Drive;
 use expression::element;
-use function::{emit_setter, emit_step, emit_stores};
-use interface::Types;
+use function::emit_step;
 use layout::{INDENT, words};
 use names::{Names, number, typed_number};
-use std::collections::BTreeSet;
 
 /// A drive in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,61 +31,49 @@ pub struct Sources {
     pub source: String,
 }
 
+/// The runtime that drives in C need beside them, once for all of a program: names and texts of its files.
+pub const RUNTIME: [(&str, &str); 2] = hexagen_c99::FILES;
+
 /// The header and the source of one drive of this type name.
 pub fn emit_c99(graph: &VerifiedGraph, interface: &Interface, type_name: &str) -> Sources {
     let program = graph.program();
-    let setters = program.setters.iter().map(|setter| setter.name.clone());
-    let names = Names::new(type_name, interface, setters.collect());
-    let types = Types {
+    let names = Names::new(type_name, program, interface);
+    let step = emit_step(program, &names);
+    let drive = Drive {
         program,
         interface,
         names: &names,
+        step: &step,
     };
-    let mut body = types.common();
-    let mut code = emit_step(program, &names);
-    if words(&code).contains("leg_of") {
-        body.push_str(&types.leg_of());
-    }
-    body.push_str(&code);
-    body.push_str(&emit_stores(program, &names));
-    for setter in &program.setters {
-        body.push_str(&emit_setter(program, setter, &names));
-    }
-    body.push_str(&types.functions());
+    let body = step.definitions.clone() + &drive.functions();
     let used = words(&body);
-    code = String::new();
-    let is_used = |name: &str| used.contains(&names.constant(name));
+    let is_used = |name: &str| !name.is_empty() && used.contains(&names.constant(name));
+    let mut source = head(&names, interface);
     let constants = program.constants.iter();
     let constants = constants.filter(|constant| is_used(&constant.name));
-    code.extend(constants.map(|constant| emit_constant(constant, &names)));
-    code.push_str(&types.own_constants());
+    source.extend(constants.map(|constant| emit_constant(constant, &names)));
     let tables = program.tables.iter().filter(|table| is_used(&table.name));
-    code.extend(tables.map(|table| emit_table(table, &names)));
-    code.extend(helpers(&used));
+    source.extend(tables.map(|table| emit_table(table, &names)));
+    source.push_str(&drive.constants());
+    source.push_str(&body);
     Sources {
-        header: types.header(),
-        source: head(&names, interface) + &code + &body,
+        header: drive.header(),
+        source,
         name: names.prefix,
     }
 }
 
-fn helpers(used: &BTreeSet<String>) -> impl Iterator<Item = String> {
-    helpers::used(used)
-        .into_iter()
-        .map(|text| format!("{text}\n"))
-}
-
-/// What stands before everything: where to read on, and how functions off the normal path are marked.
+/// What stands before everything: what the drive was made of.
 fn head(names: &Names, interface: &Interface) -> String {
-    let begin = interface.header.first().cloned().unwrap_or_default();
-    let see = format!("Specification, accuracy and use: {}.h.", names.prefix);
-    let cold = names.public_upper("COLD");
+    let mut lines = vec![
+        format!("Use and accuracy: {}.h. Generated from:", names.prefix),
+        String::new(),
+    ];
+    lines.extend(interface.spec_toml.lines().map(|line| format!("{INDENT}{line}")));
     format!(
-        "{}#include \"{}.h\"\n\n{}#if defined(__GNUC__) || defined(__clang__)\n\
-         #define {cold} __attribute__((cold, noinline))\n#else\n#define {cold}\n#endif\n\n",
-        names.comment("", &[begin, see]),
-        names.prefix,
-        names.comment("", &["Off the normal path, and not to be inlined into it."]),
+        "{}#include \"{}.h\"\n\n",
+        names.verbatim(&lines),
+        names.prefix
     )
 }
 

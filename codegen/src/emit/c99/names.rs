@@ -1,58 +1,68 @@
 //! How names, numbers and comments look in emitted C.
 
+use super::super::comment::comments;
 use super::super::names::module_name;
-use super::helpers::HELPERS;
+use super::layout::WIDTH;
 use crate::interface::Interface;
+use crate::ir::Program;
 
-/// Words of C99 and of the two headers that emitted code includes.
-const KEYWORDS: [&str; 40] = [
-    "auto", "bool", "break", "case", "char", "const", "continue", "default", "do", "double",
-    "else", "enum", "extern", "false", "float", "for", "goto", "if", "inline", "int", "long",
+/// Words of C99, of C++, which may include a header, and of the headers that emitted code includes.
+const KEYWORDS: [&str; 69] = [
+    "and", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const", "continue",
+    "default", "delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false",
+    "float", "for", "friend", "goto", "if", "inline", "int", "int16_t", "int32_t", "int64_t", "long",
+    "mutable", "namespace", "new", "not", "operator", "or", "private", "protected", "public",
     "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch",
-    "true", "typedef", "union", "unsigned", "void", "volatile", "while", "int16_t", "int32_t",
-    "int64_t",
+    "template", "this", "throw", "true", "try", "typedef", "typename", "uint16_t", "uint32_t",
+    "uint64_t", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor", "main",
 ];
 
-/// Local names and functions of every emitted source.
-const RESERVED: [&str; 17] = [
-    "bus_left",
-    "bus_told",
-    "buffer",
+/// Local names, types and functions of every emitted source.
+const RESERVED: [&str; 21] = [
+    "bus",
+    "checked",
     "drive",
-    "initial_state",
-    "leg_of",
+    "initial",
+    "leg",
     "legs",
-    "legs_at_rest",
-    "pass_period",
-    "publish",
+    "limits",
+    "observation",
     "rest",
     "result",
-    "set_point",
-    "spare",
+    "rotor",
+    "sample",
+    "signals",
     "state",
-    "status_of",
     "step",
+    "step_at_rest",
+    "tell",
+    "track",
+    "tracked",
+    "units",
+    "words",
 ];
 
 /// Functions that every header declares behind the drive's prefix; the setters come besides.
-pub(super) const FUNCTIONS: [&str; 8] = [
+const FUNCTIONS: [&str; 7] = [
     "calibrate",
-    "fault",
     "init",
-    "is_running",
     "precharge",
     "reset",
+    "signals",
     "status",
     "step",
 ];
 
-/// Headers of the language, whose names a drive's own must not take.
-const STANDARD: [&str; 2] = ["stdbool", "stdint"];
+/// Names that a type may not take besides: files of the language, and functions of its library with a name of one word
+/// that suits a drive.
+const STANDARD: [&str; 11] = [
+    "abs", "floor", "index", "log", "pow", "round", "signal", "sin", "stdbool", "stdint", "time",
+];
 
 /// The names of one drive's header and source.
 #[derive(Debug)]
 pub(super) struct Names {
-    /// `hub_drive` of `HubDrive`: begin of every public name.
+    /// `hub_drive` of `HubDrive`: the type, and begin of every other public name.
     pub prefix: String,
     /// `HUB_DRIVE`
     pub upper: String,
@@ -61,16 +71,19 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn new(type_name: &str, interface: &Interface, setters: Vec<String>) -> Self {
+    pub(super) fn new(type_name: &str, program: &Program, interface: &Interface) -> Self {
         let mut prefix = module_name(type_name);
-        if STANDARD.contains(&prefix.as_str()) {
+        let lists = [&KEYWORDS[..], &RESERVED, &STANDARD];
+        let is_taken = lists.iter().any(|list| list.contains(&prefix.as_str()));
+        if is_taken || prefix.starts_with("hexagen") {
             prefix.insert_str(0, "drive_");
         }
         let constants = interface.constants.iter();
+        let setters = program.setters.iter();
         Self {
             upper: prefix.to_uppercase(),
             prefix,
-            setters,
+            setters: setters.map(|setter| setter.name.clone()).collect(),
             constants: constants.map(|constant| constant.name.clone()).collect(),
         }
     }
@@ -85,14 +98,9 @@ impl Names {
         format!("{}_{name}", self.upper)
     }
 
-    /// `hub_drive_legs_t` of `legs`
-    pub(super) fn type_of(&self, name: &str) -> String {
-        format!("{}_{name}_t", self.prefix)
-    }
-
-    /// The line before a function off the normal path.
-    pub(super) fn cold(&self) -> String {
-        self.public_upper("COLD") + "\n"
+    /// The type of the words that outlive a control period.
+    pub(super) fn state(&self) -> String {
+        self.public("state")
     }
 
     /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind it where that
@@ -100,14 +108,14 @@ impl Names {
     pub(super) fn local(&self, name: &str) -> String {
         let is_public = || {
             let rest = name.strip_prefix(&self.prefix);
-            let rest = rest.and_then(|rest| rest.strip_prefix('_'));
-            rest.is_some_and(|rest| FUNCTIONS.contains(&rest) || self.is_setter(rest))
+            rest.is_some_and(|rest| {
+                let rest = rest.strip_prefix('_');
+                rest.is_none_or(|rest| {
+                    rest == "state" || FUNCTIONS.contains(&rest) || self.is_setter(rest)
+                })
+            })
         };
-        let is_taken = KEYWORDS.contains(&name)
-            || RESERVED.contains(&name)
-            || HELPERS.iter().any(|helper| helper.name == name)
-            || is_public();
-        if is_taken {
+        if KEYWORDS.contains(&name) || RESERVED.contains(&name) || is_public() {
             format!("{name}_")
         } else {
             name.to_owned()
@@ -124,10 +132,13 @@ impl Names {
     }
 
     fn is_setter(&self, name: &str) -> bool {
+        let base = ["_ma", "_mnm", "_rpm"];
+        let base = base.iter().find_map(|unit| name.strip_suffix(unit));
+        let name = base.unwrap_or(name);
         self.setters.iter().any(|setter| setter == name)
     }
 
-    /// A line of documentation, with the names that it mentions as they are here.
+/// A line of documentation, with the names that it mentions as they are here.
     fn text(&self, line: &str) -> String {
         let mut parts = line.split('`');
         let mut text = parts.next().unwrap_or_default().to_owned();
@@ -144,10 +155,7 @@ impl Names {
                 text.push_str(if is_quoted { type_name(part) } else { part });
             }
         }
-        // What would end the comment, begin another one, or spell another sign.
-        text.replace("*/", "* /")
-            .replace("/*", "/ *")
-            .replace("??", "? ?")
+        closed(&text)
     }
 
     /// A comment of these lines, which documentation tools read.
@@ -155,24 +163,40 @@ impl Names {
         let lines: Vec<String> = lines.iter().map(|line| self.text(line.as_ref())).collect();
         match lines.as_slice() {
             [] => String::new(),
-            [only] => format!("{indent}/** {only} */\n"),
+            [only] if indent.len() + only.chars().count() + 7 <= WIDTH => {
+                format!("{indent}/** {only} */\n")
+            }
             many => {
-                let mut text = format!("{indent}/**\n");
-                for line in many {
-                    text.push_str(format!("{indent} * {line}").trim_end());
-                    text.push('\n');
-                }
-                text + indent + " */\n"
+                let body = comments(&format!("{indent} *"), WIDTH, many);
+                format!("{indent}/**\n{body}{indent} */\n")
             }
         }
     }
+
+    /// A comment of these lines as they are.
+    pub(super) fn verbatim(&self, lines: &[String]) -> String {
+        let mut text = "/*\n".to_owned();
+        for line in lines {
+            text.push_str(format!(" * {}", closed(line)).trim_end());
+            text.push('\n');
+        }
+        text + " */\n"
+    }
 }
 
-/// A type of Rust that texts name, as C has it; other words as they are.
+/// A text without what would end a comment, begin another one, or spell another sign.
+fn closed(text: &str) -> String {
+    text.replace("*/", "* /")
+        .replace("/*", "/ *")
+        .replace("??", "? ?")
+}
+
+/// What texts name in Rust, as C has it; other words as they are.
 fn type_name(word: &str) -> &str {
     match word {
         "i8" | "i16" => "int16_t",
         "i32" => "int32_t",
+        "hexagen::Supervisor" => "hexagen_supervisor",
         other => other,
     }
 }

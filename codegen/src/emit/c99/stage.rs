@@ -1,7 +1,6 @@
 //! One stage as one function, and its call.
 
 use super::super::expression::Scope;
-use super::super::path::StageCode;
 use super::super::plan::{Context, Outcome, StagePlan};
 use super::super::signal::{Shape, Signal};
 use super::super::texts;
@@ -24,20 +23,6 @@ pub(super) struct StageFunction<'a> {
     arguments: Vec<Signal>,
 }
 
-impl StageCode for StageFunction<'_> {
-    fn name(&self) -> &str {
-        &self.own_name
-    }
-
-    fn plan(&self) -> &StagePlan<'_> {
-        &self.plan
-    }
-
-    fn text(&self) -> String {
-        self.definition()
-    }
-}
-
 impl<'a> StageFunction<'a> {
     /// The function `name` for a planned stage.
     pub(super) fn new(
@@ -54,6 +39,11 @@ impl<'a> StageFunction<'a> {
             arguments: arguments.collect(),
             plan,
         }
+    }
+
+    /// What it is planned as.
+    pub(super) fn plan(&self) -> &StagePlan<'a> {
+        &self.plan
     }
 
     fn printer(&self, reads_state: bool) -> Printer<'a> {
@@ -84,10 +74,6 @@ impl<'a> StageFunction<'a> {
         self.names.local(&outcome.signal.name)
     }
 
-    fn kind(&self, signal: &Signal) -> String {
-        kind(signal.shape, self.names)
-    }
-
     /// The call, with what follows its own arguments.
     fn call_with(&self, results: impl Iterator<Item = String>) -> String {
         let uses_state = !self.plan.reads.is_empty() || !self.plan.stores.is_empty();
@@ -111,15 +97,15 @@ impl<'a> StageFunction<'a> {
             return String::new();
         }
         if let [only] = self.plan.outcomes.as_slice() {
-            let (kind, name) = (self.kind(&only.signal), self.local(only));
+            let (kind, name) = (kind(only.signal.shape), self.local(only));
             let call = self.call_with(std::iter::empty());
             return wrapped(INDENT, &format!("const {kind} {name} = {call};"));
         }
         let mut text = String::new();
         // One declaration per type, in the order of the first ones.
-        let mut kinds: Vec<(String, Vec<String>)> = vec![];
+        let mut kinds: Vec<(&str, Vec<String>)> = vec![];
         for outcome in &self.plan.outcomes {
-            let (kind, name) = (self.kind(&outcome.signal), self.local(outcome));
+            let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));
             match kinds.iter_mut().find(|(known, _)| *known == kind) {
                 Some((_, names)) => names.push(name),
                 None => kinds.push((kind, vec![name])),
@@ -141,7 +127,7 @@ impl<'a> StageFunction<'a> {
         let mut text = String::new();
         if !self.has_structure() || !self.has_body() {
             for outcome in &self.plan.outcomes {
-                let (kind, name) = (self.kind(&outcome.signal), self.local(outcome));
+                let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));
                 let shape = outcome.signal.shape;
                 let taken = if self.has_body() {
                     call.clone()
@@ -161,7 +147,7 @@ impl<'a> StageFunction<'a> {
             return text;
         }
         for outcome in &self.plan.outcomes {
-            let (kind, name) = (self.kind(&outcome.signal), self.local(outcome));
+            let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));
             let value = printer.shaped(otherwise(outcome), outcome.signal.shape);
             let line = format!("{kind} {name} = {value};");
             text.push_str(&wrapped(INDENT, &line));
@@ -190,7 +176,7 @@ impl<'a> StageFunction<'a> {
         let named = named.filter(|&&value| !function.node(value).name.is_empty());
         let computed = named.map(|&value| {
             let name = self.names.local(&function.node(value).name);
-            let kind = kind(self.context.shape(value), self.names);
+            let kind = kind(self.context.shape(value));
             format!("const {kind} {name} = {};", printer.bound(value))
         });
         reads.chain(computed).collect()
@@ -229,7 +215,7 @@ impl<'a> StageFunction<'a> {
         let line = format!("What {} yields.", self.own_name);
         let mut text = self.names.comment("", &[line]) + "typedef struct {\n";
         for outcome in &self.plan.outcomes {
-            let (kind, name) = (self.kind(&outcome.signal), self.local(outcome));
+            let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));
             let _ = writeln!(text, "{INDENT}{kind} {name};");
         }
         text + &format!("}} {};\n\n", self.structure())
@@ -273,24 +259,24 @@ impl<'a> StageFunction<'a> {
         } else {
             statements.push(format!("return {};", shaped(only)));
         }
-        self.kind(&only.signal)
+        kind(only.signal.shape).to_owned()
     }
 
     fn head(&self, result: &str) -> String {
         let mut parameters = vec![];
-        let state = self.names.type_of("state");
+        let state = self.names.state();
         if !self.plan.stores.is_empty() {
             parameters.push(format!("{state} *state"));
         } else if !self.plan.reads.is_empty() {
             parameters.push(format!("const {state} *state"));
         }
         parameters.extend(self.arguments.iter().map(|signal| {
-            let (kind, name) = (self.kind(signal), self.names.local(&signal.name));
+            let (kind, name) = (kind(signal.shape), self.names.local(&signal.name));
             format!("{kind} {name}")
         }));
         if !self.has_structure() && self.plan.outcomes.len() > 1 {
             parameters.extend(self.plan.outcomes.iter().map(|outcome| {
-                let (kind, name) = (self.kind(&outcome.signal), self.local(outcome));
+                let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));
                 format!("{kind} *{}", result_name(&name))
             }));
         }
@@ -300,7 +286,7 @@ impl<'a> StageFunction<'a> {
         let guard = self.plan.stage.guard.as_ref();
         let is_rare = guard.is_some_and(|guard| guard.rare);
         let (before, inline) = if is_rare {
-            (self.names.cold(), "")
+            ("HEXAGEN_COLD\n".to_owned(), "")
         } else {
             (String::new(), "inline ")
         };
@@ -323,10 +309,10 @@ fn result_name(name: &str) -> String {
 }
 
 /// What a value is declared as.
-pub(super) fn kind(shape: Shape, names: &Names) -> String {
+pub(super) fn kind(shape: Shape) -> &'static str {
     match shape {
-        Shape::Word | Shape::Mode | Shape::Fault => "int32_t".to_owned(),
-        Shape::Flag | Shape::Alarm => "bool".to_owned(),
-        Shape::Leg => names.type_of("leg"),
+        Shape::Word => "int32_t",
+        Shape::Flag => "bool",
+        Shape::Leg => "hexagen_leg",
     }
 }

@@ -189,12 +189,23 @@ fn written(program: &Program, expression: &Expression) -> Written {
             Written::atom(quote!(Word::from(#flag)))
         }
         Expression::LegOf(word) => {
-            let word = of(word).tokens;
-            Written::atom(quote!(LegState::from_word(#word)))
+            let word = of(word).within(Binding::Atom);
+            Written::atom(quote!(LegState::from_number(#word.0)))
         }
         Expression::Choice(parts) => {
             let [condition, then, otherwise] = &**parts;
-            choice(of(condition), of(then), of(otherwise))
+            let nests = [then, otherwise]
+                .into_iter()
+                .any(|arm| matches!(arm, Expression::Choice(_)));
+            let written = choice(of(condition), of(then), of(otherwise));
+            match written.embedded {
+                // Among three values: one call within the other takes a line, branches take seven.
+                Some(selected) if nests => Written::atom(selected),
+                embedded => Written {
+                    embedded,
+                    ..written
+                },
+            }
         }
     }
 }
@@ -270,18 +281,11 @@ fn call(
 
 fn choice(condition: Written, then: Written, otherwise: Written) -> Written {
     let condition = condition.within(Binding::Branch);
-    let chains = otherwise.binding == Binding::Branch;
-    let [then, otherwise] =
-        [then, otherwise].map(|arm| (arm.tokens.clone(), arm.within(Binding::Branch)));
-    let ((then, then_embedded), (otherwise, otherwise_embedded)) = (then, otherwise);
-    let otherwise = if chains {
-        otherwise
-    } else {
-        quote!({ #otherwise })
-    };
+    let (then_branch, otherwise_branch) = (then.tokens.clone(), otherwise.tokens.clone());
+    let [then, otherwise] = [then, otherwise].map(|arm| arm.within(Binding::Branch));
     Written {
-        tokens: quote!(if #condition { #then } else #otherwise),
+        tokens: quote!(if #condition { #then_branch } else { #otherwise_branch }),
         binding: Binding::Branch,
-        embedded: Some(quote!(select(#condition, #then_embedded, #otherwise_embedded))),
+        embedded: Some(quote!(select(#condition, #then, #otherwise))),
     }
 }

@@ -16,11 +16,12 @@ pub fn format_rust(tokens: &TokenStream) -> String {
     }
 }
 
-/// The text as `rustfmt` lays it out, for files that are committed; `None` where there is no
-/// `rustfmt`. Only white space changes.
+/// The text as `rustfmt` lays it out for readers, in lines of up to 100 columns; `None` where there is
+/// no `rustfmt`. Only white space changes.
 pub fn rustfmt(text: &str) -> Option<String> {
     let mut process = Command::new("rustfmt")
         .args(["--edition", "2024", "--emit", "stdout", "--quiet"])
+        .args(["--config", "use_small_heuristics=Max"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -72,16 +73,25 @@ fn is_name(text: &str) -> bool {
             .all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// A blank line before every item, but not between imports or between plain constants, and before
-/// the last part of a step.
+/// A blank line before every item, but not between imports or between constants, and before the last part of a step.
 fn separate_items(text: &str) -> String {
     let mut separated = String::with_capacity(text.len());
-    let mut before = "";
-    for line in text.lines() {
+    let lines: Vec<&str> = text.lines().collect();
+    let (mut before, mut last) = ("", "");
+    for (index, line) in lines.iter().enumerate() {
+        let item = if begins_item(line) {
+            item_of(&lines[index..])
+        } else {
+            ""
+        };
         if ends_item(before)
-            && (begins_item(line) && !stays_close(before, line) || begins_ending(before, line))
+            && (!item.is_empty() && (before.ends_with('}') || !stays_close(last, item))
+                || begins_ending(before, line))
         {
             separated.push('\n');
+        }
+        if !item.is_empty() {
+            last = item;
         }
         separated.push_str(line);
         separated.push('\n');
@@ -90,7 +100,7 @@ fn separate_items(text: &str) -> String {
     separated
 }
 
-/// Items stand at the top, in the module or in an `impl` of it.
+/// Items stand at the top, or in an `impl` there.
 fn begins_item(line: &str) -> bool {
     let code = line.trim_start();
     let depth = line.len() - code.len();
@@ -98,6 +108,13 @@ fn begins_item(line: &str) -> bool {
         "///", "#[", "pub ", "fn ", "impl", "struct ", "const ", "static ", "use ",
     ];
     [0, 4, 8].contains(&depth) && words.iter().any(|word| code.starts_with(word))
+}
+
+/// The first line of an item behind its documentation and attributes.
+fn item_of<'t>(lines: &[&'t str]) -> &'t str {
+    let is_before = |line: &str| line.starts_with("///") || line.starts_with("#[");
+    let mut code = lines.iter().map(|line| line.trim_start());
+    code.find(|line| !is_before(line)).unwrap_or_default()
 }
 
 /// What a step leaves behind stands apart from what it computes.
@@ -113,10 +130,13 @@ fn ends_item(line: &str) -> bool {
     line.ends_with(';') || line.ends_with('}') || line.trim_start().starts_with("//!")
 }
 
-fn stays_close(before: &str, line: &str) -> bool {
-    ["use ", "const "]
+fn stays_close(before: &str, item: &str) -> bool {
+    let bare = |line: &str| line.strip_prefix("pub ").unwrap_or(line).to_owned();
+    let (before, item) = (bare(before), bare(item));
+    ["use ", "const ", "type "]
         .iter()
-        .any(|word| line.trim_start().starts_with(word) && before.trim_start().starts_with(word))
+        .any(|word| item.starts_with(word) && before.starts_with(word))
+        && !item.starts_with("const fn")
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::names::{docs, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
 use super::tables::look_up_command;
-use crate::ir::{AtRest, Function, Program, Value};
+use crate::ir::{AtRest, Function, Op, Program, Value};
 
 /// The step of a program as entries of a law.
 pub(super) struct Entries {
@@ -155,7 +155,11 @@ impl<'a> StepFunctions<'a> {
     }
 
     fn kept(&self, part: Part) -> Kept<'a> {
-        let plans: Vec<_> = self.stages.iter().map(|stage| stage.plan().clone()).collect();
+        let plans: Vec<_> = self
+            .stages
+            .iter()
+            .map(|stage| stage.plan().clone())
+            .collect();
         kept(self.context, &plans, part)
     }
 
@@ -168,9 +172,8 @@ impl<'a> StepFunctions<'a> {
         let kept = self.kept(Part::Tracking);
         let used = self.used(Part::Tracking, &kept);
         let (inputs, has_inputs) = self.inputs(used.into_iter());
-        let has_state = self.reads_state(Part::Tracking)
-            || !kept.words.is_empty()
-            || !kept.reads.is_empty();
+        let has_state =
+            self.reads_state(Part::Tracking) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Tracking, kept);
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let signature = quote!(#state: &mut State, #sample: &Checked);
@@ -198,7 +201,7 @@ impl<'a> StepFunctions<'a> {
             AtRest::Forgotten => None,
         });
         let tracked: Vec<Value> = tracked.collect();
-        let (inputs, has_inputs) = self.inputs(tracked.iter().copied());
+        let has_inputs = !inputs_used(self.function(), tracked.iter().copied()).is_empty();
         let handed = self.rotor.iter().filter(|value| tracked.contains(value));
         let handed: Vec<Source> = handed
             .map(|&value| snake(&self.function().node(value).name))
@@ -211,7 +214,13 @@ impl<'a> StepFunctions<'a> {
         let stores = kept.iter().map(|&(word, at_rest)| {
             let field = snake(&word.name);
             let value = match at_rest {
-                AtRest::Tracked(value) => scope.kept(word, value),
+                AtRest::Tracked(value) => match self.function().node(value).op {
+                    Op::Input(n) => {
+                        let method = Source::of(&*self.function().inputs[n as usize].name);
+                        quote!(sample.#method())
+                    }
+                    _ => scope.kept(word, value),
+                },
                 AtRest::Forgotten if word.storage_bits == 16 => quote!(0),
                 AtRest::Forgotten => quote!(Word(0)),
             };
@@ -223,7 +232,6 @@ impl<'a> StepFunctions<'a> {
         let kind = self.rotor_type();
         quote! {
             fn rest(#state: &mut State, #sample: &Checked, #rotor: #kind) {
-                #inputs
                 #pattern
                 #(#stores)*
             }
@@ -234,9 +242,8 @@ impl<'a> StepFunctions<'a> {
         let kept = self.kept(Part::Control);
         let used = self.used(Part::Control, &kept);
         let (inputs, has_inputs) = self.inputs(used.into_iter());
-        let has_state = self.reads_state(Part::Control)
-            || !kept.words.is_empty()
-            || !kept.reads.is_empty();
+        let has_state =
+            self.reads_state(Part::Control) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Control, kept);
         let names = self.rotor_names();
         let pattern = self
@@ -350,28 +357,34 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
             StageFunction::new(&context, plan, &name)
         })
         .collect();
-    let body: Source = if single {
-        stages.iter().flat_map(StageFunction::statements).collect()
-    } else {
-        stages.iter().map(StageFunction::call).collect()
-    };
     let scope = Scope {
         context: &context,
         reads_state: true,
     };
     let name = function.name.trim_start_matches("set_");
-    let values: Vec<Source> = writes(function)
-        .into_iter()
-        .map(|value| scope.whole(value))
-        .collect();
+    let written = writes(function);
+    let mut values: Vec<Source> = written.iter().map(|&value| scope.whole(value)).collect();
+    let body: Source = if single {
+        let mut statements: Vec<Source> =
+            stages.iter().flat_map(StageFunction::statements).collect();
+        // The last value is not bound to its name first.
+        let last = function.values().last();
+        if let ([only], [value]) = (written.as_slice(), values.as_mut_slice())
+            && last == Some(*only)
+        {
+            statements.pop();
+            *value = scope.bound(*only);
+        }
+        statements.into_iter().collect()
+    } else {
+        stages.iter().map(StageFunction::call).collect()
+    };
     let (kind, result) = match (name, values.as_slice()) {
-        ("bus", words) => {
+        (name, [only]) if name != "bus" => (quote!(Word), only.clone()),
+        (_, words) => {
             let count = words.len();
             (quote!([Word; #count]), quote!([#(#words),*]))
         }
-        (_, [only]) => (quote!(Word), only.clone()),
-        // The empty shape of a drive whose specification has errors.
-        _ => (quote!(Word), quote!(Word(0))),
     };
     let inputs = function.inputs.iter().map(|input| {
         let is_used = params_used(function, &input.name);

@@ -52,9 +52,8 @@ pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
         for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
             if groups.len() > limit {
-                let fits = |group: &Group| {
-                    group.shape == shape && (!singles || group.members.len() == 1)
-                };
+                let fits =
+                    |group: &Group| group.shape == shape && (!singles || group.members.len() == 1);
                 let members: Vec<usize> = groups
                     .iter()
                     .filter(|group| fits(group))

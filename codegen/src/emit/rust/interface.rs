@@ -31,9 +31,13 @@ impl Types<'_> {
 
     /// The words that outlive a control period.
     pub(super) fn state(&self) -> Source {
+        let mut before = String::new();
         let fields = self.program.states.iter().map(|word| {
             let (name, kind) = (snake(&word.name), storage_type(word));
-            let doc = doc(&format!("{} In `{}`.", word.doc, word.interval));
+            let text = format!("{} In `{}`.", word.doc, word.interval);
+            // Phases of one quantity stand together.
+            let doc = (text != before).then(|| doc(&text));
+            before = text;
             let initial = (word.initial != 0).then(|| {
                 let initial = number(i64::from(word.initial));
                 quote!(# [initial(#initial)])
@@ -63,14 +67,12 @@ impl Types<'_> {
         let spec = raw_text(spec_toml);
         let formats = formats.iter().map(format);
         let limits = limits_of(limits);
-        let [ampere, volt, volt_per_count, rpm] = [
-            units.ampere,
-            units.volt,
-            units.volt_per_count,
-            units.rpm,
-        ]
-        .map(unit);
-        let sectors = units.sectors.iter().map(|&sector| number(i64::from(sector)));
+        let [ampere, volt, volt_per_count, rpm] =
+            [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
+        let sectors = units
+            .sectors
+            .iter()
+            .map(|&sector| number(i64::from(sector)));
         let (bus_type, bus) = self.bus();
         let demand = self.word("j").map_or(0, |word| word.initial);
         let demand = number(i64::from(demand));
@@ -82,7 +84,9 @@ impl Types<'_> {
         };
         let (current, torque) = (of("set_current"), of("set_torque"));
         let speed_word = of("set_speed").map(|_| {
-            quote!(const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);)
+            quote!(
+                const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);
+            )
         });
         let told_words = of("set_bus").map(|_| {
             let count = self.bus_words().len();
@@ -90,12 +94,8 @@ impl Types<'_> {
                 const TOLD_BUS: Option<fn(Word) -> [Word; #count]> = Some(<Self as MeasuredBus>::bus);
             }
         });
-        let speed = of("set_speed").map(|function| {
-            quote!(impl SpeedLoop for #name { #function })
-        });
-        let told = of("set_bus").map(|function| {
-            quote!(impl MeasuredBus for #name { #function })
-        });
+        let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
+        let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
         let Entries { entries, rotor, .. } = step;
         let observe = self.observe();
         quote! {
@@ -232,7 +232,10 @@ fn limits_of(limits: &Limits) -> Source {
 }
 
 fn unit(unit: Unit) -> Source {
-    let (factor, shift) = (number(i64::from(unit.factor)), number(i64::from(unit.shift)));
+    let (factor, shift) = (
+        number(i64::from(unit.factor)),
+        number(i64::from(unit.shift)),
+    );
     quote!(Unit { factor: #factor, shift: #shift })
 }
 

@@ -1,5 +1,6 @@
 //! How names, numbers and documentation look in emitted Rust.
 
+use super::super::comment::comments;
 use super::source::{Source, quote};
 use crate::ir::Word;
 use std::collections::HashSet;
@@ -97,7 +98,7 @@ pub(super) fn raw_text(text: &str) -> Source {
 
 /// Documentation lines of an item.
 pub(super) fn docs<T: AsRef<str>>(lines: &[T]) -> Source {
-    comments("///", lines)
+    Source::of(comments("///", COLUMNS, lines))
 }
 
 /// One documentation line of an item.
@@ -105,82 +106,8 @@ pub(super) fn doc(line: &str) -> Source {
     docs(&[line])
 }
 
-/// Documentation of 100 columns where it is indented twice.
-const COLUMNS: usize = 88;
-
-/// Paragraphs are broken anew; tables, lists, headings and code keep their lines.
-fn comments<T: AsRef<str>>(sign: &str, lines: &[T]) -> Source {
-    let mut text = Comment {
-        sign,
-        text: String::new(),
-        width: 0,
-    };
-    for line in lines {
-        // A comment ends at the end of its line, and the user's own words may have several.
-        for line in line.as_ref().split('\n').flat_map(|line| line.split('\r')) {
-            text.add(line);
-        }
-    }
-    text.end();
-    Source::of(text.text)
-}
-
-struct Comment<'s> {
-    sign: &'s str,
-    text: String,
-    /// Columns of the open line; 0 where none is open.
-    width: usize,
-}
-
-impl Comment<'_> {
-    fn add(&mut self, line: &str) {
-        let begins = line.starts_with(['|', '#', '-', ' ', '`']) || is_numbered(line);
-        if line.is_empty() || begins {
-            self.end();
-        }
-        if line.is_empty() || line.starts_with(['|', '#']) {
-            self.text.push_str(self.sign);
-            if !line.is_empty() {
-                self.text.push(' ');
-                self.text.push_str(line);
-            }
-            self.text.push('\n');
-            return;
-        }
-        let indent = if begins && !line.starts_with('`') { 2 } else { 0 };
-        for word in line.split_whitespace() {
-            let columns = word.chars().count();
-            if self.width > 0 && self.width + 1 + columns > COLUMNS {
-                self.end();
-                self.begin(indent);
-            } else if self.width == 0 {
-                self.begin(0);
-            }
-            self.text.push(' ');
-            self.text.push_str(word);
-            self.width += 1 + columns;
-        }
-    }
-
-    fn begin(&mut self, indent: usize) {
-        self.text.push_str(self.sign);
-        self.text.push_str(&"  "[..indent]);
-        self.width = self.sign.len() + indent;
-    }
-
-    fn end(&mut self) {
-        if self.width > 0 {
-            self.text.push('\n');
-        }
-        self.width = 0;
-    }
-}
-
-/// `1. …`
-fn is_numbered(line: &str) -> bool {
-    let rest = line.trim_start_matches(|letter: char| letter.is_ascii_digit());
-    rest.len() < line.len() && rest.starts_with(". ")
-}
+/// Columns of documentation, 100 where it is indented twice.
+const COLUMNS: usize = 92;
 
 /// The type that stores a word.
 pub(super) fn storage_type(word: &Word) -> Source {

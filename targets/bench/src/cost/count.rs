@@ -53,16 +53,16 @@ impl Inputs {
     pub fn record(drive: &Prepared) -> Result<Self, BenchError> {
         let mut all = Recorder::new(drive, None);
         for stretch in stretches(drive) {
-            all.closed_loop(drive, &stretch)?;
+            stretch.close(drive, &mut all)?;
         }
         let mut short = Recorder::new(drive, None);
-        short.closed_loop(drive, &traced(drive))?;
+        traced(drive).close(drive, &mut short)?;
         let mut arbitrary = Recorder::new(drive, None);
         let start = Stretch {
             starts_up: true,
             ..traced(drive)
         };
-        arbitrary.closed_loop(drive, &start)?;
+        start.close(drive, &mut arbitrary)?;
         arbitrary.edges(drive, STIMULUS)?;
         Ok(Self {
             records: all.finish().records,
@@ -249,6 +249,7 @@ fn numbers(answers: &[u8]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::cost::{INTERRUPT_VARIANT, paper_drive};
+    use crate::vectors::Called;
     use hexagen::Fault;
 
     /// What the table says of its column of arbitrary inputs.

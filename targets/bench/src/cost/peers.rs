@@ -5,7 +5,6 @@ use crate::BenchError;
 use crate::listing::Listed;
 use crate::pil::{Core, first_step};
 use crate::vectors::Answer;
-use hexagen::Fault;
 use hexagen::fixed::types::I16F16;
 use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Peer, Phcc, PiPwm};
 use hexagen_firmware::wire::{Mode, Task, encode_outputs};
@@ -58,7 +57,7 @@ fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared, steps: usize) -> Result<Run, B
     let answer = |(step, sample)| Answer {
         sample,
         step,
-        bytes: encode_outputs(peer.step(&sample), Fault::None).to_vec(),
+        bytes: encode_outputs(peer.step(&sample), None).to_vec(),
     };
     let answers = inputs
         .samples()

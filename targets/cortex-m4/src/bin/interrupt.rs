@@ -4,19 +4,20 @@
 
 use cortex_m_rt::entry;
 use hexagen_cortex_m4::board::REGISTERS;
-use hexagen_cortex_m4::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc, reset};
+use hexagen_cortex_m4::control::{hand_over, interrupt_trivedi_keshri_660w_pdcc, with_control};
+use hexagen_firmware::hexagen::ControlLoop;
 use hexagen_firmware::interrupt::serve;
 use hexagen_firmware::semihosted::run_with;
 
 #[entry]
 fn main() -> ! {
-    let set_point = hand_over(|_| ());
+    let set_point = hand_over();
     run_with(|link| {
         serve(
             link,
             set_point,
             &REGISTERS,
-            reset,
+            || with_control(ControlLoop::reset),
             interrupt_trivedi_keshri_660w_pdcc,
         )
     })

@@ -48,8 +48,9 @@ impl Peer for FocLoop {
     fn step(&mut self, sample: &Sample) -> Legs {
         let current = |count: u16| (I16F16::from_num(count) - OFFSET) * GAIN;
         // Turns to radians.
-        let turns = I16F16::from_bits(ANGLES[usize::from(sample.hall & 7)] >> 16);
-        let currents = [current(sample.adc_a), current(sample.adc_b)];
+        let turns = I16F16::from_bits(ANGLES[usize::from(sample.hall() & 7)] >> 16);
+        let [adc_a, adc_b, _] = sample.adc();
+        let currents = [current(adc_a), current(adc_b)];
         let compare = self.0.update(currents, turns * I16F16::TAU, DEMAND, T_S);
         Legs::new(compare, [LegState::Pulsed; 3])
     }
@@ -79,9 +80,10 @@ impl Peer for IdspLoop {
     fn step(&mut self, sample: &Sample) -> Legs {
         const COUNTS: i32 = 1024 << 16;
         let times = |x: i32, y: i32| ((i64::from(x) * i64::from(y)) >> 31) as i32;
-        let (cos, sin) = cossin(ANGLES[usize::from(sample.hall & 7)]);
-        let i_a = (i32::from(sample.adc_a) - 2048) << 16;
-        let i_b = (i32::from(sample.adc_b) - 2048) << 16;
+        let [adc_a, adc_b, _] = sample.adc();
+        let (cos, sin) = cossin(ANGLES[usize::from(sample.hall() & 7)]);
+        let i_a = (i32::from(adc_a) - 2048) << 16;
+        let i_b = (i32::from(adc_b) - 2048) << 16;
         let i_beta = times(i_a + 2 * i_b, 0x49e6_9d16);
         let i_d = times(i_a, cos) + times(i_beta, sin);
         let i_q = times(i_beta, cos) - times(i_a, sin);

@@ -36,8 +36,8 @@ macro_rules! peers {
                 hall: u8,
                 hall_ticks: u16,
             ) -> $crate::hexagen::Legs {
-                let sample = $crate::hexagen::Sample { adc_a, adc_b, hall, hall_ticks };
-                $crate::peers::Peer::step(peer, &sample)
+                let sample = $crate::hexagen::Sample::with_hall([adc_a, adc_b], hall);
+                $crate::peers::Peer::step(peer, &sample.hall_ticks(hall_ticks))
             }
         )*
 
@@ -48,7 +48,7 @@ macro_rules! peers {
             kind: "pdcc",
             options: "",
             size: size_of::<$type>(),
-            state_names: &[],
+            state_names: [&[]; 2],
             spec: "",
             replay: |link, task| $crate::session::replay_peer($crate::StepFn::Bits($symbol), link, task),
         },)*];

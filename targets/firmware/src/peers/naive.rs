@@ -59,15 +59,16 @@ const LEGS: [[u16; 3]; 7] = [
 #[inline]
 fn currents<R: Real>(sample: Sample) -> [R; 2] {
     let gain = R::num(GAIN);
-    let i_a = (R::count(sample.adc_a) - R::num(2048.0)) * gain;
-    let i_b = (R::count(sample.adc_b) - R::num(2048.0)) * gain;
+    let [adc_a, adc_b, _] = sample.adc();
+    let i_a = (R::count(adc_a) - R::num(2048.0)) * gain;
+    let i_b = (R::count(adc_b) - R::num(2048.0)) * gain;
     [i_a, (i_a + i_b + i_b) * R::num(1.0 / SQRT_3)]
 }
 
 /// Reference in ampere.
 #[inline]
 fn reference<R: Real>(sample: Sample) -> [R; 2] {
-    R::CORNERS[usize::from(sample.hall & 7)]
+    R::CORNERS[usize::from(sample.hall() & 7)]
 }
 
 /// Space-vector modulation by min/max injection; scales what the hexagon cannot hold.

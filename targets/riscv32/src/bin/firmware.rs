@@ -3,13 +3,14 @@
 #![no_main]
 
 use hexagen_firmware::demonstration;
-use hexagen_firmware::hexagen::DriveLoop;
+use hexagen_firmware::hexagen::ControlLoop;
 use hexagen_riscv32::board::{REGISTERS, start_timer, wait_for_interrupt};
-use hexagen_riscv32::control::hand_over;
+use hexagen_riscv32::control::{hand_over, with_control};
 use riscv_rt::entry;
 
 #[entry]
 fn main() -> ! {
-    let set_point = hand_over(DriveLoop::calibrate);
+    let set_point = hand_over();
+    with_control(ControlLoop::calibrate);
     demonstration::run(set_point, &REGISTERS, start_timer, wait_for_interrupt)
 }

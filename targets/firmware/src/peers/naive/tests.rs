@@ -22,12 +22,13 @@ fn clarke([a, b]: [f64; 2]) -> [f64; 2] {
 
 /// Currents alpha, beta of a sample.
 fn currents(sample: Sample) -> [f64; 2] {
-    clarke([sample.adc_a, sample.adc_b].map(|count| (f64::from(count) - 2048.0) * 80.0 / 4096.0))
+    let [adc_a, adc_b, _] = sample.adc();
+    clarke([adc_a, adc_b].map(|count| (f64::from(count) - 2048.0) * 80.0 / 4096.0))
 }
 
 /// 20 A into one phase of the sector and out of the other.
 fn reference(sample: Sample) -> [f64; 2] {
-    let phases = match sample.hall {
+    let phases = match sample.hall() {
         1 => [0.0, -1.0],
         2 => [-1.0, 1.0],
         3 => [-1.0, 0.0],
@@ -91,13 +92,8 @@ impl Motor {
         let sector = (self.angle / 60.0_f64.to_radians()) as usize % 6;
         let [alpha, beta] = self.i;
         let i_b = (3.0_f64.sqrt() * beta - alpha) / 2.0;
-        let [adc_a, adc_b] = [alpha, i_b].map(|i| (i / 80.0 * 4096.0 + 2048.0).round() as u16);
-        Sample {
-            adc_a,
-            adc_b,
-            hall: [1, 5, 4, 6, 2, 3][sector],
-            hall_ticks: 0,
-        }
+        let adc = [alpha, i_b].map(|i| (i / 80.0 * 4096.0 + 2048.0).round() as u16);
+        Sample::with_hall(adc, [1, 5, 4, 6, 2, 3][sector])
     }
 
     /// One period with the voltage that was asked for in the last one; `v` is that of the next.

@@ -1,0 +1,478 @@
+//! The public functions: start, step, setters and commands, around the law and the runtime.
+
+use super::function::{BUS, Step, emit_setter};
+use super::layout::{INDENT, wrapped};
+use super::names::{Names, number, typed_number};
+use crate::interface::{Interface, Limits, Unit};
+use crate::ir::{Function, Program};
+
+/// What the header and the public functions are emitted from.
+pub(super) struct Drive<'a> {
+    pub program: &'a Program,
+    pub interface: &'a Interface,
+    pub names: &'a Names,
+    pub step: &'a Step,
+}
+
+/// A public function.
+pub(super) struct Method {
+    pub doc: Vec<String>,
+    head: String,
+    body: String,
+}
+
+impl Method {
+    /// Its head, as declarations and definitions have it.
+    pub(super) fn head(&self) -> String {
+        wrapped("", &self.head).trim_end().to_owned()
+    }
+
+    fn definition(&self) -> String {
+        format!("{}\n{{\n{}}}\n\n", self.head(), self.body)
+    }
+}
+
+fn lines(lines: &[&str]) -> String {
+    lines.iter().map(|line| wrapped(INDENT, line)).collect()
+}
+
+fn doc(lines: &[&str]) -> Vec<String> {
+    lines.iter().map(|&line| line.to_owned()).collect()
+}
+
+impl Drive<'_> {
+    pub(super) fn has_speed(&self) -> bool {
+        let mut setters = self.program.setters.iter();
+        setters.any(|setter| setter.name == "set_speed")
+    }
+
+    pub(super) fn has_bus(&self) -> bool {
+        self.interface.bus_periods.is_some()
+    }
+
+    /// The set-point word that says whether anything is demanded of the motor.
+    fn demand(&self) -> &'static str {
+        if self.has_speed() { "speed" } else { "current" }
+    }
+
+    /// First values of the named set-point words; 0 of one that there is not.
+    fn initial(&self, name: &str) -> String {
+        let word = self.program.params.iter().find(|word| word.name == name);
+        number(word.map_or(0, |word| word.initial))
+    }
+
+    /// Limits, units, and the state of a drive that begins.
+    pub(super) fn constants(&self) -> String {
+        let Interface { limits, units, .. } = self.interface;
+        let limits = arguments(limits).map(|(value, name)| format!("{value} /* {name} */"));
+        let limits = limits.join(&format!(",\n{INDENT}"));
+        let comment = "What samples are judged by, and how the drive starts up.";
+        let mut text = self.names.comment("", &[comment]);
+        text.push_str(&format!("HEXAGEN_LIMITS(limits,\n{INDENT}{limits});\n\n"));
+
+        text.push_str(&self.names.comment("", &["Units of the signals."]));
+        let sectors = units.sectors.map(|sector| sector.to_string()).join(", ");
+        let unit = |unit: Unit| format!("{{ {}, {} }}", number(unit.factor), unit.shift);
+        let fields = [
+            ("ampere", unit(units.ampere)),
+            ("volt", unit(units.volt)),
+            ("volt_per_count", unit(units.volt_per_count)),
+            ("rpm", unit(units.rpm)),
+            ("sectors", format!("{{ {sectors} }}")),
+        ];
+        let fields = fields.map(|(name, value)| format!("{INDENT}.{name} = {value}"));
+        text.push_str("static const hexagen_units units = {\n");
+        text.push_str(&fields.join(",\n"));
+        text.push_str("\n};\n\n");
+
+        let state = self.names.state();
+        text.push_str(&self.names.comment("", &["The state of a drive that begins."]));
+        let words = self.program.states.iter().map(|word| {
+            let (name, value) = (self.names.local(&word.name), number(word.initial));
+            format!("{INDENT}.{name} = {value}")
+        });
+        let words: Vec<String> = words.collect();
+        text.push_str(&format!("static const {state} initial = {{\n"));
+        text.push_str(&words.join(",\n"));
+        text + "\n};\n\n"
+    }
+
+    /// What stands behind the law: the public functions, and those that they call.
+    pub(super) fn functions(&self) -> String {
+        let mut text = self.step_at_rest() + &self.tell();
+        let setters = self.program.setters.iter();
+        text.extend(setters.map(|setter| emit_setter(self.program, setter, self.names).stages));
+        let methods = self.methods();
+        text.extend(methods.iter().map(Method::definition));
+        text.push_str("#ifdef HEXAGEN_VERIFICATION\n");
+        let own: String = self.verification().iter().map(Method::definition).collect();
+        text + own.trim_end() + "\n#endif\n"
+    }
+
+    /// The public functions, in the order of the header.
+    pub(super) fn methods(&self) -> Vec<Method> {
+        let mut methods = vec![self.init(), self.period()];
+        for setter in &self.program.setters {
+            methods.push(self.setter(setter));
+            methods.extend(self.other_unit(&setter.name));
+        }
+        methods.extend(self.commands());
+        methods
+    }
+
+    fn drive(&self) -> String {
+        format!("{} *drive", self.names.prefix)
+    }
+
+    /// A call of an entry of the law.
+    fn call(&self, entry: usize, name: &str, rotor: &str) -> String {
+        let arguments = self.step.arguments[entry].iter();
+        let arguments = arguments.map(|&argument| match argument {
+            "state" => "&drive->state",
+            "sample" => "&checked",
+            "rotor" => rotor,
+            other => other,
+        });
+        let arguments: Vec<&str> = arguments.collect();
+        format!("{name}({})", arguments.join(", "))
+    }
+
+    /// The statements that track; what is told of the rotor is bound where `is_named`.
+    fn track(&self, is_named: bool) -> String {
+        if !self.step.tracks {
+            return String::new();
+        }
+        let call = self.call(0, "track", "");
+        if !self.step.has_rotor {
+            lines(&[&format!("{call};")])
+        } else if is_named {
+            lines(&[&format!("const tracked rotor = {call};")])
+        } else {
+            lines(&[&format!("(void){call};")])
+        }
+    }
+
+    /// The period without control.
+    fn step_at_rest(&self) -> String {
+        let names = self.names;
+        let takes_rotor = self.step.arguments[1].contains(&"rotor");
+        let mut body = lines(&[
+            "hexagen_checked checked;",
+            "const hexagen_leg leg = hexagen_rest(&drive->supervisor, &limits, sample, &checked);",
+        ]);
+        body.push_str(&self.track(takes_rotor));
+        if !self.step.arguments[1].is_empty() {
+            body.push_str(&lines(&[&format!("{};", self.call(1, "rest", "rotor"))]));
+        }
+        body.push_str(&lines(&[
+            "drive->status = hexagen_status_word(&drive->supervisor);",
+            "return hexagen_all_legs(leg);",
+        ]));
+        let comment = names.comment(
+            "",
+            &[
+                "A period without control, in start-up or with a fault. Here alone mode and fault change, so here they are published.",
+            ],
+        );
+        let head = format!(
+            "static hexagen_legs step_at_rest({}, const hexagen_sample *sample)",
+            self.drive()
+        );
+        format!("{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n", wrapped("", &head))
+    }
+
+    /// The answer to a main program that has asked for signals.
+    fn tell(&self) -> String {
+        let states = &self.program.states;
+        let field = |name: &str| {
+            let word = states.iter().find(|word| word.name == name)?;
+            let place = format!("drive->state.{}", self.names.local(name));
+            Some(match word.storage_bits {
+                16 => format!("(int32_t){place}"),
+                _ => place,
+            })
+        };
+        let none = || "HEXAGEN_NONE".to_owned();
+        let [e_a, e_b] = ["e_a_prev", "e_b_prev"].map(|name| field(name).unwrap_or_else(none));
+        let speed = field("direction").zip(field("omega"));
+        let speed = speed.map_or_else(none, |(direction, omega)| format!("{direction} * {omega}"));
+        let comment = self.names.comment(
+            "",
+            &["Answers a main program that has asked for the signals of a period."],
+        );
+        let head = format!(
+            "static void tell({}, const hexagen_checked *checked, const hexagen_legs *legs)",
+            self.drive()
+        );
+        let inner = INDENT.repeat(2);
+        let fields = [("e_a", e_a), ("e_b", e_b), ("speed", speed)];
+        let fields = fields.map(|(name, value)| format!("{inner}.{name} = {value}"));
+        format!(
+            "{comment}HEXAGEN_COLD\n{}{{\n{INDENT}const hexagen_observation observation = {{\n{}\n{INDENT}}};\n\
+             {INDENT}hexagen_answer(&drive->signals, checked, legs, &observation);\n}}\n\n",
+            wrapped("", &head),
+            fields.join(",\n")
+        )
+    }
+
+    fn init(&self) -> Method {
+        let mut body = lines(&[&format!("drive->current = {};", self.initial("j"))]);
+        if self.has_speed() {
+            let speed = self.initial("speed_ref");
+            body.push_str(&lines(&[&format!("drive->speed = {speed};")]));
+        }
+        if self.has_bus() {
+            let [volts, ratio] = BUS.map(|name| self.initial(name));
+            let line = format!("hexagen_start_bus(&drive->bus, {volts}, {ratio});");
+            body.push_str(&lines(&[&line]));
+        }
+        body.push_str(&lines(&[
+            "hexagen_start_port(&drive->signals);",
+            "hexagen_start(&drive->supervisor, &limits);",
+            "drive->state = initial;",
+            "drive->status = hexagen_status_word(&drive->supervisor);",
+        ]));
+        Method {
+            doc: doc(&[
+                "Makes a drive that controls currents from its first period on, with set-point 0 and nominal current offsets.",
+                "Before any other call. Where offsets or the bootstrap capacitors of the inverter need it, call `calibrate()` before the first period.",
+            ]),
+            head: format!("void {}({})", self.names.public("init"), self.drive()),
+            body,
+        }
+    }
+
+    fn period(&self) -> Method {
+        let mut body = lines(&["hexagen_checked checked;"]);
+        if let Some(periods) = self.interface.bus_periods {
+            let line = format!("hexagen_pass_period(&drive->bus, {});", typed_number(periods));
+            body.push_str(&lines(&[&line]));
+        }
+        let check = format!(
+            "if (!hexagen_check(&drive->supervisor, &limits, sample, &drive->{}, &checked)) {{",
+            self.demand()
+        );
+        body.push_str(&lines(&[&check]));
+        body.push_str(&format!(
+            "{INDENT}{INDENT}return step_at_rest(drive, sample);\n{INDENT}}}\n"
+        ));
+        let takes_rotor = self.step.arguments[2].contains(&"rotor");
+        body.push_str(&self.track(takes_rotor));
+        let step = self.call(2, "step", "rotor");
+        body.push_str(&lines(&[
+            &format!("const hexagen_legs legs = {step};"),
+            "if (hexagen_is_asked(&drive->signals)) {",
+        ]));
+        body.push_str(&format!(
+            "{INDENT}{INDENT}tell(drive, &checked, &legs);\n{INDENT}}}\n{INDENT}return legs;\n"
+        ));
+        let effect = match self.interface.delay {
+            0 => "The command takes effect at once.",
+            _ => "The command takes effect with the next period, while its own step computes the one after.",
+        };
+        let mut text = doc(&[
+            "Runs one control period: takes the measurements of its start, returns the inverter's command.",
+            effect,
+        ]);
+        if self.interface.timer_capture {
+            text.push("The sample has a Hall code and the ticks since its edge (hexagen_with_ticks).".to_owned());
+        }
+        Method {
+            doc: text,
+            head: format!(
+                "hexagen_legs {}({}, const hexagen_sample *sample)",
+                self.names.public("step"),
+                self.drive()
+            ),
+            body,
+        }
+    }
+
+    fn setter(&self, setter: &Function) -> Method {
+        let quantity = setter.name.strip_prefix("set_").unwrap_or_default();
+        let mut text = setter.doc.clone();
+        let code = emit_setter(self.program, setter, self.names);
+        let mut body = code.body;
+        if quantity == "bus" {
+            text.extend(doc(&[
+                "",
+                "A call that interrupts another one has no effect; one that was interrupted for good keeps later calls from having an effect for 65536 control periods.",
+                "From an interrupt that can interrupt the control loop: at most once per control period.",
+            ]));
+            let mut words = code.words;
+            words.resize(BUS.len(), "0".to_owned());
+            let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
+            body.push_str(&lines(&[&line]));
+        } else {
+            let field = if quantity == "speed" { "speed" } else { "current" };
+            text.extend(doc(&["", "`bits` are those of a number with 16 fraction bits: 65536 is one."]));
+            for word in code.words {
+                body.push_str(&lines(&[&format!("drive->{field} = {word};")]));
+            }
+        }
+        let inputs = setter.inputs.iter().map(|input| {
+            let is_narrow = input.interval.low >= 0 && input.interval.high <= i64::from(u16::MAX);
+            let kind = if is_narrow { "uint16_t" } else { "int32_t" };
+            format!("{kind} {}", self.names.local(&input.name))
+        });
+        let parameters: Vec<String> = std::iter::once(self.drive()).chain(inputs).collect();
+        Method {
+            doc: text,
+            head: format!(
+                "void {}({})",
+                self.names.public(&setter.name),
+                parameters.join(", ")
+            ),
+            body,
+        }
+    }
+
+    /// The same setter in a unit of whole numbers.
+    fn other_unit(&self, setter: &str) -> Option<Method> {
+        let (suffix, parameter, unit, make) = match setter {
+            "set_current" => ("ma", "milliamperes", "milliamperes", "thousandths"),
+            "set_torque" => ("mnm", "millinewtonmetres", "millinewton metres", "thousandths"),
+            "set_speed" => ("rpm", "rpm", "whole rpm", "whole"),
+            _ => return None,
+        };
+        let call = self.names.public(setter);
+        Some(Method {
+            doc: vec![format!("`{setter}()` in {unit}.")],
+            head: format!("void {call}_{suffix}({}, int32_t {parameter})", self.drive()),
+            body: lines(&[&format!("{call}(drive, hexagen_{make}({parameter}));")]),
+        })
+    }
+
+    /// What the owner of a drive does besides stepping, and what it tells.
+    fn commands(&self) -> [Method; 5] {
+        let publish = "drive->status = hexagen_status_word(&drive->supervisor);";
+        let command = |name: &str, text: &[&str], body: String| Method {
+            doc: doc(text),
+            head: format!("void {}({})", self.names.public(name), self.drive()),
+            body: body + &lines(&[publish]),
+        };
+        let inner = INDENT.repeat(2);
+        let reset = format!(
+            "{INDENT}if (hexagen_reset(&drive->supervisor, &limits)) {{\n\
+             {inner}drive->state = initial;\n{inner}drive->{} = 0;\n{INDENT}}}\n",
+            self.demand()
+        );
+        let run = |name: &str| lines(&[&format!("hexagen_{name}(&drive->supervisor, &limits);")]);
+        let is_stale = if self.has_bus() {
+            "hexagen_bus_is_stale(&drive->bus)"
+        } else {
+            "false"
+        };
+        let read = |kind: &str, name: &str, parameters: &str, text: &[&str], line: &str| Method {
+            doc: doc(text),
+            head: format!("{kind} {}({parameters})", self.names.public(name)),
+            body: lines(&[line]),
+        };
+        [
+            command(
+                "reset",
+                &[
+                    "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
+                    "Ignored while calibrating and pre-charging.",
+                ],
+                reset,
+            ),
+            command(
+                "calibrate",
+                &[
+                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the specification has one, and",
+                    "control at the set-point that stands follow by themselves. Ignored when tripped.",
+                ],
+                run("calibrate"),
+            ),
+            command(
+                "precharge",
+                &[
+                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns; control follows by itself.",
+                    "Accepted from control, too: call it at rest only. Ignored when tripped, while calibrating, and where the specification has no pre-charge.",
+                ],
+                run("precharge"),
+            ),
+            read(
+                "hexagen_status",
+                "status",
+                &format!("const {}", self.drive()),
+                &["What the drive is doing and what tripped it, as of the last control period or call: from any context."],
+                &format!("return hexagen_status_of(drive->status, {is_stale});"),
+            ),
+            read(
+                "bool",
+                "signals",
+                &format!("{}, hexagen_signals *signals", self.drive()),
+                &[
+                    "The signals of one controlled period, which belong together: true where they are at hand. Else asks for those of the next one.",
+                    "",
+                    "The control loop answers in its next controlled period, so a program that asks until it gets an answer has signals of a period that began after it first asked.",
+                    "From one context of the main program; neither side ever waits for the other.",
+                ],
+                "return hexagen_take(&drive->signals, &units, signals);",
+            ),
+        ]
+    }
+
+    /// What a bit-for-bit comparison reads and writes.
+    pub(super) fn verification(&self) -> [Method; 2] {
+        let names = self.names;
+        let states = &self.program.states;
+        let list: Vec<&str> = states.iter().map(|word| word.name.as_str()).collect();
+        let list = list.join(", ");
+        let mut read = lines(&["hexagen_words(&drive->supervisor, words);"]);
+        let mut write = lines(&["hexagen_set_words(&drive->supervisor, words);"]);
+        for (place, word) in states.iter().enumerate() {
+            let field = names.local(&word.name);
+            let cast = if word.storage_bits == 16 { "(uint16_t)" } else { "" };
+            read.push_str(&format!(
+                "{INDENT}words[HEXAGEN_WORDS + {place}] = drive->state.{field};\n"
+            ));
+            write.push_str(&format!(
+                "{INDENT}drive->state.{field} = {cast}words[HEXAGEN_WORDS + {place}];\n"
+            ));
+        }
+        write.push_str(&lines(&["drive->status = hexagen_status_word(&drive->supervisor);"]));
+        [
+            Method {
+                doc: vec![format!("Copies the supervisor's words, then the law's: {list}.")],
+                head: format!(
+                    "void {}(const {}, int32_t *words)",
+                    names.public("state_words"),
+                    self.drive()
+                ),
+                body: read,
+            },
+            Method {
+                doc: doc(&["Overwrites those words with values inside their ranges."]),
+                head: format!(
+                    "void {}({}, const int32_t *words)",
+                    names.public("set_state_words"),
+                    self.drive()
+                ),
+                body: write,
+            },
+        ]
+    }
+}
+
+/// The limits in the order of the runtime's macro, each with its name.
+fn arguments(limits: &Limits) -> [(String, &'static str); 12] {
+    let [least, most] = limits.offsets;
+    let [low, high] = limits.currents;
+    [
+        (format!("{}", limits.adc_max), "adc_max"),
+        (format!("{}", limits.adc_inverted), "adc_inverted"),
+        (format!("{}", limits.current_bits), "current_bits"),
+        (format!("{}", limits.offset), "offset"),
+        (format!("{least}"), "offset_least"),
+        (format!("{most}"), "offset_most"),
+        (typed_number(limits.trip), "trip"),
+        (typed_number(low), "current_least"),
+        (typed_number(high), "current_most"),
+        (format!("{}", limits.calibration_log2), "calibration_log2"),
+        (format!("{}", limits.precharge_periods), "precharge_periods"),
+        (typed_number(limits.stall_periods), "stall_periods"),
+    ]
+}

@@ -1,0 +1,129 @@
+//! The header: constants, types, and the heads of the public functions.
+
+use super::super::texts;
+use super::drive::{Drive, Method};
+use super::layout::INDENT;
+use super::names::{number, typed_number};
+use crate::interface::{PublicConstant, PublicValue};
+use crate::ir::Word;
+
+impl Drive<'_> {
+    /// The whole header.
+    pub(super) fn header(&self) -> String {
+        let names = self.names;
+        let doc = texts::of_type(self.program, self.interface);
+        let place = format!("the specification in `{}.c`", names.prefix);
+        let doc: Vec<String> = doc.iter().map(|line| line.replace("`SPEC`", &place)).collect();
+        let mut text = names.comment("", &doc);
+        let guard = names.public_upper("H");
+        let prefix = &names.prefix;
+        text.push_str(&format!(
+            "#ifndef {guard}\n#define {guard}\n\n#include \"hexagen.h\"\n\n\
+             #if HEXAGEN_ABI != {abi}\n\
+             #error \"{prefix}.h is of another version of hexagen than hexagen.h: take both from one.\"\n\
+             #endif\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
+            abi = hexagen_c99::ABI
+        ));
+        let constants = self.interface.constants.iter();
+        text.extend(constants.map(|constant| self.constant(constant)));
+        text.push_str(&self.types());
+        let declare = |method: &Method| {
+            let comment = names.comment("", &method.doc);
+            format!("{comment}{};\n\n", method.head())
+        };
+        text.extend(self.methods().iter().map(declare));
+        text.push_str("#ifdef HEXAGEN_VERIFICATION\n");
+        let own: String = self.verification().iter().map(declare).collect();
+        text.push_str(own.trim_end());
+        text + "\n#endif\n\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+    }
+
+    /// A constant: a number, or what initialises an array.
+    fn constant(&self, constant: &PublicConstant) -> String {
+        let name = self.names.public_upper(&constant.name);
+        let mut doc = constant.doc.clone();
+        let row = |row: &[i32]| {
+            let numbers: Vec<String> = row.iter().copied().map(number).collect();
+            format!("{{ {} }}", numbers.join(", "))
+        };
+        let rows = |rows: Vec<String>| {
+            let rows = rows.join(&format!(", \\\n{INDENT}"));
+            format!("{{ \\\n{INDENT}{rows} \\\n}}")
+        };
+        let value = match &constant.value {
+            PublicValue::Integer { value, .. } => value.to_string(),
+            PublicValue::Fixed { bits, .. } => typed_number(*bits),
+            PublicValue::Vectors { bits, frac_bits } => {
+                doc.push(format!(
+                    "Initialises an `int32_t [{}][2]`, each number with {frac_bits} fraction bits.",
+                    bits.len()
+                ));
+                rows(bits.iter().map(|vector| row(vector)).collect())
+            }
+            PublicValue::Integers { values, .. } => {
+                doc.push(format!("Initialises an `int16_t [{}]`.", values.len()));
+                let lines = values.chunks(16).map(|values| {
+                    let values: Vec<String> = values.iter().map(i64::to_string).collect();
+                    values.join(", ")
+                });
+                rows(lines.collect())
+            }
+            PublicValue::Text(text) => format!("\"{}\"", text.escape_default()),
+        };
+        format!("{}#define {name} {value}\n\n", self.names.comment("", &doc))
+    }
+
+    /// The state, and the drive around it.
+    fn types(&self) -> String {
+        let names = self.names;
+        let mut text = names.comment("", &["What the law keeps from one control period to the next."]);
+        text.push_str("typedef struct {\n");
+        let mut before = String::new();
+        for word in &self.program.states {
+            let meaning = meaning(word);
+            // Phases of one quantity stand together.
+            if meaning != before {
+                text.push_str(&names.comment(INDENT, &[&meaning]));
+            }
+            before = meaning;
+            let kind = if word.storage_bits == 16 {
+                "uint16_t"
+            } else {
+                "int32_t"
+            };
+            text.push_str(&format!("{INDENT}{kind} {};\n", names.local(&word.name)));
+        }
+        text.push_str(&format!("}} {};\n\n", names.state()));
+        let doc = "A drive; all of it is the functions' own. Which of them may be called from where says hexagen.h.";
+        text.push_str(&names.comment("", &[doc]));
+        text.push_str("typedef struct {\n");
+        let set_point = [("j", "current"), ("speed_ref", "speed")];
+        let is_there = |name: &str| name == "j" || name == "speed_ref" && self.has_speed();
+        for (name, field) in set_point.into_iter().filter(|(name, _)| is_there(name)) {
+            let mut words = self.program.params.iter();
+            let word = words.find(|word| word.name == name).map(meaning);
+            text.push_str(&names.comment(INDENT, word.as_slice()));
+            text.push_str(&format!("{INDENT}volatile int32_t {field};\n"));
+        }
+        if self.has_bus() {
+            let doc = "The bus voltage as `set_bus()` tells it.";
+            text.push_str(&names.comment(INDENT, &[doc]));
+            text.push_str(&format!("{INDENT}hexagen_bus bus;\n"));
+        }
+        let state = names.state();
+        for (doc, field) in [
+            ("What the control loop last said.", "volatile int32_t status"),
+            ("Where signals go over.", "hexagen_port signals"),
+            ("The control loop's own.", "hexagen_supervisor supervisor"),
+            ("Likewise.", &format!("{state} state")),
+        ] {
+            text.push_str(&names.comment(INDENT, &[doc]));
+            text.push_str(&format!("{INDENT}{field};\n"));
+        }
+        text + &format!("}} {};\n\n", names.prefix)
+    }
+}
+
+fn meaning(word: &Word) -> String {
+    format!("{} In `{}`.", word.doc, word.interval)
+}

@@ -1,0 +1,382 @@
+/* What the drives of hexagen have in common, off the normal path: see hexagen.h. */
+#include "hexagen.h"
+
+#if HEXAGEN_ABI != 1
+#error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
+#endif
+
+/* ---- Arithmetic -------------------------------------------------------------------------- */
+
+/**
+ * Quotient, below 2^16, of above 2^16 + next and a divisor above `above` with its highest bit set;
+ * `above` becomes the rest.
+ */
+static uint32_t divide_digit(uint32_t *above, uint32_t next, uint32_t divisor)
+{
+    const uint32_t top = divisor >> 16;
+    const uint32_t bottom = divisor & UINT32_C(0xffff);
+    /* By the divisor's upper half alone the digit is up to two too large. */
+    uint32_t digit = *above / top;
+    uint32_t rest = *above - digit * top;
+    if (digit * bottom > ((rest << 16) | next)) {
+        digit -= 1U;
+        rest += top;
+        if ((rest >> 16) == 0U && digit * bottom > ((rest << 16) | next)) {
+            digit -= 1U;
+        }
+    }
+    *above = ((*above << 16) | next) - digit * divisor;
+    return digit;
+}
+
+/*
+ * Two digits of 16 bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D), for
+ * a library takes hundreds of instructions to divide 64 bits.
+ */
+int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
+{
+    uint64_t dividend = (uint64_t)numerator << shift;
+    uint32_t divisor = (uint32_t)denominator;
+    uint32_t rest;
+    uint32_t quotient;
+    if ((dividend >> 32) >= divisor) {
+        return limit;
+    }
+    if (divisor < UINT32_C(0x10000)) {
+        divisor <<= 16;
+        dividend <<= 16;
+    }
+    if (divisor < UINT32_C(0x1000000)) {
+        divisor <<= 8;
+        dividend <<= 8;
+    }
+    if (divisor < UINT32_C(0x10000000)) {
+        divisor <<= 4;
+        dividend <<= 4;
+    }
+    if (divisor < UINT32_C(0x40000000)) {
+        divisor <<= 2;
+        dividend <<= 2;
+    }
+    if (divisor < UINT32_C(0x80000000)) {
+        divisor <<= 1;
+        dividend <<= 1;
+    }
+    rest = (uint32_t)(dividend >> 32);
+    quotient = divide_digit(&rest, (uint32_t)(dividend >> 16) & UINT32_C(0xffff), divisor) << 16;
+    quotient |= divide_digit(&rest, (uint32_t)dividend & UINT32_C(0xffff), divisor);
+    return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
+}
+
+int32_t hexagen_thousandths(int32_t number)
+{
+    const int32_t most = INT32_C(32767999);
+    /* 2^16/1000, 24 fraction bits. */
+    const int32_t per_thousandth = INT32_C(1099511628);
+    return hexagen_mul_round(per_thousandth, hexagen_clamp(number, -most, most), 24);
+}
+
+int32_t hexagen_whole(int32_t number)
+{
+    if (number > INT32_C(32767)) {
+        return INT32_MAX;
+    }
+    return hexagen_shift_left(hexagen_max(number, -INT32_C(32768)), 16);
+}
+
+/* ---- Supervision ------------------------------------------------------------------------- */
+
+void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    const int32_t offset = hexagen_wrap((uint32_t)limits->offset << limits->current_bits);
+    supervisor->mode = HEXAGEN_MODE_RUN;
+    supervisor->fault = HEXAGEN_FAULT_NONE;
+    supervisor->countdown = 0;
+    supervisor->hall_prev = 0;
+    supervisor->stall_count = 0;
+    supervisor->sum_a = 0;
+    supervisor->sum_b = 0;
+    supervisor->offset_a = offset;
+    supervisor->offset_b = offset;
+}
+
+/** Turns all legs off until a reset. The first cause stays. */
+static void trip(hexagen_supervisor *supervisor, hexagen_fault fault)
+{
+    if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
+        supervisor->fault = fault;
+    }
+    supervisor->mode = HEXAGEN_MODE_TRIPPED;
+}
+
+static bool is_bad_offset(const hexagen_limits *limits, int32_t sum)
+{
+    const uint16_t log2 = limits->calibration_log2;
+    return sum < hexagen_shift_left((int32_t)limits->offset_least, log2)
+        || sum > hexagen_shift_left((int32_t)limits->offset_most, log2);
+}
+
+/** The mean of a calibration's counts in words of current, rounded down. */
+static int32_t mean(const hexagen_limits *limits, int32_t sum)
+{
+    const uint16_t bits = limits->current_bits;
+    const uint16_t log2 = limits->calibration_log2;
+    return (bits >= log2) ? hexagen_shift_left(sum, (uint16_t)(bits - log2))
+                          : hexagen_shift_right(sum, (uint16_t)(log2 - bits));
+}
+
+static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    if (is_bad_offset(limits, supervisor->sum_a) || is_bad_offset(limits, supervisor->sum_b)) {
+        trip(supervisor, HEXAGEN_FAULT_OFFSET);
+        return;
+    }
+    supervisor->offset_a = mean(limits, supervisor->sum_a);
+    supervisor->offset_b = mean(limits, supervisor->sum_b);
+    supervisor->countdown = limits->precharge_periods;
+    supervisor->mode =
+        (limits->precharge_periods == 0U) ? HEXAGEN_MODE_RUN : HEXAGEN_MODE_PRECHARGE;
+}
+
+/** Counts a period down; true where it was the last. */
+static bool is_last(hexagen_supervisor *supervisor)
+{
+    if (supervisor->countdown != 0U) {
+        supervisor->countdown = (uint16_t)(supervisor->countdown - 1U);
+    }
+    return supervisor->countdown == 0U;
+}
+
+/** Calibration averages the counts of all its samples, then pre-charge counts its periods down. */
+static void start_up(
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, int32_t count_a, int32_t count_b)
+{
+    /* The countdown ends the sums before this limit, whatever state they began in. */
+    const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
+    switch (supervisor->mode) {
+    case HEXAGEN_MODE_CALIBRATE:
+        supervisor->sum_a = hexagen_min(supervisor->sum_a + count_a, most);
+        supervisor->sum_b = hexagen_min(supervisor->sum_b + count_b, most);
+        if (is_last(supervisor)) {
+            end_calibration(supervisor, limits);
+        }
+        break;
+    case HEXAGEN_MODE_PRECHARGE:
+        if (is_last(supervisor)) {
+            supervisor->mode = HEXAGEN_MODE_RUN;
+        }
+        break;
+    case HEXAGEN_MODE_RUN:
+    case HEXAGEN_MODE_TRIPPED:
+    default:
+        break;
+    }
+}
+
+/** The first fault of a sample. */
+static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, const hexagen_checked *checked)
+{
+    if (hexagen_is_at_end(limits, sample->adc[0]) || hexagen_is_at_end(limits, sample->adc[1])) {
+        return HEXAGEN_FAULT_ADC_RANGE;
+    }
+    if (!hexagen_is_hall_code(sample->hall)) {
+        return HEXAGEN_FAULT_HALL;
+    }
+    if (hexagen_is_over(limits, checked->i_a, checked->i_b)) {
+        return HEXAGEN_FAULT_OVER_CURRENT;
+    }
+    return hexagen_is_stalled(supervisor, limits) ? HEXAGEN_FAULT_STALL : HEXAGEN_FAULT_NONE;
+}
+
+hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, hexagen_checked *checked)
+{
+    const uint16_t most = limits->adc_max;
+    const uint16_t count_a = (sample->adc[0] < most) ? sample->adc[0] : most;
+    const uint16_t count_b = (sample->adc[1] < most) ? sample->adc[1] : most;
+    hexagen_fault fault;
+    hexagen_leg leg;
+    checked->i_a = hexagen_current(limits, count_a, supervisor->offset_a);
+    checked->i_b = hexagen_current(limits, count_b, supervisor->offset_b);
+    checked->hall = hexagen_is_hall_code(sample->hall) ? (int32_t)sample->hall : 0;
+    checked->hall_ticks = (int32_t)sample->hall_ticks;
+    fault = find_fault(supervisor, limits, sample, checked);
+    leg = (supervisor->mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE)
+        ? HEXAGEN_LEG_LOW
+        : HEXAGEN_LEG_OFF;
+    start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
+    if (fault != HEXAGEN_FAULT_NONE) {
+        trip(supervisor, fault);
+    }
+    return leg;
+}
+
+bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    const int32_t offset_a = supervisor->offset_a;
+    const int32_t offset_b = supervisor->offset_b;
+    if (supervisor->mode != HEXAGEN_MODE_RUN && supervisor->mode != HEXAGEN_MODE_TRIPPED) {
+        return false;
+    }
+    hexagen_start(supervisor, limits);
+    supervisor->offset_a = offset_a;
+    supervisor->offset_b = offset_b;
+    return true;
+}
+
+void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
+        supervisor->mode = HEXAGEN_MODE_CALIBRATE;
+        supervisor->countdown = (uint16_t)(1U << limits->calibration_log2);
+        supervisor->sum_a = 0;
+        supervisor->sum_b = 0;
+    }
+}
+
+void hexagen_precharge(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    const bool may_begin =
+        supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_PRECHARGE;
+    if (may_begin && limits->precharge_periods != 0U) {
+        supervisor->mode = HEXAGEN_MODE_PRECHARGE;
+        supervisor->countdown = limits->precharge_periods;
+    }
+}
+
+/* ---- Bus voltage ------------------------------------------------------------------------- */
+
+void hexagen_start_bus(hexagen_bus *bus, int32_t first, int32_t second)
+{
+    bus->banks[0][0] = first;
+    bus->banks[0][1] = second;
+    bus->banks[1][0] = first;
+    bus->banks[1][1] = second;
+    bus->published = 0;
+    bus->storing = 0;
+    bus->told = 0;
+    bus->left = 0;
+}
+
+void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
+{
+    int32_t spare;
+    /* A call that was interrupted would go on filling the bank that this one publishes. */
+    if (bus->storing != 0) {
+        return;
+    }
+    bus->storing = HEXAGEN_GIVEN_UP;
+    spare = (bus->published == 0) ? 1 : 0;
+    bus->banks[spare][0] = first;
+    bus->banks[spare][1] = second;
+    bus->published = spare;
+    bus->storing = 0;
+    bus->told = 1;
+}
+
+/* ---- Signals for people ------------------------------------------------------------------ */
+
+void hexagen_start_port(hexagen_port *port)
+{
+    port->turn = 0;
+}
+
+/** Timer counts for which the upper switch of a leg is on; none of a leg that is off. */
+static int32_t on(const hexagen_legs *legs, uint16_t leg)
+{
+    return (legs->state[leg] == HEXAGEN_LEG_OFF) ? HEXAGEN_NONE : (int32_t)legs->compare[leg];
+}
+
+void hexagen_answer(hexagen_port *port, const hexagen_checked *checked, const hexagen_legs *legs,
+    const hexagen_observation *observation)
+{
+    port->words[0] = checked->i_a;
+    port->words[1] = checked->i_b;
+    port->words[2] = checked->hall;
+    port->words[3] = on(legs, 0);
+    port->words[4] = on(legs, 1);
+    port->words[5] = on(legs, 2);
+    port->words[6] = observation->e_a;
+    port->words[7] = observation->e_b;
+    port->words[8] = observation->speed;
+    port->turn = 2;
+}
+
+/** A word of a unit as a number with 16 fraction bits; saturates. */
+static int32_t in_unit(hexagen_unit unit, int32_t word)
+{
+    const int64_t product = (int64_t)unit.factor * word;
+    const int64_t bits =
+        (product >= 0) ? (product >> unit.shift) : ~(~product >> unit.shift);
+    return (bits < INT32_MIN) ? INT32_MIN : (bits > INT32_MAX) ? INT32_MAX : (int32_t)bits;
+}
+
+/** Three values of zero sum, of which two are given. */
+static void of_phases(int32_t *values, hexagen_unit unit, int32_t a, int32_t b)
+{
+    values[0] = in_unit(unit, a);
+    values[1] = in_unit(unit, b);
+    values[2] = in_unit(unit, hexagen_wrap(UINT32_C(0) - ((uint32_t)a + (uint32_t)b)));
+}
+
+static void of_leg(hexagen_signals *signals, const hexagen_units *units, uint16_t leg, int32_t word)
+{
+    signals->is_off[leg] = word == HEXAGEN_NONE;
+    signals->voltages[leg] = signals->is_off[leg] ? 0 : in_unit(units->volt_per_count, word);
+}
+
+bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signals *signals)
+{
+    int32_t e_a;
+    int32_t e_b;
+    int32_t speed;
+    if (port->turn != 2) {
+        port->turn = 1;
+        return false;
+    }
+    of_phases(signals->currents, units->ampere, port->words[0], port->words[1]);
+    signals->sector = units->sectors[(uint32_t)port->words[2] & 7U];
+    of_leg(signals, units, 0, port->words[3]);
+    of_leg(signals, units, 1, port->words[4]);
+    of_leg(signals, units, 2, port->words[5]);
+    e_a = port->words[6];
+    e_b = port->words[7];
+    speed = port->words[8];
+    signals->has_emf = e_a != HEXAGEN_NONE;
+    of_phases(signals->emf, units->volt, signals->has_emf ? e_a : 0, signals->has_emf ? e_b : 0);
+    signals->has_speed = speed != HEXAGEN_NONE;
+    signals->speed = in_unit(units->rpm, signals->has_speed ? speed : 0);
+    port->turn = 0;
+    return true;
+}
+
+/* ---- Verification ------------------------------------------------------------------------ */
+
+#ifdef HEXAGEN_VERIFICATION
+void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
+{
+    words[0] = (int32_t)supervisor->mode;
+    words[1] = (int32_t)supervisor->fault;
+    words[2] = (int32_t)supervisor->countdown;
+    words[3] = supervisor->sum_a;
+    words[4] = supervisor->sum_b;
+    words[5] = supervisor->offset_a;
+    words[6] = supervisor->offset_b;
+    words[7] = supervisor->stall_count;
+    words[8] = (int32_t)supervisor->hall_prev;
+}
+
+void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
+{
+    supervisor->mode = (hexagen_mode)words[0];
+    supervisor->fault = (hexagen_fault)words[1];
+    supervisor->countdown = (uint16_t)words[2];
+    supervisor->sum_a = words[3];
+    supervisor->sum_b = words[4];
+    supervisor->offset_a = words[5];
+    supervisor->offset_b = words[6];
+    supervisor->stall_count = words[7];
+    supervisor->hall_prev = (uint16_t)words[8];
+}
+#endif

@@ -1,0 +1,76 @@
+//! A drive with an empty law: what its step costs is supervision.
+
+use core::marker::PhantomData;
+use hexagen::arith::Word;
+use hexagen::{
+    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, State,
+    Units, Words,
+};
+
+/// The supervision of `C` around a law that pulses all legs and keeps nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Supervised<C>(PhantomData<C>);
+
+/// No words.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl State for Nothing {
+    const INITIAL: Self = Self;
+    const NAMES: &'static [&'static str] = &[];
+
+    fn words(&self, _: &mut [i32]) {}
+
+    fn set_word(&mut self, _: usize, _: i32) {}
+}
+
+impl<C: Control> Control for Supervised<C> {
+    type State = Nothing;
+    type Rotor = ();
+    type Command = Legs;
+    type Bus = C::Bus;
+
+    const NAME: &'static str = C::NAME;
+    const SPEC: &'static str = C::SPEC;
+    const FORMATS: &'static [Format] = &[];
+    const LIMITS: Limits = C::LIMITS;
+    const UNITS: Units = C::UNITS;
+    const SET_POINT: Word = C::SET_POINT;
+    const BUS: C::Bus = C::BUS;
+    const SPEED: Option<fn(Word) -> Word> = C::SPEED;
+    const TOLD_BUS: Option<fn(Word) -> <Self::Bus as Bus>::Words> = C::TOLD_BUS;
+
+    fn current(bits: Word) -> Word {
+        C::current(bits)
+    }
+
+    fn torque(bits: Word) -> Word {
+        C::torque(bits)
+    }
+
+    #[inline]
+    fn track(_: &mut Nothing, _: &Checked) {}
+
+    #[inline]
+    fn rest(_: &mut Nothing, _: &Checked, (): ()) {}
+
+    #[inline]
+    fn step(_: &mut Nothing, _: &Words<Self>, _: &Checked, (): ()) -> Legs {
+        const { Legs::new([0; 3], [LegState::Pulsed; 3]) }
+    }
+
+    fn observe(_: &Nothing) -> Observation {
+        Observation::default()
+    }
+}
+
+/// One control period of such a drive, called as a step function is.
+pub extern "C" fn step_supervised<C: Control<Command = Legs>>(
+    drive: &mut Drive<C>,
+    adc_a: u16,
+    adc_b: u16,
+    hall: u8,
+    hall_ticks: u16,
+) -> Legs {
+    drive.step(&Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks))
+}
