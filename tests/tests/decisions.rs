@@ -257,7 +257,11 @@ impl Subject {
             eps,
             eps_u,
             current_word: spec.inverter.adc_gain.abs() * f64::from(-i32::from(bits)).exp2(),
-            intervals: Supervisor::NAMES.iter().map(|_| [0; 2]).chain(law).collect(),
+            intervals: Supervisor::NAMES
+                .iter()
+                .map(|_| [0; 2])
+                .chain(law)
+                .collect(),
             spec,
         })
     }

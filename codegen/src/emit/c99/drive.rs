@@ -86,7 +86,11 @@ impl Drive<'_> {
         text.push_str("\n};\n\n");
 
         let state = self.names.state();
-        text.push_str(&self.names.comment("", &["The state of a drive that begins."]));
+        text.push_str(
+            &self
+                .names
+                .comment("", &["The state of a drive that begins."]),
+        );
         let words = self.program.states.iter().map(|word| {
             let (name, value) = (self.names.local(&word.name), number(word.initial));
             format!("{INDENT}.{name} = {value}")
@@ -178,7 +182,10 @@ impl Drive<'_> {
             "static hexagen_legs step_at_rest({}, const hexagen_sample *sample)",
             self.drive()
         );
-        format!("{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n", wrapped("", &head))
+        format!(
+            "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
+            wrapped("", &head)
+        )
     }
 
     /// The answer to a main program that has asked for signals.
@@ -245,7 +252,10 @@ impl Drive<'_> {
     fn period(&self) -> Method {
         let mut body = lines(&["hexagen_checked checked;"]);
         if let Some(periods) = self.interface.bus_periods {
-            let line = format!("hexagen_pass_period(&drive->bus, {});", typed_number(periods));
+            let line = format!(
+                "hexagen_pass_period(&drive->bus, {});",
+                typed_number(periods)
+            );
             body.push_str(&lines(&[&line]));
         }
         let check = format!(
@@ -268,14 +278,19 @@ impl Drive<'_> {
         ));
         let effect = match self.interface.delay {
             0 => "The command takes effect at once.",
-            _ => "The command takes effect with the next period, while its own step computes the one after.",
+            _ => {
+                "The command takes effect with the next period, while its own step computes the one after."
+            }
         };
         let mut text = doc(&[
             "Runs one control period: takes the measurements of its start, returns the inverter's command.",
             effect,
         ]);
         if self.interface.timer_capture {
-            text.push("The sample has a Hall code and the ticks since its edge (hexagen_with_ticks).".to_owned());
+            text.push(
+                "The sample has a Hall code and the ticks since its edge (hexagen_with_ticks)."
+                    .to_owned(),
+            );
         }
         Method {
             doc: text,
@@ -304,8 +319,15 @@ impl Drive<'_> {
             let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
             body.push_str(&lines(&[&line]));
         } else {
-            let field = if quantity == "speed" { "speed" } else { "current" };
-            text.extend(doc(&["", "`bits` are those of a number with 16 fraction bits: 65536 is one."]));
+            let field = if quantity == "speed" {
+                "speed"
+            } else {
+                "current"
+            };
+            text.extend(doc(&[
+                "",
+                "`bits` are those of a number with 16 fraction bits: 65536 is one.",
+            ]));
             for word in code.words {
                 body.push_str(&lines(&[&format!("drive->{field} = {word};")]));
             }
@@ -331,14 +353,22 @@ impl Drive<'_> {
     fn other_unit(&self, setter: &str) -> Option<Method> {
         let (suffix, parameter, unit, make) = match setter {
             "set_current" => ("ma", "milliamperes", "milliamperes", "thousandths"),
-            "set_torque" => ("mnm", "millinewtonmetres", "millinewton metres", "thousandths"),
+            "set_torque" => (
+                "mnm",
+                "millinewtonmetres",
+                "millinewton metres",
+                "thousandths",
+            ),
             "set_speed" => ("rpm", "rpm", "whole rpm", "whole"),
             _ => return None,
         };
         let call = self.names.public(setter);
         Some(Method {
             doc: vec![format!("`{setter}()` in {unit}.")],
-            head: format!("void {call}_{suffix}({}, int32_t {parameter})", self.drive()),
+            head: format!(
+                "void {call}_{suffix}({}, int32_t {parameter})",
+                self.drive()
+            ),
             body: lines(&[&format!("{call}(drive, hexagen_{make}({parameter}));")]),
         })
     }
@@ -397,7 +427,9 @@ impl Drive<'_> {
                 "hexagen_status",
                 "status",
                 &format!("const {}", self.drive()),
-                &["What the drive is doing and what tripped it, as of the last control period or call: from any context."],
+                &[
+                    "What the drive is doing and what tripped it, as of the last control period or call: from any context.",
+                ],
                 &format!("return hexagen_status_of(drive->status, {is_stale});"),
             ),
             read(
@@ -425,7 +457,11 @@ impl Drive<'_> {
         let mut write = lines(&["hexagen_set_words(&drive->supervisor, words);"]);
         for (place, word) in states.iter().enumerate() {
             let field = names.local(&word.name);
-            let cast = if word.storage_bits == 16 { "(uint16_t)" } else { "" };
+            let cast = if word.storage_bits == 16 {
+                "(uint16_t)"
+            } else {
+                ""
+            };
             read.push_str(&format!(
                 "{INDENT}words[HEXAGEN_WORDS + {place}] = drive->state.{field};\n"
             ));
@@ -433,10 +469,14 @@ impl Drive<'_> {
                 "{INDENT}drive->state.{field} = {cast}words[HEXAGEN_WORDS + {place}];\n"
             ));
         }
-        write.push_str(&lines(&["drive->status = hexagen_status_word(&drive->supervisor);"]));
+        write.push_str(&lines(&[
+            "drive->status = hexagen_status_word(&drive->supervisor);",
+        ]));
         [
             Method {
-                doc: vec![format!("Copies the supervisor's words, then the law's: {list}.")],
+                doc: vec![format!(
+                    "Copies the supervisor's words, then the law's: {list}."
+                )],
                 head: format!(
                     "void {}(const {}, int32_t *words)",
                     names.public("state_words"),

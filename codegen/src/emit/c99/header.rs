@@ -13,7 +13,10 @@ impl Drive<'_> {
         let names = self.names;
         let doc = texts::of_type(self.program, self.interface);
         let place = format!("the specification in `{}.c`", names.prefix);
-        let doc: Vec<String> = doc.iter().map(|line| line.replace("`SPEC`", &place)).collect();
+        let doc: Vec<String> = doc
+            .iter()
+            .map(|line| line.replace("`SPEC`", &place))
+            .collect();
         let mut text = names.comment("", &doc);
         let guard = names.public_upper("H");
         let prefix = &names.prefix;
@@ -76,7 +79,10 @@ impl Drive<'_> {
     /// The state, and the drive around it.
     fn types(&self) -> String {
         let names = self.names;
-        let mut text = names.comment("", &["What the law keeps from one control period to the next."]);
+        let mut text = names.comment(
+            "",
+            &["What the law keeps from one control period to the next."],
+        );
         text.push_str("typedef struct {\n");
         let mut before = String::new();
         for word in &self.program.states {
@@ -112,7 +118,10 @@ impl Drive<'_> {
         }
         let state = names.state();
         for (doc, field) in [
-            ("What the control loop last said.", "volatile int32_t status"),
+            (
+                "What the control loop last said.",
+                "volatile int32_t status",
+            ),
             ("Where signals go over.", "hexagen_port signals"),
             ("The control loop's own.", "hexagen_supervisor supervisor"),
             ("Likewise.", &format!("{state} state")),

@@ -69,7 +69,12 @@ fn head(names: &Names, interface: &Interface) -> String {
         format!("Use and accuracy: {}.h. Generated from:", names.prefix),
         String::new(),
     ];
-    lines.extend(interface.spec_toml.lines().map(|line| format!("{INDENT}{line}")));
+    lines.extend(
+        interface
+            .spec_toml
+            .lines()
+            .map(|line| format!("{INDENT}{line}")),
+    );
     format!(
         "{}#include \"{}.h\"\n\n",
         names.verbatim(&lines),
