@@ -158,10 +158,12 @@ impl<C: Control> SetPoint<C> {
 /// A number of thousandths as a number with 16 fraction bits, rounded to the nearest; saturates.
 fn thousandths(number: i32) -> I16F16 {
     const MOST: i32 = 32_767_999;
-    // 2^16/1000, 24 fraction bits.
-    let per_thousandth = Word(1_099_511_628);
+    // 2^16/1000 = 65.536: the whole, and the rest with 31 fraction bits, which one coefficient of 32
+    // bits is too short for.
+    const WHOLE: i32 = 65;
+    const REST: Word = Word(1_151_051_235);
     let number = Word(number).clamp(-MOST, MOST);
-    I16F16::from_bits(mul_round(per_thousandth, number, 24).0)
+    I16F16::from_bits((number * WHOLE + mul_round(REST, number, 31)).0)
 }
 
 impl<C: Control> fmt::Debug for SetPoint<C> {

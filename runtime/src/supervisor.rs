@@ -1,6 +1,9 @@
 //! Supervision of a drive: which samples are fit to control by, faults, start-up. One code for all
 //! drives; what differs between them is in [`Limits`].
 
+#[cfg(test)]
+mod tests;
+
 use crate::arith::Word;
 use crate::status::{Fault, Mode, Status, number};
 use crate::{Checked, LegState, Sample};

@@ -1,0 +1,554 @@
+//! Every count of every converter at the ends and in the middle of the offsets, every Hall code, every
+//! order of faults, and limits that contradict each other.
+
+use super::{Limits, Supervisor};
+use crate::arith::Word;
+use crate::{Fault, LegState, Mode, Sample};
+
+/// A Hall code that is one.
+const HALL: u8 = 0b101;
+
+/// Limits of a converter with so many bits: offsets within a sixteenth of the middle, a trip level
+/// between two counts.
+const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits {
+    let middle = 1_u16 << (adc_bits - 1);
+    let tolerance = middle / 16;
+    let adc_max = (middle - 1) * 2 + 1;
+    let one = 1_i32 << current_bits;
+    // The same to both sides but for the count that a converter has more below its middle.
+    let (least, most) = (middle - tolerance, middle + tolerance);
+    let (below, above) = (-(most as i32) * one, (adc_max - least) as i32 * one);
+    Limits {
+        adc_max,
+        adc_inverted,
+        current_bits,
+        offset: middle,
+        offsets: [least, most],
+        trip: (middle as i32 - middle as i32 / 8) * one + one / 2,
+        currents: if adc_inverted {
+            [-above, -below]
+        } else {
+            [below, above]
+        },
+        calibration_log2: 4,
+        precharge_periods: 3,
+        stall_periods: 20,
+    }
+}
+
+/// Converters of 8, 12 and 16 bits, both ways round, with as many fraction bits as fit, and none.
+const ALL: [Limits; 12] = [
+    limits(8, false, 22),
+    limits(8, true, 22),
+    limits(12, false, 18),
+    limits(12, true, 18),
+    limits(16, false, 14),
+    limits(16, true, 14),
+    limits(8, false, 0),
+    limits(8, true, 0),
+    limits(12, false, 0),
+    limits(12, true, 0),
+    limits(16, false, 0),
+    limits(16, true, 0),
+];
+
+/// A supervisor whose calibration has ended with these offsets, words of current.
+fn calibrated(limits: &Limits, [offset_a, offset_b]: [i32; 2]) -> Supervisor {
+    Supervisor {
+        offsets: [Word(offset_a), Word(offset_b)],
+        ..Supervisor::new(limits)
+    }
+}
+
+/// Ends and middle of the offsets, and between two counts.
+fn offsets(limits: &Limits) -> [i32; 4] {
+    let word = |count: u16| i32::from(count) << limits.current_bits;
+    let [least, most] = limits.offsets.map(word);
+    let between = word(limits.offset) + (word(1) >> 1);
+    [least, word(limits.offset), between.min(most), most]
+}
+
+/// A current as the documentation says it: the count less the offset, the other way round where the
+/// converter is.
+fn current(limits: &Limits, count: u16, offset: i32) -> i64 {
+    let current = (i64::from(count) << limits.current_bits) - i64::from(offset);
+    if limits.adc_inverted {
+        -current
+    } else {
+        current
+    }
+}
+
+/// The fault of a sample in a drive that runs.
+fn fault(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Option<Fault> {
+    let [a, b] = [0, 1].map(|phase| current(limits, adc[phase], offsets[phase]));
+    let most = a.abs().max(b.abs()).max((a + b).abs());
+    if adc
+        .iter()
+        .any(|&count| count == 0 || count >= limits.adc_max)
+    {
+        Some(Fault::AdcRange)
+    } else if ![1, 2, 3, 4, 5, 6].contains(&hall) {
+        Some(Fault::Hall)
+    } else if most > i64::from(limits.trip) {
+        Some(Fault::OverCurrent)
+    } else {
+        None
+    }
+}
+
+/// Supervises one sample of a drive that runs: what passes, or what is found, is what is expected, and
+/// its currents lie within the limits.
+fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Option<Fault> {
+    let mut supervisor = calibrated(limits, offsets);
+    let before = supervisor.clone();
+    let sample = Sample::with_hall(adc, hall).hall_ticks(adc[0]);
+    let expected = fault(limits, adc, hall, offsets);
+    let held = [0, 1].map(|phase| adc[phase].min(limits.adc_max));
+    let passed = supervisor.check(limits, &sample, || false);
+    assert_eq!(
+        passed.is_some(),
+        expected.is_none(),
+        "{limits:?} {sample:?}"
+    );
+    let checked = passed.unwrap_or_else(|| {
+        let (checked, leg) = supervisor.rest(limits, &sample);
+        assert_eq!(leg, LegState::Off);
+        let status = supervisor.status();
+        assert_eq!((status.mode, status.fault), (Mode::Tripped, expected));
+        checked
+    });
+    for (phase, found) in [checked.i_a(), checked.i_b()].into_iter().enumerate() {
+        let is = current(limits, held[phase], offsets[phase]);
+        assert_eq!(i64::from(found.0), is, "{limits:?} {sample:?}");
+        let [least, most] = limits.currents;
+        assert!(found >= least && found <= most, "{limits:?} {sample:?}");
+    }
+    let code = if (1..=6).contains(&hall) { hall } else { 0 };
+    assert_eq!(checked.hall(), i32::from(code));
+    assert_eq!(checked.hall_ticks(), i32::from(adc[0]));
+    if expected.is_none() {
+        assert_eq!(supervisor.offsets, before.offsets);
+        assert_eq!((supervisor.mode, supervisor.fault), (Mode::Run, None));
+    }
+    expected
+}
+
+#[test]
+fn every_count_at_the_ends_and_in_the_middle_of_the_offsets() {
+    for limits in &ALL {
+        assert!(limits.hold(), "{limits:?}");
+        let mut found = [0_u32; 3];
+        for offset in offsets(limits) {
+            // Next to no current, for the phase that is not looked at.
+            let zero = (offset >> limits.current_bits) as u16;
+            for count in 0..=u16::MAX {
+                for adc in [[count, zero], [zero, count], [count, count]] {
+                    match supervise(limits, adc, HALL, [offset; 2]) {
+                        None => found[0] += 1,
+                        Some(Fault::AdcRange) => found[1] += 1,
+                        Some(Fault::OverCurrent) => found[2] += 1,
+                        Some(other) => panic!("{other:?}"),
+                    }
+                }
+            }
+        }
+        let [passed, ends, over] = found;
+        let often = u32::from(limits.adc_max) / 4;
+        assert!(
+            passed > often && ends >= 24 && over > often,
+            "{limits:?}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn ends_of_the_currents_are_reached() {
+    for limits in &ALL {
+        let [least, .., most] = offsets(limits);
+        let mut reached = [0; 2];
+        for (count, offset) in [(0, most), (u16::MAX, least)] {
+            let mut supervisor = calibrated(limits, [offset; 2]);
+            let (checked, _) = supervisor.rest(limits, &Sample::with_hall([count; 2], HALL));
+            let end = usize::from((count == 0) == limits.adc_inverted);
+            reached[end] = checked.i_a().0;
+        }
+        assert_eq!(reached, limits.currents, "{limits:?}");
+    }
+}
+
+#[test]
+fn every_hall_code() {
+    for limits in &ALL {
+        let offset = offsets(limits)[1];
+        let mut codes = 0;
+        for hall in 0..=u8::MAX {
+            let fault = supervise(limits, [limits.offset; 2], hall, [offset; 2]);
+            codes += u32::from(fault.is_none());
+        }
+        assert_eq!(codes, 6);
+    }
+}
+
+/// A trip level is exact to the word: the level itself does not trip.
+#[test]
+fn the_trip_level_is_exact() {
+    for limits in &ALL {
+        let one = 1 << limits.current_bits;
+        for count in [limits.offset / 2, limits.offset + limits.offset / 2] {
+            let offset = offsets(limits)[1];
+            let is = current(limits, count, offset).unsigned_abs() as i32;
+            for (trip, expected) in [(is, None), (is - 1, Some(Fault::OverCurrent))] {
+                let limits = Limits { trip, ..*limits };
+                assert!(limits.hold());
+                let adc = [count, limits.offset];
+                assert_eq!(supervise(&limits, adc, HALL, [offset; 2]), expected);
+                // Two phases with half of it each: the third one has it.
+                if is % (2 * one) == 0 {
+                    let half = limits.offset.abs_diff(count) / 2;
+                    let count = if count < limits.offset {
+                        limits.offset - half
+                    } else {
+                        limits.offset + half
+                    };
+                    assert_eq!(supervise(&limits, [count; 2], HALL, [offset; 2]), expected);
+                }
+            }
+        }
+    }
+}
+
+/// The first fault of the documented list is told, whatever else a sample has, in every mode that is
+/// not tripped; a tripped drive keeps its own.
+#[test]
+fn faults_are_told_in_their_order() {
+    let order = [
+        (Fault::AdcRange, "range"),
+        (Fault::Hall, "code"),
+        (Fault::OverCurrent, "current"),
+        (Fault::Stall, "stall"),
+    ];
+    for limits in &ALL {
+        for set in 0_u32..16 {
+            let has = |index: usize| set >> index & 1 != 0;
+            // A count at the end is a current above the level, too: the other phase has the other cause.
+            let adc_a = if has(0) {
+                limits.adc_max
+            } else {
+                limits.offset
+            };
+            let adc_b = if has(2) { 1 } else { limits.offset };
+            let hall = if has(1) { 7 } else { HALL };
+            let sample = Sample::with_hall([adc_a, adc_b], hall);
+            let expected = (0..4).find(|&index| has(index)).map(|index| order[index].0);
+            for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
+                let mut supervisor = Supervisor {
+                    mode,
+                    fault: (mode == Mode::Tripped).then_some(Fault::Offset),
+                    countdown: 9,
+                    hall_prev: HALL,
+                    stall_count: Word(if has(3) { limits.stall_periods - 1 } else { 0 }),
+                    ..Supervisor::new(limits)
+                };
+                let passed = supervisor.check(limits, &sample, || true);
+                // A stall is none out of control.
+                let expected = expected.filter(|&fault| fault != Fault::Stall || mode == Mode::Run);
+                assert_eq!(passed.is_some(), mode == Mode::Run && expected.is_none());
+                if passed.is_some() {
+                    continue;
+                }
+                let (_, leg) = supervisor.rest(limits, &sample);
+                let charges = mode == Mode::Precharge && expected.is_none();
+                assert_eq!(leg == LegState::Low, charges, "{mode:?} {expected:?}");
+                let is = (supervisor.mode, supervisor.fault);
+                let should = match (mode, expected) {
+                    (Mode::Tripped, _) => (mode, Some(Fault::Offset)),
+                    (_, Some(fault)) => (Mode::Tripped, Some(fault)),
+                    (_, None) => (mode, None),
+                };
+                assert_eq!(is, should, "{mode:?}, {set:04b}");
+            }
+        }
+    }
+    let numbers = order.map(|(fault, _)| fault as i32);
+    assert_eq!(numbers, [1, 3, 2, 4]);
+}
+
+/// Runs start-up with constant counts to its end, through every period of it.
+fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
+    supervisor.calibrate(limits);
+    let sample = Sample::with_hall(adc, HALL);
+    for period in 0..1_u32 << limits.calibration_log2 {
+        assert_eq!(supervisor.mode, Mode::Calibrate, "{period}");
+        assert!(supervisor.check(limits, &sample, || true).is_none());
+        assert_eq!(supervisor.rest(limits, &sample).1, LegState::Off);
+    }
+    for period in 0..limits.precharge_periods {
+        if supervisor.mode == Mode::Tripped {
+            return;
+        }
+        assert_eq!(supervisor.mode, Mode::Precharge, "{period}");
+        assert!(supervisor.check(limits, &sample, || true).is_none());
+        assert_eq!(supervisor.rest(limits, &sample).1, LegState::Low);
+    }
+}
+
+/// All counts that can be averaged, and those next to the least and the greatest offset.
+#[test]
+fn calibration_takes_offsets_within_their_range_and_no_others() {
+    for limits in &ALL {
+        let [least, most] = limits.offsets;
+        for calibration_log2 in [0, 1, 4, 15] {
+            let limits = Limits {
+                calibration_log2,
+                ..*limits
+            };
+            assert!(limits.hold());
+            for count in [least - 1, least, limits.offset, most, most + 1] {
+                let is_good = (least..=most).contains(&count);
+                for adc in [[count, limits.offset], [limits.offset, count]] {
+                    let mut supervisor = Supervisor::new(&limits);
+                    start_up(&limits, &mut supervisor, adc);
+                    let fault = (!is_good).then_some(Fault::Offset);
+                    assert_eq!(supervisor.fault, fault, "{limits:?} {adc:?}");
+                    let expected = if is_good { adc } else { [limits.offset; 2] };
+                    let words = expected.map(|count| Word::from(count) << limits.current_bits);
+                    assert_eq!(supervisor.offsets, words, "{limits:?} {adc:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Means keep as many fraction bits as currents have, and round down.
+#[test]
+fn a_mean_between_two_counts_keeps_its_fraction() {
+    let mut limits = limits(12, false, 17);
+    for (current_bits, expected) in [
+        (17, (2048 << 17) + (3 << 13)),
+        (4, 32771),
+        (3, 16385),
+        (0, 2048),
+    ] {
+        limits.current_bits = current_bits;
+        let mut supervisor = Supervisor::new(&limits);
+        supervisor.calibrate(&limits);
+        // Three of sixteen samples are a count more.
+        for period in 0..16 {
+            let count = 2048 + u16::from(period % 5 == 1);
+            let sample = Sample::with_hall([count; 2], HALL);
+            supervisor.rest(&limits, &sample);
+        }
+        assert_eq!(supervisor.offsets, [Word(expected); 2], "{current_bits}");
+    }
+}
+
+/// Without an edge under demand the last of the periods trips, and not the one before; an edge, no
+/// demand and start-up begin anew; samples without a code are no edges.
+#[test]
+fn stalls_are_counted_between_codes() {
+    let limits = limits(12, false, 17);
+    let sample = |hall| Sample::with_hall([limits.offset; 2], hall);
+    let periods_until_stall = |supervisor: &mut Supervisor, hall: u8| {
+        (1..=2 * limits.stall_periods).find(|_| {
+            let passed = supervisor.check(&limits, &sample(hall), || true);
+            passed.is_none() && supervisor.is_stalled(&limits)
+        })
+    };
+    let stall = Some(limits.stall_periods);
+    // The first code of all is no edge.
+    let mut supervisor = Supervisor::new(&limits);
+    assert_eq!(periods_until_stall(&mut supervisor, 1), stall);
+    let begun = |periods: i32| {
+        let mut supervisor = Supervisor::new(&limits);
+        for _ in 0..periods {
+            assert!(supervisor.check(&limits, &sample(1), || true).is_some());
+        }
+        supervisor
+    };
+    let mut supervisor = begun(7);
+    assert_eq!(
+        periods_until_stall(&mut supervisor, 1),
+        Some(limits.stall_periods - 7)
+    );
+    // An edge is the first period of none.
+    let mut supervisor = begun(7);
+    assert_eq!(
+        periods_until_stall(&mut supervisor, 5),
+        Some(limits.stall_periods + 1)
+    );
+    let mut supervisor = begun(7);
+    assert!(supervisor.check(&limits, &sample(1), || false).is_some());
+    assert_eq!(periods_until_stall(&mut supervisor, 1), stall);
+    for lost in [0, 7, 8, 0xff] {
+        let mut supervisor = begun(7);
+        assert!(supervisor.check(&limits, &sample(lost), || true).is_none());
+        assert_eq!(supervisor.stall_count, 8);
+        assert_eq!(supervisor.hall_prev, 1);
+    }
+    let mut supervisor = begun(7);
+    supervisor.calibrate(&limits);
+    assert!(supervisor.check(&limits, &sample(1), || true).is_none());
+    assert_eq!(supervisor.stall_count, 0);
+    // Nobody counts where no stall is watched for, whatever is asked for.
+    let unwatched = Limits {
+        stall_periods: 0,
+        ..limits
+    };
+    let mut supervisor = Supervisor::new(&unwatched);
+    for hall in [1, 5, 1, 1] {
+        assert!(
+            supervisor
+                .check(&unwatched, &sample(hall), || true)
+                .is_some()
+        );
+    }
+    assert_eq!(supervisor, Supervisor::new(&unwatched));
+}
+
+#[test]
+fn commands_are_taken_in_their_modes_only() {
+    let limits = limits(12, false, 17);
+    for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
+        let begun = Supervisor {
+            mode,
+            fault: (mode == Mode::Tripped).then_some(Fault::Hall),
+            countdown: 2,
+            offsets: [Word(123); 2],
+            sums: [Word(5); 2],
+            hall_prev: 3,
+            stall_count: Word(4),
+        };
+        let mut supervisor = begun.clone();
+        let is_reset = supervisor.reset(&limits);
+        assert_eq!(is_reset, matches!(mode, Mode::Run | Mode::Tripped));
+        let cleared = Supervisor {
+            offsets: [Word(123); 2],
+            ..Supervisor::new(&limits)
+        };
+        assert_eq!(supervisor, if is_reset { cleared } else { begun.clone() });
+
+        let mut supervisor = begun.clone();
+        supervisor.calibrate(&limits);
+        let calibrates = Supervisor {
+            mode: Mode::Calibrate,
+            countdown: 16,
+            sums: [Word(0); 2],
+            ..begun.clone()
+        };
+        let is_ignored = mode == Mode::Tripped;
+        assert_eq!(
+            supervisor,
+            if is_ignored {
+                begun.clone()
+            } else {
+                calibrates
+            }
+        );
+
+        for precharge_periods in [3, 0] {
+            let limits = Limits {
+                precharge_periods,
+                ..limits
+            };
+            let mut supervisor = begun.clone();
+            supervisor.precharge(&limits);
+            let charges = Supervisor {
+                mode: Mode::Precharge,
+                countdown: 3,
+                ..begun.clone()
+            };
+            let is_taken = precharge_periods > 0 && matches!(mode, Mode::Run | Mode::Precharge);
+            assert_eq!(supervisor, if is_taken { charges } else { begun.clone() });
+        }
+    }
+}
+
+#[test]
+fn words_come_back_as_they_were() {
+    let supervisor = Supervisor {
+        mode: Mode::Precharge,
+        fault: Some(Fault::Stall),
+        countdown: 65_535,
+        hall_prev: 6,
+        stall_count: Word(-7),
+        sums: [Word(8), Word(i32::MIN)],
+        offsets: [Word(-9), Word(i32::MAX)],
+    };
+    let mut other = Supervisor::new(&ALL[0]);
+    other.set_words(supervisor.words());
+    assert_eq!(other, supervisor);
+    let names = Supervisor::NAMES.iter().zip(supervisor.words());
+    for (name, value) in [("countdown", 65_535), ("hall_prev", 6), ("offset_a", -9)] {
+        assert!(names.clone().any(|pair| pair == (&name, value)), "{name}");
+    }
+}
+
+/// A planted variant of limits.
+type Variant = fn(&mut Limits);
+
+/// Limits that contradict each other, or whose sums or words would not fit.
+const CONTRADICTIONS: [(&str, Variant); 21] = [
+    ("no range", |limits| limits.adc_max = 0),
+    ("a range without a middle", |limits| limits.adc_max = 1),
+    ("a count more", |limits| limits.adc_max -= 1),
+    ("the other way round", |limits| {
+        limits.adc_inverted = !limits.adc_inverted;
+    }),
+    ("a fraction bit more", |limits| limits.current_bits += 1),
+    ("fraction bits beyond the word", |limits| {
+        limits.current_bits = 31
+    }),
+    ("fraction bits beyond all", |limits| {
+        limits.current_bits = u32::MAX
+    }),
+    ("offset below the least", |limits| {
+        limits.offset = limits.offsets[0] - 1
+    }),
+    ("offset above the greatest", |limits| {
+        limits.offset = limits.offsets[1] + 1
+    }),
+    ("least offset one less", |limits| limits.offsets[0] -= 1),
+    ("least offset one more", |limits| limits.offsets[0] += 1),
+    ("greatest offset one less", |limits| limits.offsets[1] -= 1),
+    ("greatest offset one more", |limits| limits.offsets[1] += 1),
+    ("offsets beyond the range", |limits| {
+        limits.offsets[1] = limits.adc_max + 1
+    }),
+    ("least current one more", |limits| limits.currents[0] += 1),
+    ("least current one less", |limits| limits.currents[0] -= 1),
+    ("greatest current one less", |limits| {
+        limits.currents[1] -= 1
+    }),
+    ("greatest current one more", |limits| {
+        limits.currents[1] += 1
+    }),
+    ("no trip level", |limits| limits.trip = 0),
+    ("too many samples", |limits| limits.calibration_log2 = 16),
+    ("stall counted beyond the word", |limits| {
+        limits.stall_periods = i32::MAX
+    }),
+];
+
+#[test]
+fn limits_that_contradict_each_other_do_not_hold() {
+    for limits in &ALL[..4] {
+        for (what, variant) in CONTRADICTIONS {
+            let mut planted = *limits;
+            variant(&mut planted);
+            assert!(!planted.hold(), "{what}: {planted:?}");
+        }
+    }
+}
+
+/// As many fraction bits as fit, and one more with all that follows from it.
+#[test]
+fn words_that_do_not_fit_do_not_hold() {
+    for adc_bits in [8, 12, 16] {
+        for adc_inverted in [false, true] {
+            let holds = |bits| limits(adc_bits, adc_inverted, bits).hold();
+            assert!(holds(30 - adc_bits));
+            assert!(!holds(31 - adc_bits), "the third current needs a bit more");
+        }
+    }
+}
