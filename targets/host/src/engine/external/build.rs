@@ -53,70 +53,26 @@ impl BuildError {
     }
 }
 
-/// The runtime's sources.
-const RUNTIME: [(&str, &str); 17] = [
-    ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
-    (
-        "arith.rs",
-        include_str!("../../../../../runtime/src/arith.rs"),
-    ),
-    ("bus.rs", include_str!("../../../../../runtime/src/bus.rs")),
-    (
-        "bus_watch.rs",
-        include_str!("../../../../../runtime/src/bus_watch.rs"),
-    ),
-    (
-        "command.rs",
-        include_str!("../../../../../runtime/src/command.rs"),
-    ),
-    (
-        "constants.rs",
-        include_str!("../../../../../runtime/src/constants.rs"),
-    ),
-    (
-        "control.rs",
-        include_str!("../../../../../runtime/src/control.rs"),
-    ),
-    (
-        "double_buffer.rs",
-        include_str!("../../../../../runtime/src/double_buffer.rs"),
-    ),
-    (
-        "drive.rs",
-        include_str!("../../../../../runtime/src/drive.rs"),
-    ),
-    (
-        "format.rs",
-        include_str!("../../../../../runtime/src/format.rs"),
-    ),
-    (
-        "sample.rs",
-        include_str!("../../../../../runtime/src/sample.rs"),
-    ),
-    (
-        "set_point.rs",
-        include_str!("../../../../../runtime/src/set_point.rs"),
-    ),
-    (
-        "shared.rs",
-        include_str!("../../../../../runtime/src/shared.rs"),
-    ),
-    (
-        "signals.rs",
-        include_str!("../../../../../runtime/src/signals.rs"),
-    ),
-    (
-        "status.rs",
-        include_str!("../../../../../runtime/src/status.rs"),
-    ),
-    (
-        "supervisor.rs",
-        include_str!("../../../../../runtime/src/supervisor.rs"),
-    ),
-    (
-        "word.rs",
-        include_str!("../../../../../runtime/src/word.rs"),
-    ),
+/// The runtime's sources, by a link to their folder, which a package holds as a folder of its own.
+const RUNTIME: [(&str, &str); 18] = [
+    ("lib.rs", include_str!("../../../runtime/lib.rs")),
+    ("arith.rs", include_str!("../../../runtime/arith.rs")),
+    ("bus.rs", include_str!("../../../runtime/bus.rs")),
+    ("bus_watch.rs", include_str!("../../../runtime/bus_watch.rs")),
+    ("command.rs", include_str!("../../../runtime/command.rs")),
+    ("constants.rs", include_str!("../../../runtime/constants.rs")),
+    ("control.rs", include_str!("../../../runtime/control.rs")),
+    ("double_buffer.rs", include_str!("../../../runtime/double_buffer.rs")),
+    ("drive.rs", include_str!("../../../runtime/drive.rs")),
+    ("format.rs", include_str!("../../../runtime/format.rs")),
+    ("no_signals.rs", include_str!("../../../runtime/no_signals.rs")),
+    ("sample.rs", include_str!("../../../runtime/sample.rs")),
+    ("set_point.rs", include_str!("../../../runtime/set_point.rs")),
+    ("shared.rs", include_str!("../../../runtime/shared.rs")),
+    ("signals.rs", include_str!("../../../runtime/signals.rs")),
+    ("status.rs", include_str!("../../../runtime/status.rs")),
+    ("supervisor.rs", include_str!("../../../runtime/supervisor.rs")),
+    ("word.rs", include_str!("../../../runtime/word.rs")),
 ];
 
 const DRIVER: &str = include_str!("driver.rs");
