@@ -1,9 +1,8 @@
 //! What emitted text says of a drive holds for its program.
 
 use crate::diagnostics::engineering;
-use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::interface::{FormatEntry, Interface};
-use crate::ir::{Interval, Program, verify};
+use crate::ir::{Interval, Program};
 use crate::pipeline::{Generated, generate};
 use crate::spec::{apply_variant, check, parse_toml};
 

@@ -7,7 +7,7 @@ use crate::engine::Prepared;
 use clap::Args;
 use hexagen_codegen::emit::c99::{Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
-use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use std::path::{Path, PathBuf};
 
 /// Options of `generate`.
@@ -33,7 +33,7 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
     match emit {
         Emit::Rust => {
             let surface = Surface::public(&generated.interface.type_name);
-            format_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
+            readable_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
         }
         Emit::C99 => {
             let Sources { header, source, .. } = c99_of(drive);

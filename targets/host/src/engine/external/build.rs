@@ -58,20 +58,38 @@ const RUNTIME: [(&str, &str); 18] = [
     ("lib.rs", include_str!("../../../runtime/lib.rs")),
     ("arith.rs", include_str!("../../../runtime/arith.rs")),
     ("bus.rs", include_str!("../../../runtime/bus.rs")),
-    ("bus_watch.rs", include_str!("../../../runtime/bus_watch.rs")),
+    (
+        "bus_watch.rs",
+        include_str!("../../../runtime/bus_watch.rs"),
+    ),
     ("command.rs", include_str!("../../../runtime/command.rs")),
-    ("constants.rs", include_str!("../../../runtime/constants.rs")),
+    (
+        "constants.rs",
+        include_str!("../../../runtime/constants.rs"),
+    ),
     ("control.rs", include_str!("../../../runtime/control.rs")),
-    ("double_buffer.rs", include_str!("../../../runtime/double_buffer.rs")),
+    (
+        "double_buffer.rs",
+        include_str!("../../../runtime/double_buffer.rs"),
+    ),
     ("drive.rs", include_str!("../../../runtime/drive.rs")),
     ("format.rs", include_str!("../../../runtime/format.rs")),
-    ("no_signals.rs", include_str!("../../../runtime/no_signals.rs")),
+    (
+        "no_signals.rs",
+        include_str!("../../../runtime/no_signals.rs"),
+    ),
     ("sample.rs", include_str!("../../../runtime/sample.rs")),
-    ("set_point.rs", include_str!("../../../runtime/set_point.rs")),
+    (
+        "set_point.rs",
+        include_str!("../../../runtime/set_point.rs"),
+    ),
     ("shared.rs", include_str!("../../../runtime/shared.rs")),
     ("signals.rs", include_str!("../../../runtime/signals.rs")),
     ("status.rs", include_str!("../../../runtime/status.rs")),
-    ("supervisor.rs", include_str!("../../../runtime/supervisor.rs")),
+    (
+        "supervisor.rs",
+        include_str!("../../../runtime/supervisor.rs"),
+    ),
     ("word.rs", include_str!("../../../runtime/word.rs")),
 ];
 
