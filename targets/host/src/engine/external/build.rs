@@ -232,7 +232,8 @@ pub fn compile_c99(
         ("binding.h", &binding),
         ("driver.c", DRIVER_C),
     ];
-    let folder = folder_of(&[&own[..], &RUNTIME_C].concat()).map_err(BuildError::no_compiler(CC))?;
+    let folder =
+        folder_of(&[&own[..], &RUNTIME_C].concat()).map_err(BuildError::no_compiler(CC))?;
     let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
     cc.current_dir(folder.path())
         .args(C_FLAGS)
