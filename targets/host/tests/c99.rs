@@ -101,7 +101,11 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         "malloc",
         "memcpy",
     ];
-    let dividing = ["hexagen_divide", "hexagen_divide_narrow", "hexagen_turn_over"];
+    let dividing = [
+        "hexagen_divide",
+        "hexagen_divide_narrow",
+        "hexagen_turn_over",
+    ];
     let (mut drives, mut functions) = (0, 0);
     for (_, text) in RUNTIME {
         assert_has_none(&code(text), &never, "the runtime");
@@ -110,7 +114,11 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         let generated = &drive.generated;
         let sources = emit_c99(&generated.graph, &generated.interface, "HubDrive");
         for text in [&sources.source, &sources.header] {
-            assert!(text.lines().all(|line| line.chars().count() <= 100), "{}", drive.motor);
+            assert!(
+                text.lines().all(|line| line.chars().count() <= 100),
+                "{}",
+                drive.motor
+            );
         }
         let source = code(&sources.source);
         for text in [&source, &code(&sources.header)] {
@@ -119,7 +127,10 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         assert!(!source.contains(['%', '/']), "{}", drive.motor);
         for function in source.split("\n}\n") {
             let (head, body) = function.split_once("\n{\n").unwrap_or_default();
-            if dividing.iter().any(|name| body.contains(&format!("{name}("))) {
+            if dividing
+                .iter()
+                .any(|name| body.contains(&format!("{name}(")))
+            {
                 functions += 1;
                 assert!(
                     head.contains("HEXAGEN_COLD\n") || head.contains(" hub_drive_set_"),
@@ -184,13 +195,20 @@ fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
         .args(["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror"])
         .args(CHECK.split_whitespace())
         .args([&format!("{}.c", sources.name), "hexagen.c"])
-        .args(files.iter().map(|(name, _)| name).filter(|name| name.ends_with(".c") && **name != "hexagen.c"))
+        .args(
+            files
+                .iter()
+                .map(|(name, _)| name)
+                .filter(|name| name.ends_with(".c") && **name != "hexagen.c"),
+        )
         .args(["-o", "program"]);
     let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
     if !built.status.success() {
         return String::from_utf8_lossy(&built.stderr).into_owned();
     }
-    let run = Command::new(folder.path().join("program")).output().expect("it runs");
+    let run = Command::new(folder.path().join("program"))
+        .output()
+        .expect("it runs");
     String::from_utf8_lossy(&run.stdout).into_owned()
 }
 
@@ -211,7 +229,10 @@ fn starting() -> Sources {
 /// by every call; signals of the next controlled period.
 #[test]
 fn start_up_in_c_averages_once_per_call_and_tells_its_status_at_once() {
-    assert_eq!(said(&starting(), &[("start_up.c", START_UP)]), "as it should be\n");
+    assert_eq!(
+        said(&starting(), &[("start_up.c", START_UP)]),
+        "as it should be\n"
+    );
 }
 
 /// Two drives share one runtime; one that is of another version says what to do.
