@@ -149,8 +149,12 @@ int main(void)
         if (x * power(shift) < TURN) {
             EXPECT(divide_narrow(x, y, z, shift), least(x * power(shift) / y, z));
         }
-        EXPECT(thousandths(w), over(least(greatest(w, -32767999), 32767999) * (wide)1099511628
-            + power(23), power(24)));
+        {
+            const wide limited = least(greatest(w, -32767999), 32767999);
+            const wide made = hexagen_thousandths(w);
+            /* To the nearest, but for what a coefficient of 32 bits is short of. */
+            EXPECT(thousandths(w), (size(made * 1000 - limited * 65536) <= 508) ? made : made + 1);
+        }
         EXPECT(whole(w), least(greatest(w * power(16), INT32_MIN), INT32_MAX));
         {
             const uint32_t segments = 1U + bits() % 65536U;

@@ -1,6 +1,6 @@
 /* A bus voltage and signals that pass between contexts of one core: interrupts strike before every
- * access, nest, and end calls for good, which count as given up after HEXAGEN_GIVEN_UP periods. Every
- * failed check prints its line; the program ends with their number. */
+ * access, nest, and end calls for good, which count as given up after HEXAGEN_GIVEN_UP periods.
+ * Every failed check prints its line; the program ends with their number. */
 #include "hexagen.h"
 
 #include <setjmp.h>
@@ -246,12 +246,34 @@ static void signals_are_of_one_period(void)
     CHECK(found >= 2 * BEHIND);
 }
 
+static void no_answer_is_lost(void)
+{
+    int struck = 0;
+    for (int strike = 0; strike < BEHIND; strike++) {
+        hexagen_signals signals;
+        bool is_there;
+        hexagen_start_port(&port);
+        none_pend();
+        CHECK(!hexagen_take(&port, &units, &signals));
+        accesses = 0;
+        pending[0].at = strike;
+        pending[0].run = two_periods;
+        is_there = hexagen_take(&port, &units, &signals);
+        if (pending[0].at == -1) {
+            struck += 1;
+            CHECK(is_there || hexagen_take(&port, &units, &signals));
+        }
+    }
+    CHECK(struck > 0);
+}
+
 int main(void)
 {
     shows_that_calls_cease();
     shows_a_call_that_ended_for_good();
     never_tears_words_that_belong_together();
     signals_are_of_one_period();
+    no_answer_is_lost();
     printf("%d failures\n", failures);
     return (failures == 0) ? 0 : 1;
 }

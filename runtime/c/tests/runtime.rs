@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::{env, fs};
 
 /// What the flags of users' own projects are at their strictest.
-const STRICT: [&str; 7] = [
+const STRICT: [&str; 8] = [
     "-std=c99",
     "-Wall",
     "-Wextra",
@@ -15,6 +15,7 @@ const STRICT: [&str; 7] = [
     "-Werror",
     "-pedantic",
     "-O1",
+    "-DHEXAGEN_SIGNALS",
 ];
 
 /// What makes compiled code stop at undefined behaviour.
@@ -122,6 +123,7 @@ fn primitives_compute_what_their_comments_say() {
             "UINT32_C(0xfffffffe) /",
         ),
         ("thousandths(", "INT32_C(32767999)", "INT32_C(32767998)"),
+        ("thousandths(", "limited, 31)", "limited, 31) + 1"),
         ("whole(", "INT32_C(32767))", "INT32_C(32766))"),
     ];
     assert_eq!(unnoticed(TEST, &faults), []);
@@ -224,7 +226,7 @@ fn limits_that_contradict_each_other_do_not_compile() {
         wrong[place] = value;
         assert!(!compiles(wrong), "{place}: {value}");
     }
-    // Twice the greatest current does not fit 32 bits, or a calibration's sum.
+    // Twice the greatest current does not fit 32 bits; the longest sum of a calibration does.
     let wide = [
         "65535",
         "false",
@@ -254,10 +256,10 @@ const HOOK: &str = "    hook();\n";
 fn hooked(text: &str, functions: &[&str], begin: &str) -> (String, usize) {
     let (mut hooked, mut hooks, mut is_inside) = (String::new(), 0, false);
     for line in text.lines() {
-        let names = |name: &&str| line.contains(&format!(" {name}("));
+        let names = |name: &str| line.contains(&format!(" {name}("));
         is_inside |= !line.starts_with(' ')
             && !line.ends_with(';')
-            && functions.iter().any(|name| names(&name));
+            && functions.iter().any(|name| names(name));
         is_inside &= line != "}";
         let is_access = line.starts_with(' ')
             && (line.contains("bus->") || line.contains("port->"))
@@ -299,6 +301,7 @@ fn what_contexts_share_is_whole_wherever_they_interrupt_each_other() {
         ("    bus->told = 1;\n", ""),
         ("        bus->told = 0;\n", ""),
         ("bus->storing = storing - 1", "bus->storing = storing"),
+        ("if (turn == 0)", "if (turn != 3)"),
         (
             "    port->turn = 0;\n    return true;",
             "    port->turn = 1;\n    return true;",

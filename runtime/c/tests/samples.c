@@ -1,5 +1,5 @@
-/* Walks every count of an ADC through the supervisor, at both ends of the offset, beside a supervisor
- * in 64 bits: what it lets pass, what trips and why, and that no current leaves its range. */
+/* Walks every count of an ADC through the supervisor, at both ends of the offset, beside another in
+ * 64 bits: what it lets pass, what trips and why, and that no current leaves its range. */
 #include "hexagen.h"
 
 #include <stdio.h>

@@ -12,6 +12,7 @@ use super::names::Names;
 use super::stage::{StageFunction, kind};
 use crate::emit::signal::Leg;
 use crate::ir::{AtRest, Function, Op, Program, Value};
+use std::fmt::Write as _;
 
 /// The static functions of a step, and how they are called.
 pub(super) struct Step {
@@ -230,7 +231,7 @@ impl<'a> StepFunctions<'a> {
                 INDENT,
                 &format!("const tracked rotor = {{ {} }};", names.join(", ")),
             ));
-            body.push_str(&format!("{INDENT}return rotor;\n"));
+            let _ = writeln!(body, "{INDENT}return rotor;");
             "tracked"
         } else {
             "void"

@@ -234,16 +234,16 @@ impl Names {
             }
         }
     }
+}
 
-    /// A comment of these lines as they are.
-    pub(super) fn verbatim(&self, lines: &[String]) -> String {
-        let mut text = "/*\n".to_owned();
-        for line in lines {
-            text.push_str(format!(" * {}", closed(line)).trim_end());
-            text.push('\n');
-        }
-        text + " */\n"
+/// A comment of these lines as they are.
+pub(super) fn verbatim(lines: &[String]) -> String {
+    let mut text = "/*\n".to_owned();
+    for line in lines {
+        text.push_str(format!(" * {}", closed(line)).trim_end());
+        text.push('\n');
     }
+    text + " */\n"
 }
 
 /// A text without what would end a comment, begin another one, or spell another sign.
