@@ -186,15 +186,14 @@ mod tests {
         let mut file = syn::parse_file(file).expect("a Rust file");
         let mut values = HashMap::new();
         for item in &mut file.items {
-            let syn::Item::Mod(syn::ItemMod {
-                content: Some((_, items)),
-                ..
-            }) = item
-            else {
+            let syn::Item::Const(syn::ItemConst { expr, .. }) = item else {
                 continue;
             };
-            items.retain(|item| match item {
-                syn::Item::Const(constant) => {
+            let syn::Expr::Block(syn::ExprBlock { block, .. }) = &mut **expr else {
+                continue;
+            };
+            block.stmts.retain(|statement| match statement {
+                syn::Stmt::Item(syn::Item::Const(constant)) => {
                     let value = constant.expr.to_token_stream();
                     values.insert(constant.ident.to_string(), value).is_some()
                 }

@@ -71,9 +71,10 @@ int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, ui
 int32_t hexagen_thousandths(int32_t number)
 {
     const int32_t most = INT32_C(32767999);
-    /* 2^16/1000, 24 fraction bits. */
-    const int32_t per_thousandth = INT32_C(1099511628);
-    return hexagen_mul_round(per_thousandth, hexagen_clamp(number, -most, most), 24);
+    /* 2^16/1000 = 65.536: the whole, and the rest with 31 fraction bits. */
+    const int32_t rest = INT32_C(1151051235);
+    const int32_t limited = hexagen_clamp(number, -most, most);
+    return limited * 65 + hexagen_mul_round(rest, limited, 31);
 }
 
 int32_t hexagen_whole(int32_t number)
@@ -277,6 +278,7 @@ void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
 
 /* ---- Signals for people ------------------------------------------------------------------ */
 
+#ifdef HEXAGEN_SIGNALS
 void hexagen_start_port(hexagen_port *port)
 {
     port->turn = 0;
@@ -331,8 +333,12 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
     int32_t e_a;
     int32_t e_b;
     int32_t speed;
-    if (port->turn != 2) {
-        port->turn = 1;
+    const int32_t turn = port->turn;
+    if (turn != 2) {
+        /* Once: the answer may come meanwhile. */
+        if (turn == 0) {
+            port->turn = 1;
+        }
         return false;
     }
     of_phases(signals->currents, units->ampere, port->words[0], port->words[1]);
@@ -350,6 +356,7 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
     port->turn = 0;
     return true;
 }
+#endif
 
 /* ---- Verification ------------------------------------------------------------------------ */
 

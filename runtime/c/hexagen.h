@@ -599,6 +599,12 @@ static inline bool hexagen_bus_is_stale(const hexagen_bus *bus)
 
 /* ---- Signals for people ------------------------------------------------------------------ */
 
+/*
+ * Where HEXAGEN_SIGNALS is defined, for all files of a program alike: the look whether somebody
+ * asks takes some ten instructions of every control period, and a drive 40 bytes more.
+ */
+#ifdef HEXAGEN_SIGNALS
+
 /**
  * What a drive saw, believed and commanded in one control period: numbers with 16 fraction bits,
  * which saturate at 32768 to both sides.
@@ -657,7 +663,8 @@ typedef struct {
 
 /**
  * Where the words of a period go over. The control loop writes while it is asked, and at no other
- * time; the main program reads while it is answered. Neither side ever waits for the other.
+ * time; the main program writes while it is not, and reads while it is answered. Neither side ever
+ * waits for the other.
  */
 typedef struct {
     /** 0: nobody has asked. 1: the next controlled period's words are wanted. 2: they are there. */
@@ -680,6 +687,8 @@ HEXAGEN_COLD void hexagen_answer(hexagen_port *port, const hexagen_checked *chec
 
 /** The signals that are there; else asks for those of the next controlled period. */
 bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signals *signals);
+
+#endif
 
 /* ---- Verification ------------------------------------------------------------------------ */
 

@@ -111,8 +111,8 @@ pub trait SpeedLoop: Control {
 /// A drive that is told its bus voltage: `v_bus: measured`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not told its bus voltage",
-    label = "`set_bus` wants a drive with `bus_voltage: measured`",
-    note = "this drive goes by the nominal voltage of its specification"
+    label = "`set_bus` wants a drive with `v_bus: measured`",
+    note = "add `v_bus: measured` and the ADC of the bus to the inverter, or leave the call out: this drive goes by the nominal voltage"
 )]
 pub trait MeasuredBus: Control {
     /// The words of a voltage, an ADC count.

@@ -3,7 +3,6 @@
 use crate::arith::Word;
 use crate::bus::Bus;
 use crate::set_point::debug;
-use crate::signals::PeriodWords;
 use crate::{Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor};
 use core::fmt;
 use core::ops::Deref;
@@ -253,12 +252,8 @@ fn tell<C: Control>(
     checked: Checked,
     command: C::Command,
 ) {
-    set_point.signals.answer(PeriodWords {
-        currents: [checked.i_a(), checked.i_b()],
-        hall: checked.hall(),
-        on: command.on(),
-        observation: C::observe(law),
-    });
+    let (on, observation) = (command.on(), C::observe(law));
+    set_point.signals.answer(checked, on, observation);
 }
 
 impl<C: Control> fmt::Debug for ControlLoop<'_, C> {

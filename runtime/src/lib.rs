@@ -28,6 +28,10 @@ mod format;
 mod sample;
 mod set_point;
 mod shared;
+#[cfg(feature = "signals")]
+mod signals;
+#[cfg(not(feature = "signals"))]
+#[path = "no_signals.rs"]
 mod signals;
 mod status;
 mod supervisor;
@@ -43,6 +47,7 @@ pub use format::{Format, Rounding};
 pub use hexagen_macros::{State, controller, verify};
 pub use sample::{Checked, Sample};
 pub use set_point::SetPoint;
+#[cfg(feature = "signals")]
 pub use signals::Signals;
 pub use status::{Fault, Mode, Status};
 pub use supervisor::{Limits, Supervisor};

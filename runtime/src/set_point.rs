@@ -4,7 +4,9 @@ use crate::arith::{Word, mul_round};
 use crate::bus::Bus;
 use crate::control::Words;
 use crate::shared::SharedWord;
-use crate::signals::{Port, Signals};
+use crate::signals::Port;
+#[cfg(feature = "signals")]
+use crate::signals::Signals;
 use crate::{Control, MeasuredBus, SpeedLoop, Status};
 use core::fmt;
 use fixed::types::I16F16;
@@ -148,7 +150,9 @@ impl<C: Control> SetPoint<C> {
     /// }
     /// ```
     ///
-    /// From one context of the main program; neither side ever waits for the other.
+    /// From one context of the main program; neither side ever waits for the other. Feature
+    /// `signals`, which takes about ten instructions of every control period.
+    #[cfg(feature = "signals")]
     #[must_use]
     pub fn signals(&self) -> Option<Signals> {
         self.signals.take().map(|words| words.signals(&C::UNITS))

@@ -1,6 +1,8 @@
 //! Signals of one control period for people: handed over on demand, so that periods in which nobody
-//! asks do no more than look whether somebody does.
+//! asks do no more than look whether somebody does. That, too, takes instructions: without the
+//! feature `signals` there is none of it.
 
+use crate::Checked;
 use crate::arith::Word;
 use crate::control::{Observation, Unit, Units};
 use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
@@ -112,7 +114,7 @@ const ASKED: i32 = 1;
 const ANSWERED: i32 = 2;
 
 /// Where the words go over. The control loop writes while it is asked, and at no other time; the
-/// main program reads while it is answered.
+/// main program writes while it is not, and reads while it is answered.
 #[derive(Debug)]
 pub(crate) struct Port {
     turn: AtomicI32,
@@ -133,8 +135,14 @@ impl Port {
         self.turn.load(Ordering::Relaxed) == ASKED
     }
 
-    /// The words of this period, where they are wanted.
-    pub(crate) fn answer(&self, words: PeriodWords) {
+    /// What this period saw, commanded and believed, where it is wanted.
+    pub(crate) fn answer(&self, seen: Checked, on: [Option<u16>; 3], observation: Observation) {
+        let words = PeriodWords {
+            currents: [seen.i_a(), seen.i_b()],
+            hall: seen.hall(),
+            on,
+            observation,
+        };
         for (place, word) in self.words.iter().zip(words.to_words()) {
             place.store(word, Ordering::Relaxed);
         }
@@ -144,9 +152,13 @@ impl Port {
 
     /// The words that are there; else asks for them.
     pub(crate) fn take(&self) -> Option<PeriodWords> {
-        if self.turn.load(Ordering::Relaxed) != ANSWERED {
-            self.turn.store(ASKED, Ordering::Relaxed);
-            return None;
+        match self.turn.load(Ordering::Relaxed) {
+            ANSWERED => {}
+            ASKED => return None,
+            _ => {
+                self.turn.store(ASKED, Ordering::Relaxed);
+                return None;
+            }
         }
         compiler_fence(Ordering::Acquire);
         let words = PeriodWords::from_words(core::array::from_fn(|index| {
@@ -162,7 +174,7 @@ impl Port {
 
 #[cfg(test)]
 mod tests {
-    use super::{Observation, PeriodWords, Port, Unit};
+    use super::{Checked, Observation, PeriodWords, Port, Unit};
     use crate::arith::Word;
     use fixed::types::I16F16;
 
@@ -183,7 +195,12 @@ mod tests {
         assert_eq!(port.take(), None);
         assert!(port.is_asked());
         assert_eq!(port.take(), None);
-        port.answer(WORDS);
+        let seen = Checked {
+            i: WORDS.currents,
+            hall: WORDS.hall,
+            hall_ticks: Word(0),
+        };
+        port.answer(seen, WORDS.on, WORDS.observation);
         assert!(!port.is_asked());
         assert_eq!(port.take(), Some(WORDS));
         assert!(!port.is_asked());

@@ -7,7 +7,7 @@
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::c99::{Sources, emit_c99};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
-use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
@@ -103,7 +103,7 @@ fn datasheet_of(name: &str, generated: &Generated) -> Snapshot {
 
 fn code_of(name: &str, generated: &Generated) -> [Snapshot; 2] {
     let Generated { graph, interface } = generated;
-    let rust = format_rust(&emit_rust(
+    let rust = readable_rust(&emit_rust(
         graph,
         interface,
         &Surface::public(&interface.type_name),

@@ -155,6 +155,7 @@ fn c99_is_written_by_type() {
     let written = builder.clone().generate();
     let same = builder.motor("rear.toml").name("HubDrive").generate();
     let source = fs::read_to_string(folder.join("hub_drive.c"));
+    let runtime = ["hexagen.h", "hexagen.c"].map(|file| fs::read_to_string(folder.join(file)));
     fs::remove_dir_all(&folder).expect("the folder is ours");
     let written = written.expect("it generates").remove(0);
     let files = ["hub_drive.h", "hub_drive.c"].map(|file| folder.join(file));
@@ -162,8 +163,10 @@ fn c99_is_written_by_type() {
     assert!(
         source
             .expect("is written")
-            .contains("\nhub_drive_legs_t hub_drive_step(")
+            .contains("\nhexagen_legs hub_drive_step(")
     );
+    let runtime = runtime.map(|text| text.expect("is written beside them"));
+    assert_eq!(runtime, [hexagen_c99::HEADER, hexagen_c99::SOURCE]);
     assert_eq!(
         same.expect_err("one name for two drives").to_string(),
         "hub.toml and rear.toml would both be written to hub_drive.h; tell their types apart with `.name(…)`"

@@ -44,7 +44,11 @@ impl Comment<'_> {
             self.text.push('\n');
             return;
         }
-        let indent = if begins && !line.starts_with('`') { 2 } else { 0 };
+        let indent = if begins && !line.starts_with('`') {
+            2
+        } else {
+            0
+        };
         for word in words(line) {
             let columns = word.chars().count();
             if self.width > 0 && self.width + 1 + columns > self.columns {

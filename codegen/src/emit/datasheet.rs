@@ -3,8 +3,7 @@
 //!
 //! Everything comes from the interface and the verified graph, so it cannot differ from the code.
 
-use super::set_point::shared;
-use crate::diagnostics::{list, significant};
+use crate::diagnostics::significant;
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
     Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, cases,
@@ -219,24 +218,8 @@ fn memory(sheet: &mut Sheet, program: &Program) {
     let tables = super::rows::bytes(program);
     sheet.heading(2, "Memory");
     sheet.line(&format!(
-        "State: {} words in {state} bytes, padding included.",
+        "State of the law: {} words in {state} bytes, padding included. Supervisor and set-point are the runtime's.",
         program.states.len()
-    ));
-    let set_point: Vec<String> = shared(program)
-        .iter()
-        .map(|shared| match shared.words.as_slice() {
-            [(_, only)] => format!("`{}` in 4 bytes", only.name),
-            // Two banks, the number of the one in use and whether the other is being filled.
-            many => {
-                let names: Vec<&str> = many.iter().map(|(_, word)| word.name.as_str()).collect();
-                let bytes = 8 * many.len() + 8;
-                format!("{}, doubled, in {bytes} bytes", list(&names, "and"))
-            }
-        })
-        .collect();
-    sheet.line(&format!(
-        "Set-point: {}; status in 4 bytes.",
-        set_point.join("; ")
     ));
     sheet.line(&format!("Tables, in flash: {tables} bytes."));
     sheet.line(&format!(

@@ -13,7 +13,6 @@ mod path;
 mod plan;
 mod rows;
 pub mod rust;
-mod set_point;
 mod signal;
 mod texts;
 

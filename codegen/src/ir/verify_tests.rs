@@ -258,5 +258,6 @@ fn tracking_ends_with_a_stage_and_what_it_leaves_can_be_forgotten() {
     });
     refused("forgotten at rest, but never 0", |program| {
         program.states[0].interval = Interval::new(1, 1000);
+        program.states[0].initial = 1;
     });
 }

@@ -129,7 +129,12 @@ impl Lowering<'_> {
         } else {
             format!("relative error {error:.1e}")
         };
-        lines.push(format!("{physical}; {shift} fraction bits, {error}."));
+        let in_words = scaled.map_or_else(String::new, |_| {
+            format!(", {} in words", significant(value))
+        });
+        lines.push(format!(
+            "{physical}{in_words}; {shift} fraction bits, {error}."
+        ));
         // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
         let id = self.b.program.rounded_constant(name, raw, exact, &lines);

@@ -6,42 +6,39 @@ use core::cell::RefCell;
 use core::future::pending;
 use critical_section::Mutex;
 use embassy_executor::Spawner;
-use hexagen_frameworks::hexagen::fixed::types::I16F16;
-use hexagen_frameworks::{Control, HubDrive, REGISTERS, SetPoint};
+use hexagen_frameworks::{ControlLoop, Drive, REGISTERS, SetPoint};
 use lm3s6965::interrupt;
 use static_cell::StaticCell;
 
-static DRIVE: StaticCell<HubDrive> = StaticCell::new();
+static DRIVE: StaticCell<Drive> = StaticCell::new();
 
 /// Handed over before the interrupt is let in; taken by it alone from then on.
-static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
+static CONTROL: Mutex<RefCell<Option<ControlLoop>>> = Mutex::new(RefCell::new(None));
 
-/// The converters have sampled: once per control period. Nothing may interrupt it, so that the critical section
+/// The ADCs have sampled: once per control period. Nothing may interrupt it, so that the critical section
 /// delays nothing.
 #[interrupt]
 fn ADC0_SEQUENCE_0() {
     critical_section::with(|token| {
         if let Some(control) = CONTROL.borrow_ref_mut(token).as_mut() {
-            let sample = REGISTERS.sample();
-            let legs = control.step(sample.adc_a, sample.adc_b, sample.hall);
-            REGISTERS.apply(legs);
+            REGISTERS.apply(control.step(&REGISTERS.sample()));
         }
     });
 }
 
 #[embassy_executor::task]
 async fn follow(set_point: &'static SetPoint) {
-    set_point.set_current(I16F16::lit("5"));
+    set_point.set_current_ma(5_000);
     // Await commands here: every task may set the set-point, without a lock.
     pending::<()>().await;
 }
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let (set_point, mut control) = DRIVE.init(HubDrive::new()).split();
+    let (set_point, mut control) = DRIVE.init(Drive::new()).split();
     // Offsets of the current sensors, then bootstrap capacitors; control begins by itself.
     control.calibrate();
     critical_section::with(|token| CONTROL.replace(token, Some(control)));
-    // Start the PWM timer and what triggers the converters, and let the interrupt in, here.
+    // Start the PWM timer and what triggers the ADCs, and let the interrupt in, here.
     spawner.spawn(follow(set_point).expect("one of it"));
 }

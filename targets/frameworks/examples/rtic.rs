@@ -5,39 +5,36 @@
 #[rtic::app(device = lm3s6965)]
 mod app {
     use cortex_m::asm::wfi;
-    use hexagen_frameworks::hexagen::fixed::types::I16F16;
-    use hexagen_frameworks::{Control, HubDrive, REGISTERS, SetPoint};
+    use hexagen_frameworks::{ControlLoop, Drive, REGISTERS, SetPoint};
 
     #[shared]
     struct Shared {}
 
     #[local]
     struct Local {
-        control: Control,
+        control: ControlLoop,
         set_point: &'static SetPoint,
     }
 
-    #[init(local = [drive: HubDrive = HubDrive::new()])]
+    #[init(local = [drive: Drive = Drive::new()])]
     fn init(context: init::Context) -> (Shared, Local) {
         let (set_point, mut control) = context.local.drive.split();
         // Offsets of the current sensors, then bootstrap capacitors; control begins by itself.
         control.calibrate();
-        // Start the PWM timer and what triggers the converters here.
+        // Start the PWM timer and what triggers the ADCs here.
         (Shared {}, Local { control, set_point })
     }
 
-    /// The converters have sampled: once per control period, above everything else.
+    /// The ADCs have sampled: once per control period, above everything else.
     #[task(binds = ADC0_SEQUENCE_0, priority = 8, local = [control])]
     fn control_period(context: control_period::Context) {
         let control = context.local.control;
-        let sample = REGISTERS.sample();
-        let legs = control.step(sample.adc_a, sample.adc_b, sample.hall);
-        REGISTERS.apply(legs);
+        REGISTERS.apply(control.step(&REGISTERS.sample()));
     }
 
     #[idle(local = [set_point])]
     fn idle(context: idle::Context) -> ! {
-        context.local.set_point.set_current(I16F16::lit("5"));
+        context.local.set_point.set_current_ma(5_000);
         loop {
             wfi();
         }

@@ -12,11 +12,14 @@ hexagen::controller! {
     }
 }
 
+/// The drive.
+pub type Drive = hexagen::Drive<HubDrive>;
+
 /// The half of the drive that the control interrupt owns.
-pub type Control = <HubDrive as hexagen::Drive>::LoopHalf<'static>;
+pub type ControlLoop = hexagen::ControlLoop<'static, HubDrive>;
 
 /// The half of the drive that all else shares.
-pub type SetPoint = <HubDrive as hexagen::Drive>::SetPointHalf;
+pub type SetPoint = hexagen::SetPoint<HubDrive>;
 
 /// ADCs, Hall port and PWM timer; a chip's are those of its peripheral access crate.
 pub static REGISTERS: Registers = Registers::new();

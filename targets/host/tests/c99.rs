@@ -1,7 +1,7 @@
 //! Emitted C passes strict flags, computes what the bit-true model computes on every output and state bit, and has
 //! no undefined behaviour on the way, for the covering arrays of all kinds of controllers.
 
-use hexagen_codegen::emit::c99::emit_c99;
+use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::spec::parse_toml;
 use hexagen_host::engine::{Prepared, Verifier, prepare_ast};
 use hexagen_tests::covering::SPECIFICATIONS;
@@ -101,39 +101,40 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         "malloc",
         "memcpy",
     ];
-    let dividing_helpers = ["divide_digit", "divide_narrow", "turn_over"];
-    let called_by_stages = ["divide", "divide_narrow", "turn_over"];
-    let (mut drives, mut dividing) = (0, 0);
+    let dividing = [
+        "hexagen_divide",
+        "hexagen_divide_narrow",
+        "hexagen_turn_over",
+    ];
+    let (mut drives, mut functions) = (0, 0);
+    for (_, text) in RUNTIME {
+        assert_has_none(&code(text), &never, "the runtime");
+    }
     for drive in library() {
         let generated = &drive.generated;
         let sources = emit_c99(&generated.graph, &generated.interface, "HubDrive");
+        for text in [&sources.source, &sources.header] {
+            assert!(
+                text.lines().all(|line| line.chars().count() <= 100),
+                "{}",
+                drive.motor
+            );
+        }
         let source = code(&sources.source);
         for text in [&source, &code(&sources.header)] {
-            let words = text.split(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
-            for word in words {
-                assert!(!never.contains(&word), "{}: {word}", drive.motor);
-            }
+            assert_has_none(text, &never, &drive.motor);
         }
-        assert!(!source.contains('%'), "{}", drive.motor);
+        assert!(!source.contains(['%', '/']), "{}", drive.motor);
         for function in source.split("\n}\n") {
             let (head, body) = function.split_once("\n{\n").unwrap_or_default();
-            let name = head
-                .rsplit('\n')
-                .find(|line| line.contains('('))
-                .unwrap_or_default();
-            let is_helper = dividing_helpers
+            if dividing
                 .iter()
-                .any(|helper| name.contains(&format!(" {helper}(")));
-            assert_eq!(body.contains(" / "), is_helper, "{}: {name}", drive.motor);
-            if called_by_stages
-                .iter()
-                .any(|helper| body.contains(&format!("{helper}(")))
+                .any(|name| body.contains(&format!("{name}(")))
             {
-                dividing += 1;
-                let is_setter = name.starts_with("static") && name.contains(" set_");
+                functions += 1;
                 assert!(
-                    head.contains("HUB_DRIVE_COLD\n") || is_setter,
-                    "{}: {name}",
+                    head.contains("HEXAGEN_COLD\n") || head.contains(" hub_drive_set_"),
+                    "{}: {head}",
                     drive.motor
                 );
             }
@@ -141,20 +142,30 @@ fn no_float_no_loop_no_type_of_eight_bits_and_no_division_on_the_normal_path() {
         drives += 1;
     }
     assert!(
-        drives > 40 && dividing > 10,
-        "{drives} drives, {dividing} functions"
+        drives > 40 && functions > 10,
+        "{drives} drives, {functions} functions"
     );
 }
 
-/// A type's name that C keeps for itself, one of a header that is included, one that makes a stage's name, and one of a
-/// constant's first letter.
+fn assert_has_none(text: &str, never: &[&str], what: &str) {
+    let words = text.split(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
+    for word in words {
+        assert!(!never.contains(&word), "{what}: {word}");
+    }
+}
+
+/// Types' names that C keeps for itself, or C++, or a header, or the runtime; that of a function of every source; one that
+/// begins a stage's name, and one that begins a constant's.
 #[test]
 fn names_that_c_does_not_take_are_changed() {
     let paper = motor(PAPER_MOTOR);
     for (name, prefix) in [
-        ("Int", "int"),
+        ("Int", "drive_int"),
+        ("Class", "drive_class"),
         ("Stdint", "drive_stdint"),
-        ("Latch", "latch"),
+        ("Hexagen", "drive_hexagen"),
+        ("Track", "drive_track"),
+        ("Find", "find"),
         ("I", "i"),
     ] {
         let mut ast = parse_toml(&paper.text, "drive.toml").expect("a motor of the library");
@@ -166,33 +177,71 @@ fn names_that_c_does_not_take_are_changed() {
     }
 }
 
+/// Compiles these files with a drive and the runtime beside them; what the program says, or the compiler where it refuses.
+fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = [
+        (format!("{}.h", sources.name), sources.header.as_str()),
+        (format!("{}.c", sources.name), &sources.source),
+    ];
+    for (name, text) in own {
+        fs::write(folder.path().join(name), text).expect("a file");
+    }
+    for (name, text) in RUNTIME.iter().chain(files) {
+        fs::write(folder.path().join(name), text).expect("a file");
+    }
+    let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    cc.current_dir(folder.path())
+        .args(["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror"])
+        .args(CHECK.split_whitespace())
+        .args([&format!("{}.c", sources.name), "hexagen.c"])
+        .args(
+            files
+                .iter()
+                .map(|(name, _)| name)
+                .filter(|name| name.ends_with(".c") && **name != "hexagen.c"),
+        )
+        .args(["-o", "program"]);
+    let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
+    if !built.status.success() {
+        return String::from_utf8_lossy(&built.stderr).into_owned();
+    }
+    let run = Command::new(folder.path().join("program"))
+        .output()
+        .expect("it runs");
+    String::from_utf8_lossy(&run.stdout).into_owned()
+}
+
 /// What firmware does at start-up, and what it must see: [`c99_start_up.c`].
 const START_UP: &str = include_str!("c99_start_up.c");
 
-/// Offsets that are averaged anew by every call of `calibrate()`, once; a status that is published
-/// by every call.
-#[test]
-fn start_up_in_c_averages_once_per_call_and_tells_its_status_at_once() {
+fn starting() -> Sources {
     let text = motor(PAPER_MOTOR).text.replacen(
         "[inverter]\n",
         "[inverter]\ncalibration_samples = 16\nprecharge = \"200 us\"\n",
         1,
     );
     let drive = prepared(&text, "start-up");
-    let sources = emit_c99(&drive.generated.graph, &drive.generated.interface, "Hub");
-    let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("hub.h"), &sources.header).expect("a file");
-    fs::write(at("hub.c"), &sources.source).expect("a file");
-    fs::write(at("start_up.c"), START_UP).expect("a file");
-    let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
-    cc.current_dir(folder.path())
-        .args(["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror"])
-        .args(CHECK.split_whitespace())
-        .args(["hub.c", "start_up.c", "-o", "start_up"]);
-    let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
-    let messages = String::from_utf8_lossy(&built.stderr);
-    assert!(built.status.success(), "{messages}");
-    let run = Command::new(at("start_up")).output().expect("it runs");
-    assert_eq!(String::from_utf8_lossy(&run.stdout), "as it should be\n");
+    emit_c99(&drive.generated.graph, &drive.generated.interface, "Hub")
+}
+
+/// Offsets that are averaged anew by every call of `calibrate`, once; a status that is published
+/// by every call; signals of the next controlled period.
+#[test]
+fn start_up_in_c_averages_once_per_call_and_tells_its_status_at_once() {
+    assert_eq!(
+        said(&starting(), &[("start_up.c", START_UP)]),
+        "as it should be\n"
+    );
+}
+
+/// Two drives share one runtime; one that is of another version says what to do.
+#[test]
+fn a_runtime_of_another_version_is_refused() {
+    let [(_, header), _] = RUNTIME;
+    let other = header.replace("#define HEXAGEN_ABI ", "#define HEXAGEN_ABI 9");
+    let files = [("start_up.c", START_UP), ("hexagen.h", other.as_str())];
+    let said = said(&starting(), &files);
+    let message = "hub.h is of another version of hexagen than hexagen.h: take both from one.";
+    assert!(said.contains(message), "{said}");
 }

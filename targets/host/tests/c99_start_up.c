@@ -2,7 +2,7 @@
 #include "hub.h"
 #include <stdio.h>
 
-static hub_t drive;
+static hub drive;
 
 #define EXPECT(what)                                    \
     do {                                                \
@@ -13,12 +13,13 @@ static hub_t drive;
     } while (0)
 
 /* Steps whose legs are all in a state; how many of them come before the first that is not. */
-static int steps(int count, hub_mode_t mode, hub_leg_t leg, uint16_t adc_a, uint16_t adc_b)
+static int steps(int count, hexagen_mode mode, hexagen_leg leg, uint16_t adc_a, uint16_t adc_b)
 {
     int done;
     for (done = 0; done < count; done++) {
-        const hub_mode_t before = hub_status(&drive).mode;
-        const hub_legs_t legs = hub_step(&drive, adc_a, adc_b, 5);
+        const hexagen_mode before = hub_status(&drive).mode;
+        const hexagen_sample sample = hexagen_with_hall(adc_a, adc_b, 5);
+        const hexagen_legs legs = hub_step(&drive, &sample);
         if (before != mode || legs.state[0] != leg || legs.state[1] != leg || legs.state[2] != leg) {
             break;
         }
@@ -31,26 +32,33 @@ static int32_t unit;
 
 static int has_offsets(int32_t adc_a, int32_t adc_b)
 {
-    return drive.state.offset_a == adc_a * unit && drive.state.offset_b == adc_b * unit;
+    return drive.supervisor.offset_a == adc_a * unit && drive.supervisor.offset_b == adc_b * unit;
 }
 
 /* A whole start-up with these offsets: the samples of pre-charge and control are others. */
 static int starts_up(uint16_t adc_a, uint16_t adc_b)
 {
-    return steps(16, HUB_MODE_CALIBRATE, HUB_LEG_OFF, adc_a, adc_b) == 16 && has_offsets(adc_a, adc_b)
-        && steps(4, HUB_MODE_PRECHARGE, HUB_LEG_LOW, 2030, 2060) == 4 && has_offsets(adc_a, adc_b)
-        && steps(40, HUB_MODE_RUN, HUB_LEG_PULSED, 2040, 2050) == 40 && has_offsets(adc_a, adc_b);
+    return steps(16, HEXAGEN_MODE_CALIBRATE, HEXAGEN_LEG_OFF, adc_a, adc_b) == 16 && has_offsets(adc_a, adc_b)
+        && steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2030, 2060) == 4 && has_offsets(adc_a, adc_b)
+        && steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2040, 2050) == 40 && has_offsets(adc_a, adc_b);
+}
+
+static bool is_running(void)
+{
+    return hub_status(&drive).mode == HEXAGEN_MODE_RUN;
 }
 
 int main(void)
 {
+    const hexagen_sample without_code = hexagen_with_hall(2048, 2028, 0);
+    hexagen_signals signals;
     hub_init(&drive);
-    unit = drive.state.offset_a / 2048;
+    unit = drive.supervisor.offset_a / 2048;
     EXPECT(has_offsets(2048, 2048));
-    EXPECT(hub_is_running(&drive));
+    EXPECT(is_running());
     hub_calibrate(&drive);
-    EXPECT(hub_status(&drive).mode == HUB_MODE_CALIBRATE);
-    EXPECT(!hub_is_running(&drive));
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_CALIBRATE);
+    EXPECT(!is_running());
     EXPECT(starts_up(2148, 1998));
 
     /* Again, from control. */
@@ -59,31 +67,41 @@ int main(void)
 
     /* Again, halfway: nothing of the first half counts. */
     hub_calibrate(&drive);
-    EXPECT(steps(8, HUB_MODE_CALIBRATE, HUB_LEG_OFF, 2148, 1948) == 8);
+    EXPECT(steps(8, HEXAGEN_MODE_CALIBRATE, HEXAGEN_LEG_OFF, 2148, 1948) == 8);
     hub_calibrate(&drive);
     EXPECT(starts_up(2068, 2008));
 
     /* Again, in pre-charge. */
     hub_calibrate(&drive);
-    EXPECT(steps(16, HUB_MODE_CALIBRATE, HUB_LEG_OFF, 2148, 1948) == 16);
-    EXPECT(steps(2, HUB_MODE_PRECHARGE, HUB_LEG_LOW, 2148, 1948) == 2);
+    EXPECT(steps(16, HEXAGEN_MODE_CALIBRATE, HEXAGEN_LEG_OFF, 2148, 1948) == 16);
+    EXPECT(steps(2, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2148, 1948) == 2);
     hub_calibrate(&drive);
-    EXPECT(hub_status(&drive).mode == HUB_MODE_CALIBRATE);
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_CALIBRATE);
     EXPECT(starts_up(2048, 2028));
 
     /* A trip, which only reset ends; offsets are kept. */
-    (void)hub_step(&drive, 2048, 2028, 0);
-    EXPECT(hub_status(&drive).mode == HUB_MODE_TRIPPED && hub_fault(&drive) == HUB_FAULT_HALL);
+    (void)hub_step(&drive, &without_code);
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_TRIPPED && hub_status(&drive).fault == HEXAGEN_FAULT_HALL);
     hub_calibrate(&drive);
     hub_precharge(&drive);
-    EXPECT(hub_status(&drive).mode == HUB_MODE_TRIPPED);
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_TRIPPED);
+    hub_set_current_ma(&drive, 5000);
+    EXPECT(drive.current > 0);
     hub_reset(&drive);
-    EXPECT(hub_is_running(&drive) && hub_fault(&drive) == HUB_FAULT_NONE);
-    EXPECT(steps(40, HUB_MODE_RUN, HUB_LEG_PULSED, 2048, 2028) == 40 && has_offsets(2048, 2028));
+    EXPECT(drive.current == 0);
+    EXPECT(is_running() && hub_status(&drive).fault == HEXAGEN_FAULT_NONE);
+    EXPECT(steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 40 && has_offsets(2048, 2028));
     hub_precharge(&drive);
-    EXPECT(hub_status(&drive).mode == HUB_MODE_PRECHARGE);
-    EXPECT(steps(4, HUB_MODE_PRECHARGE, HUB_LEG_LOW, 2048, 2028) == 4);
-    EXPECT(hub_is_running(&drive));
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_PRECHARGE);
+    EXPECT(steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2048, 2028) == 4);
+    EXPECT(is_running());
+
+    /* Signals come with the next controlled period, in which legs of 24 V make no current. */
+    EXPECT(!hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));
+    EXPECT(steps(1, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 1);
+    EXPECT(hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));
+    EXPECT(signals.currents[0] == 0 && signals.currents[2] == 0 && signals.sector == 2);
+    EXPECT(!signals.is_off[0] && signals.voltages[0] > 23 * 65536 && signals.voltages[0] < 25 * 65536);
     printf("as it should be\n");
     return 0;
 }

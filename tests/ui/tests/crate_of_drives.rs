@@ -1,9 +1,12 @@
-//! A crate with several motors, held by generic firmware code: what a right macro call gives.
+//! A crate with several motors, held by generic firmware code: what a right macro call gives, and what firmware makes
+//! of it.
 
 use fixed::types::I16F16;
 use hexagen::{
-    Drive, DriveLoop, DriveSetPoint, Fault, LegState, Legs, Mode, Sample, Status, controller,
+    Control, ControlLoop, Drive, DynLoop, Fault, LegState, Legs, MeasuredBus, Mode, Sample,
+    SetPoint, Signals, controller,
 };
+use static_cell::StaticCell;
 
 controller! {
     /// Rear hub, from a file beside the crate's Cargo.toml.
@@ -64,59 +67,80 @@ controller! {
     }
 }
 
+controller! {
+    /// Conveyor, whose speed is held.
+    pub Conveyor {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_torque: 3.3 Nm,
+            rated_speed: 2000 rpm,
+            inertia: 1000 g cm2,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+        },
+        controller: pdcc { speed_loop: on },
+    }
+}
+
+/// The drive of this build: a cargo feature chooses it.
+#[cfg(feature = "front")]
+type Chosen = FrontHub;
+#[cfg(not(feature = "front"))]
+type Chosen = RearHub;
+
 /// Made at compile time.
-static REAR: RearHub = RearHub::new();
+static REAR: Drive<RearHub> = Drive::new();
+
+/// A sample without current.
+fn sample(hall: u8) -> Sample {
+    Sample::with_hall([2048, 2048], hall)
+}
 
 /// Firmware code that knows no motor.
-fn run<D: Drive>(drive: &mut D, amperes: i16) -> [LegState; 3] {
-    drive.set_current(I16F16::from_num(amperes));
+fn run<C: Control<Command = Legs>>(drive: &mut Drive<C>, milliamperes: i32) -> [LegState; 3] {
+    drive.set_current_ma(milliamperes);
     let mut states = [LegState::Off; 3];
     for _ in 0..8 {
-        states = drive
-            .step(&Sample {
-                adc_a: 2048,
-                adc_b: 2048,
-                hall: 1,
-                hall_ticks: 0,
-            })
-            .state();
+        states = drive.step(&sample(1)).state();
     }
     states
 }
 
 #[test]
 fn generic_code_holds_any_drive() {
-    assert!(run(&mut RearHub::new(), 5).contains(&LegState::Pulsed));
-    let mut steering = const { Steering::new() };
-    assert!(run(&mut steering, 5).contains(&LegState::Pulsed));
-    assert!(steering.is_running());
-    steering.step(2048, 2048, 7, 0);
-    assert_ne!(Drive::fault(&steering), Fault::None);
+    assert!(run(&mut Drive::<Chosen>::new(), 5_000).contains(&LegState::Pulsed));
+    let mut steering = const { Drive::<Steering>::new() };
+    assert!(run(&mut steering, 5_000).contains(&LegState::Pulsed));
+    assert!(steering.status().is_running());
+    steering.step(&sample(7));
+    assert_eq!(steering.status().fault, Some(Fault::Hall));
     assert_eq!(
-        run(&mut steering, 5),
+        run(&mut steering, 5_000),
         [LegState::Off; 3],
         "a trip is latched"
     );
     // The set-point is taken through a shared reference, so that a drive may live in a static.
-    REAR.set_current(I16F16::from_num(3));
-}
-
-fn sample(hall: u8) -> Sample {
-    Sample {
-        adc_a: 2048,
-        adc_b: 2048,
-        hall,
-        hall_ticks: 0,
-    }
+    REAR.set_current(I16F16::lit("3"));
 }
 
 /// What the control interrupt owns, whatever the motor.
-struct Interrupt<L> {
-    control: L,
-    legs: Legs,
+struct Interrupt<'drive, C: Control> {
+    control: ControlLoop<'drive, C>,
+    legs: C::Command,
 }
 
-impl<L: DriveLoop> Interrupt<L> {
+impl<C: Control> Interrupt<'_, C> {
     fn strikes(&mut self, hall: u8) {
         self.legs = self.control.step(&sample(hall));
     }
@@ -124,44 +148,39 @@ impl<L: DriveLoop> Interrupt<L> {
 
 /// The main program sets the current and sees what the drive is doing while the interrupt owns the
 /// control loop.
-fn halves<D: Drive>() {
-    let mut drive = D::new();
+fn halves<C: Control<Command = Legs>>() {
+    let mut drive = Drive::<C>::new();
     let (set_point, mut control) = drive.split();
     control.precharge();
     let mut interrupt = Interrupt {
         control,
         legs: Legs::OFF,
     };
-    assert_eq!(set_point.status().mode, Mode::Precharge, "{}", D::NAME);
+    assert_eq!(set_point.status().mode, Mode::Precharge, "{}", C::NAME);
     interrupt.strikes(1);
-    assert_eq!(interrupt.legs, Legs::LOW, "{}", D::NAME);
+    assert_eq!(interrupt.legs, Legs::LOW, "{}", C::NAME);
     (0..100).for_each(|_| interrupt.strikes(1));
     // Nobody told the bus voltage yet, where it is to be told.
-    let untold = Status {
-        bus_is_stale: D::SPEC.contains("bus = \"measured\""),
-        ..Status::default()
-    };
-    assert_eq!(set_point.status(), untold, "{}", D::NAME);
-    set_point.set_current(I16F16::from_num(5));
-    set_point.set_bus(2400);
+    let status = set_point.status();
+    assert_eq!(status.mode, Mode::Run, "{}", C::NAME);
+    let is_measured = C::SPEC.contains("bus = \"measured\"");
+    assert_eq!(status.bus_is_stale, is_measured, "{}", C::NAME);
+    set_point.set_current_ma(5_000);
     (0..8).for_each(|_| interrupt.strikes(1));
-    assert!(set_point.status().is_running(), "{}", D::NAME);
+    assert!(set_point.status().is_running(), "{}", C::NAME);
     assert!(interrupt.legs.state().contains(&LegState::Pulsed));
     interrupt.strikes(7);
-    let tripped = Status {
-        mode: Mode::Tripped,
-        fault: Fault::Hall,
-        bus_is_stale: false,
-    };
-    assert_eq!(set_point.status(), tripped, "{}", D::NAME);
-    assert_eq!(interrupt.control.status(), tripped, "{}", D::NAME);
-    assert_eq!(interrupt.legs, Legs::OFF, "{}", D::NAME);
+    for status in [set_point.status(), interrupt.control.status()] {
+        assert_eq!(status.mode, Mode::Tripped, "{}", C::NAME);
+        assert_eq!(status.fault, Some(Fault::Hall), "{}", C::NAME);
+    }
+    assert_eq!(interrupt.legs, Legs::OFF, "{}", C::NAME);
     interrupt.control.reset();
     interrupt.control.calibrate();
     interrupt.strikes(1);
-    assert_eq!(set_point.status().mode, Mode::Calibrate, "{}", D::NAME);
+    assert_eq!(set_point.status().mode, Mode::Calibrate, "{}", C::NAME);
     drop(interrupt);
-    assert_eq!(drive.fault(), Fault::None, "{}", D::NAME);
+    assert_eq!(drive.status().fault, None, "{}", C::NAME);
 }
 
 #[test]
@@ -169,28 +188,133 @@ fn generic_firmware_splits_any_drive() {
     halves::<RearHub>();
     halves::<FrontHub>();
     halves::<Steering>();
-    halves::<motors_of_any_name::DriveLoop>();
+    halves::<Conveyor>();
+    halves::<motors_of_any_name::DynLoop>();
 }
 
-/// The halves go where firmware has them: the set-point is shared between contexts, the control loop
-/// moves into one.
+/// Two drives in one program, of which a switch on the board chooses one at run time.
 #[test]
-fn the_halves_live_in_contexts_of_their_own() {
-    let mut drive = FrontHub::new();
-    let (set_point, mut control) = drive.split();
-    std::thread::scope(|contexts| {
-        contexts.spawn(|| set_point.set_current(I16F16::from_num(5)));
-        contexts.spawn(|| DriveSetPoint::set_bus(set_point, 2400));
-        contexts.spawn(move || control.step(2048, 2048, 1));
+fn a_drive_is_chosen_at_run_time() {
+    let mut rear = Drive::<RearHub>::new();
+    let mut steering = Drive::<Steering>::new();
+    rear.set_current_ma(5_000);
+    steering.set_current_ma(5_000);
+    let (mut rear, mut steering) = (rear.control(), steering.control());
+    for is_steering in [false, true] {
+        let control: &mut dyn DynLoop = if is_steering {
+            &mut steering
+        } else {
+            &mut rear
+        };
+        assert!(control.step(&sample(5)).state().contains(&LegState::Pulsed));
+        control.step(&sample(0));
+        assert_eq!(control.status().fault, Some(Fault::Hall));
+        control.reset();
+        control.precharge();
+        assert_eq!(control.step(&sample(5)), Legs::LOW);
+        control.calibrate();
+        assert_eq!(control.step(&sample(5)), Legs::OFF);
+    }
+}
+
+/// The set-point goes to a task, the control loop to the context of an interrupt.
+#[test]
+fn a_drive_in_a_static_is_handed_over_in_halves() {
+    static FRONT: StaticCell<Drive<FrontHub>> = StaticCell::new();
+    let (set_point, mut control) = FRONT.init(Drive::new()).split();
+    let interrupt = std::thread::spawn(move || {
+        (0..100_000)
+            .map(|_| control.step(&sample(1)))
+            .any(|legs| legs.compare().iter().any(|&compare| compare > 1000))
     });
-    // Both arrived: the current asks for voltage, and the lower bus for longer pulses than the nominal.
+    fn task<C: MeasuredBus>(set_point: &SetPoint<C>) {
+        set_point.set_bus(2400);
+        set_point.set_current_ma(10_000);
+    }
+    task(set_point);
+    assert!(interrupt.join().expect("it ends"), "the set-point arrives");
+    assert!(set_point.status().is_running());
+}
+
+/// Both arrive: the current asks for voltage, and the lower bus for longer pulses than the nominal.
+#[test]
+fn current_and_bus_reach_the_step() {
+    let mut drive = Drive::<FrontHub>::new();
     let mut told = |counts| {
-        drive.set_bus(counts);
         drive.reset();
-        let compare = drive.step(2048, 2048, 1).compare();
+        drive.set_bus(counts);
+        drive.set_current_ma(1_000);
+        let compare = drive.step(&sample(1)).compare();
         compare.iter().max().expect("three legs") - compare.iter().min().expect("three legs")
     };
     assert!(told(2000) > told(2400) && told(2400) > 0);
+}
+
+#[test]
+fn a_reset_sets_the_set_point_to_0() {
+    // Half the bus on each leg: no voltage.
+    let idle = |legs: Legs| legs.compare().iter().all(|&compare| compare == 900);
+    let mut rear = Drive::<RearHub>::new();
+    rear.set_current_ma(5_000);
+    assert!(!idle(rear.step(&sample(1))));
+    rear.reset();
+    assert!(idle(rear.step(&sample(1))));
+    rear.set_torque_mnm(500);
+    assert!(!idle(rear.step(&sample(1))));
+    // While it starts up a reset is ignored, and so is what it does to the set-point.
+    rear.reset();
+    rear.set_current_ma(5_000);
+    rear.precharge();
+    rear.reset();
+    while !rear.status().is_running() {
+        rear.step(&sample(1));
+    }
+    assert!(!idle(rear.step(&sample(1))));
+    // Of a speed loop it is the speed; the greatest current stays.
+    let mut conveyor = Drive::<Conveyor>::new();
+    conveyor.set_speed_rpm(1_000);
+    assert!(!idle(conveyor.step(&sample(1))));
+    conveyor.reset();
+    assert!(idle(conveyor.step(&sample(1))));
+    conveyor.set_speed(I16F16::lit("1000"));
+    assert!(!idle(conveyor.step(&sample(1))));
+}
+
+#[test]
+fn signals_are_those_of_one_period() {
+    let mut drive = Drive::<RearHub>::new();
+    drive.set_current_ma(1_000);
+    drive.step(&sample(1));
+    assert_eq!(drive.signals(), None, "nobody has asked before");
+    let legs = drive.step(&Sample::with_hall([2098, 2048], 5));
+    drive.step(&sample(1));
+    let Some(Signals {
+        currents,
+        voltages,
+        emf,
+        speed,
+        sector,
+        ..
+    }) = drive.signals()
+    else {
+        panic!("the period behind the question answers");
+    };
+    // 50 counts of 19.53 mA, and c as their negative.
+    let amperes = currents.map(I16F16::to_num::<f64>);
+    assert!((amperes[0] - 0.9766).abs() < 1e-3, "{amperes:?}");
+    assert_eq!(amperes[1], 0.0);
+    assert!((amperes[2] + amperes[0]).abs() < 1e-4);
+    for (volts, compare) in voltages.iter().zip(legs.compare()) {
+        let volts: f64 = volts.expect("every leg is driven").to_num();
+        assert!((volts - f64::from(compare) * 48.0 / 1800.0).abs() < 1e-3);
+    }
+    assert!(emf.is_some(), "the law estimates one");
+    assert_eq!(speed, None, "it follows no edges");
+    assert_eq!(sector, 2);
+    assert_eq!(drive.signals(), None, "an answer is taken once");
+    // A drive that rests answers when it runs again.
+    drive.step(&sample(0));
+    assert_eq!(drive.signals(), None);
 }
 
 /// Periods of 50 us for which a bus voltage that was told is fresh.
@@ -198,11 +322,11 @@ const FRESH: usize = 2000;
 
 #[test]
 fn the_status_shows_a_bus_voltage_that_is_no_longer_told() {
-    let mut drive = FrontHub::new();
+    let mut drive = Drive::<FrontHub>::new();
     let (set_point, mut control) = drive.split();
     let mut steps = |count: usize| {
         let stale = (0..count).filter(|_| {
-            control.step(2048, 2048, 1);
+            control.step(&sample(1));
             assert_eq!(control.status(), set_point.status());
             set_point.status().bus_is_stale
         });
@@ -219,24 +343,24 @@ fn the_status_shows_a_bus_voltage_that_is_no_longer_told() {
         set_point.set_bus(2400);
         assert_eq!(steps(FRESH - 1), 0);
     }
-    assert!(drive.is_running(), "it is a warning");
-    // A reset keeps the set-point, and so its age.
+    assert!(drive.status().is_running(), "it is a warning");
+    // A reset keeps what was told, and so its age.
     drive.reset();
     assert!(!drive.status().bus_is_stale);
     // A fixed bus is never stale.
-    let mut rear = RearHub::new();
+    let mut rear = Drive::<RearHub>::new();
     for _ in 0..2 * FRESH {
-        rear.step(2048, 2048, 1);
+        rear.step(&sample(1));
         assert!(!rear.status().bus_is_stale);
     }
 }
 
 #[test]
 fn drives_know_their_motors() {
-    assert_eq!(<RearHub as Drive>::NAME, "RearHub");
-    assert_eq!(<Steering as Drive>::NAME, "Steering");
-    assert!(<RearHub as Drive>::SPEC.contains("pole_pairs = 4"));
-    assert!(<Steering as Drive>::SPEC.contains("modulation = \"pair\""));
+    assert_eq!(RearHub::NAME, "RearHub");
+    assert_eq!(Steering::NAME, "Steering");
+    assert!(RearHub::SPEC.contains("pole_pairs = 4"));
+    assert!(Steering::SPEC.contains("modulation = \"pair\""));
 }
 
 /// Motors named like the types that emitted code uses, and like a word of the language.
@@ -262,33 +386,18 @@ mod motors_of_any_name {
     }
 
     drives! {
-        BusWatch ControlLoop Default DoubleBuffer Drive DriveLoop DriveSetPoint Fault Format I16F16 LegState Legs
-        Loop LoopHalf Mode Rounding Sample SetPoint SharedWord State Status TrackRotorResults Word
+        Checked Control ControlLoop Default Drive DynLoop Fault FixedBus Format I16F16 LegState Legs Limits Loop
+        MeasuredBus Mode Observation Rotor Rounding Sample SetPoint State Status TrackRotorResults Unit Units Word Words
     }
 }
 
 #[test]
 fn a_motor_may_be_named_like_a_type_of_emitted_code() {
-    assert!(run(&mut motors_of_any_name::Drive::new(), 5).contains(&LegState::Pulsed));
-    assert!(run(&mut motors_of_any_name::Word::default(), 5).contains(&LegState::Pulsed));
-    assert!(run(&mut motors_of_any_name::Legs::new(), 5).contains(&LegState::Pulsed));
-    assert_eq!(<motors_of_any_name::Drive as Drive>::NAME, "Drive");
-    assert_eq!(<motors_of_any_name::State as Drive>::NAME, "State");
-}
-
-#[test]
-fn the_owner_of_a_drive_needs_neither_its_halves_nor_the_trait() {
-    let mut drive = const { motors_of_any_name::Mode::new() };
-    drive.set_current(I16F16::from_num(5));
-    drive.set_torque(I16F16::from_num(1));
-    drive.precharge();
-    assert!(!drive.is_running());
-    assert_eq!(drive.step(2048, 2048, 1).state(), [LegState::Low; 3]);
-    drive.calibrate();
-    assert_eq!(drive.step(2048, 2048, 1).state(), [LegState::Off; 3]);
-    drive.step(2048, 2048, 0);
-    assert_eq!(drive.fault(), Fault::Hall);
-    drive.reset();
-    assert!(drive.is_running());
-    assert_eq!(drive.fault(), Fault::None);
+    assert!(run(&mut Drive::<motors_of_any_name::Drive>::new(), 5_000).contains(&LegState::Pulsed));
+    assert!(
+        run(&mut Drive::<motors_of_any_name::Word>::default(), 5_000).contains(&LegState::Pulsed)
+    );
+    assert!(run(&mut Drive::<motors_of_any_name::Legs>::new(), 5_000).contains(&LegState::Pulsed));
+    assert_eq!(motors_of_any_name::Drive::NAME, "Drive");
+    assert_eq!(motors_of_any_name::State::NAME, "State");
 }

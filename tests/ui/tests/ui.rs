@@ -11,6 +11,8 @@ fn errors_read_as_expected() {
     cases.compile_fail("*.rs");
     cases.compile_fail("generation/*.rs");
     cases.compile_fail("motor_file/*.rs");
+    // What an option brings, of a drive without it: these messages are the compiler's.
+    cases.compile_fail("options/*.rs");
 }
 
 /// The cases are compiled as a crate of their own in the target folder, and `motor: "…"` is
@@ -50,6 +52,20 @@ fn expectations_tell_the_specification_only() {
         for error in text.lines().filter(|line| line.starts_with("error")) {
             assert!(error.contains("HX"), "{name} follows on: {error}");
         }
+    }
+}
+
+/// What an option brings exists only where the option is on, and the message names it.
+#[test]
+fn calls_of_options_name_the_option() {
+    for (case, words) in [
+        ("set_speed_without_speed_loop", "speed_loop: on"),
+        ("set_bus_of_fixed_bus", "v_bus: measured"),
+        ("drive_of_no_controller", "hexagen::controller!"),
+    ] {
+        let file = Path::new("options").join(case).with_extension("stderr");
+        let text = fs::read_to_string(file).expect("readable expectation");
+        assert!(text.contains(words), "{case}: {text}");
     }
 }
 

@@ -71,7 +71,7 @@ impl CurrentLoop<'_, '_> {
         if options.modulated {
             l.b.name("u_depth", depth);
         }
-        let (three, is_low) = nearest_three_phase(l, phases, front.bus.volts);
+        let (three, is_low) = nearest_three_phase(l, phases, largest, front.bus.volts);
         let off_legs = self.predict_off_legs(options, front, phases);
         if off_legs.is_none() {
             state_exact_scores(&mut *self.lowering, u_c);
@@ -135,7 +135,8 @@ impl CurrentLoop<'_, '_> {
         let l = &mut *self.lowering;
         l.b.name("vector_pair", pair);
         l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
-        let (three, _) = nearest_three_phase(l, phases, front.bus.volts);
+        let largest = largest_of_zero_sum(l, phases);
+        let (three, _) = nearest_three_phase(l, phases, largest, front.bus.volts);
         let [vector] = l.b.join([("vector", three, pair)]);
         vector
     }
@@ -148,7 +149,8 @@ impl CurrentLoop<'_, '_> {
         let phases = [u[0], u[1], u_c];
         state_exact_scores(l, u_c);
         let (low_legs, _) = low_legs_of(l, phases);
-        let beyond = any_beyond(l, phases, 3, front.bus.volts);
+        let largest = largest_of_zero_sum(l, phases);
+        let beyond = is_beyond_third(l, largest, front.bus.volts);
         let all = l.b.literal(ALL_LOW);
         let pattern = l.b.select(beyond, low_legs, all);
         l.b.name("pattern", pattern)
@@ -450,31 +452,46 @@ fn is_negative(l: &mut Lowering<'_>, name: &str, value: Value) -> Value {
     l.b.name(name, flag)
 }
 
-/// Flag: any of the voltages is farther from zero than the bus over `parts`.
-fn any_beyond(l: &mut Lowering<'_>, volts: [Value; 3], parts: i32, bus: Value) -> Value {
-    let (name, doc, multiples) = match parts {
-        2 => (
-            "half_bus",
-            "Half the bus",
-            ["line_a_twice", "line_c_twice", "line_b_twice"],
-        ),
-        _ => (
-            "third_of_bus",
-            "A third of the bus",
-            ["u_a_triple", "u_b_triple", "u_c_triple"],
-        ),
-    };
+/// The greatest magnitude of three voltages that add up to zero: the sum of those above it.
+fn largest_of_zero_sum(l: &mut Lowering<'_>, u: [Value; 3]) -> Value {
+    let zero = l.zero();
+    let [a, b, c] = u.map(|u| l.b.max(u, zero));
+    let pair = l.b.add(a, b);
+    let largest = l.b.add(pair, c);
+    l.b.name("u_largest", largest)
+}
+
+/// Flag: a magnitude is more than a third of the bus. A whole voltage is beyond the share exactly where it is beyond
+/// its whole part.
+fn is_beyond_third(l: &mut Lowering<'_>, largest: Value, bus: Value) -> Value {
+    match l.spec.inverter.bus {
+        BusSource::Fixed => {
+            let third = l.nominal_bus() / 3;
+            let third = l.voltage("third_of_bus", third, "A third of the bus");
+            l.b.compare(Comparison::Less, third, largest)
+        }
+        BusSource::Measured { .. } => {
+            let triple = l.b.mul_by(3, largest);
+            l.b.name("u_triple", triple);
+            l.b.compare(Comparison::Less, bus, triple)
+        }
+    }
+}
+
+/// Flag: one of the line voltages is farther from zero than half the bus.
+fn any_beyond_half(l: &mut Lowering<'_>, lines: [Value; 3], bus: Value) -> Value {
+    let names = ["line_a_twice", "line_c_twice", "line_b_twice"];
     let [a, b, c] = [0, 1, 2].map(|x| {
-        // A whole voltage is beyond the share exactly where it is beyond its whole part.
         let (volts, limits) = match l.spec.inverter.bus {
             BusSource::Fixed => {
-                let whole = l.nominal_bus() / i64::from(parts);
-                (volts[x], [0, 1].map(|_| l.voltage(name, whole, doc)))
+                let half = l.nominal_bus() / 2;
+                let half = [0, 1].map(|_| l.voltage("half_bus", half, "Half the bus"));
+                (lines[x], half)
             }
             BusSource::Measured { .. } => {
-                let multiple = l.b.mul_by(parts, volts[x]);
-                l.b.name(multiples[x], multiple);
-                (multiple, [bus, bus])
+                let twice = l.b.mul_by(2, lines[x]);
+                l.b.name(names[x], twice);
+                (twice, [bus, bus])
             }
         };
         let above = l.b.compare(Comparison::Less, limits[0], volts);
@@ -505,11 +522,16 @@ fn low_legs_of(l: &mut Lowering<'_>, u: [Value; 3]) -> (Value, [Value; 3]) {
 }
 
 /// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
-fn nearest_three_phase(l: &mut Lowering<'_>, u: [Value; 3], bus: Value) -> (Value, [Value; 3]) {
+fn nearest_three_phase(
+    l: &mut Lowering<'_>,
+    u: [Value; 3],
+    largest: Value,
+    bus: Value,
+) -> (Value, [Value; 3]) {
     let (low_legs, is_low) = low_legs_of(l, u);
     let table = vector_of_low_legs(l);
     let active = l.b.lookup(table, low_legs);
-    let beyond = any_beyond(l, u, 3, bus);
+    let beyond = is_beyond_third(l, largest, bus);
     let zero = l.zero();
     let vector = l.b.select(beyond, active, zero);
     l.b.name("vector_three", vector);
@@ -627,7 +649,7 @@ fn nearest_nominal(l: &mut Lowering<'_>, front: &Front, u: [Value; 3]) -> Value 
         &["Pair vector of an order of the phase voltages, from the highest to the lowest: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns are none).".to_owned()],
     );
     let active = l.b.lookup(table, order);
-    let beyond = any_beyond(l, lines, 2, front.bus.volts);
+    let beyond = any_beyond_half(l, lines, front.bus.volts);
     l.b.select(beyond, active, idle)
 }
 

@@ -5,6 +5,7 @@ use super::layout::{INDENT, wrapped};
 use super::names::{Names, number, typed_number};
 use crate::interface::{Interface, Limits, Unit};
 use crate::ir::{Function, Program};
+use std::fmt::Write as _;
 
 /// What the header and the public functions are emitted from.
 pub(super) struct Drive<'a> {
@@ -12,6 +13,17 @@ pub(super) struct Drive<'a> {
     pub interface: &'a Interface,
     pub names: &'a Names,
     pub step: &'a Step,
+}
+
+/// What programs define to have signals.
+pub(super) const SIGNALS: &str = "HEXAGEN_SIGNALS";
+
+/// What bit-for-bit comparisons define.
+pub(super) const VERIFICATION: &str = "HEXAGEN_VERIFICATION";
+
+/// Code for where a symbol is defined.
+pub(super) fn where_defined(symbol: &str, code: &str) -> String {
+    format!("#ifdef {symbol}\n{}\n#endif\n\n", code.trim_end())
 }
 
 /// A public function.
@@ -68,9 +80,9 @@ impl Drive<'_> {
         let limits = limits.join(&format!(",\n{INDENT}"));
         let comment = "What samples are judged by, and how the drive starts up.";
         let mut text = self.names.comment("", &[comment]);
-        text.push_str(&format!("HEXAGEN_LIMITS(limits,\n{INDENT}{limits});\n\n"));
+        let _ = write!(text, "HEXAGEN_LIMITS(limits,\n{INDENT}{limits});\n\n");
 
-        text.push_str(&self.names.comment("", &["Units of the signals."]));
+        let mut signals = self.names.comment("", &["Units of the signals."]);
         let sectors = units.sectors.map(|sector| sector.to_string()).join(", ");
         let unit = |unit: Unit| format!("{{ {}, {} }}", number(unit.factor), unit.shift);
         let fields = [
@@ -81,32 +93,38 @@ impl Drive<'_> {
             ("sectors", format!("{{ {sectors} }}")),
         ];
         let fields = fields.map(|(name, value)| format!("{INDENT}.{name} = {value}"));
-        text.push_str("static const hexagen_units units = {\n");
-        text.push_str(&fields.join(",\n"));
-        text.push_str("\n};\n\n");
+        signals.push_str("static const hexagen_units units = {\n");
+        signals.push_str(&fields.join(",\n"));
+        signals.push_str("\n};\n");
+        text.push_str(&where_defined(SIGNALS, &signals));
 
         let state = self.names.state();
-        text.push_str(&self.names.comment("", &["The state of a drive that begins."]));
+        text.push_str(
+            &self
+                .names
+                .comment("", &["The state of a drive that begins."]),
+        );
         let words = self.program.states.iter().map(|word| {
             let (name, value) = (self.names.local(&word.name), number(word.initial));
             format!("{INDENT}.{name} = {value}")
         });
         let words: Vec<String> = words.collect();
-        text.push_str(&format!("static const {state} initial = {{\n"));
+        let _ = writeln!(text, "static const {state} initial = {{");
         text.push_str(&words.join(",\n"));
         text + "\n};\n\n"
     }
 
     /// What stands behind the law: the public functions, and those that they call.
     pub(super) fn functions(&self) -> String {
-        let mut text = self.step_at_rest() + &self.tell();
+        let mut text = self.step_at_rest() + &where_defined(SIGNALS, &self.tell());
         let setters = self.program.setters.iter();
         text.extend(setters.map(|setter| emit_setter(self.program, setter, self.names).stages));
         let methods = self.methods();
         text.extend(methods.iter().map(Method::definition));
-        text.push_str("#ifdef HEXAGEN_VERIFICATION\n");
+        text.push_str(&where_defined(SIGNALS, &self.signals().definition()));
         let own: String = self.verification().iter().map(Method::definition).collect();
-        text + own.trim_end() + "\n#endif\n"
+        text.push_str(&where_defined(VERIFICATION, &own));
+        text.trim_end().to_owned() + "\n"
     }
 
     /// The public functions, in the order of the header.
@@ -178,7 +196,10 @@ impl Drive<'_> {
             "static hexagen_legs step_at_rest({}, const hexagen_sample *sample)",
             self.drive()
         );
-        format!("{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n", wrapped("", &head))
+        format!(
+            "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
+            wrapped("", &head)
+        )
     }
 
     /// The answer to a main program that has asked for signals.
@@ -198,10 +219,10 @@ impl Drive<'_> {
         let speed = speed.map_or_else(none, |(direction, omega)| format!("{direction} * {omega}"));
         let comment = self.names.comment(
             "",
-            &["Answers a main program that has asked for the signals of a period."],
+            &["Answers a main program that has asked for the signals of a period; by value, so that these stand in memory on this path alone."],
         );
         let head = format!(
-            "static void tell({}, const hexagen_checked *checked, const hexagen_legs *legs)",
+            "static void tell({}, hexagen_checked checked, hexagen_legs legs)",
             self.drive()
         );
         let inner = INDENT.repeat(2);
@@ -209,7 +230,7 @@ impl Drive<'_> {
         let fields = fields.map(|(name, value)| format!("{inner}.{name} = {value}"));
         format!(
             "{comment}HEXAGEN_COLD\n{}{{\n{INDENT}const hexagen_observation observation = {{\n{}\n{INDENT}}};\n\
-             {INDENT}hexagen_answer(&drive->signals, checked, legs, &observation);\n}}\n\n",
+             {INDENT}hexagen_answer(&drive->signals, &checked, &legs, &observation);\n}}\n",
             wrapped("", &head),
             fields.join(",\n")
         )
@@ -227,11 +248,13 @@ impl Drive<'_> {
             body.push_str(&lines(&[&line]));
         }
         body.push_str(&lines(&[
-            "hexagen_start_port(&drive->signals);",
             "hexagen_start(&drive->supervisor, &limits);",
             "drive->state = initial;",
             "drive->status = hexagen_status_word(&drive->supervisor);",
         ]));
+        let signals = lines(&["hexagen_start_port(&drive->signals);"]);
+        body.push_str(where_defined(SIGNALS, &signals).trim_end());
+        body.push('\n');
         Method {
             doc: doc(&[
                 "Makes a drive that controls currents from its first period on, with set-point 0 and nominal current offsets.",
@@ -245,7 +268,10 @@ impl Drive<'_> {
     fn period(&self) -> Method {
         let mut body = lines(&["hexagen_checked checked;"]);
         if let Some(periods) = self.interface.bus_periods {
-            let line = format!("hexagen_pass_period(&drive->bus, {});", typed_number(periods));
+            let line = format!(
+                "hexagen_pass_period(&drive->bus, {});",
+                typed_number(periods)
+            );
             body.push_str(&lines(&[&line]));
         }
         let check = format!(
@@ -253,29 +279,35 @@ impl Drive<'_> {
             self.demand()
         );
         body.push_str(&lines(&[&check]));
-        body.push_str(&format!(
+        let _ = write!(
+            body,
             "{INDENT}{INDENT}return step_at_rest(drive, sample);\n{INDENT}}}\n"
-        ));
+        );
         let takes_rotor = self.step.arguments[2].contains(&"rotor");
         body.push_str(&self.track(takes_rotor));
         let step = self.call(2, "step", "rotor");
-        body.push_str(&lines(&[
-            &format!("const hexagen_legs legs = {step};"),
-            "if (hexagen_is_asked(&drive->signals)) {",
-        ]));
-        body.push_str(&format!(
-            "{INDENT}{INDENT}tell(drive, &checked, &legs);\n{INDENT}}}\n{INDENT}return legs;\n"
-        ));
+        body.push_str(&lines(&[&format!("const hexagen_legs legs = {step};")]));
+        let signals = format!(
+            "{INDENT}if (hexagen_is_asked(&drive->signals)) {{\n\
+             {INDENT}{INDENT}tell(drive, checked, legs);\n{INDENT}}}\n"
+        );
+        body.push_str(where_defined(SIGNALS, &signals).trim_end());
+        let _ = write!(body, "\n{INDENT}return legs;\n");
         let effect = match self.interface.delay {
             0 => "The command takes effect at once.",
-            _ => "The command takes effect with the next period, while its own step computes the one after.",
+            _ => {
+                "The command takes effect with the next period, while its own step computes the one after."
+            }
         };
         let mut text = doc(&[
             "Runs one control period: takes the measurements of its start, returns the inverter's command.",
             effect,
         ]);
         if self.interface.timer_capture {
-            text.push("The sample has a Hall code and the ticks since its edge (hexagen_with_ticks).".to_owned());
+            text.push(
+                "The sample has a Hall code and the ticks since its edge (hexagen_with_ticks)."
+                    .to_owned(),
+            );
         }
         Method {
             doc: text,
@@ -304,8 +336,15 @@ impl Drive<'_> {
             let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
             body.push_str(&lines(&[&line]));
         } else {
-            let field = if quantity == "speed" { "speed" } else { "current" };
-            text.extend(doc(&["", "`bits` are those of a number with 16 fraction bits: 65536 is one."]));
+            let field = if quantity == "speed" {
+                "speed"
+            } else {
+                "current"
+            };
+            text.extend(doc(&[
+                "",
+                "`bits` are those of a number with 16 fraction bits: 65536 is one.",
+            ]));
             for word in code.words {
                 body.push_str(&lines(&[&format!("drive->{field} = {word};")]));
             }
@@ -331,20 +370,28 @@ impl Drive<'_> {
     fn other_unit(&self, setter: &str) -> Option<Method> {
         let (suffix, parameter, unit, make) = match setter {
             "set_current" => ("ma", "milliamperes", "milliamperes", "thousandths"),
-            "set_torque" => ("mnm", "millinewtonmetres", "millinewton metres", "thousandths"),
+            "set_torque" => (
+                "mnm",
+                "millinewtonmetres",
+                "millinewton metres",
+                "thousandths",
+            ),
             "set_speed" => ("rpm", "rpm", "whole rpm", "whole"),
             _ => return None,
         };
         let call = self.names.public(setter);
         Some(Method {
             doc: vec![format!("`{setter}()` in {unit}.")],
-            head: format!("void {call}_{suffix}({}, int32_t {parameter})", self.drive()),
+            head: format!(
+                "void {call}_{suffix}({}, int32_t {parameter})",
+                self.drive()
+            ),
             body: lines(&[&format!("{call}(drive, hexagen_{make}({parameter}));")]),
         })
     }
 
     /// What the owner of a drive does besides stepping, and what it tells.
-    fn commands(&self) -> [Method; 5] {
+    fn commands(&self) -> [Method; 4] {
         let publish = "drive->status = hexagen_status_word(&drive->supervisor);";
         let command = |name: &str, text: &[&str], body: String| Method {
             doc: doc(text),
@@ -362,11 +409,6 @@ impl Drive<'_> {
             "hexagen_bus_is_stale(&drive->bus)"
         } else {
             "false"
-        };
-        let read = |kind: &str, name: &str, parameters: &str, text: &[&str], line: &str| Method {
-            doc: doc(text),
-            head: format!("{kind} {}({parameters})", self.names.public(name)),
-            body: lines(&[line]),
         };
         [
             command(
@@ -393,26 +435,38 @@ impl Drive<'_> {
                 ],
                 run("precharge"),
             ),
-            read(
-                "hexagen_status",
-                "status",
-                &format!("const {}", self.drive()),
-                &["What the drive is doing and what tripped it, as of the last control period or call: from any context."],
-                &format!("return hexagen_status_of(drive->status, {is_stale});"),
-            ),
-            read(
-                "bool",
-                "signals",
-                &format!("{}, hexagen_signals *signals", self.drive()),
-                &[
-                    "The signals of one controlled period, which belong together: true where they are at hand. Else asks for those of the next one.",
-                    "",
-                    "The control loop answers in its next controlled period, so a program that asks until it gets an answer has signals of a period that began after it first asked.",
-                    "From one context of the main program; neither side ever waits for the other.",
-                ],
-                "return hexagen_take(&drive->signals, &units, signals);",
-            ),
+            Method {
+                doc: doc(&[
+                    "What the drive is doing and what tripped it, as of the last control period or call: from any context.",
+                ]),
+                head: format!(
+                    "hexagen_status {}(const {})",
+                    self.names.public("status"),
+                    self.drive()
+                ),
+                body: lines(&[&format!(
+                    "return hexagen_status_of(drive->status, {is_stale});"
+                )]),
+            },
         ]
+    }
+
+    /// What a program with HEXAGEN_SIGNALS asks for.
+    pub(super) fn signals(&self) -> Method {
+        Method {
+            doc: doc(&[
+                "The signals of one controlled period, which belong together: true where they are at hand. Else asks for those of the next one.",
+                "",
+                "The control loop answers in its next controlled period, so a program that asks until it gets an answer has signals of a period that began after it first asked.",
+                "From one context of the main program; neither side ever waits for the other.",
+            ]),
+            head: format!(
+                "bool {}({}, hexagen_signals *signals)",
+                self.names.public("signals"),
+                self.drive()
+            ),
+            body: lines(&["return hexagen_take(&drive->signals, &units, signals);"]),
+        }
     }
 
     /// What a bit-for-bit comparison reads and writes.
@@ -425,18 +479,28 @@ impl Drive<'_> {
         let mut write = lines(&["hexagen_set_words(&drive->supervisor, words);"]);
         for (place, word) in states.iter().enumerate() {
             let field = names.local(&word.name);
-            let cast = if word.storage_bits == 16 { "(uint16_t)" } else { "" };
-            read.push_str(&format!(
-                "{INDENT}words[HEXAGEN_WORDS + {place}] = drive->state.{field};\n"
-            ));
-            write.push_str(&format!(
-                "{INDENT}drive->state.{field} = {cast}words[HEXAGEN_WORDS + {place}];\n"
-            ));
+            let cast = if word.storage_bits == 16 {
+                "(uint16_t)"
+            } else {
+                ""
+            };
+            let _ = writeln!(
+                read,
+                "{INDENT}words[HEXAGEN_WORDS + {place}] = drive->state.{field};"
+            );
+            let _ = writeln!(
+                write,
+                "{INDENT}drive->state.{field} = {cast}words[HEXAGEN_WORDS + {place}];"
+            );
         }
-        write.push_str(&lines(&["drive->status = hexagen_status_word(&drive->supervisor);"]));
+        write.push_str(&lines(&[
+            "drive->status = hexagen_status_word(&drive->supervisor);",
+        ]));
         [
             Method {
-                doc: vec![format!("Copies the supervisor's words, then the law's: {list}.")],
+                doc: vec![format!(
+                    "Copies the supervisor's words, then the law's: {list}."
+                )],
                 head: format!(
                     "void {}(const {}, int32_t *words)",
                     names.public("state_words"),

@@ -12,6 +12,7 @@ use super::names::Names;
 use super::stage::{StageFunction, kind};
 use crate::emit::signal::Leg;
 use crate::ir::{AtRest, Function, Op, Program, Value};
+use std::fmt::Write as _;
 
 /// The static functions of a step, and how they are called.
 pub(super) struct Step {
@@ -105,8 +106,13 @@ impl<'a> StepFunctions<'a> {
             let (kind, name) = (kind(self.context.shape(value)), self.local(value));
             format!("{INDENT}{kind} {name};\n")
         });
-        let comment = self.names.comment("", &["What tracking tells of the rotor."]);
-        format!("{comment}typedef struct {{\n{}}} tracked;\n\n", fields.collect::<String>())
+        let comment = self
+            .names
+            .comment("", &["What tracking tells of the rotor."]);
+        format!(
+            "{comment}typedef struct {{\n{}}} tracked;\n\n",
+            fields.collect::<String>()
+        )
     }
 
     /// Reads the sample's words that some values are.
@@ -148,7 +154,11 @@ impl<'a> StepFunctions<'a> {
     }
 
     fn kept(&self, part: Part) -> Kept<'a> {
-        let plans: Vec<_> = self.stages.iter().map(|stage| stage.plan().clone()).collect();
+        let plans: Vec<_> = self
+            .stages
+            .iter()
+            .map(|stage| stage.plan().clone())
+            .collect();
         kept(self.context, &plans, part)
     }
 
@@ -158,7 +168,11 @@ impl<'a> StepFunctions<'a> {
         let mut text: String = self.stages(part).map(StageFunction::call).collect();
         let Kept { reads, words } = kept;
         for value in reads {
-            let line = format!("const int32_t {} = {};", self.local(value), outside.whole(value));
+            let line = format!(
+                "const int32_t {} = {};",
+                self.local(value),
+                outside.whole(value)
+            );
             text.push_str(&wrapped(INDENT, &line));
         }
         for (word, value) in words {
@@ -180,7 +194,10 @@ impl<'a> StepFunctions<'a> {
         let is_whole = arguments.contains(&"drive");
         let mut body = body.to_owned();
         if is_whole && words(&body).contains("state") {
-            body.insert_str(0, &format!("{INDENT}{state} *const state = &drive->state;\n"));
+            body.insert_str(
+                0,
+                &format!("{INDENT}{state} *const state = &drive->state;\n"),
+            );
         }
         let named = words(&body);
         let arguments = arguments.iter().copied();
@@ -214,7 +231,7 @@ impl<'a> StepFunctions<'a> {
                 INDENT,
                 &format!("const tracked rotor = {{ {} }};", names.join(", ")),
             ));
-            body.push_str(&format!("{INDENT}return rotor;\n"));
+            let _ = writeln!(body, "{INDENT}return rotor;");
             "tracked"
         } else {
             "void"
@@ -315,10 +332,12 @@ fn read_words(program: &Program, function: &Function, names: &Names) -> String {
         place.is_some_and(|place| read.contains(&place))
     };
     let single = [("j", "current"), ("speed_ref", "speed")].into_iter();
-    let single = single.filter(|(name, _)| is_read(name)).map(|(name, field)| {
-        let name = names.local(name);
-        format!("{INDENT}const int32_t {name} = drive->{field};\n")
-    });
+    let single = single
+        .filter(|(name, _)| is_read(name))
+        .map(|(name, field)| {
+            let name = names.local(name);
+            format!("{INDENT}const int32_t {name} = drive->{field};\n")
+        });
     let mut text: String = single.collect();
     if BUS.into_iter().any(is_read) {
         text.push_str(INDENT);
@@ -376,7 +395,10 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
         }
         return Setter {
             stages: String::new(),
-            body: statements.iter().map(|line| wrapped(INDENT, line)).collect(),
+            body: statements
+                .iter()
+                .map(|line| wrapped(INDENT, line))
+                .collect(),
             words,
         };
     }

@@ -1,11 +1,12 @@
 //! The header: constants, types, and the heads of the public functions.
 
 use super::super::texts;
-use super::drive::{Drive, Method};
+use super::drive::{Drive, Method, SIGNALS, VERIFICATION, where_defined};
 use super::layout::INDENT;
 use super::names::{number, typed_number};
 use crate::interface::{PublicConstant, PublicValue};
 use crate::ir::Word;
+use std::fmt::Write as _;
 
 impl Drive<'_> {
     /// The whole header.
@@ -13,17 +14,21 @@ impl Drive<'_> {
         let names = self.names;
         let doc = texts::of_type(self.program, self.interface);
         let place = format!("the specification in `{}.c`", names.prefix);
-        let doc: Vec<String> = doc.iter().map(|line| line.replace("`SPEC`", &place)).collect();
+        let doc: Vec<String> = doc
+            .iter()
+            .map(|line| line.replace("`SPEC`", &place))
+            .collect();
         let mut text = names.comment("", &doc);
         let guard = names.public_upper("H");
         let prefix = &names.prefix;
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "#ifndef {guard}\n#define {guard}\n\n#include \"hexagen.h\"\n\n\
              #if HEXAGEN_ABI != {abi}\n\
              #error \"{prefix}.h is of another version of hexagen than hexagen.h: take both from one.\"\n\
              #endif\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
             abi = hexagen_c99::ABI
-        ));
+        );
         let constants = self.interface.constants.iter();
         text.extend(constants.map(|constant| self.constant(constant)));
         text.push_str(&self.types());
@@ -32,10 +37,10 @@ impl Drive<'_> {
             format!("{comment}{};\n\n", method.head())
         };
         text.extend(self.methods().iter().map(declare));
-        text.push_str("#ifdef HEXAGEN_VERIFICATION\n");
+        text.push_str(&where_defined(SIGNALS, &declare(&self.signals())));
         let own: String = self.verification().iter().map(declare).collect();
-        text.push_str(own.trim_end());
-        text + "\n#endif\n\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+        text.push_str(&where_defined(VERIFICATION, &own));
+        text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
     }
 
     /// A constant: a number, or what initialises an array.
@@ -76,7 +81,10 @@ impl Drive<'_> {
     /// The state, and the drive around it.
     fn types(&self) -> String {
         let names = self.names;
-        let mut text = names.comment("", &["What the law keeps from one control period to the next."]);
+        let mut text = names.comment(
+            "",
+            &["What the law keeps from one control period to the next."],
+        );
         text.push_str("typedef struct {\n");
         let mut before = String::new();
         for word in &self.program.states {
@@ -91,9 +99,9 @@ impl Drive<'_> {
             } else {
                 "int32_t"
             };
-            text.push_str(&format!("{INDENT}{kind} {};\n", names.local(&word.name)));
+            let _ = writeln!(text, "{INDENT}{kind} {};", names.local(&word.name));
         }
-        text.push_str(&format!("}} {};\n\n", names.state()));
+        let _ = write!(text, "}} {};\n\n", names.state());
         let doc = "A drive; all of it is the functions' own. Which of them may be called from where says hexagen.h.";
         text.push_str(&names.comment("", &[doc]));
         text.push_str("typedef struct {\n");
@@ -103,24 +111,29 @@ impl Drive<'_> {
             let mut words = self.program.params.iter();
             let word = words.find(|word| word.name == name).map(meaning);
             text.push_str(&names.comment(INDENT, word.as_slice()));
-            text.push_str(&format!("{INDENT}volatile int32_t {field};\n"));
+            let _ = writeln!(text, "{INDENT}volatile int32_t {field};");
         }
         if self.has_bus() {
             let doc = "The bus voltage as `set_bus()` tells it.";
             text.push_str(&names.comment(INDENT, &[doc]));
-            text.push_str(&format!("{INDENT}hexagen_bus bus;\n"));
+            let _ = writeln!(text, "{INDENT}hexagen_bus bus;");
         }
         let state = names.state();
         for (doc, field) in [
-            ("What the control loop last said.", "volatile int32_t status"),
-            ("Where signals go over.", "hexagen_port signals"),
+            (
+                "What the control loop last said.",
+                "volatile int32_t status",
+            ),
             ("The control loop's own.", "hexagen_supervisor supervisor"),
             ("Likewise.", &format!("{state} state")),
         ] {
             text.push_str(&names.comment(INDENT, &[doc]));
-            text.push_str(&format!("{INDENT}{field};\n"));
+            let _ = writeln!(text, "{INDENT}{field};");
         }
-        text + &format!("}} {};\n\n", names.prefix)
+        let mut signals = names.comment(INDENT, &["Where signals go over."]);
+        let _ = write!(signals, "{INDENT}hexagen_port signals;");
+        text.push_str(where_defined(SIGNALS, &signals).trim_end());
+        text + &format!("\n}} {};\n\n", names.prefix)
     }
 }
 

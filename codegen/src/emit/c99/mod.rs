@@ -18,7 +18,7 @@ use drive::Drive;
 use expression::element;
 use function::emit_step;
 use layout::{INDENT, words};
-use names::{Names, number, typed_number};
+use names::{Names, number, typed_number, verbatim};
 
 /// A drive in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,12 +69,13 @@ fn head(names: &Names, interface: &Interface) -> String {
         format!("Use and accuracy: {}.h. Generated from:", names.prefix),
         String::new(),
     ];
-    lines.extend(interface.spec_toml.lines().map(|line| format!("{INDENT}{line}")));
-    format!(
-        "{}#include \"{}.h\"\n\n",
-        names.verbatim(&lines),
-        names.prefix
-    )
+    lines.extend(
+        interface
+            .spec_toml
+            .lines()
+            .map(|line| format!("{INDENT}{line}")),
+    );
+    format!("{}#include \"{}.h\"\n\n", verbatim(&lines), names.prefix)
 }
 
 fn emit_constant(constant: &Constant, names: &Names) -> String {

@@ -8,13 +8,75 @@ use crate::ir::Program;
 
 /// Words of C99, of C++, which may include a header, and of the headers that emitted code includes.
 const KEYWORDS: [&str; 69] = [
-    "and", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const", "continue",
-    "default", "delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false",
-    "float", "for", "friend", "goto", "if", "inline", "int", "int16_t", "int32_t", "int64_t", "long",
-    "mutable", "namespace", "new", "not", "operator", "or", "private", "protected", "public",
-    "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch",
-    "template", "this", "throw", "true", "try", "typedef", "typename", "uint16_t", "uint32_t",
-    "uint64_t", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor", "main",
+    "and",
+    "asm",
+    "auto",
+    "bool",
+    "break",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "const",
+    "continue",
+    "default",
+    "delete",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "false",
+    "float",
+    "for",
+    "friend",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "int16_t",
+    "int32_t",
+    "int64_t",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "not",
+    "operator",
+    "or",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "struct",
+    "switch",
+    "template",
+    "this",
+    "throw",
+    "true",
+    "try",
+    "typedef",
+    "typename",
+    "uint16_t",
+    "uint32_t",
+    "uint64_t",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "while",
+    "xor",
+    "main",
 ];
 
 /// Local names, types and functions of every emitted source.
@@ -138,7 +200,7 @@ impl Names {
         self.setters.iter().any(|setter| setter == name)
     }
 
-/// A line of documentation, with the names that it mentions as they are here.
+    /// A line of documentation, with the names that it mentions as they are here.
     fn text(&self, line: &str) -> String {
         let mut parts = line.split('`');
         let mut text = parts.next().unwrap_or_default().to_owned();
@@ -172,16 +234,16 @@ impl Names {
             }
         }
     }
+}
 
-    /// A comment of these lines as they are.
-    pub(super) fn verbatim(&self, lines: &[String]) -> String {
-        let mut text = "/*\n".to_owned();
-        for line in lines {
-            text.push_str(format!(" * {}", closed(line)).trim_end());
-            text.push('\n');
-        }
-        text + " */\n"
+/// A comment of these lines as they are.
+pub(super) fn verbatim(lines: &[String]) -> String {
+    let mut text = "/*\n".to_owned();
+    for line in lines {
+        text.push_str(format!(" * {}", closed(line)).trim_end());
+        text.push('\n');
     }
+    text + " */\n"
 }
 
 /// A text without what would end a comment, begin another one, or spell another sign.

@@ -194,19 +194,37 @@ fn written(program: &Program, expression: &Expression) -> Written {
         }
         Expression::Choice(parts) => {
             let [condition, then, otherwise] = &**parts;
-            let nests = [then, otherwise]
-                .into_iter()
-                .any(|arm| matches!(arm, Expression::Choice(_)));
+            let arms = [then, otherwise];
+            let nests = arms.iter().any(|arm| matches!(arm, Expression::Choice(_)));
             let written = choice(of(condition), of(then), of(otherwise));
             match written.embedded {
-                // Among three values: one call within the other takes a line, branches take seven.
-                Some(selected) if nests => Written::atom(selected),
+                // Among three values that are there: one call within the other takes a line, branches take seven.
+                Some(selected) if nests && arms.iter().all(|arm| is_there(arm)) => {
+                    Written::atom(selected)
+                }
                 embedded => Written {
                     embedded,
                     ..written
                 },
             }
         }
+    }
+}
+
+/// Whether nothing is left to compute but the choice itself: a branch is worth its lines where it leaves work out.
+fn is_there(expression: &Expression) -> bool {
+    match expression {
+        Expression::Signal(_)
+        | Expression::State(_)
+        | Expression::Constant(_)
+        | Expression::Number(_)
+        | Expression::Leg(_) => true,
+        Expression::Negated(a) => is_there(a),
+        Expression::Choice(parts) => {
+            let [_, then, otherwise] = &**parts;
+            is_there(then) && is_there(otherwise)
+        }
+        _ => false,
     }
 }
 

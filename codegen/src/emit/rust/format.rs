@@ -16,6 +16,12 @@ pub fn format_rust(tokens: &TokenStream) -> String {
     }
 }
 
+/// Emitted tokens for readers: as `rustfmt` lays them out where there is one, else as [`format_rust`] does.
+pub fn readable_rust(tokens: &TokenStream) -> String {
+    let text = format_rust(tokens);
+    rustfmt(&text).unwrap_or(text)
+}
+
 /// The text as `rustfmt` lays it out for readers, in lines of up to 100 columns; `None` where there is
 /// no `rustfmt`. Only white space changes.
 pub fn rustfmt(text: &str) -> Option<String> {

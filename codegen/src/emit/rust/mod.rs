@@ -17,7 +17,7 @@ mod tables;
 
 extern crate proc_macro;
 
-pub use format::{format_rust, rustfmt};
+pub use format::{format_rust, readable_rust, rustfmt};
 
 use super::rows::WholeCommand;
 use super::texts;

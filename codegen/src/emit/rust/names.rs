@@ -201,11 +201,10 @@ fn raw_text_length(code: &str) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{KEYWORDS, Source, camel, is_keyword, item_names, module_ident, number, raw_text};
+    use super::{KEYWORDS, Source, camel, is_keyword, item_names, number, raw_text};
 
     #[test]
     fn names_convert_between_cases() {
-        assert_eq!(module_ident("Loop"), "loop_");
         assert_eq!(camel("track_rotor"), "TrackRotor");
     }
 

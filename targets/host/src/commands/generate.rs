@@ -5,9 +5,9 @@ use crate::cli::{
 };
 use crate::engine::Prepared;
 use clap::Args;
-use hexagen_codegen::emit::c99::{Sources, emit_c99};
+use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
-use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use std::path::{Path, PathBuf};
 
 /// Options of `generate`.
@@ -22,7 +22,7 @@ pub struct Options {
     /// What to print
     #[arg(long, value_enum, default_value = "rust")]
     pub emit: Emit,
-    /// Write MOTOR.rs, .ir or .md, all MOTOR.*.g, or the drive's .h and .c into this folder in place of stdout
+    /// Write MOTOR.rs, .ir or .md, all MOTOR.*.g, or the drive's .h and .c with hexagen.h and hexagen.c into this folder in place of stdout
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -33,7 +33,7 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
     match emit {
         Emit::Rust => {
             let surface = Surface::public(&generated.interface.type_name);
-            format_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
+            readable_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
         }
         Emit::C99 => {
             let Sources { header, source, .. } = c99_of(drive);
@@ -82,18 +82,22 @@ fn c99_of(drive: &Prepared) -> Sources {
     )
 }
 
-/// Writes header and source to files of their own: the source includes the header by its name.
+/// Writes header and source to files of their own, and beside them what all drives share: the source includes the headers
+/// by their names.
 fn write_c99(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
     let folder = folder.ok_or_else(|| {
-        Failure::Argument("`--emit c99` writes two files: say where, `--out DIR`".to_owned())
+        Failure::Argument("`--emit c99` writes four files: say where, `--out DIR`".to_owned())
     })?;
     let Sources {
         name,
         header,
         source,
     } = c99_of(drive);
-    for (ending, text) in [("h", header), ("c", source)] {
-        let path = folder.join(format!("{name}.{ending}"));
+    let own = [("h", header), ("c", source)];
+    let own = own.map(|(ending, text)| (format!("{name}.{ending}"), text));
+    let shared = RUNTIME.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    for (name, text) in own.into_iter().chain(shared) {
+        let path = folder.join(name);
         write_file(&path, text.as_bytes())?;
         note(&path.display().to_string());
     }

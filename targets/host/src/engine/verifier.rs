@@ -45,7 +45,6 @@ impl<'p> Verifier<'p> {
         let mut setters = program.setters.iter();
         let binding = Binding {
             state_words: drive.state_names().len(),
-            has_hall_ticks: interface.timer_capture,
             has_bus: interface.bus_periods.is_some(),
             has_speed: setters.any(|setter| setter.name == "set_speed"),
         };

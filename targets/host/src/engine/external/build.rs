@@ -1,6 +1,6 @@
 //! Building emitted code with rustc, or with the C compiler of this machine.
 
-use hexagen_codegen::emit::c99::Sources;
+use hexagen_codegen::emit::c99::{RUNTIME as RUNTIME_C, Sources};
 use hexagen_lab::standalone::{MACROS, fixed};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -53,70 +53,44 @@ impl BuildError {
     }
 }
 
-/// The runtime's sources.
-const RUNTIME: [(&str, &str); 17] = [
-    ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
-    (
-        "arith.rs",
-        include_str!("../../../../../runtime/src/arith.rs"),
-    ),
-    ("bus.rs", include_str!("../../../../../runtime/src/bus.rs")),
+/// The runtime's sources, by a link to their folder, which a package holds as a folder of its own.
+const RUNTIME: [(&str, &str); 18] = [
+    ("lib.rs", include_str!("../../../runtime/lib.rs")),
+    ("arith.rs", include_str!("../../../runtime/arith.rs")),
+    ("bus.rs", include_str!("../../../runtime/bus.rs")),
     (
         "bus_watch.rs",
-        include_str!("../../../../../runtime/src/bus_watch.rs"),
+        include_str!("../../../runtime/bus_watch.rs"),
     ),
-    (
-        "command.rs",
-        include_str!("../../../../../runtime/src/command.rs"),
-    ),
+    ("command.rs", include_str!("../../../runtime/command.rs")),
     (
         "constants.rs",
-        include_str!("../../../../../runtime/src/constants.rs"),
+        include_str!("../../../runtime/constants.rs"),
     ),
-    (
-        "control.rs",
-        include_str!("../../../../../runtime/src/control.rs"),
-    ),
+    ("control.rs", include_str!("../../../runtime/control.rs")),
     (
         "double_buffer.rs",
-        include_str!("../../../../../runtime/src/double_buffer.rs"),
+        include_str!("../../../runtime/double_buffer.rs"),
     ),
+    ("drive.rs", include_str!("../../../runtime/drive.rs")),
+    ("format.rs", include_str!("../../../runtime/format.rs")),
     (
-        "drive.rs",
-        include_str!("../../../../../runtime/src/drive.rs"),
+        "no_signals.rs",
+        include_str!("../../../runtime/no_signals.rs"),
     ),
-    (
-        "format.rs",
-        include_str!("../../../../../runtime/src/format.rs"),
-    ),
-    (
-        "sample.rs",
-        include_str!("../../../../../runtime/src/sample.rs"),
-    ),
+    ("sample.rs", include_str!("../../../runtime/sample.rs")),
     (
         "set_point.rs",
-        include_str!("../../../../../runtime/src/set_point.rs"),
+        include_str!("../../../runtime/set_point.rs"),
     ),
-    (
-        "shared.rs",
-        include_str!("../../../../../runtime/src/shared.rs"),
-    ),
-    (
-        "signals.rs",
-        include_str!("../../../../../runtime/src/signals.rs"),
-    ),
-    (
-        "status.rs",
-        include_str!("../../../../../runtime/src/status.rs"),
-    ),
+    ("shared.rs", include_str!("../../../runtime/shared.rs")),
+    ("signals.rs", include_str!("../../../runtime/signals.rs")),
+    ("status.rs", include_str!("../../../runtime/status.rs")),
     (
         "supervisor.rs",
-        include_str!("../../../../../runtime/src/supervisor.rs"),
+        include_str!("../../../runtime/supervisor.rs"),
     ),
-    (
-        "word.rs",
-        include_str!("../../../../../runtime/src/word.rs"),
-    ),
+    ("word.rs", include_str!("../../../runtime/word.rs")),
 ];
 
 const DRIVER: &str = include_str!("driver.rs");
@@ -176,8 +150,6 @@ const C_FLAGS: [&str; 7] = [
 pub struct Binding {
     /// State words.
     pub state_words: usize,
-    /// Whether its step takes the ticks since the last Hall edge.
-    pub has_hall_ticks: bool,
     /// Whether it is told the bus voltage.
     pub has_bus: bool,
     /// Whether it regulates the speed.
@@ -189,20 +161,19 @@ impl Binding {
     fn text(&self, name: &str) -> String {
         let Self {
             state_words,
-            has_hall_ticks,
             has_bus,
             has_speed,
         } = *self;
-        let [ticks, bus, speed] = [has_hall_ticks, has_bus, has_speed].map(i32::from);
+        let [bus, speed] = [has_bus, has_speed].map(i32::from);
         format!(
-            "#include \"{name}.h\"\ntypedef {name}_t drive_t;\ntypedef {name}_legs_t legs_t;\n\
+            "#include \"{name}.h\"\ntypedef {name} drive_type;\n\
              #define CALL(function) {name}_##function\n#define STATE_WORDS {state_words}\n\
-             #define HAS_HALL_TICKS {ticks}\n#define HAS_BUS {bus}\n#define HAS_SPEED {speed}\n"
+             #define HAS_BUS {bus}\n#define HAS_SPEED {speed}\n"
         )
     }
 }
 
-/// Compiles an emitted header and source together with the driver, by `CC` with these flags behind the strict ones.
+/// Compiles an emitted header and source together with the runtime and the driver, by `CC` with these flags behind the strict ones.
 ///
 /// # Errors
 /// No C compiler, or what it said.
@@ -218,19 +189,20 @@ pub fn compile_c99(
     } = sources;
     let [header_file, source_file] = ["h", "c"].map(|ending| format!("{name}.{ending}"));
     let binding = binding.text(name);
-    let files = [
+    let own = [
         (header_file.as_str(), header.as_str()),
         (&source_file, source),
         ("binding.h", &binding),
         ("driver.c", DRIVER_C),
     ];
-    let folder = folder_of(&files).map_err(BuildError::no_compiler(CC))?;
+    let folder =
+        folder_of(&[&own[..], &RUNTIME_C].concat()).map_err(BuildError::no_compiler(CC))?;
     let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
     cc.current_dir(folder.path())
         .args(C_FLAGS)
         .args(flags.split_whitespace())
-        .arg(format!("-D{}_VERIFICATION", name.to_uppercase()))
-        .args([&source_file, "driver.c", "-o"])
+        .arg("-DHEXAGEN_VERIFICATION")
+        .args([&source_file, "hexagen.c", "driver.c", "-o"])
         .arg(executable());
     run(&mut cc, CC, "emitted code")?;
     Ok(External {

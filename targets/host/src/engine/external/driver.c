@@ -1,6 +1,6 @@
 /* Runs an emitted drive on calls from stdin; `link.rs` of the `hexagen` program is the other end.
  *
- * `binding.h` names the drive: `drive_t`, `legs_t`, `CALL(function)`, STATE_WORDS, and what it has. */
+ * `binding.h` names the drive: `drive_type`, `CALL(function)`, STATE_WORDS, and what it has. */
 #include "binding.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,30 +32,24 @@ static void answer(int count, uint32_t number)
     }
 }
 
-static void step(drive_t *drive)
+static void step(drive_type *drive)
 {
     const uint16_t adc_a = (uint16_t)bytes(2);
     const uint16_t adc_b = (uint16_t)bytes(2);
     const uint16_t hall = (uint16_t)bytes(1);
     const uint16_t hall_ticks = (uint16_t)bytes(2);
-#if HAS_HALL_TICKS
-    const legs_t legs = CALL(step)(drive, adc_a, adc_b, hall, hall_ticks);
-#else
-    const legs_t legs = CALL(step)(drive, adc_a, adc_b, hall);
-    (void)hall_ticks;
-#endif
+    const hexagen_sample sample =
+        hexagen_with_ticks(hexagen_with_hall(adc_a, adc_b, hall), hall_ticks);
+    const hexagen_legs legs = CALL(step)(drive, &sample);
+    const hexagen_status status = CALL(status)(drive);
     for (int leg = 0; leg < 3; leg++) {
         answer(2, legs.compare[leg]);
     }
     for (int leg = 0; leg < 3; leg++) {
         answer(1, (uint32_t)legs.state[leg]);
     }
-    answer(1, (uint32_t)CALL(fault)(drive));
-#if HAS_BUS
-    answer(1, CALL(status)(drive).bus_is_stale ? 1U : 0U);
-#else
-    answer(1, 0);
-#endif
+    answer(1, (uint32_t)status.fault);
+    answer(1, status.bus_is_stale ? 1U : 0U);
     int32_t words[STATE_WORDS];
     CALL(state_words)(drive, words);
     for (int at = 0; at < STATE_WORDS; at++) {
@@ -63,7 +57,7 @@ static void step(drive_t *drive)
     }
 }
 
-static void set_bus(drive_t *drive, uint16_t counts)
+static void set_bus(drive_type *drive, uint16_t counts)
 {
 #if HAS_BUS
     CALL(set_bus)(drive, counts);
@@ -73,7 +67,7 @@ static void set_bus(drive_t *drive, uint16_t counts)
 #endif
 }
 
-static void set_speed(drive_t *drive, int32_t speed)
+static void set_speed(drive_type *drive, int32_t speed)
 {
 #if HAS_SPEED
     CALL(set_speed)(drive, speed);
@@ -83,14 +77,16 @@ static void set_speed(drive_t *drive, int32_t speed)
 #endif
 }
 
-static void set_state_words(drive_t *drive)
+static void set_state_words(drive_type *drive)
 {
-    for (uint16_t at = 0; at < STATE_WORDS; at++) {
-        CALL(set_state_word)(drive, at, word());
+    int32_t words[STATE_WORDS];
+    for (int at = 0; at < STATE_WORDS; at++) {
+        words[at] = word();
     }
+    CALL(set_state_words)(drive, words);
 }
 
-static void serve(drive_t *drive)
+static void serve(drive_type *drive)
 {
     switch (bytes(1)) {
     case 0:
@@ -128,7 +124,7 @@ static void serve(drive_t *drive)
 
 int main(void)
 {
-    static drive_t drive;
+    static drive_type drive;
     unsigned char length[4];
     CALL(init)(&drive);
     while (fread(length, 1, sizeof length, stdin) == sizeof length) {

@@ -1,0 +1,318 @@
+//! The runtime in C against arithmetic in more bits, against every count of an ADC, and against
+//! interrupts at every place; each also with faults planted, which must show.
+
+use hexagen_c99::{ABI, FILES, HEADER, SOURCE};
+use std::path::Path;
+use std::process::{Command, Output};
+use std::{env, fs};
+
+/// What the flags of users' own projects are at their strictest.
+const STRICT: [&str; 8] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Werror",
+    "-pedantic",
+    "-O1",
+    "-DHEXAGEN_SIGNALS",
+];
+
+/// What makes compiled code stop at undefined behaviour.
+const CHECKED: [&str; 2] = ["-fsanitize=undefined", "-fno-sanitize-recover"];
+
+/// Compiles a file with a runtime, whose texts are given, into `program`.
+fn compile(folder: &Path, [header, source]: [&str; 2], test: &str) -> Output {
+    for (name, text) in [
+        ("hexagen.h", header),
+        ("hexagen.c", source),
+        ("test.c", test),
+    ] {
+        fs::write(folder.join(name), text).expect("a file");
+    }
+    let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    cc.current_dir(folder).args(STRICT).args(CHECKED).args([
+        "hexagen.c",
+        "test.c",
+        "-o",
+        "program",
+    ]);
+    cc.output().expect("a C compiler: `cc`, or what `CC` names")
+}
+
+/// What a test says with a runtime.
+fn said(runtime: [&str; 2], test: &str) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let built = compile(folder.path(), runtime, test);
+    let messages = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success(), "{messages}");
+    let run = Command::new(folder.path().join("program"))
+        .output()
+        .expect("it runs");
+    String::from_utf8_lossy(&[run.stdout, run.stderr].concat()).into_owned()
+}
+
+/// The runtime with a text of it replaced.
+fn planted(old: &str, new: &str) -> [String; 2] {
+    let [(_, header), (_, source)] = FILES;
+    assert!(header.contains(old) || source.contains(old), "`{old}`");
+    [header, source].map(|text| text.replacen(old, new, 1))
+}
+
+/// Of faults planted in the runtime those that the test does not notice, or names by another word.
+fn unnoticed<'f>(test: &str, faults: &[(&'f str, &str, &'f str)]) -> Vec<(&'f str, &'f str)> {
+    let faults = faults.iter().filter(|(name, old, new)| {
+        let [header, source] = planted(old, new);
+        let said = said([&header, &source], test);
+        said == "no difference\n" || !said.contains(name)
+    });
+    faults.map(|&(name, _, new)| (name, new)).collect()
+}
+
+#[test]
+fn the_number_of_the_interface_is_the_headers() {
+    assert!(HEADER.contains(&format!("\n#define HEXAGEN_ABI {ABI}\n")));
+    assert!(SOURCE.contains(&format!("\n#if HEXAGEN_ABI != {ABI}\n")));
+    let other = HEADER.replace("#define HEXAGEN_ABI ", "#define HEXAGEN_ABI 9");
+    let folder = tempfile::tempdir().expect("a folder");
+    let built = compile(
+        folder.path(),
+        [&other, SOURCE],
+        "int main(void) { return 0; }\n",
+    );
+    let messages = String::from_utf8_lossy(&built.stderr);
+    assert!(messages.contains("take both from one"), "{messages}");
+}
+
+#[test]
+fn primitives_compute_what_their_comments_say() {
+    const TEST: &str = include_str!("arithmetic.c");
+    assert_eq!(said([HEADER, SOURCE], TEST), "no difference\n");
+    let faults = [
+        ("abs(", "(x < 0) ? -x", "(x < -1) ? -x"),
+        ("exceeds(", "limit > UINT32_C(2)", "limit >= UINT32_C(2)"),
+        (
+            "divide(",
+            "return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;\n}\n\nint32_t hexagen_thou",
+            "return (quotient < (uint32_t)limit) ? (int32_t)(quotient & ~UINT32_C(1)) : limit;\n}\n\nint32_t hexagen_thou",
+        ),
+        (
+            "divide(",
+            "< UINT32_C(0x80000000)",
+            "< UINT32_C(0x40000000)",
+        ),
+        (
+            "divide(",
+            "(dividend >> 32) >= divisor",
+            "(dividend >> 32) > divisor",
+        ),
+        ("divide(", "        rest += top;\n", ""),
+        (
+            "divide_narrow(",
+            "/ (uint32_t)denominator",
+            "/ ((uint32_t)denominator + 1U)",
+        ),
+        (
+            "mul_round(",
+            "INT64_C(1) << (shift - 1)",
+            "(INT64_C(1) << (shift - 1)) - 1",
+        ),
+        (
+            "turn_over(",
+            "UINT32_C(0xffffffff) /",
+            "UINT32_C(0xfffffffe) /",
+        ),
+        ("thousandths(", "INT32_C(32767999)", "INT32_C(32767998)"),
+        ("thousandths(", "limited, 31)", "limited, 31) + 1"),
+        ("whole(", "INT32_C(32767))", "INT32_C(32766))"),
+    ];
+    assert_eq!(unnoticed(TEST, &faults), []);
+}
+
+#[test]
+fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
+    const TEST: &str = include_str!("samples.c");
+    assert_eq!(said([HEADER, SOURCE], TEST), "no difference\n");
+    let faults = [
+        (
+            "line",
+            "count >= limits->adc_max",
+            "count > limits->adc_max",
+        ),
+        ("line", "hall <= 6U", "hall <= 7U"),
+        (
+            "line",
+            "exceeds(i_c, limits->trip)",
+            "exceeds(-i_c, INT32_MAX)",
+        ),
+        ("passes ==", "&& hexagen_is_hall_code(sample->hall)", ""),
+        (
+            "line",
+            "supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is",
+            "!hexagen_is",
+        ),
+        (
+            "checked.i_a ==",
+            "limits->adc_inverted ? zero - word",
+            "limits->adc_inverted ? word - zero",
+        ),
+        (
+            "checked.i_b ==",
+            "count_b = (sample->adc[1] < most) ? sample->adc[1] : most",
+            "count_b = sample->adc[1]",
+        ),
+        (
+            "supervisor.fault ==",
+            "if (supervisor->mode != HEXAGEN_MODE_TRIPPED)",
+            "if (true)",
+        ),
+        ("leg ==", "&& fault == HEXAGEN_FAULT_NONE)", ")"),
+    ];
+    assert_eq!(unnoticed(TEST, &faults), []);
+}
+
+/// Arguments of `HEXAGEN_LIMITS` that hold, and one of them in place of another that does not.
+#[test]
+fn limits_that_contradict_each_other_do_not_compile() {
+    let sound = [
+        "4095",
+        "false",
+        "18",
+        "2048",
+        "1946",
+        "2150",
+        "509607936",
+        "-563609600",
+        "563347456",
+        "8",
+        "20",
+        "0",
+    ];
+    let compiles = |arguments: [&str; 12]| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let arguments = arguments.join(", ");
+        let test = format!(
+            "#include \"hexagen.h\"\nHEXAGEN_LIMITS(limits, {arguments});\n\
+             int main(void) {{ return limits.adc_max == 0U; }}\n"
+        );
+        compile(folder.path(), [HEADER, SOURCE], &test)
+            .status
+            .success()
+    };
+    assert!(compiles(sound));
+    let inverted = [(1, "true"), (7, "-563347456"), (8, "563609600")];
+    let inverted = inverted.into_iter().fold(sound, |mut all, (place, value)| {
+        all[place] = value;
+        all
+    });
+    assert!(compiles(inverted));
+    for (place, value) in [
+        (0, "4094"),
+        (1, "true"),
+        (2, "17"),
+        (2, "31"),
+        (3, "1945"),
+        (3, "2151"),
+        (4, "1947"),
+        (5, "4096"),
+        (6, "0"),
+        (7, "-563609601"),
+        (8, "563347455"),
+        (9, "16"),
+        (11, "-1"),
+        (11, "2147483647"),
+    ] {
+        let mut wrong = sound;
+        wrong[place] = value;
+        assert!(!compiles(wrong), "{place}: {value}");
+    }
+    // Twice the greatest current does not fit 32 bits; the longest sum of a calibration does.
+    let wide = [
+        "65535",
+        "false",
+        "15",
+        "1",
+        "1",
+        "1",
+        "9",
+        "-32768",
+        "2147385344",
+        "8",
+        "20",
+        "0",
+    ];
+    assert!(!compiles(wide));
+    let sums = [
+        "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0",
+    ];
+    assert!(compiles(sums));
+}
+
+/// What stands before each access.
+const HOOK: &str = "    hook();\n";
+
+/// The text with a hook before each line of these functions that reads or writes what contexts
+/// share, and their number.
+fn hooked(text: &str, functions: &[&str], begin: &str) -> (String, usize) {
+    let (mut hooked, mut hooks, mut is_inside) = (String::new(), 0, false);
+    for line in text.lines() {
+        let names = |name: &str| line.contains(&format!(" {name}("));
+        is_inside |= !line.starts_with(' ')
+            && !line.ends_with(';')
+            && functions.iter().any(|name| names(name));
+        is_inside &= line != "}";
+        let is_access = line.starts_with(' ')
+            && (line.contains("bus->") || line.contains("port->"))
+            && !line.trim_start().starts_with('}');
+        if is_inside && is_access {
+            hooked.push_str(HOOK);
+            hooks += 1;
+        }
+        hooked.push_str(line);
+        hooked.push('\n');
+        if line == begin {
+            hooked.push_str("void hook(void);\n");
+        }
+    }
+    (hooked, hooks)
+}
+
+#[test]
+fn what_contexts_share_is_whole_wherever_they_interrupt_each_other() {
+    const TEST: &str = include_str!("contexts.c");
+    let functions = ["hexagen_pass_period", "hexagen_tell_bus", "hexagen_take"];
+    let check = |[header, source]: [&str; 2]| {
+        let (header, of_header) = hooked(header, &functions, "#include <stdint.h>");
+        let (source, of_source) = hooked(source, &functions, "");
+        assert!(
+            of_header >= 6 && of_source >= 16,
+            "{of_header}, {of_source} hooks"
+        );
+        said([&header, &source], TEST)
+    };
+    let sound = check([HEADER, SOURCE]);
+    assert!(sound.ends_with(" 0 failures\n"), "{sound}");
+    for (old, new) in [
+        ("    bus->published = spare;\n", ""),
+        (
+            "spare = (bus->published == 0) ? 1 : 0",
+            "spare = (bus->published == 0) ? 0 : 1",
+        ),
+        ("    bus->told = 1;\n", ""),
+        ("        bus->told = 0;\n", ""),
+        ("bus->storing = storing - 1", "bus->storing = storing"),
+        ("if (turn == 0)", "if (turn != 3)"),
+        (
+            "    port->turn = 0;\n    return true;",
+            "    port->turn = 1;\n    return true;",
+        ),
+        (
+            "    of_phases(signals->currents",
+            "    port->turn = 1;\n    of_phases(signals->currents",
+        ),
+    ] {
+        let [header, source] = planted(old, new);
+        let said = check([&header, &source]);
+        assert!(!said.ends_with(" 0 failures\n"), "`{new}`: {said}");
+    }
+}

@@ -1,0 +1,131 @@
+/* Walks every count of an ADC through the supervisor, at both ends of the offset, beside another in
+ * 64 bits: what it lets pass, what trips and why, and that no current leaves its range. */
+#include "hexagen.h"
+
+#include <stdio.h>
+
+HEXAGEN_LIMITS(rising, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0);
+HEXAGEN_LIMITS(falling, 4095, true, 18, 2048, 1946, 2150, INT32_C(400000001),
+    (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5);
+HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0);
+HEXAGEN_LIMITS(wide, 65535, false, 14, 32768, 32000, 33000, INT32_C(500000000),
+    -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7);
+HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
+    INT32_C(4095) * 8, 8, 1, 0);
+
+static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &loose };
+
+static unsigned long passed;
+static unsigned long tripped[6];
+
+static int64_t size(int64_t x)
+{
+    return (x < 0) ? -x : x;
+}
+
+static int64_t current(const hexagen_limits *limits, int64_t count, int64_t offset)
+{
+    const int64_t word = (count - offset) * (INT64_C(1) << limits->current_bits);
+    return limits->adc_inverted ? -word : word;
+}
+
+static hexagen_fault fault_of(
+    const hexagen_limits *limits, const hexagen_sample *sample, int64_t i_a, int64_t i_b)
+{
+    const uint16_t a = sample->adc[0], b = sample->adc[1];
+    const int64_t trip = limits->trip;
+    if (a == 0 || b == 0 || a >= limits->adc_max || b >= limits->adc_max) {
+        return HEXAGEN_FAULT_ADC_RANGE;
+    }
+    if (sample->hall == 0 || sample->hall > 6) {
+        return HEXAGEN_FAULT_HALL;
+    }
+    if (size(i_a) > trip || size(i_b) > trip || size(i_a + i_b) > trip) {
+        return HEXAGEN_FAULT_OVER_CURRENT;
+    }
+    return HEXAGEN_FAULT_NONE;
+}
+
+#define EXPECT(what)                                                                         \
+    do {                                                                                     \
+        if (!(what)) {                                                                       \
+            printf("line %d: %s: counts %u, %u, code %u, offsets %u, %u\n", __LINE__, #what, \
+                (unsigned)sample.adc[0], (unsigned)sample.adc[1], (unsigned)sample.hall,     \
+                (unsigned)offset_a, (unsigned)offset_b);                                     \
+            return 1;                                                                        \
+        }                                                                                    \
+    } while (0)
+
+static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t offset_a,
+    uint16_t offset_b, hexagen_mode mode)
+{
+    const volatile int32_t set_point = 1;
+    const uint16_t most = limits->adc_max;
+    const int64_t i_a = current(limits, sample.adc[0], offset_a);
+    const int64_t i_b = current(limits, sample.adc[1], offset_b);
+    const hexagen_fault fault = fault_of(limits, &sample, i_a, i_b);
+    hexagen_supervisor supervisor;
+    hexagen_checked checked;
+    bool passes;
+    hexagen_start(&supervisor, limits);
+    supervisor.mode = mode;
+    supervisor.countdown = 2;
+    supervisor.offset_a = (int32_t)(offset_a * (INT64_C(1) << limits->current_bits));
+    supervisor.offset_b = (int32_t)(offset_b * (INT64_C(1) << limits->current_bits));
+    passes = hexagen_check(&supervisor, limits, &sample, &set_point, &checked);
+    EXPECT(passes == (mode == HEXAGEN_MODE_RUN && fault == HEXAGEN_FAULT_NONE));
+    if (passes) {
+        passed += 1;
+        EXPECT(checked.i_a == i_a && checked.i_b == i_b && checked.hall == sample.hall);
+    } else {
+        const uint16_t a = (sample.adc[0] < most) ? sample.adc[0] : most;
+        const uint16_t b = (sample.adc[1] < most) ? sample.adc[1] : most;
+        const hexagen_leg leg = hexagen_rest(&supervisor, limits, &sample, &checked);
+        const bool charges = mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE;
+        EXPECT(checked.i_a == current(limits, a, offset_a));
+        EXPECT(checked.i_b == current(limits, b, offset_b));
+        EXPECT(checked.hall == ((sample.hall >= 1 && sample.hall <= 6) ? sample.hall : 0));
+        EXPECT(leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
+        EXPECT(supervisor.fault == ((mode == HEXAGEN_MODE_TRIPPED) ? HEXAGEN_FAULT_NONE : fault));
+        EXPECT((supervisor.mode == HEXAGEN_MODE_TRIPPED)
+            == (mode == HEXAGEN_MODE_TRIPPED || fault != HEXAGEN_FAULT_NONE));
+        tripped[fault] += 1;
+    }
+    EXPECT(limits->current_least <= checked.i_a && checked.i_a <= limits->current_most);
+    EXPECT(limits->current_least <= checked.i_b && checked.i_b <= limits->current_most);
+    return 0;
+}
+
+int main(void)
+{
+    for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {
+        const hexagen_limits *const limits = all[set];
+        const uint16_t ends[2] = { limits->offset_least, limits->offset_most };
+        const uint16_t others[] = { 0, 1, limits->offset, (uint16_t)(limits->adc_max - 1U),
+            limits->adc_max, 65535 };
+        for (uint32_t count = 0; count <= 65535; count++) {
+            for (unsigned choice = 0; choice < 6 * 4; choice++) {
+                const uint16_t hall = (uint16_t)((count + choice) % 9U);
+                const uint16_t offset_a = ends[choice & 1U], offset_b = ends[(choice >> 1) & 1U];
+                const hexagen_mode mode =
+                    (count % 7U == 0U) ? (hexagen_mode)(count % 4U) : HEXAGEN_MODE_RUN;
+                const uint16_t other = others[choice >> 2];
+                const hexagen_sample sample = hexagen_with_hall((uint16_t)count, other, hall);
+                const hexagen_sample turned = hexagen_with_hall(other, (uint16_t)count, hall);
+                if (try(limits, sample, offset_a, offset_b, mode) != 0
+                    || try(limits, turned, offset_a, offset_b, mode) != 0) {
+                    return 1;
+                }
+            }
+        }
+    }
+    for (unsigned fault = 0; fault < HEXAGEN_FAULT_STALL; fault++) {
+        if (passed < 100000 || tripped[fault] < 10000) {
+            printf("%lu passed, %lu with fault %u\n", passed, tripped[fault], fault);
+            return 1;
+        }
+    }
+    printf("no difference\n");
+    return 0;
+}

@@ -1,0 +1,7 @@
+use hexagen::Drive;
+
+struct Hub;
+
+fn main() {
+    let drive = Drive::<Hub>::new();
+}

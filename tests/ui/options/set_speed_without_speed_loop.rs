@@ -1,0 +1,20 @@
+use hexagen::{Drive, controller};
+
+controller! {
+    pub Hub {
+        motor: "motors/hub.toml",
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+        },
+        controller: pdcc,
+    }
+}
+
+fn main() {
+    let drive = Drive::<Hub>::new();
+    drive.set_speed_rpm(1000);
+}
