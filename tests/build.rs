@@ -28,6 +28,7 @@ fn main() {
     let motors = library::motors();
     write_covering_arrays(&out_dir, &motors);
     write_mutants(&out_dir);
+    write_supervisors(&out_dir);
 }
 
 /// The text of emitted modules with one fault each.
@@ -53,6 +54,37 @@ fn write_mutants(out_dir: &Path) {
          pub const MUTANTS: &[(usize, &str, IsNoticed)] = &[\n{list}];\n"
     );
     fs::write(out_dir.join("mutants.rs"), text + &tail).expect("OUT_DIR can be written");
+}
+
+/// The runtime's supervisor with one fault each, on the runtime's own words, samples and faults.
+fn write_supervisors(out_dir: &Path) {
+    let source = |name: &str| {
+        let path = Path::new("../runtime/src").join(name);
+        println!("cargo:rerun-if-changed={}", path.display());
+        let text = fs::read_to_string(path).expect("a source of the runtime");
+        let text = text.replace("#[cfg(test)]\nmod tests;\n", "");
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        code.replace("crate::", "super::")
+    };
+    let (sample, status) = (source("sample.rs"), source("status.rs"));
+    let sound = source("supervisor.rs");
+    let mut text = format!("mod sample {{\n{sample}\n}}\nmod status {{\n{status}\n}}\n");
+    let mut list = String::new();
+    let sound = mutation::Mutant {
+        what: "nothing".to_owned(),
+        text: sound.clone(),
+    };
+    let planted = mutation::mutants_of_supervisor(&sound.text);
+    for (number, mutant) in [sound].into_iter().chain(planted).enumerate() {
+        let (what, module) = (mutant.what, mutant.text);
+        writeln!(text, "mod supervisor_{number} {{\n{module}\n}}").expect("a string takes all");
+        writeln!(list, "    ({what:?}, new!(supervisor_{number})),").expect("a string takes all");
+    }
+    let tail = format!(
+        "/// What is wrong, and a supervisor of given limits. First the one without a fault.\n\
+         pub const SUPERVISORS: &[(&str, New)] = &[\n{list}];\n"
+    );
+    fs::write(out_dir.join("supervisors.rs"), text + &tail).expect("OUT_DIR can be written");
 }
 
 /// A drive's emitted module.

@@ -12,7 +12,9 @@ pub use equivalent::EQUIVALENT;
 pub use limits::wrong_limits;
 pub use unnoticed::{Faults, RARE, Unnoticed, listed};
 
-use hexagen_codegen::ir::{Comparison, Function, Interval, Op, Program, Value, derived_interval};
+use hexagen_codegen::ir::{
+    Comparison, Function, Interval, Op, Program, Stage, Value, derived_interval,
+};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
@@ -76,6 +78,7 @@ pub fn faults(program: &Program) -> impl Iterator<Item = Fault> + '_ {
     let changes = constants(program)
         .chain(tables(program))
         .chain(words(program))
+        .chain(tracking(program))
         .chain(nodes(program));
     let mut known: HashMap<(String, String), u32> = HashMap::new();
     changes.map(move |(place, mut what, change)| {
@@ -106,6 +109,8 @@ enum Change {
     Forget(usize, Value),
     /// Function (0 the step, then the setters), node, operator.
     Op(usize, usize, Op),
+    /// So many nodes are tracking.
+    Tracking(usize),
 }
 
 impl Change {
@@ -116,6 +121,7 @@ impl Change {
             Self::Initial(word, value) => program.states[word].initial = value,
             Self::Forget(index, old) => program.step.next_state[index].1 = old,
             Self::Op(function, node, op) => function_mut(program, function).nodes[node].op = op,
+            Self::Tracking(nodes) => program.step.tracking = nodes,
         }
     }
 }
@@ -137,6 +143,26 @@ fn wrong_words(raw: i32) -> Vec<(String, i32)> {
         }
     }
     wrong
+}
+
+/// The last state words that are tracked at rest are forgotten.
+fn tracking(program: &Program) -> impl Iterator<Item = Found> + '_ {
+    let Function {
+        stages,
+        next_state,
+        tracking,
+        ..
+    } = &program.step;
+    let is_kept = |stage: &&Stage| {
+        let tracked = stage.first..*tracking;
+        let mut words = next_state.iter();
+        words.any(|(_, value)| tracked.contains(&value.index()))
+    };
+    let last = stages.iter().rev().find(is_kept);
+    last.into_iter().map(|stage| {
+        let change = Change::Tracking(stage.first);
+        (stage.name.clone(), "not tracked".to_owned(), change)
+    })
 }
 
 fn constants(program: &Program) -> impl Iterator<Item = Found> + '_ {
