@@ -1,9 +1,10 @@
-//! Optimised emitted code has no panic path, whatever else the compiler checks: the machine code of the
-//! step and of the setters calls nothing of `core::panicking`.
+//! Optimised drives have no panic path, whatever else the compiler checks: the machine code of step,
+//! setters and signals calls nothing of `core::panicking`.
 
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_lab::standalone::{MACROS, derived, fixed};
 use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 use std::fmt::Write;
 use std::fs;
@@ -30,7 +31,7 @@ const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"10
 /// The emitted modules of all drives, and functions that call what firmware calls.
 fn firmware() -> String {
     let toml = with_inertia(&motor(PAPER_MOTOR).text);
-    let mut text = "#![no_std]\nuse hexagen::{Legs, Status, fixed::types::I16F16};\n".to_owned();
+    let mut text = "#![no_std]\nuse hexagen::{ControlLoop, Legs, Sample, SetPoint, Signals, Status, fixed::types::I16F16};\n".to_owned();
     for (number, controller) in CONTROLLERS.iter().enumerate() {
         let name = format!("Drive{number}");
         let mut toml = toml.replace("[inverter]\n", &format!("[inverter]\n{BUS}"));
@@ -44,7 +45,6 @@ fn firmware() -> String {
         let generated = generate(&spec, &origins).expect("a controller");
         let surface = Surface::public(&name);
         let tokens = emit_rust(&generated.graph, &generated.interface, &surface);
-        let module = format!("drive_{number}");
         let set_speed = if *controller == REGULATED {
             "main.set_speed(set);"
         } else {
@@ -53,40 +53,19 @@ fn firmware() -> String {
         write!(
             text,
             "{}
-            #[unsafe(no_mangle)] pub fn step_{number}(drive: &mut {module}::ControlLoop<'_>, a: u16, b: u16, hall: u8) -> Legs {{ drive.step(a, b, hall) }}
-            #[unsafe(no_mangle)] pub fn restart_{number}(drive: &mut {module}::ControlLoop<'_>) {{ drive.reset(); drive.calibrate(); drive.precharge(); }}
-            #[unsafe(no_mangle)] pub fn set_{number}(main: &{module}::SetPoint, set: I16F16, bus: u16) -> Status {{
-                main.set_current(set); main.set_torque(set); main.set_bus(bus); {set_speed} main.status()
-            }}\n",
-            format_rust(&tokens)
+            #[unsafe(no_mangle)] pub fn step_{number}(drive: &mut ControlLoop<'_, {name}>, a: u16, b: u16, hall: u8) -> Legs {{
+                drive.step(&Sample::with_hall([a, b], hall))
+            }}
+            #[unsafe(no_mangle)] pub fn restart_{number}(drive: &mut ControlLoop<'_, {name}>) {{ drive.reset(); drive.calibrate(); drive.precharge(); }}
+            #[unsafe(no_mangle)] pub fn set_{number}(main: &SetPoint<{name}>, set: I16F16, bus: u16) -> Status {{
+                main.set_current(set); main.set_torque(set); main.set_current_ma(bus.into()); main.set_bus(bus); {set_speed} main.status()
+            }}
+            #[unsafe(no_mangle)] pub fn signals_{number}(main: &SetPoint<{name}>) -> Option<Signals> {{ main.signals() }}\n",
+            format_rust(&derived(tokens))
         )
         .expect("a string takes all");
     }
     text
-}
-
-/// The `fixed` types that emitted code names, as far as it uses them.
-fn fixed() -> String {
-    let mut text = "#![no_std]
-        pub struct FixedI32<Frac>(i32, core::marker::PhantomData<Frac>);
-        impl<Frac> Clone for FixedI32<Frac> { fn clone(&self) -> Self { *self } }
-        impl<Frac> Copy for FixedI32<Frac> {}
-        impl<Frac> FixedI32<Frac> {
-            #[inline(always)] pub const fn from_bits(bits: i32) -> Self { Self(bits, core::marker::PhantomData) }
-            #[inline(always)] pub const fn to_bits(self) -> i32 { self.0 }
-        }
-        pub mod types {\n"
-        .to_owned();
-    for frac_bits in 0..32 {
-        let integer_bits = 32 - frac_bits;
-        writeln!(
-            text,
-            "pub struct U{frac_bits};
-            pub type I{integer_bits}F{frac_bits} = crate::FixedI32<U{frac_bits}>;"
-        )
-        .expect("a string takes all");
-    }
-    text + "}\n"
 }
 
 /// Compiles one crate with all of the compiler's checks.
@@ -125,8 +104,6 @@ fn panic_paths(level: &str) -> Vec<String> {
         let path = entry.expect("a source").path();
         if path.extension().is_some_and(|ending| ending == "rs") {
             let text = fs::read_to_string(&path).expect("a source");
-            // The macros run in the compiler; nothing of them is in firmware.
-            let text = text.replace("pub use hexagen_macros::{controller, verify};", "");
             // What firmware runs, not what this machine would.
             let text = text
                 .replace("cfg!(not(target_pointer_width = \"64\"))", "true")
@@ -138,9 +115,19 @@ fn panic_paths(level: &str) -> Vec<String> {
     }
     assert_eq!(forms, 2, "forms for some cores");
     fs::write(folder.join("fixed.rs"), fixed()).expect("a source");
+    fs::write(folder.join("hexagen_macros.rs"), MACROS).expect("a source");
     fs::write(folder.join("firmware.rs"), firmware()).expect("a source");
     rustc(&folder, level, "fixed", "fixed.rs", &[], "link");
-    rustc(&folder, level, "hexagen", "lib.rs", &["fixed"], "link");
+    let macros = "hexagen_macros";
+    rustc(&folder, level, macros, "hexagen_macros.rs", &[], "link");
+    rustc(
+        &folder,
+        level,
+        "hexagen",
+        "lib.rs",
+        &["fixed", macros],
+        "link",
+    );
     rustc(
         &folder,
         level,
@@ -150,7 +137,9 @@ fn panic_paths(level: &str) -> Vec<String> {
         "asm",
     );
     let code = fs::read_to_string(folder.join("firmware.s")).expect("machine code");
-    assert!(code.contains("step_6:") && code.contains("set_6:"));
+    for function in ["step_6:", "set_6:", "signals_6:"] {
+        assert!(code.contains(function), "{function}");
+    }
     let mut function = "";
     let mut paths = vec![];
     for line in code.lines() {

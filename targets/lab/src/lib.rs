@@ -1,11 +1,12 @@
-//! A generated drive that runs without being compiled: the generator's program in its interpreter,
-//! under the runtime's own supervisor.
+//! Ways to run a generated drive: its program in the interpreter, under the runtime's own
+//! supervisor, and its emitted code without Cargo ([`standalone`]).
 //!
-//! The generator's tables of formats and limits come over in the runtime's types here, too: nothing
-//! else knows both.
+//! The generator's tables of formats and limits come over in the runtime's types here: nothing else
+//! knows both.
 
 mod inputs;
 mod interpreted;
+pub mod standalone;
 mod tables;
 
 pub use inputs::Inputs;

@@ -4,10 +4,12 @@
 
 mod drives;
 mod equivalent;
+mod limits;
 mod unnoticed;
 
 pub use drives::DRIVES;
 pub use equivalent::EQUIVALENT;
+pub use limits::wrong_limits;
 pub use unnoticed::{Faults, RARE, Unnoticed, listed};
 
 use hexagen_codegen::ir::{Comparison, Function, Interval, Op, Program, Value, derived_interval};

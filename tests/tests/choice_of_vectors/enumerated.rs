@@ -78,9 +78,6 @@ impl Situation {
     /// The vector that shares the period with `vector`, and the terminals of the legs: their share of the bus.
     pub fn shared(&self, vector: usize, path: &mut Path) -> Result<[Linear; 3], Contradiction> {
         let mut terminals = [(); 3].map(|()| Linear::default());
-        if self.sector == 0 {
-            return Ok(terminals);
-        }
         if vector < 7 {
             let mut others = (0..7).filter(|&other| other != vector);
             let mut partner = others.next().unwrap_or(0);
@@ -162,7 +159,6 @@ impl Situation {
 
     fn numbered(&self) -> Vec<usize> {
         match (self.sector, self.candidates) {
-            (0, _) => vec![0],
             (_, Candidates::ThreePhase) => (0..7).collect(),
             (_, Candidates::All) => (0..13).collect(),
             (_, Candidates::Table2) if self.commutating => (0..7).collect(),

@@ -1,11 +1,10 @@
 //! The bit-for-bit test of one drive, with the best there is to run its fixed-point program.
 
-use super::external::{
-    Binding, BuildError, External, Terms, compile, compile_c99, derived, verify,
-};
+use super::external::{Binding, BuildError, External, Terms, compile, compile_c99, verify};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
 use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_lab::standalone::derived;
 use hexagen_reference::verify::{Report, verify_subject};
 
 /// A drive and what runs it.

@@ -1,7 +1,7 @@
 //! Building emitted code with rustc, or with the C compiler of this machine.
 
 use hexagen_codegen::emit::c99::{RUNTIME as RUNTIME_C, Sources};
-use std::fmt::Write as _;
+use hexagen_lab::standalone::{MACROS, fixed};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -95,43 +95,6 @@ const RUNTIME: [(&str, &str); 18] = [
 
 const DRIVER: &str = include_str!("driver.rs");
 const DRIVER_C: &str = include_str!("driver.c");
-
-/// The macros that the runtime re-exports; emitted code whose derives are written out calls none.
-const MACROS: &str = "#![allow(non_snake_case)]\n\
-    #[macro_export] macro_rules! controller { () => {} }\n\
-    #[macro_export] macro_rules! verify { () => {} }\n\
-    #[macro_export] macro_rules! State { () => {} }\n";
-
-/// The `fixed` crate's signed 32-bit types, with what the runtime uses of them.
-fn fixed_types() -> String {
-    let mut text = String::from(
-        "#![no_std]\n\
-         pub struct FixedI32<Frac>(i32, core::marker::PhantomData<Frac>);\n\
-         impl<Frac> Clone for FixedI32<Frac> { fn clone(&self) -> Self { *self } }\n\
-         impl<Frac> Copy for FixedI32<Frac> {}\n\
-         impl<Frac> PartialEq for FixedI32<Frac> { fn eq(&self, other: &Self) -> bool { self.0 == other.0 } }\n\
-         impl<Frac> Eq for FixedI32<Frac> {}\n\
-         impl<Frac> core::fmt::Debug for FixedI32<Frac> {\n\
-         fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result { self.0.fmt(f) }\n}\n\
-         impl FixedI32<types::U16> {\n\
-         pub fn saturating_from_num(number: i32) -> Self {\n\
-         Self::from_bits(number.saturating_mul(1 << 16))\n}\n}\n\
-         impl<Frac> FixedI32<Frac> {\n\
-         pub const fn from_bits(bits: i32) -> Self { Self(bits, core::marker::PhantomData) }\n\
-         pub const fn to_bits(self) -> i32 { self.0 }\n}\n\
-         pub mod types {\n",
-    );
-    for frac_bits in 0..=32 {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "pub struct U{frac_bits};\npub type I{}F{frac_bits} = crate::FixedI32<U{frac_bits}>;",
-            32 - frac_bits
-        );
-    }
-    text.push_str("}\n");
-    text
-}
 
 impl External {
     /// The executable.
@@ -263,7 +226,7 @@ fn runtime() -> Result<Arc<TempDir>, BuildError> {
 }
 
 fn build_runtime() -> Result<TempDir, BuildError> {
-    let fixed = fixed_types();
+    let fixed = fixed();
     let own = [("fixed.rs", fixed.as_str()), ("hexagen_macros.rs", MACROS)];
     let folder = folder_of(&[&own[..], &RUNTIME].concat());
     let folder = folder.map_err(BuildError::no_compiler(RUSTC))?;

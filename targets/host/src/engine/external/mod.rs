@@ -5,11 +5,9 @@
 //! just these takes its place, which changes no arithmetic.
 
 mod build;
-mod derive;
 mod link;
 
 pub use build::{Binding, BuildError, External, compile, compile_c99};
-pub use derive::derived;
 
 use hexagen::{Fault, Format, LegState, Legs, Sample};
 use hexagen_reference::BitTrue;

@@ -1,0 +1,63 @@
+//! Wrong limits of a supervisor, whose code every drive shares.
+
+use hexagen_codegen::interface::Limits;
+
+/// A fault: what is wrong, and how.
+type Fault = (&'static str, fn(&mut Limits));
+
+const FAULTS: [Fault; 19] = [
+    ("a count more", |limits| limits.adc_max += 1),
+    ("a count less", |limits| limits.adc_max -= 1),
+    ("the other way round", |limits| {
+        limits.adc_inverted = !limits.adc_inverted;
+    }),
+    ("a fraction bit less", |limits| limits.current_bits -= 1),
+    ("offset one more", |limits| limits.offset += 1),
+    ("offset one less", |limits| limits.offset -= 1),
+    ("least offset one more", |limits| limits.offsets[0] += 1),
+    ("least offset one less", |limits| limits.offsets[0] -= 1),
+    ("greatest offset one more", |limits| limits.offsets[1] += 1),
+    ("greatest offset one less", |limits| limits.offsets[1] -= 1),
+    ("trip level one more", |limits| limits.trip += 1),
+    ("trip level one less", |limits| limits.trip -= 1),
+    ("trip level a count more", |limits| {
+        limits.trip += 1 << limits.current_bits;
+    }),
+    ("twice the calibration", |limits| {
+        limits.calibration_log2 += 1
+    }),
+    ("half the calibration", |limits| {
+        limits.calibration_log2 = limits.calibration_log2.wrapping_sub(1);
+    }),
+    ("a period of pre-charge more", |limits| {
+        limits.precharge_periods += 1;
+    }),
+    ("a period of pre-charge less", |limits| {
+        limits.precharge_periods = limits.precharge_periods.saturating_sub(1);
+    }),
+    ("stall a period later", |limits| {
+        limits.stall_periods += i32::from(limits.stall_periods > 0);
+    }),
+    ("stall a period earlier", |limits| {
+        limits.stall_periods = (limits.stall_periods - 1).max(0);
+    }),
+];
+
+/// All of them that these limits can have. The currents follow, so that nothing contradicts itself.
+pub fn wrong_limits(sound: &Limits) -> Vec<(&'static str, Limits)> {
+    let planted = FAULTS.map(|(what, change)| {
+        let mut limits = *sound;
+        change(&mut limits);
+        let one = 1 << limits.current_bits;
+        let [least, most] = limits.offsets.map(i32::from);
+        let top = i32::from(limits.adc_max);
+        limits.currents = if limits.adc_inverted {
+            [(least - top) * one, most * one]
+        } else {
+            [-most * one, (top - least) * one]
+        };
+        (what, limits)
+    });
+    let differs = |(_, limits): &(_, Limits)| limits != sound;
+    planted.into_iter().filter(differs).collect()
+}
