@@ -230,6 +230,26 @@ fn readme_shows_emitted_code() {
     }
 }
 
+/// The default drive is short enough to read: its lines without those of tables.
+#[test]
+fn the_default_drive_is_read_in_one_sitting() {
+    let paper = motor(PAPER_MOTOR);
+    let generated = generate_variant(&paper.text, &paper.name, "pdcc").expect("it generates");
+    let surface = Surface::public("Hub");
+    let text = readable_rust(&emit_rust(&generated.graph, &generated.interface, &surface));
+    let mut lines = 0;
+    let mut is_table = false;
+    for line in text.lines() {
+        assert!(line.chars().count() <= 100, "{line}");
+        is_table |= line.trim_start().starts_with("static ")
+            || line.contains(": [[")
+            || line.trim_start().starts_with("struct ");
+        lines += usize::from(!is_table);
+        is_table &= !["];", "]);", "}"].contains(&line.trim());
+    }
+    assert!(lines > 400 && lines <= 550, "{lines}");
+}
+
 #[test]
 fn rustfmt_leaves_formatted_code_alone() {
     for (name, tokens) in all_code().into_iter().map(|mut code| code.remove(0)) {
