@@ -146,7 +146,13 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
                 header: vec![],
                 ..interface
             };
-            emit_rust(&graph, &interface, surface)
+            let given = &surface.type_attributes;
+            let surface = Surface {
+                // The name may be what is wrong.
+                type_attributes: quote!(#given #[allow(non_camel_case_types)]),
+                ..surface.clone()
+            };
+            emit_rust(&graph, &interface, &surface)
         }
         // Cannot happen; the errors themselves are reported in any case.
         Err(_) => TokenStream::new(),

@@ -387,7 +387,8 @@ typedef struct {
  * range, an invalid Hall code, and where told to, a rotor that stands. It cannot see, and nothing
  * else here does:
  *
- * - a current ADC or amplifier that is stuck or wrong within its range;
+ * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
+ *   mid-scale can let the true current rise to several times the trip level;
  * - the current of phase c, which has no sensor: it is taken as -(a + b);
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;

@@ -1,7 +1,7 @@
 //! The integer primitives of emitted code, besides the operators of [`Word`].
 //!
-//! Each is exact, contains no loop and no float, no panic path from `opt-level = 1` on, and divides only
-//! where its name says so. Coefficients, shifts and segments are constants in emitted code; with those none
+//! Each is exact where its arguments are as it says; for no argument does it panic. None has a loop or
+//! a float, nor a panic path from `opt-level = 1` on, and only those divide whose names say so. Coefficients, shifts and segments are constants in emitted code; with those none
 //! asks for a branch, but [`divide`] on cores of 32 bits. The generator proves that every result fits its
 //! word; the `_narrow` forms are chosen where the product (or dividend) itself fits 32 bits, which saves a
 //! 64-bit product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
@@ -20,7 +20,8 @@ pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
         return mul_round_without_carry(coefficient, signal, shift);
     }
     let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
-    Word((product.wrapping_add(1 << (shift - 1)) >> shift) as i32)
+    let half = 1_i64.wrapping_shl(shift.wrapping_sub(1));
+    Word(product.wrapping_add(half).wrapping_shr(shift) as i32)
 }
 
 /// [`mul_round`] for cores without a carry flag, where a sum of 64 bits takes long; `coefficient` is a constant there.
@@ -34,21 +35,23 @@ pub fn mul_round_without_carry(coefficient: Word, signal: Word, shift: u32) -> W
         return (Word((twice >> 32) as i32) + 1) >> 1;
     }
     let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
-    Word((product >> shift) as i32) + (product >> (shift - 1) & 1) as i32
+    let below = product.wrapping_shr(shift.wrapping_sub(1));
+    Word(product.wrapping_shr(shift) as i32) + (below & 1) as i32
 }
 
 /// As [`mul_round`], for products that fit 32 bits together with their rounding. `shift` is 1 to 30.
 #[inline(always)]
 #[must_use]
 pub fn mul_round_narrow(coefficient: Word, signal: Word, shift: u32) -> Word {
-    (coefficient * signal + (1 << (shift - 1))) >> shift
+    (coefficient * signal + 1_i32.wrapping_shl(shift.wrapping_sub(1))) >> shift
 }
 
 /// `floor(a b / 2^shift)`. `shift` is 1 to 62.
 #[inline(always)]
 #[must_use]
 pub fn mul_floor(a: Word, b: Word, shift: u32) -> Word {
-    Word((i64::from(a.0).wrapping_mul(i64::from(b.0)) >> shift) as i32)
+    let product = i64::from(a.0).wrapping_mul(i64::from(b.0));
+    Word(product.wrapping_shr(shift) as i32)
 }
 
 /// `floor((a b + c d) / 2^shift)` of a sum that fits 64 bits: equal sums give equal words, however they part into products.
@@ -57,7 +60,7 @@ pub fn mul_floor(a: Word, b: Word, shift: u32) -> Word {
 pub fn mul_add_floor(a: Word, b: Word, c: Word, d: Word, shift: u32) -> Word {
     let first = i64::from(a.0).wrapping_mul(i64::from(b.0));
     let second = i64::from(c.0).wrapping_mul(i64::from(d.0));
-    Word((first.wrapping_add(second) >> shift) as i32)
+    Word(first.wrapping_add(second).wrapping_shr(shift) as i32)
 }
 
 /// `min(a b, limit)` for factors that are not negative; the product may exceed the word.
@@ -79,7 +82,7 @@ pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Wo
     // The proven lower limit, repeated where the compiler sees it: no division by zero to check. Where
     // it does not look, `checked_div` has no panic path either.
     let denominator = denominator.0.max(1) as u64;
-    let numerator = (numerator.0 as u32 as u64) << shift;
+    let numerator = (numerator.0 as u32 as u64).wrapping_shl(shift);
     let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32 as u64) as i32)
 }
@@ -91,7 +94,7 @@ pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Wo
 #[must_use]
 pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
     let denominator = denominator.0.max(1) as u32;
-    let numerator = (numerator.0 as u32 as u64) << shift;
+    let numerator = (numerator.0 as u32 as u64).wrapping_shl(shift);
     if (numerator >> 32) as u32 >= denominator {
         // The quotient is 2^32 or more.
         return limit;
@@ -134,7 +137,7 @@ fn divide_digit(above: u32, next: u16, divisor: u32) -> (u32, u32) {
 #[must_use]
 pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
     let denominator = denominator.0.max(1) as u32;
-    let numerator = (numerator.0 as u32) << shift;
+    let numerator = (numerator.0 as u32).wrapping_shl(shift);
     let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32) as i32)
 }
@@ -178,16 +181,6 @@ pub fn lookup<T: Copy + Into<Word>, const N: usize>(table: &[T; N], index: Word)
 pub fn row<T, const N: usize>(rows: &[T; N], index: Word) -> &T {
     const { assert!(N.is_power_of_two()) };
     &rows[index.0 as usize & (N - 1)]
-}
-
-/// Not 0 where the magnitude of one of `x`, `y` and `sum`, which is `x + y`, is more than `limit`, which is at least -1.
-///
-/// Of `x`, `y` and `-sum`, which add up to 0, those above 0 add up to the largest magnitude of the three.
-#[inline(always)]
-#[must_use]
-pub fn exceeding(x: Word, y: Word, sum: Word, limit: Word) -> Word {
-    let largest = x.positive_part() + y.positive_part() - sum.negative_part();
-    (limit - largest) >> 31
 }
 
 /// `then` where the condition holds, else `otherwise`; both are evaluated.

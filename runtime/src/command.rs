@@ -184,6 +184,9 @@ pub struct Intervals {
 }
 
 impl Intervals {
+    /// All legs off for the whole period: the safe command of a tripped drive.
+    pub const OFF: Self = Self::new([0; 3], [[LegState::Off; 3]; 3]);
+
     /// Where the intervals end, the third with the period, and the states of legs a, b, c in each.
     #[inline]
     #[must_use]

@@ -104,6 +104,40 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// Each control period is either [`check`](Self::check)ed, and then controlled, or goes by
 /// [`rest`](Self::rest).
+///
+/// # Start-up
+///
+/// A new drive runs: its first period controls currents, at set-point 0, with nominal current
+/// offsets and nothing charged. Where offsets or the bootstrap capacitors of the inverter need it,
+/// calibration comes first. Then follow by themselves:
+///
+/// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor rests
+///    meanwhile. An offset too far from its nominal value trips the drive.
+/// 2. Pre-charge, where the specification has one: periods with all lower switches on, which
+///    charge the bootstrap capacitors, and short-circuit a motor that turns.
+/// 3. Control, at the set-point that stands.
+///
+/// # Safe states
+///
+/// Each [`Fault`] turns all legs off until a reset. A Hall code that skips sectors is no fault: it is
+/// taken as it reads. Nor is any bus voltage.
+///
+/// # What the supervisor cannot see
+///
+/// It trips on what samples show: a current above the trip level, a current ADC at an end of its
+/// range, an invalid Hall code, and where told to, a rotor that stands. It cannot see, and nothing
+/// else here does:
+///
+/// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
+///   mid-scale can let the true current rise to several times the trip level;
+/// - the current of phase c, which has no sensor: it is taken as -(a + b);
+/// - a control interrupt that does not come: the last command stands;
+/// - heat, shoot-through, and what is shorter than a control period;
+/// - a bus voltage, be it too high for the switches.
+///
+/// So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog
+/// on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus
+/// voltage, too.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Supervisor {
     mode: Mode,

@@ -12,7 +12,7 @@
     reason = "each is one instruction, and firmware is debugged unoptimised, too"
 )]
 
-use core::ops::{Add, BitOr, Mul, Neg, Shl, Shr, Sub};
+use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};
 
 /// A 32-bit word.
 ///
@@ -55,12 +55,6 @@ impl Word {
     #[must_use]
     pub fn greater(self, other: Self) -> Self {
         self - (self - other).negative_part()
-    }
-
-    /// The word where it is positive, else 0.
-    #[inline(always)]
-    pub(crate) fn positive_part(self) -> Self {
-        Self(self.0 & !(self.0 >> 31))
     }
 
     /// The word where it is negative, else 0.
@@ -128,15 +122,6 @@ operator! {
     Add::add = wrapping_add;
     Sub::sub = wrapping_sub;
     Mul::mul = wrapping_mul;
-}
-
-impl BitOr for Word {
-    type Output = Self;
-
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
 }
 
 impl Neg for Word {

@@ -1,7 +1,7 @@
 //! Emits the drives of `src/list.rs` as C99, compiles them for the target, and writes what Rust must know of each:
 //! `drives.rs`, a list of calls of the macro in `src/drive.rs`.
 
-use hexagen_codegen::emit::c99::emit_c99;
+use hexagen_codegen::emit::c99::{RUNTIME, emit_c99};
 use hexagen_codegen::ir::Program;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
@@ -26,8 +26,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=src/list.rs");
     let out = PathBuf::from(env::var("OUT_DIR")?);
+    for (name, text) in RUNTIME {
+        fs::write(out.join(name), text)?;
+    }
     let drives = list::DRIVES.iter().map(|drive| compile(drive, &out));
     let drives: Result<String, _> = drives.collect();
+    // Behind those that call it.
+    build(&out)
+        .file(out.join("hexagen.c"))
+        .try_compile("hexagen_c")?;
     fs::write(
         out.join("drives.rs"),
         format!("drives! {{\n{}}}\n", drives?),
@@ -64,21 +71,14 @@ fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
     let source = write(".c", &sources.source)?;
     // The room that Rust gives it is what it needs.
     let check = format!(
-        "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}_t) == {size}) ? 1 : -1];\n"
+        "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}) == {size}) ? 1 : -1];\n"
     );
     let check = write("_size.c", &check)?;
-    let mut build = cc::Build::new();
-    build
+    build(out)
         .files([source, check])
-        .include(out)
-        .opt_level(2)
-        .define(&format!("{}_VERIFICATION", prefix.to_uppercase()), None)
         // The public function itself is what the firmware calls and the bench counts.
         .define(&format!("{prefix}_step"), drive.symbol)
-        // Enumerations as small as Rust has them, no start-up code or library of the compiler.
-        .flags(["-fshort-enums", "-ffreestanding", "-fno-jump-tables"])
-        .flags(STRICT);
-    build.try_compile(&format!("{prefix}_c"))?;
+        .try_compile(&format!("{prefix}_c"))?;
 
     let names: Vec<&str> = program
         .states
@@ -103,13 +103,26 @@ fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
         "precharge",
         "status",
         "state_words",
-        "set_state_word",
+        "set_state_words",
     ];
     let functions = functions.map(|function| format!("{function}: {prefix}_{function}"));
     Ok(format!(
         "    {name}: [u32; {words}], {symbol}, {{ {} }}, \"../motors/{motor}.toml\", {kind:?}, {options:?}, {names:?}, {spec:?};\n",
         functions.join(", ")
     ))
+}
+
+/// The compiler as it compiles all of it.
+fn build(out: &Path) -> cc::Build {
+    let mut build = cc::Build::new();
+    build
+        .include(out)
+        .opt_level(2)
+        .define("HEXAGEN_VERIFICATION", None)
+        // Enumerations as small as Rust has them, no start-up code or library of the compiler.
+        .flags(["-fshort-enums", "-ffreestanding", "-fno-jump-tables"])
+        .flags(STRICT);
+    build
 }
 
 /// What chooses the words that suit the core.
@@ -122,10 +135,13 @@ fn word_choice() -> &'static str {
     }
 }
 
-/// Bytes of a drive: its set-point words, each replaced alone, the status, and its state.
+/// Bytes of a supervisor.
+const SUPERVISOR: usize = 28;
+
+/// Bytes of a drive: its set-point words, each replaced alone, the status, its supervisor, and its state.
 fn size(program: &Program) -> usize {
-    let set_point = 4 * (program.params.len() + 1);
-    let end = program.states.iter().fold(set_point, |end, word| {
+    let before = 4 * (program.params.len() + 1) + SUPERVISOR;
+    let end = program.states.iter().fold(before, |end, word| {
         let bytes = if word.storage_bits == 16 { 2 } else { 4 };
         end.next_multiple_of(bytes) + bytes
     });

@@ -25,5 +25,5 @@ controller! {
 }
 
 fn main() {
-    let _ = hub::new();
+    let _ = hexagen::Drive::<hub>::new();
 }

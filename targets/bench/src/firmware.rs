@@ -153,7 +153,7 @@ impl Firmware {
         records: &[u8],
     ) -> Result<Vec<u8>, BenchError> {
         let purpose = match task.mode {
-            Mode::Count => Purpose::Counts,
+            Mode::Count | Mode::Supervision => Purpose::Counts,
             _ => Purpose::Answers,
         };
         let folder = folder_of(task, records)?;

@@ -225,14 +225,16 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<i32> {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use hexagen::{Drive, Legs};
+    use hexagen::{Drive, Fault, Legs, Sample};
     use hexagen_firmware::session::{Broken, Link, replay, serve};
-    use hexagen_firmware::{Drives, StepFn};
+    use hexagen_firmware::{Drives, StepFn, Subject, Supervised};
     use std::cell::Cell;
 
     hexagen_firmware::drives! {
-        Tested, step_of_the_test: "../motors/trivedi-keshri-660w.toml", pdcc { saturation: nearest };
+        Nearest, step_of_the_test: "../motors/trivedi-keshri-660w.toml", pdcc { saturation: nearest };
     }
+
+    type Tested = Drive<Nearest>;
 
     /// A task and its answers in memory.
     pub struct Memory<'t> {
@@ -305,12 +307,10 @@ pub mod tests {
         let call = CALLS.get();
         CALLS.set(call + 1);
         if call == 12_345 {
-            let names = <Tested as Drive>::STATE_NAMES;
-            let index = names
-                .iter()
-                .position(|&name| name == "i_b_prev")
+            let index = Tested::state_names()
+                .position(|name| name == "i_b_prev")
                 .expect("is there");
-            let mut words = vec![0; names.len()];
+            let mut words = vec![0; Tested::WORDS];
             drive.state_words(&mut words);
             drive.set_state_word(index, words[index] ^ 1);
         }
@@ -340,6 +340,29 @@ pub mod tests {
         let core = Afresh(InProcess(step));
         let outcome = compare(&core, &listed(), STEPS).expect("runs");
         outcome.difference.expect("a wrong bit is found")
+    }
+
+    /// What `cost` counts as supervision is that of the drive: the same samples trip it.
+    #[test]
+    fn a_drive_with_an_empty_law_is_supervised_alike() {
+        let mut drives = (Tested::new(), Drive::<Supervised<Nearest>>::new());
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut faults = vec![];
+        for _ in 0..STEPS {
+            let adc = [(); 2].map(|()| random.u16(0..4200));
+            let sample = Sample::with_hall(adc, random.u8(0..=7));
+            let off =
+                [drives.0.step(&sample), drives.1.step(&sample)].map(|legs| legs == Legs::OFF);
+            assert_eq!(off[0], off[1], "{sample:?}");
+            let statuses = [drives.0.status(), drives.1.status()];
+            assert_eq!(statuses[0], statuses[1], "{sample:?}");
+            faults.extend(statuses[0].fault);
+            drives.0.reset();
+            drives.1.reset();
+        }
+        for fault in [Fault::AdcRange, Fault::Hall, Fault::OverCurrent] {
+            assert!(faults.contains(&fault), "{fault}");
+        }
     }
 
     #[test]

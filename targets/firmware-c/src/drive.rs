@@ -1,32 +1,11 @@
-//! A drive in C as the trait that all drives share.
+//! A drive in C as what sessions replay.
 
-use hexagen_firmware::hexagen::{Fault, Mode, Status};
-
-/// Mode and fault as C hands them over, of a byte each.
+/// What a drive tells of itself as C hands it over, of a byte each.
 #[repr(C)]
-pub(crate) struct CStatus {
+pub(crate) struct StatusInC {
     mode: u8,
-    fault: u8,
-}
-
-impl CStatus {
-    pub(crate) fn read(&self) -> Status {
-        let modes = [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped];
-        let faults = [
-            Fault::None,
-            Fault::AdcRange,
-            Fault::OverCurrent,
-            Fault::Hall,
-            Fault::Stall,
-            Fault::Offset,
-        ];
-        Status {
-            mode: modes[usize::from(self.mode)],
-            fault: faults[usize::from(self.fault)],
-            // No drive here is told its bus voltage.
-            bus_is_stale: false,
-        }
-    }
+    pub(crate) fault: u8,
+    bus_is_stale: bool,
 }
 
 /// Types around the functions of drives in C, and the list of them.
@@ -36,116 +15,91 @@ macro_rules! drives {
             init: $init:ident, set_current: $set_current:ident, set_torque: $set_torque:ident,
             reset: $reset:ident, calibrate: $calibrate:ident, precharge: $precharge:ident,
             status: $status:ident, state_words: $state_words:ident,
-            set_state_word: $set_state_word:ident
+            set_state_words: $set_state_words:ident
         },
         $motor:literal, $kind:literal, $options:literal, $names:expr, $spec:literal;
     )*) => {
         $(
             unsafe extern "C" {
-                fn $init(drive: *mut $name);
-                /// The last argument is for drives with a capture timer: a function in C may be handed more than it takes.
-                safe fn $symbol(
-                    drive: &mut $name,
-                    adc_a: u16,
-                    adc_b: u16,
-                    hall: u8,
-                    hall_ticks: u16,
-                ) -> LegsInC;
-                fn $set_current(drive: *mut $name, bits: i32);
-                fn $set_torque(drive: *mut $name, bits: i32);
-                fn $reset(drive: *mut $name);
-                fn $calibrate(drive: *mut $name);
-                fn $precharge(drive: *mut $name);
-                fn $status(drive: *const $name) -> CStatus;
+                safe fn $init(drive: &mut $name);
+                safe fn $symbol(drive: &mut $name, sample: &SampleInC) -> LegsInC;
+                safe fn $set_current(drive: &mut $name, bits: i32);
+                safe fn $set_torque(drive: &mut $name, bits: i32);
+                safe fn $reset(drive: &mut $name);
+                safe fn $calibrate(drive: &mut $name);
+                safe fn $precharge(drive: &mut $name);
+                safe fn $status(drive: &$name) -> StatusInC;
                 fn $state_words(drive: *const $name, words: *mut i32);
-                fn $set_state_word(drive: *mut $name, index: u16, value: i32);
+                fn $set_state_words(drive: *mut $name, words: *const i32);
             }
 
             #[doc = concat!("`", stringify!($name), "` in C.")]
             #[repr(C)]
-            pub struct $name(UnsafeCell<[u32; $words]>);
-
-            // SAFETY: what both halves reach are volatile words of C.
-            unsafe impl Sync for $name {}
+            pub struct $name([u32; $words]);
 
             impl $name {
-                fn pointer(&self) -> *mut Self {
-                    self.0.get().cast()
+                const LAW: &'static [&'static str] = &$names;
+
+                fn words(&self) -> [i32; <Self as Subject>::WORDS] {
+                    let mut words = [0; <Self as Subject>::WORDS];
+                    // SAFETY: it writes so many words.
+                    unsafe { $state_words(self, words.as_mut_ptr()) };
+                    words
                 }
             }
 
-            // SAFETY (of all calls here): the drive is initialised, its size is as C has it, and one context uses it.
-            impl Drive for $name {
-                type SetPointHalf = Self;
-                type LoopHalf<'drive> = Whole<'drive, Self>;
-                const NAME: &'static str = stringify!($name);
-                const SPEC: &'static str = $spec;
-                const FORMATS: &'static [Format] = &[];
-                const STATE_NAMES: &'static [&'static str] = &$names;
+            impl Subject for $name {
+                const WORDS: usize = Supervisor::NAMES.len() + Self::LAW.len();
 
                 fn new() -> Self {
-                    let drive = Self(UnsafeCell::new([0; $words]));
-                    unsafe { $init(drive.pointer()) };
+                    let mut drive = Self([0; $words]);
+                    $init(&mut drive);
                     drive
                 }
 
-                /// The bench runs one half after the other.
-                fn split(&mut self) -> (&Self, Whole<'_, Self>) {
-                    let pointer = self.pointer();
-                    (self, Whole(pointer, PhantomData))
+                fn set_current(&mut self, bits: i32) {
+                    $set_current(self, bits);
                 }
 
-                fn set_point(&self) -> &Self {
-                    self
+                fn set_torque(&mut self, bits: i32) {
+                    $set_torque(self, bits);
                 }
 
-                fn state_words(&self, words: &mut [i32]) {
-                    if words.len() >= Self::STATE_NAMES.len() {
-                        unsafe { $state_words(self.pointer(), words.as_mut_ptr()) };
-                    }
-                }
+                /// No drive here has a speed loop.
+                fn set_speed(&mut self, _: i32) {}
 
-                fn set_state_word(&mut self, index: usize, value: i32) {
-                    unsafe { $set_state_word(self.pointer(), index as u16, value) };
-                }
-            }
-
-            impl DriveSetPoint for $name {
-                fn set_current(&self, current: I16F16) {
-                    unsafe { $set_current(self.pointer(), current.to_bits()) };
-                }
-
-                fn set_torque(&self, torque: I16F16) {
-                    unsafe { $set_torque(self.pointer(), torque.to_bits()) };
-                }
-
-                fn set_bus(&self, _counts: u16) {}
-
-                fn status(&self) -> Status {
-                    unsafe { $status(self.pointer()) }.read()
-                }
-            }
-
-            impl DriveLoop for Whole<'_, $name> {
-                fn step(&mut self, sample: &Sample) -> Legs {
-                    let drive = unsafe { &mut *self.0 };
-                    StepFn::Structure($symbol).call(drive, *sample)
-                }
+                /// None is told its bus voltage.
+                fn set_bus(&mut self, _: u16) {}
 
                 fn reset(&mut self) {
-                    unsafe { $reset(self.0) };
+                    $reset(self);
                 }
 
                 fn calibrate(&mut self) {
-                    unsafe { $calibrate(self.0) };
+                    $calibrate(self);
                 }
 
                 fn precharge(&mut self) {
-                    unsafe { $precharge(self.0) };
+                    $precharge(self);
                 }
 
-                fn status(&self) -> Status {
-                    unsafe { $status(self.0) }.read()
+                fn fault(&self) -> Option<Fault> {
+                    Fault::from_number($status(self).fault.into())
+                }
+
+                fn state_words(&self, words: &mut [i32]) {
+                    let own = self.words();
+                    let count = own.len().min(words.len());
+                    words[..count].copy_from_slice(&own[..count]);
+                }
+
+                fn set_state_word(&mut self, index: usize, value: i32) {
+                    let mut words = self.words();
+                    if let Some(word) = words.get_mut(index) {
+                        *word = value;
+                    }
+                    // SAFETY: it reads so many words.
+                    unsafe { $set_state_words(self, words.as_ptr()) };
                 }
             }
         )*
@@ -157,8 +111,8 @@ macro_rules! drives {
             kind: $kind,
             options: $options,
             size: size_of::<$name>(),
-            state_names: <$name as Drive>::STATE_NAMES,
-            spec: <$name as Drive>::SPEC,
+            state_names: [&Supervisor::NAMES, $name::LAW],
+            spec: $spec,
             replay: |link, task| replay(StepFn::Structure($symbol), link, task),
         },)*];
     };

@@ -9,18 +9,9 @@
 #[macro_use]
 mod drive;
 
-use core::cell::UnsafeCell;
-use core::marker::PhantomData;
-use drive::CStatus;
-use hexagen_firmware::hexagen::fixed::types::I16F16;
-use hexagen_firmware::hexagen::{Drive, DriveLoop, DriveSetPoint, Format, Legs, Sample, Status};
+use drive::StatusInC;
+use hexagen_firmware::hexagen::{Fault, Supervisor};
 use hexagen_firmware::session::replay;
-use hexagen_firmware::{Drives, LegsInC, Listed, StepFn};
-
-/// A drive in C as its control loop.
-pub struct Whole<'drive, D>(*mut D, PhantomData<&'drive mut D>);
-
-// SAFETY: it stands for an exclusive reference.
-unsafe impl<D: Send> Send for Whole<'_, D> {}
+use hexagen_firmware::{Drives, LegsInC, Listed, SampleInC, StepFn, Subject};
 
 include!(concat!(env!("OUT_DIR"), "/drives.rs"));

@@ -9,7 +9,7 @@
     reason = "the functions of counter.s are known to the linker only, and clocks lie at fixed addresses"
 )]
 
-use crate::drives::{LegsInC, StepFn};
+use crate::drives::{LegsInC, SampleInC, StepFn};
 use core::arch::global_asm;
 use core::ffi::c_void;
 use hexagen::{LegState, Sample};
@@ -52,6 +52,8 @@ fn call<D>(
     };
     let legs = (&raw mut legs).expose_provenance();
     let drive = core::ptr::from_mut(drive).expose_provenance();
+    let in_c = SampleInC::from(sample);
+    let in_c = (&raw const in_c).expose_provenance();
     let [adc_a, adc_b, _] = sample.adc();
     let [adc_a, adc_b, ticks] = [adc_a, adc_b, sample.ticks()].map(usize::from);
     let hall = usize::from(sample.hall());
@@ -60,7 +62,7 @@ fn call<D>(
         StepFn::Bits(step) => (step as *const c_void, [drive, adc_a, adc_b, hall, ticks, 0]),
         StepFn::Structure(step) => (
             step as *const c_void,
-            [legs, drive, adc_a, adc_b, hall, ticks],
+            [legs, drive, in_c, 0, 0, 0],
         ),
     };
     // SAFETY: the assembly calls `step` as its type says, with pointers that are valid and unshared here.

@@ -4,14 +4,14 @@ use crate::session::{Broken, Link};
 use crate::wire::Task;
 use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 
-/// A step function as it stands in the ELF: drive, counts of phases a and b, Hall code, ticks since the last
-/// Hall edge.
+/// A step function as it stands in the ELF.
 #[derive(Debug)]
 pub enum StepFn<D> {
-    /// Returns its legs in registers, as a word of 64 bits is returned.
+    /// Takes the drive, counts of phases a and b, the Hall code, and ticks since the last Hall edge; returns its legs in
+    /// registers, as a word of 64 bits is returned.
     Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs),
-    /// Returns them as C99 has them, in room of the caller's.
-    Structure(extern "C" fn(&mut D, u16, u16, u8, u16) -> LegsInC),
+    /// Takes the sample and returns the legs as C99 has them, both in room of the caller's.
+    Structure(extern "C" fn(&mut D, &SampleInC) -> LegsInC),
 }
 
 // Derived, they would ask as much of `D`.
@@ -26,14 +26,36 @@ impl<D> Copy for StepFn<D> {}
 impl<D> StepFn<D> {
     /// One step.
     pub fn call(self, drive: &mut D, sample: Sample) -> Legs {
-        let [adc_a, adc_b, _] = sample.adc();
-        let (hall, hall_ticks) = (sample.hall(), sample.ticks());
         match self {
-            Self::Bits(step) => step(drive, adc_a, adc_b, hall, hall_ticks),
+            Self::Bits(step) => {
+                let [adc_a, adc_b, _] = sample.adc();
+                step(drive, adc_a, adc_b, sample.hall(), sample.ticks())
+            }
             Self::Structure(step) => {
-                let legs = step(drive, adc_a, adc_b, hall, hall_ticks);
+                let legs = step(drive, &sample.into());
                 Legs::new(legs.compare, legs.state)
             }
+        }
+    }
+}
+
+/// A sample as C99 has it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct SampleInC {
+    adc: [u16; 3],
+    hall: u16,
+    hall_ticks: u16,
+    angle: u32,
+}
+
+impl From<Sample> for SampleInC {
+    fn from(sample: Sample) -> Self {
+        Self {
+            adc: sample.adc(),
+            hall: sample.hall().into(),
+            hall_ticks: sample.ticks(),
+            angle: sample.angle(),
         }
     }
 }

@@ -17,6 +17,9 @@ pub struct Counted {
 pub struct Figures {
     /// Instructions on the normal path.
     pub normal: u32,
+    /// Those of them that are supervision: the same of a drive with an empty law. Of drives in Rust alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supervision: Option<u32>,
     /// Instructions of the worst step in closed loop; start-up and trips are none.
     pub worst: u32,
     /// Estimated cycles of the normal path.
@@ -93,6 +96,7 @@ mod tests {
     fn cycles_of_the_worst_step_are_rounded_up() {
         let figures = Figures {
             normal: 100,
+            supervision: None,
             worst: 301,
             cycles: 130,
             code: 400,

@@ -16,8 +16,8 @@ controller! {
 
 fn main() {
     // The type keeps its shape: nothing here is reported.
-    let mut hub = Hub::new();
-    let legs = hub.step(2048, 2048, 1);
+    let mut hub = hexagen::Drive::<Hub>::new();
+    let legs = hub.step(&hexagen::Sample::with_hall([2048, 2048], 1));
     let _: [u16; 3] = legs.compare();
     hub.reset();
 }

@@ -35,6 +35,8 @@ pub struct Inputs {
 pub struct Counts {
     /// Instructions of a settled step below the speed limit: the median.
     pub normal: u32,
+    /// The same of a drive with the same supervision and an empty law; where it was counted.
+    pub supervision: Option<u32>,
     /// Most instructions of a step in closed loop.
     pub worst: u32,
     /// Most instructions of a step in calibration, in pre-charge and on arbitrary inputs; of drives alone.
@@ -207,6 +209,7 @@ pub fn count(
     }
     Ok(Counts {
         normal: median(settled(&counts)),
+        supervision: None,
         worst: counts.iter().copied().max().unwrap_or(0),
         arbitrary,
         stack,
@@ -217,6 +220,25 @@ pub fn count(
                 .collect(),
         ),
     })
+}
+
+/// Counts the supervision of a drive: a settled step, the median, of one with the same limits and an empty law.
+///
+/// # Errors
+/// When the emulator fails.
+pub fn supervision(
+    firmware: &Firmware,
+    program: &str,
+    place: u16,
+    inputs: &Inputs,
+) -> Result<u32, BenchError> {
+    let task = Task {
+        mode: Mode::Supervision,
+        drive: place,
+        block: 0,
+    };
+    let counts = numbers(&firmware.run_program(program, task, &inputs.records)?);
+    Ok(median(settled(&counts)))
 }
 
 fn trace(
@@ -280,9 +302,7 @@ mod tests {
                 }
                 call => replayed.call(call),
             }
-            if !faults.contains(&replayed.fault()) {
-                faults.push(replayed.fault());
-            }
+            faults.extend(replayed.fault());
         }
         for fault in [Fault::OverCurrent, Fault::AdcRange, Fault::Hall] {
             assert!(faults.contains(&fault), "{fault:?}");

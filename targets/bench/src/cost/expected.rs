@@ -13,9 +13,10 @@ use std::path::PathBuf;
 pub struct Expected(pub Counted);
 
 /// The figures by their names.
-fn named(figures: Figures) -> [(&'static str, u32); 5] {
+fn named(figures: Figures) -> [(&'static str, u32); 6] {
     [
         ("normal path", figures.normal),
+        ("supervision", figures.supervision.unwrap_or(0)),
         ("worst path", figures.worst),
         ("cycles", figures.cycles),
         ("code", figures.code),
@@ -100,6 +101,7 @@ mod tests {
     fn a_rise_fails_a_fall_passes_and_another_compiler_fails_above_its_goal_only() {
         let figures = |normal: u32| Figures {
             normal,
+            supervision: Some(normal / 2),
             worst: 100,
             cycles: 60,
             code: 200,
@@ -116,6 +118,13 @@ mod tests {
         assert_eq!(
             expected.rises("rustc 1", &of(51), above),
             ["step_x: normal path rose from 50 to 51"]
+        );
+        assert_eq!(
+            expected.rises("rustc 1", &of(52), above),
+            [
+                "step_x: normal path rose from 50 to 52",
+                "step_x: supervision rose from 25 to 26"
+            ]
         );
         assert_eq!(expected.rises("rustc 2", &of(53), above), [""; 0]);
         assert_eq!(

@@ -96,6 +96,7 @@ mod tests {
             .expect("there is one");
         let at_goal = Figures {
             normal: 71,
+            supervision: None,
             worst: 116,
             cycles: 100,
             code: 1000,

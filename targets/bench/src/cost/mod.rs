@@ -14,7 +14,7 @@ use crate::pil::Emulated;
 use crate::targets::Target;
 use crate::vectors::drive_of;
 use comfy_table::{CellAlignment, Table, presets};
-use count::{Counts, Inputs, count};
+use count::{Counts, Inputs, count, supervision};
 use elf::{Code, Image, Isa};
 use expected::Expected;
 use goals::goal;
@@ -33,6 +33,9 @@ const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf=held";
 
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";
+
+/// The programs whose drives are in Rust, which have their supervision counted by itself.
+const IN_RUST: [&str; 2] = ["bench", EXPERIMENT];
 
 /// What to count.
 #[derive(Debug, clap::Args)]
@@ -66,6 +69,7 @@ impl Row {
     fn figures(&self) -> Figures {
         Figures {
             normal: self.counts.normal,
+            supervision: self.counts.supervision,
             worst: self.counts.worst,
             cycles: self.counts.cycles,
             code: self.code.own,
@@ -114,6 +118,8 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         "normal, worst: instructions from the function's entry to its return, in closed loop at rated current (QEMU); normal is the \
          median of settled steps at 0.2 and 0.7 of the rated speed, worst the largest of all steps there, at 1.25 and at -0.7 of it, each \
          from the drive at rest on.\n\
+         supervision: of the normal path, what a drive with the same limits and an empty law takes on the same inputs: call and return, mode, \
+         checks of Hall code, ADCs and currents. The rest is the law. Of drives in Rust alone.\n\
          arbitrary: the largest of calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; of drives alone.\n\
          goal: normal / worst / stack of the best that was found by editing the emitted text by hand, with the same supervision.\n\
          code: bytes of the function, and of all that it calls. state: bytes of the drive's type. stack: bytes, of the deepest of all steps.\n\
@@ -211,7 +217,10 @@ fn rows_of(
     let row_of = |listed: &Listed| {
         let (inputs, tables) = inputs_of(listed)?;
         let step = (listed.place, listed.symbol.as_str());
-        let counts = count(firmware, program, &image, step, &inputs)?;
+        let mut counts = count(firmware, program, &image, step, &inputs)?;
+        if IN_RUST.contains(&program) {
+            counts.supervision = Some(supervision(firmware, program, listed.place, &inputs)?);
+        }
         row(&image, listed, counts, tables)
     };
     steps.par_iter().map(row_of).collect()
@@ -264,6 +273,7 @@ fn table(target: Target, rows: &[Row]) -> Table {
     table.load_style(presets::ASCII_MARKDOWN).set_header([
         "symbol",
         "normal",
+        "supervision",
         "worst",
         "arbitrary",
         "goal",
@@ -285,6 +295,7 @@ fn table(target: Target, rows: &[Row]) -> Table {
         table.add_row([
             row.symbol.clone(),
             counts.normal.to_string(),
+            or_dash(counts.supervision.map(|count| count as usize)),
             counts.worst.to_string(),
             or_dash(counts.arbitrary.map(|most| most as usize)),
             goal,
@@ -297,7 +308,7 @@ fn table(target: Target, rows: &[Row]) -> Table {
             counts.stack.to_string(),
         ]);
     }
-    for column in [1, 2, 3, 4, 6, 7, 8, 9, 10, 11] {
+    for column in [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12] {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
         }

@@ -123,18 +123,14 @@ mod tests {
         hall: u8,
         hall_ticks: u16,
     ) -> Legs {
-        peer.step(&Sample {
-            adc_a,
-            adc_b,
-            hall,
-            hall_ticks,
-        })
+        let sample = Sample::with_hall([adc_a, adc_b], hall);
+        peer.step(&sample.hall_ticks(hall_ticks))
     }
 
     /// What a compiler once made of the peers: their state is right, and their outputs are zeros.
     extern "C" fn zeros(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
         honest(peer, a, b, hall, ticks);
-        Legs::at_rest(LegState::Pulsed)
+        Legs::all(LegState::Pulsed)
     }
 
     /// One count more than there is, in phase b, above 899.

@@ -1,0 +1,175 @@
+//! A controller that is written by hand: what the runtime asks of one, with commands of several intervals, and what
+//! samples with an angle come to.
+
+use hexagen::arith::Word;
+use hexagen::{
+    Checked, Command, Control, Drive, DynLoop, Fault, FixedBus, Format, Intervals, LegState,
+    Limits, Mode, Observation, Sample, State, Unit, Units, Words,
+};
+
+/// Six-step voltage control: the set-point is a share of the period, and between two codes the motor coasts for one.
+struct SixStep;
+
+/// What it keeps.
+#[derive(State)]
+struct Kept {
+    /// Hall code of the last period; 0 behind a rest.
+    hall_prev: Word,
+    /// Controlled periods, as a law counts its edges.
+    #[initial(-1)]
+    periods: Word,
+}
+
+/// Timer counts of a period.
+const PERIOD: u16 = 1800;
+
+const UNIT: Unit = Unit {
+    factor: 1 << 20,
+    shift: 20,
+};
+
+impl Control for SixStep {
+    type State = Kept;
+    /// Whether the code is that of the last period.
+    type Rotor = bool;
+    type Command = Intervals;
+    type Bus = FixedBus;
+
+    const NAME: &'static str = "SixStep";
+    const SPEC: &'static str = "";
+    const FORMATS: &'static [Format] = &[];
+    const LIMITS: Limits = Limits {
+        adc_max: 4095,
+        adc_inverted: false,
+        current_bits: 0,
+        offset: 2048,
+        offsets: [2000, 2100],
+        trip: 1900,
+        currents: [-2100, 2095],
+        calibration_log2: 4,
+        precharge_periods: 2,
+        stall_periods: 0,
+    };
+    const UNITS: Units = Units {
+        ampere: UNIT,
+        volt: UNIT,
+        volt_per_count: UNIT,
+        rpm: UNIT,
+        sectors: [0, 1, 5, 6, 3, 2, 4, 0],
+    };
+    const SET_POINT: Word = Word(0);
+    const BUS: FixedBus = FixedBus;
+
+    /// An ampere is a hundredth of the period.
+    fn current(bits: Word) -> Word {
+        (bits >> 16).clamp(0, 100) * i32::from(PERIOD / 100)
+    }
+
+    fn torque(bits: Word) -> Word {
+        Self::current(bits)
+    }
+
+    fn track(kept: &mut Kept, sample: &Checked) -> bool {
+        let is_same = sample.hall() == kept.hall_prev;
+        kept.hall_prev = sample.hall();
+        is_same
+    }
+
+    fn rest(kept: &mut Kept, _: &Checked, _: bool) {
+        kept.hall_prev = Word(0);
+    }
+
+    fn step(
+        kept: &mut Kept,
+        set_point: &Words<Self>,
+        sample: &Checked,
+        is_same: bool,
+    ) -> Intervals {
+        use LegState::{Low, Off, Pulsed};
+        kept.periods = kept.periods + 1;
+        let [high, low] = match sample.hall().0 {
+            1 => [2, 1],
+            5 => [0, 1],
+            4 => [0, 2],
+            6 => [1, 2],
+            2 => [1, 0],
+            _ => [2, 0],
+        };
+        if !is_same {
+            return Intervals::OFF;
+        }
+        let mut driven = [Off; 3];
+        (driven[high], driven[low]) = (Pulsed, Low);
+        let mut freewheeling = [Off; 3];
+        (freewheeling[high], freewheeling[low]) = (Low, Low);
+        let on = set_point.current().to_u16();
+        Intervals::new([on, PERIOD, PERIOD], [driven, freewheeling, freewheeling])
+    }
+
+    fn observe(_: &Kept) -> Observation {
+        Observation::default()
+    }
+}
+
+const HALL: u8 = 5;
+
+fn sample(hall: u8) -> Sample {
+    Sample::with_hall([2048; 2], hall)
+}
+
+#[test]
+fn a_law_by_hand_has_all_that_a_drive_has() {
+    let mut drive = Drive::<SixStep>::new();
+    let (set_point, mut control) = drive.split();
+    let control: &mut dyn DynLoop<Intervals> = &mut control;
+    control.calibrate();
+    for _ in 0..16 {
+        assert_eq!(control.step(&sample(HALL)), Intervals::OFF);
+    }
+    assert_eq!(set_point.status().mode, Mode::Precharge);
+    for _ in 0..2 {
+        assert_eq!(
+            control.step(&sample(HALL)),
+            Intervals::at_rest(LegState::Low)
+        );
+    }
+    set_point.set_current_ma(25_000);
+    // The first code behind a rest is a new one.
+    assert_eq!(control.step(&sample(HALL)), Intervals::OFF);
+    let command = control.step(&sample(HALL));
+    assert_eq!(command.ends(), [450, PERIOD, PERIOD]);
+    assert_eq!(command.on(), [Some(450), Some(0), None]);
+    assert_eq!(
+        control.step(&Sample::with_hall([2048, 4000], HALL)),
+        Intervals::OFF
+    );
+    assert_eq!(control.status().fault, Some(Fault::OverCurrent));
+    control.reset();
+    control.step(&sample(HALL));
+    // The reset took the set-point with it.
+    assert_eq!(control.step(&sample(HALL)).on(), [Some(0), Some(0), None]);
+}
+
+#[test]
+fn its_words_stand_behind_the_supervisors() {
+    let mut drive = Drive::<SixStep>::new();
+    let names: Vec<_> = Drive::<SixStep>::state_names().collect();
+    assert_eq!(names.last_chunk(), Some(&["hall_prev", "periods"]));
+    let mut words = vec![0; names.len()];
+    drive.state_words(&mut words);
+    assert_eq!(words.last_chunk(), Some(&[0, -1]));
+    drive.step(&sample(HALL));
+    drive.state_words(&mut words);
+    assert_eq!(words.last_chunk(), Some(&[i32::from(HALL), 0]));
+}
+
+/// An angle is no Hall code: a drive that goes by codes, as all do, trips rather than take it for one.
+#[test]
+fn an_angle_is_not_taken_for_a_hall_code() {
+    let turned = Sample::with_angle([2048; 2], 0x4000_0000).third_current(2048);
+    assert_eq!((turned.angle(), turned.hall()), (0x4000_0000, 0));
+    assert_eq!(turned.adc(), [2048; 3]);
+    let mut drive = Drive::<SixStep>::new();
+    assert_eq!(drive.step(&turned), Intervals::OFF);
+    assert_eq!(drive.status().fault, Some(Fault::Hall));
+}
