@@ -101,7 +101,8 @@ int main(void)
     EXPECT(steps(1, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 1);
     EXPECT(hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));
     EXPECT(signals.currents[0] == 0 && signals.currents[2] == 0 && signals.sector == 2);
-    EXPECT(!signals.is_off[0] && signals.voltages[0] > 23 * 65536 && signals.voltages[0] < 25 * 65536);
+    EXPECT(!signals.is_off[0]);
+    EXPECT(signals.voltages[0] > 23 * 65536 && signals.voltages[0] < 25 * 65536);
     printf("as it should be\n");
     return 0;
 }

@@ -34,23 +34,23 @@ fn samples_tell_the_whole_ticks_since_the_last_edge() {
         params.hall_ticks_per_period = TICKS;
         let omega_m = f64::to_radians(per_period) / params.t_s / f64::from(params.pole_pairs);
         let mut plant = Plant::new(params, f64::to_radians(start), omega_m).expect("a plant");
-        let mut hall = plant.sample().hall;
+        let mut hall = plant.sample().hall();
         for period in 1..=400 {
             plant.run_period(Legs::OFF, &mut ());
             let sample = plant.sample();
             let place = format!("{start} + {period} x {per_period} degrees");
             match ticks_since_edge(start, per_period, f64::from(period)) {
-                None => assert_eq!(sample.hall_ticks, u16::MAX, "{place}"),
+                None => assert_eq!(sample.ticks(), u16::MAX, "{place}"),
                 // So near to a whole tick rounding decides.
                 Some(ticks) if (ticks - ticks.round()).abs() < 1e-5 => {}
                 Some(ticks) => {
-                    assert_eq!(sample.hall_ticks, ticks.floor() as u16, "{place}");
+                    assert_eq!(sample.ticks(), ticks.floor() as u16, "{place}");
                     compared += 1;
                 }
             }
-            let is_new = sample.hall != hall;
-            assert_eq!(is_new, f64::from(sample.hall_ticks) < TICKS, "{place}");
-            hall = sample.hall;
+            let is_new = sample.hall() != hall;
+            assert_eq!(is_new, f64::from(sample.ticks()) < TICKS, "{place}");
+            hall = sample.hall();
         }
     }
     assert!(compared > 1800, "{compared}");

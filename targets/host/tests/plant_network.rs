@@ -444,10 +444,10 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
     params.k_phase = [0.0; 3];
     let omega_e = 1.0_f64.to_radians() / T_S; // one electrical degree per period
     let mut plant = Plant::new(params, 29.5_f64.to_radians(), omega_e / 4.0).unwrap();
-    assert_eq!(plant.sample().hall_ticks, u16::MAX);
+    assert_eq!(plant.sample().ticks(), u16::MAX);
     plant.set_currents([1.0, -3.0]);
     let sample = plant.sample();
-    assert_eq!((sample.adc_a, sample.adc_b), (2098, 542));
+    assert_eq!((sample.adc()[0], sample.adc()[1]), (2098, 542));
     for period in 1..=100_u16 {
         plant.run_period(Legs::OFF, &mut ());
         let angle = 29.5 + f64::from(period);
@@ -458,9 +458,9 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
             a => (0b100, Some(a - 90.0)),
         };
         let sample = plant.sample();
-        assert_eq!(sample.hall, code, "{angle}");
+        assert_eq!(sample.hall(), code, "{angle}");
         let ticks = since.map_or(f64::from(u16::MAX), |degrees| degrees * 1000.0);
-        assert_close(f64::from(sample.hall_ticks), ticks, 1.0);
+        assert_close(f64::from(sample.ticks()), ticks, 1.0);
     }
 }
 

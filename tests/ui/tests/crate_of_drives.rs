@@ -364,6 +364,7 @@ fn drives_know_their_motors() {
 }
 
 /// Motors named like the types that emitted code uses, and like a word of the language.
+#[allow(dead_code, reason = "most only have to compile")]
 mod motors_of_any_name {
     use hexagen::controller;
 

@@ -182,12 +182,8 @@ fn equals_go_to_the_first() {
                 let bits = sense * (inverter.max_current * 65_536.0) as i32;
                 bit_true.set_current(bits);
                 ideal.set_current(bits);
-                let sample = Sample {
-                    adc_a: inverter.adc_offset as u16,
-                    adc_b: inverter.adc_offset as u16,
-                    hall: variant.spec.motor.hall_codes[sector - 1],
-                    hall_ticks: 0,
-                };
+                let code = variant.spec.motor.hall_codes[sector - 1];
+                let sample = Sample::with_hall([inverter.adc_offset as u16; 2], code);
                 let legs = bit_true.step(&sample);
                 let duties = ideal.step(&sample);
                 let first = if sense > 0 {

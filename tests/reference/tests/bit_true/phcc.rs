@@ -57,12 +57,7 @@ fn sample(spec: &Spec, sector: usize, currents: [f64; 2]) -> Sample {
         let counts = f64::from(spec.inverter.adc_offset) + current / spec.inverter.adc_gain;
         counts.round() as u16
     };
-    Sample {
-        adc_a: count(currents[0]),
-        adc_b: count(currents[1]),
-        hall: spec.motor.hall_codes[sector - 1],
-        hall_ticks: 0,
-    }
+    Sample::with_hall(currents.map(count), spec.motor.hall_codes[sector - 1])
 }
 
 /// How the drive has come to where it is; with the sense of rotation, 1 or -1.

@@ -68,12 +68,8 @@ fn follows_a_textbook_controller() {
             });
             let mean = pole.iter().sum::<f64>() / 3.0;
             limited += u32::from(max - min > inverter.v_bus);
-            let sample = Sample {
-                adc_a: adc[0] as u16,
-                adc_b: adc[1] as u16,
-                hall: spec.motor.hall_codes[2],
-                hall_ticks: 0,
-            };
+            let counts = [adc[0] as u16, adc[1] as u16];
+            let sample = Sample::with_hall(counts, spec.motor.hall_codes[2]);
             let legs = bit_true.step(&sample);
             let duties = ideal.step(&sample);
             assert!(ideal.trace().run, "{} step {step}", variant.name);

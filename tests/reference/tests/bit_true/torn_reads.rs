@@ -40,12 +40,9 @@ fn run(variant: &Variant, late: Late) -> Vec<[f64; 2]> {
             Late::Ticks => [first, second],
         };
         let since = (ticks - sector(ticks) * SECTOR) * inverter.ticks;
-        model.step(&Sample {
-            adc_a: inverter.adc_offset as u16,
-            adc_b: inverter.adc_offset as u16,
-            hall: motor.hall_codes[sector(code) as usize % 6],
-            hall_ticks: since as u16,
-        });
+        let code = motor.hall_codes[sector(code) as usize % 6];
+        let sample = Sample::with_hall([inverter.adc_offset as u16; 2], code);
+        model.step(&sample.hall_ticks(since as u16));
         let trace = model.trace();
         [trace.theta, trace.step_angle]
     });

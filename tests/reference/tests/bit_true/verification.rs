@@ -38,7 +38,7 @@ impl Subject for Mirror {
     fn precharge(&mut self) {
         self.model.precharge();
     }
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Option<Fault> {
         self.model.fault()
     }
     fn bus_is_stale(&self) -> bool {
@@ -181,22 +181,15 @@ fn state_words_survive_a_round_trip() {
     {
         let mut model = BitTrue::new(&variant.spec, &variants::table(variant)).expect("a model");
         model.set_current(variant.spec.inverter.max_current as i32 * 32_768);
-        let mut sample = Sample {
-            adc_a: 2060,
-            adc_b: 2050,
-            hall: 1,
-            hall_ticks: 3,
+        let counts = if variant.name.starts_with("servo") {
+            [8100, 7950]
+        } else {
+            [2060, 2050]
         };
-        if variant.name.starts_with("servo") {
-            sample = Sample {
-                adc_a: 8100,
-                adc_b: 7950,
-                ..sample
-            };
-        }
+        let codes = variant.spec.motor.hall_codes;
+        let sample = |place: usize| Sample::with_hall(counts, codes[place % 6]).hall_ticks(3);
         for step in 0..200 {
-            sample.hall = variant.spec.motor.hall_codes[step / 5 % 6];
-            model.step(&sample);
+            model.step(&sample(step / 5));
         }
         let mut words = vec![0; model.state_names().len()];
         model.state_words(&mut words);
@@ -204,7 +197,7 @@ fn state_words_survive_a_round_trip() {
         other.set_current(variant.spec.inverter.max_current as i32 * 32_768);
         other.set_state_words(&words);
         for step in 0..50 {
-            sample.hall = variant.spec.motor.hall_codes[step / 3 % 6];
+            let sample = sample(step / 3);
             assert_eq!(other.step(&sample), model.step(&sample), "{}", variant.name);
         }
     }

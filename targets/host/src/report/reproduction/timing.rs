@@ -43,6 +43,7 @@ mod tests {
     fn times_share_the_period() {
         let cost = Figures {
             normal: 100,
+            supervision: None,
             worst: 200,
             cycles: 144,
             code: 400,
