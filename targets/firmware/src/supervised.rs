@@ -3,8 +3,7 @@
 use core::marker::PhantomData;
 use hexagen::arith::Word;
 use hexagen::{
-    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, State,
-    Units, Words,
+    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, Units, Words,
 };
 
 /// The supervision of `C` around a law that pulses all legs and keeps nothing.
@@ -12,17 +11,8 @@ use hexagen::{
 pub struct Supervised<C>(PhantomData<C>);
 
 /// No words.
-#[derive(Clone, Copy, Debug)]
-pub struct Nothing;
-
-impl State for Nothing {
-    const INITIAL: Self = Self;
-    const NAMES: &'static [&'static str] = &[];
-
-    fn words(&self, _: &mut [i32]) {}
-
-    fn set_word(&mut self, _: usize, _: i32) {}
-}
+#[derive(Debug, hexagen::State)]
+pub struct Nothing {}
 
 impl<C: Control> Control for Supervised<C> {
     type State = Nothing;
