@@ -60,10 +60,7 @@ fn call<D>(
     // Room for a structure comes before all other arguments.
     let (step, arguments) = match step {
         StepFn::Bits(step) => (step as *const c_void, [drive, adc_a, adc_b, hall, ticks, 0]),
-        StepFn::Structure(step) => (
-            step as *const c_void,
-            [legs, drive, in_c, 0, 0, 0],
-        ),
+        StepFn::Structure(step) => (step as *const c_void, [legs, drive, in_c, 0, 0, 0]),
     };
     // SAFETY: the assembly calls `step` as its type says, with pointers that are valid and unshared here.
     unsafe { assembly(&Call { step, arguments }) }

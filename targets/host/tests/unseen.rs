@@ -23,7 +23,10 @@ const RUNS: [(&str, f64, f64); 4] = [
 
 /// The greatest true phase current over the trip level, and the fault, with sensor a as it is or frozen at the count of
 /// no current.
-fn greatest_current((variant, speed, share): (&str, f64, f64), is_frozen: bool) -> (f64, Option<Fault>) {
+fn greatest_current(
+    (variant, speed, share): (&str, f64, f64),
+    is_frozen: bool,
+) -> (f64, Option<Fault>) {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     let drive = prepare(&motor, Some(variant)).expect("generates");
     let inverter = &drive.spec.inverter;
@@ -52,10 +55,7 @@ fn greatest_current((variant, speed, share): (&str, f64, f64), is_frozen: bool) 
 fn a_sensor_frozen_at_mid_scale_drives_the_true_current_beyond_the_trip_level_without_a_fault() {
     for run in RUNS {
         let (sound, fault) = greatest_current(run, false);
-        assert!(
-            sound < 1.0 && fault.is_none(),
-            "{run:?}: {sound} {fault:?}"
-        );
+        assert!(sound < 1.0 && fault.is_none(), "{run:?}: {sound} {fault:?}");
         let (frozen, fault) = greatest_current(run, true);
         println!("{run:?}: {frozen:.2} times the trip level, {fault:?}");
         assert_eq!(fault, None, "{run:?} sees it: change what is said");

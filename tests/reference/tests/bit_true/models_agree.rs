@@ -48,7 +48,13 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
                 bit_true.set_bus(counts);
                 ideal.set_bus(counts);
             }
-            Some(Action::Reset) => bit_true.reset(),
+            Some(Action::Reset) => {
+                bit_true.reset();
+                // The set-point is 0 then, unless the reset was ignored.
+                if bit_true.set_point_words()[0] == 0.0 {
+                    ideal.set_current(0);
+                }
+            }
             Some(Action::Calibrate) => bit_true.calibrate(),
             Some(Action::Precharge) => bit_true.precharge(),
             Some(Action::Remember | Action::Recall) | None => {}
