@@ -98,7 +98,11 @@ impl Plant {
             sextants.floor() + 1.0 - sextants
         };
         let ticks = since * FRAC_PI_3 / self.omega_e.abs() / inverter.t_s * inverter.ticks;
-        Sample::with_hall([adc(self.i[0]), adc(self.i[1])], self.spec.motor.hall_codes[sector]).hall_ticks(ticks.floor().min(65_535.0) as u16)
+        Sample::with_hall(
+            [adc(self.i[0]), adc(self.i[1])],
+            self.spec.motor.hall_codes[sector],
+        )
+        .hall_ticks(ticks.floor().min(65_535.0) as u16)
     }
 
     /// One control period under three duties.
