@@ -90,8 +90,12 @@ impl Limits {
     #[inline]
     fn is_over(&self, [i_a, i_b]: [Word; 2]) -> bool {
         let i_c = -(i_a + i_b);
-        i_a.exceeds(self.trip) || i_b.exceeds(self.trip) || i_c.exceeds(self.trip)
+        !(within(i_a, self.trip) && within(i_b, self.trip) && within(i_c, self.trip))
     }
+}
+
+fn within(i: Word, trip: i32) -> bool {
+    i.0.wrapping_add(trip) as u32 <= (trip as u32).wrapping_mul(2)
 }
 
 /// Whether three Hall sensors can give the code: 001 to 110.
@@ -202,16 +206,13 @@ impl Supervisor {
             limits.current(adc_b.into(), offset_b),
         ];
         let stalled = self.watch_stall(limits, sample.hall, is_demanded);
-        if self.mode != Mode::Run
-            || limits.is_at_end(adc_a)
-            || limits.is_at_end(adc_b)
-            || !is_hall_code(sample.hall)
-            || limits.is_over(i)
-            || stalled
-        {
-            return None;
-        }
-        Some(Checked {
+        let is_fit = self.mode == Mode::Run
+            && !limits.is_at_end(adc_a)
+            && !limits.is_at_end(adc_b)
+            && is_hall_code(sample.hall)
+            && !limits.is_over(i)
+            && !stalled;
+        is_fit.then(|| Checked {
             i,
             hall: sample.hall.into(),
             hall_ticks: sample.hall_ticks.into(),

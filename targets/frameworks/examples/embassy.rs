@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-use core::cell::RefCell;
+use core::cell::Cell;
 use core::future::pending;
 use critical_section::Mutex;
 use embassy_executor::Spawner;
@@ -13,15 +13,17 @@ use static_cell::StaticCell;
 static DRIVE: StaticCell<Drive> = StaticCell::new();
 
 /// Handed over before the interrupt is let in; taken by it alone from then on.
-static CONTROL: Mutex<RefCell<Option<ControlLoop>>> = Mutex::new(RefCell::new(None));
+static CONTROL: Mutex<Cell<Option<ControlLoop>>> = Mutex::new(Cell::new(None));
 
 /// The ADCs have sampled: once per control period. Nothing may interrupt it, so that the critical section
 /// delays nothing.
 #[interrupt]
 fn ADC0_SEQUENCE_0() {
     critical_section::with(|token| {
-        if let Some(control) = CONTROL.borrow_ref_mut(token).as_mut() {
+        let place = CONTROL.borrow(token);
+        if let Some(mut control) = place.take() {
             REGISTERS.apply(control.step(&REGISTERS.sample()));
+            place.set(Some(control));
         }
     });
 }
@@ -38,7 +40,7 @@ async fn main(spawner: Spawner) {
     let (set_point, mut control) = DRIVE.init(Drive::new()).split();
     // Offsets of the current sensors, then bootstrap capacitors; control begins by itself.
     control.calibrate();
-    critical_section::with(|token| CONTROL.replace(token, Some(control)));
+    critical_section::with(|token| CONTROL.borrow(token).set(Some(control)));
     // Start the PWM timer and what triggers the ADCs, and let the interrupt in, here.
     spawner.spawn(follow(set_point).expect("one of it"));
 }
