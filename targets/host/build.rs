@@ -13,7 +13,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, fs};
 
-const FOLDER: &str = "../motors";
+/// A link to `targets/motors`, which a package holds as a folder.
+const FOLDER: &str = "motors";
 const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The variants of the result table, each with both ways of reading Hall edges. The program looks

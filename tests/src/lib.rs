@@ -23,3 +23,8 @@ pub mod states;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// The example of the generator's README.
+#[cfg(doctest)]
+#[doc = include_str!("../../codegen/README.md")]
+pub struct GeneratorReadme;

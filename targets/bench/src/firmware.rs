@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub const PROGRAMS: [&str; 2] = ["bench", "c99"];
 
 /// Longest run of the emulator.
-const PATIENCE: Duration = Duration::from_secs(15 * 60);
+const PATIENCE: Duration = Duration::from_mins(15);
 
 /// Built firmware.
 #[derive(Debug)]

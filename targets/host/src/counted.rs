@@ -61,7 +61,7 @@ impl Counted {
     /// # Errors
     /// When the file beside the target is not one of figures.
     pub fn on_cortex_m4() -> Result<Self, CountedError> {
-        Ok(Self::parse(include_str!("../../cortex-m4/cost.toml"))?)
+        Ok(Self::parse(include_str!("../cortex-m4-cost.toml"))?)
     }
 
     /// The figures of a step function.

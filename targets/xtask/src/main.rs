@@ -5,6 +5,7 @@
 //! before it runs, so that it can be repeated by hand.
 
 mod compile_time;
+mod packages;
 mod steps;
 
 use clap::{Parser, Subcommand};
@@ -22,15 +23,17 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Format, lints, documentation and all tests
+    /// Format, contents of packages, lints, documentation and all tests
     Test,
-    /// `test`, then bit-for-bit verification of every library motor over many steps, all products of options, `commands`,
-    /// and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
+    /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps, all products of
+    /// options, `commands`, and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
         steps: u64,
     },
+    /// Packs every crate that users take, and builds each from what was packed
+    Packages,
     /// Builds the firmware of every target and lets it run on the emulated board
     Firmware(Forwarded),
     /// Processor in the loop: closed-loop vectors on the emulated cores, every word compared (`--target`, `--steps`)
@@ -59,11 +62,14 @@ struct Forwarded {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Test => steps::checker().and_then(|()| steps::run(&steps::checks())),
+        Command::Test => steps::checker().and_then(|()| checks()),
         Command::Nightly { steps } => steps::checker()
             .and_then(|()| steps::certificate_checker())
-            .and_then(|()| steps::run(&steps::checks()))
-            .and_then(|()| steps::run(&steps::long_checks(steps))),
+            .and_then(|()| checks())
+            .and_then(|()| steps::run(&steps::long_checks(steps)?)),
+        Command::Packages => {
+            packages::check_contents().and_then(|()| steps::run(&[packages::pack(true)?]))
+        }
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
@@ -79,4 +85,10 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// All checks of a push.
+fn checks() -> Result<(), String> {
+    packages::check_contents()?;
+    steps::run(&steps::checks()?)
 }

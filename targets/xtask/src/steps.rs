@@ -1,5 +1,6 @@
 //! The steps of each task: cargo commands with what they need.
 
+use crate::packages;
 use std::env;
 use std::path::Path;
 use std::process::Command;
@@ -8,13 +9,13 @@ use std::time::Instant;
 /// One cargo command.
 pub struct Step {
     name: &'static str,
-    arguments: Vec<String>,
-    environment: Vec<(&'static str, &'static str)>,
+    pub arguments: Vec<String>,
+    pub environment: Vec<(&'static str, &'static str)>,
     /// A cargo subcommand that must be installed, and how to get it.
     needs: Option<(&'static str, &'static str)>,
 }
 
-fn step(name: &'static str, arguments: &[&str]) -> Step {
+pub fn step(name: &'static str, arguments: &[&str]) -> Step {
     let arguments = arguments
         .iter()
         .map(|&argument| argument.to_owned())
@@ -28,8 +29,11 @@ fn step(name: &'static str, arguments: &[&str]) -> Step {
 }
 
 /// All checks of a push.
-pub fn checks() -> Vec<Step> {
-    vec![
+///
+/// # Errors
+/// What could not be read of the workspace.
+pub fn checks() -> Result<Vec<Step>, String> {
+    Ok(vec![
         Step {
             needs: Some(("fmt", "rustup component add rustfmt")),
             ..step("format", &["fmt", "--all", "--check"])
@@ -39,6 +43,7 @@ pub fn checks() -> Vec<Step> {
         firmware_format("targets/riscv32/Cargo.toml"),
         firmware_format("targets/firmware-c/Cargo.toml"),
         firmware_format("targets/frameworks/Cargo.toml"),
+        packages::pack(false)?,
         Step {
             needs: Some(("clippy", "rustup component add clippy")),
             ..step(
@@ -61,7 +66,7 @@ pub fn checks() -> Vec<Step> {
         on_target("firmware", &[]),
         on_target("pil", &[]),
         on_target("cost", &[]),
-    ]
+    ])
 }
 
 /// The format of a firmware crate, which is none of the workspace.
@@ -169,7 +174,10 @@ pub fn faults() -> Step {
 }
 
 /// What is too long for a push.
-pub fn long_checks(steps: u64) -> Vec<Step> {
+///
+/// # Errors
+/// What could not be read of the workspace.
+pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
     let steps = steps.to_string();
     let verify = [
         "run",
@@ -218,7 +226,8 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
         "full_product",
     ];
     let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
-    vec![
+    Ok(vec![
+        packages::pack(true)?,
         step("verification", &verify),
         Step {
             environment: vec![("HEXAGEN_DECISIONS", "100000000")],
@@ -249,7 +258,7 @@ pub fn long_checks(steps: u64) -> Vec<Step> {
             environment: vec![("HEXAGEN_RANDOM_MOTORS", "1000")],
             ..step("proofs of random motors", &random)
         },
-    ]
+    ])
 }
 
 /// Rewrites recorded expectations.

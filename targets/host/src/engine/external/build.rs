@@ -53,45 +53,30 @@ impl BuildError {
     }
 }
 
-/// The runtime's sources.
+/// The runtime's sources, by a link to their folder, which a package holds as a folder of its own.
 const RUNTIME: [(&str, &str); 10] = [
-    ("lib.rs", include_str!("../../../../../runtime/src/lib.rs")),
-    (
-        "arith.rs",
-        include_str!("../../../../../runtime/src/arith.rs"),
-    ),
-    (
-        "boundary.rs",
-        include_str!("../../../../../runtime/src/boundary.rs"),
-    ),
+    ("lib.rs", include_str!("../../../runtime/lib.rs")),
+    ("arith.rs", include_str!("../../../runtime/arith.rs")),
+    ("boundary.rs", include_str!("../../../runtime/boundary.rs")),
     (
         "bus_watch.rs",
-        include_str!("../../../../../runtime/src/bus_watch.rs"),
+        include_str!("../../../runtime/bus_watch.rs"),
     ),
     (
         "constants.rs",
-        include_str!("../../../../../runtime/src/constants.rs"),
+        include_str!("../../../runtime/constants.rs"),
     ),
     (
         "double_buffer.rs",
-        include_str!("../../../../../runtime/src/double_buffer.rs"),
+        include_str!("../../../runtime/double_buffer.rs"),
     ),
-    (
-        "drive.rs",
-        include_str!("../../../../../runtime/src/drive.rs"),
-    ),
+    ("drive.rs", include_str!("../../../runtime/drive.rs")),
     (
         "shared_word.rs",
-        include_str!("../../../../../runtime/src/shared_word.rs"),
+        include_str!("../../../runtime/shared_word.rs"),
     ),
-    (
-        "status.rs",
-        include_str!("../../../../../runtime/src/status.rs"),
-    ),
-    (
-        "word.rs",
-        include_str!("../../../../../runtime/src/word.rs"),
-    ),
+    ("status.rs", include_str!("../../../runtime/status.rs")),
+    ("word.rs", include_str!("../../../runtime/word.rs")),
 ];
 
 const DRIVER: &str = include_str!("driver.rs");

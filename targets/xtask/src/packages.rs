@@ -1,0 +1,115 @@
+//! What users take from a registry: every crate of the workspace that does not say `publish = false`.
+
+use crate::steps::{Step, root, step};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+/// What every package holds at its top.
+const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
+const README: &str = "README.md";
+
+/// A crate of the workspace.
+struct Member {
+    name: String,
+    folder: PathBuf,
+    is_published: bool,
+}
+
+/// Packs all published crates; with `verify`, builds each from what was packed, and against the others as packed.
+///
+/// # Errors
+/// What could not be read of the workspace.
+pub fn pack(verify: bool) -> Result<Step, String> {
+    // Before a commit, too: what is packed is the folder as it is.
+    let mut pack = step("packages", &["package", "--workspace", "--allow-dirty"]);
+    if verify {
+        // A package has no profiles of its own; with the workspace's, dependencies are those that the tests have built.
+        for variable in [
+            "CARGO_PROFILE_DEV_DEBUG",
+            "CARGO_PROFILE_DEV_BUILD_OVERRIDE_DEBUG",
+        ] {
+            pack.environment.push((variable, "line-tables-only"));
+        }
+    } else {
+        pack.arguments.push("--no-verify".to_owned());
+    }
+    let unpublished = members()?.into_iter().filter(|member| !member.is_published);
+    pack.arguments
+        .extend(unpublished.flat_map(|member| ["--exclude".to_owned(), member.name]));
+    Ok(pack)
+}
+
+/// Checks that each package holds both licences, word for word, and a README.
+///
+/// # Errors
+/// What a package lacks, or what could not be read.
+pub fn check_contents() -> Result<(), String> {
+    for member in members()?.iter().filter(|member| member.is_published) {
+        let files = packed_files(&member.name)?;
+        if let Some(missing) = LICENCES
+            .into_iter()
+            .chain([README])
+            .find(|&file| !files.lines().any(|line| line == file))
+        {
+            return Err(format!("the package {} has no {missing}", member.name));
+        }
+        for licence in LICENCES {
+            if read(&member.folder.join(licence))? != read(&root().join(licence))? {
+                return Err(format!(
+                    "{licence} of the package {} is not that of the repository",
+                    member.name
+                ));
+            }
+        }
+    }
+    println!("== contents of packages: passed");
+    Ok(())
+}
+
+/// The paths of all files that a package will hold, one per line.
+fn packed_files(package: &str) -> Result<String, String> {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["package", "--list", "--allow-dirty", "--package", package])
+        .current_dir(root())
+        .output()
+        .map_err(|error| format!("cannot run cargo: {error}"))?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// The crates of the workspace.
+fn members() -> Result<Vec<Member>, String> {
+    let workspace = read(&root().join("Cargo.toml"))?;
+    let (_, rest) = workspace
+        .split_once("\nmembers = [")
+        .ok_or("Cargo.toml has no list of members")?;
+    let (folders, _) = rest.split_once(']').unwrap_or((rest, ""));
+    folders
+        .split('"')
+        .skip(1)
+        .step_by(2)
+        .map(|folder| member(root().join(folder)))
+        .collect()
+}
+
+fn member(folder: PathBuf) -> Result<Member, String> {
+    let file = folder.join("Cargo.toml");
+    let manifest = read(&file)?;
+    let name = manifest
+        .lines()
+        .find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'))
+        .ok_or_else(|| format!("{} names no package", file.display()))?;
+    Ok(Member {
+        name: name.to_owned(),
+        is_published: !manifest.lines().any(|line| line == "publish = false"),
+        folder,
+    })
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
