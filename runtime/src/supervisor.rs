@@ -90,12 +90,9 @@ impl Limits {
     #[inline]
     fn is_over(&self, [i_a, i_b]: [Word; 2]) -> bool {
         let i_c = -(i_a + i_b);
-        !(within(i_a, self.trip) && within(i_b, self.trip) && within(i_c, self.trip))
+        let range = self.trip.wrapping_neg()..=self.trip;
+        ![i_a, i_b, i_c].iter().all(|i| range.contains(&i.0))
     }
-}
-
-fn within(i: Word, trip: i32) -> bool {
-    i.0.wrapping_add(trip) as u32 <= (trip as u32).wrapping_mul(2)
 }
 
 /// Whether three Hall sensors can give the code: 001 to 110.

@@ -117,6 +117,9 @@ const KINDS_OF_SUPERVISOR: &[Kind] = &[
     }),
     (">= for >", |text, code| replaced(text, code, " > ", " >= ")),
     ("> for >=", |text, code| replaced(text, code, " >= ", " > ")),
+    (".. for ..=", |text, code| {
+        replaced(text, code, "..=self", "..self")
+    }),
     ("== for !=", |text, code| {
         replaced(text, code, " != ", " == ")
     }),
