@@ -63,6 +63,10 @@ fn write_supervisors(out_dir: &Path) {
         println!("cargo:rerun-if-changed={}", path.display());
         let text = fs::read_to_string(path).expect("a source of the runtime");
         let text = text.replace("#[cfg(test)]\nmod tests;\n", "");
+        let text: String = text
+            .split_inclusive('\n')
+            .filter(|line| !line.contains("feature = \"defmt\""))
+            .collect();
         let code = text.split("#[cfg(test)]").next().unwrap_or_default();
         code.replace("crate::", "super::")
     };

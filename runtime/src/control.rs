@@ -75,7 +75,7 @@ pub trait Control: Sized + 'static {
     /// [`SpeedLoop::speed`] of a drive whose speed loop asks for the current; none of others.
     const SPEED: Option<fn(Word) -> Word> = None;
     /// [`MeasuredBus::bus`] of a drive that is told its bus voltage; none of others.
-    const TOLD_BUS: Option<fn(Word) -> <Self::Bus as Bus>::Words> = None;
+    const TOLD_BUS: Option<fn(Word) -> BusWords<Self>> = None;
 
     /// The set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;
@@ -97,6 +97,9 @@ pub trait Control: Sized + 'static {
     fn observe(state: &Self::State) -> Observation;
 }
 
+/// The words of a drive's bus voltage.
+pub type BusWords<C> = <<C as Control>::Bus as Bus>::Words;
+
 /// A drive whose current is asked for by a speed loop: `speed_loop: on`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no speed loop",
@@ -116,7 +119,7 @@ pub trait SpeedLoop: Control {
 )]
 pub trait MeasuredBus: Control {
     /// The words of a voltage, an ADC count.
-    fn bus(counts: Word) -> <Self::Bus as Bus>::Words;
+    fn bus(counts: Word) -> BusWords<Self>;
 }
 
 /// What the main program last asked for, in words, as a step takes it.
@@ -148,7 +151,7 @@ impl<C: Control> Words<C> {
     /// The bus voltage that was told.
     #[inline]
     #[must_use]
-    pub fn bus(&self) -> <C::Bus as Bus>::Words {
+    pub fn bus(&self) -> BusWords<C> {
         self.bus.read()
     }
 }

@@ -45,7 +45,7 @@ impl<C: Control> Drive<C> {
             assert!(
                 C::LIMITS.hold(),
                 "limits of a controller contradict each other"
-            )
+            );
         };
         Self {
             set_point: SetPoint::new(),

@@ -40,7 +40,9 @@ mod word;
 pub use bus::{Bus, FixedBus, ToldBus};
 pub use command::{Command, Intervals, LegState, Legs};
 pub use constants::pairs_from_bits;
-pub use control::{Control, MeasuredBus, Observation, SpeedLoop, State, Unit, Units, Words};
+pub use control::{
+    BusWords, Control, MeasuredBus, Observation, SpeedLoop, State, Unit, Units, Words,
+};
 pub use drive::{ControlLoop, Drive, DynLoop};
 pub use fixed;
 pub use format::{Format, Rounding};

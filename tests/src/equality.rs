@@ -64,6 +64,10 @@ impl Comparisons {
     }
 
     /// The program in a sample's period, with the bus voltage as set, behind a supervisor.
+    ///
+    /// # Panics
+    ///
+    /// If the program is not that of a drive.
     pub fn probe(&self, limits: Limits, sample: Sample, set: Set) -> Probe<'_> {
         let mut machine = Machine::of_program(&self.probe);
         if let Some(counts) = set.bus {

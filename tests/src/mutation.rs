@@ -182,6 +182,10 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
 
 /// All mutants of the supervisor, but for what its limits must hold (faults of that are planted where
 /// it is tested) and for access to its words.
+///
+/// # Panics
+///
+/// If the text is not the supervisor's.
 pub fn mutants_of_supervisor(text: &str) -> Vec<Mutant> {
     let behind = text.find("    /// A phase current in words of current");
     let mut start = behind.expect("what stands behind `Limits::hold`");

@@ -85,7 +85,6 @@ macro_rules! new {
     clippy::all,
     clippy::pedantic,
     dead_code,
-    unexpected_cfgs,
     unused,
     reason = "the runtime's own text, and what a fault leaves without use"
 )]

@@ -77,12 +77,12 @@ impl Comment<'_> {
     }
 }
 
-/// The words of a line; code stays together.
+/// The words of a line; code stays together, and so does what would read as a list at the begin of a line.
 fn words(line: &str) -> Vec<&str> {
     let (mut words, mut begin, mut is_code) = (vec![], 0, false);
     for (at, letter) in line.char_indices() {
         is_code ^= letter == '`';
-        if letter == ' ' && !is_code {
+        if letter == ' ' && !is_code && !begins_item(&line[at..]) {
             words.push(&line[begin..at]);
             begin = at + 1;
         }
@@ -90,6 +90,14 @@ fn words(line: &str) -> Vec<&str> {
     words.push(&line[begin..]);
     words.retain(|word| !word.is_empty());
     words
+}
+
+/// Whether a line that goes on with this text would begin an item of a list, or a heading.
+fn begins_item(text: &str) -> bool {
+    [" - ", " + ", " * ", " # "]
+        .iter()
+        .any(|sign| text.starts_with(sign))
+        || is_numbered(text.trim_start())
 }
 
 /// `1. …`

@@ -37,10 +37,7 @@ pub(super) fn params_read(function: &Function) -> Vec<usize> {
 }
 
 /// Names of the inputs that the values use, in the order of the inputs.
-pub(super) fn inputs_used<'p>(
-    function: &'p Function,
-    values: impl Iterator<Item = Value>,
-) -> Vec<&'p str> {
+pub(super) fn inputs_used(function: &Function, values: impl Iterator<Item = Value>) -> Vec<&str> {
     let mut used: Vec<u32> = values
         .filter_map(|value| match function.node(value).op {
             Op::Input(n) => Some(n),

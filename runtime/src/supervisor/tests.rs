@@ -497,36 +497,36 @@ const CONTRADICTIONS: [(&str, Variant); 21] = [
     }),
     ("a fraction bit more", |limits| limits.current_bits += 1),
     ("fraction bits beyond the word", |limits| {
-        limits.current_bits = 31
+        limits.current_bits = 31;
     }),
     ("fraction bits beyond all", |limits| {
-        limits.current_bits = u32::MAX
+        limits.current_bits = u32::MAX;
     }),
     ("offset below the least", |limits| {
-        limits.offset = limits.offsets[0] - 1
+        limits.offset = limits.offsets[0] - 1;
     }),
     ("offset above the greatest", |limits| {
-        limits.offset = limits.offsets[1] + 1
+        limits.offset = limits.offsets[1] + 1;
     }),
     ("least offset one less", |limits| limits.offsets[0] -= 1),
     ("least offset one more", |limits| limits.offsets[0] += 1),
     ("greatest offset one less", |limits| limits.offsets[1] -= 1),
     ("greatest offset one more", |limits| limits.offsets[1] += 1),
     ("offsets beyond the range", |limits| {
-        limits.offsets[1] = limits.adc_max + 1
+        limits.offsets[1] = limits.adc_max + 1;
     }),
     ("least current one more", |limits| limits.currents[0] += 1),
     ("least current one less", |limits| limits.currents[0] -= 1),
     ("greatest current one less", |limits| {
-        limits.currents[1] -= 1
+        limits.currents[1] -= 1;
     }),
     ("greatest current one more", |limits| {
-        limits.currents[1] += 1
+        limits.currents[1] += 1;
     }),
     ("no trip level", |limits| limits.trip = 0),
     ("too many samples", |limits| limits.calibration_log2 = 16),
     ("stall counted beyond the word", |limits| {
-        limits.stall_periods = i32::MAX
+        limits.stall_periods = i32::MAX;
     }),
 ];
 

@@ -196,12 +196,10 @@ fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
         .arg("-DHEXAGEN_SIGNALS")
         .args(CHECK.split_whitespace())
         .args([&format!("{}.c", sources.name), "hexagen.c"])
-        .args(
-            files
-                .iter()
-                .map(|(name, _)| name)
-                .filter(|name| name.ends_with(".c") && **name != "hexagen.c"),
-        )
+        .args(files.iter().map(|(name, _)| name).filter(|name| {
+            name.strip_suffix(".c")
+                .is_some_and(|stem| stem != "hexagen")
+        }))
         .args(["-o", "program"]);
     let built = cc.output().expect("a C compiler: `cc`, or what `CC` names");
     if !built.status.success() {

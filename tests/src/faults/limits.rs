@@ -24,7 +24,7 @@ const FAULTS: [Fault; 19] = [
         limits.trip += 1 << limits.current_bits;
     }),
     ("twice the calibration", |limits| {
-        limits.calibration_log2 += 1
+        limits.calibration_log2 += 1;
     }),
     ("half the calibration", |limits| {
         limits.calibration_log2 = limits.calibration_log2.wrapping_sub(1);

@@ -179,7 +179,6 @@ fn halves<C: Control<Command = Legs>>() {
     interrupt.control.calibrate();
     interrupt.strikes(1);
     assert_eq!(set_point.status().mode, Mode::Calibrate, "{}", C::NAME);
-    drop(interrupt);
     assert_eq!(drive.status().fault, None, "{}", C::NAME);
 }
 
@@ -218,6 +217,11 @@ fn a_drive_is_chosen_at_run_time() {
 }
 
 /// The set-point goes to a task, the control loop to the context of an interrupt.
+fn task<C: MeasuredBus>(set_point: &SetPoint<C>) {
+    set_point.set_bus(2400);
+    set_point.set_current_ma(10_000);
+}
+
 #[test]
 fn a_drive_in_a_static_is_handed_over_in_halves() {
     static FRONT: StaticCell<Drive<FrontHub>> = StaticCell::new();
@@ -227,10 +231,6 @@ fn a_drive_in_a_static_is_handed_over_in_halves() {
             .map(|_| control.step(&sample(1)))
             .any(|legs| legs.compare().iter().any(|&compare| compare > 1000))
     });
-    fn task<C: MeasuredBus>(set_point: &SetPoint<C>) {
-        set_point.set_bus(2400);
-        set_point.set_current_ma(10_000);
-    }
     task(set_point);
     assert!(interrupt.join().expect("it ends"), "the set-point arrives");
     assert!(set_point.status().is_running());

@@ -123,14 +123,13 @@ impl CurrentLoop<'_, '_> {
         l.b.stage("complete_voltage", &[doc]);
         let u_c = l.third_phase("u_c_unsat", u[0], u[1]);
         let phases = [u[0], u[1], u_c];
-        let pair = match self.predict_off_legs(options, front, phases) {
-            Some(off_legs) => self.nearest_physical(&off_legs, front, phases, None, None),
-            None => {
-                let l = &mut *self.lowering;
-                state_exact_scores(l, u_c);
-                pair_stage(l);
-                nearest_nominal(l, front, phases)
-            }
+        let pair = if let Some(off_legs) = self.predict_off_legs(options, front, phases) {
+            self.nearest_physical(&off_legs, front, phases, None, None)
+        } else {
+            let l = &mut *self.lowering;
+            state_exact_scores(l, u_c);
+            pair_stage(l);
+            nearest_nominal(l, front, phases)
         };
         let l = &mut *self.lowering;
         l.b.name("vector_pair", pair);

@@ -300,9 +300,15 @@ fn call(
 fn choice(condition: Written, then: Written, otherwise: Written) -> Written {
     let condition = condition.within(Binding::Branch);
     let (then_branch, otherwise_branch) = (then.tokens.clone(), otherwise.tokens.clone());
+    let is_choice = otherwise.embedded.is_some();
+    let otherwise_branch = if is_choice {
+        otherwise_branch
+    } else {
+        quote!({ #otherwise_branch })
+    };
     let [then, otherwise] = [then, otherwise].map(|arm| arm.within(Binding::Branch));
     Written {
-        tokens: quote!(if #condition { #then_branch } else { #otherwise_branch }),
+        tokens: quote!(if #condition { #then_branch } else #otherwise_branch),
         binding: Binding::Branch,
         embedded: Some(quote!(select(#condition, #then, #otherwise))),
     }

@@ -16,7 +16,7 @@ use super::tables::look_up_command;
 use crate::ir::{AtRest, Function, Op, Program, Value};
 
 /// The step of a program as entries of a law.
-pub(super) struct Entries {
+pub(super) struct StepCode {
     /// `track`, `rest` and `step`.
     pub entries: Source,
     /// The type of what `track` hands over to the others.
@@ -28,7 +28,7 @@ pub(super) struct Entries {
 }
 
 /// The entries of a program's step. A command that is looked up as a `whole` goes out from its row.
-pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> Entries {
+pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> StepCode {
     let context = Context::of_step(program, whole);
     let plans = context.plan();
     let stages = plans
@@ -40,7 +40,7 @@ pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> 
         rotor: context.handed_over(),
     };
     let (track, rest, control) = (step.track(), step.rest(), step.control(whole));
-    Entries {
+    StepCode {
         entries: quote!(#track #rest #control),
         rotor: step.rotor_type(),
         rotor_definition: step.rotor_definition(),

@@ -1,6 +1,6 @@
 //! The emitted type: its constants, its state, and what it gives to the runtime.
 
-use super::function::{Entries, Setter};
+use super::function::{Setter, StepCode};
 use super::imports::unsettled;
 use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
@@ -54,7 +54,7 @@ impl Types<'_> {
     }
 
     /// What the runtime runs.
-    pub(super) fn control(&self, step: &Entries, setters: &[(&str, Setter)]) -> Source {
+    pub(super) fn control(&self, step: &StepCode, setters: &[(&str, Setter)]) -> Source {
         let name = unsettled(self.name);
         let text = self.name;
         let Interface {
@@ -96,7 +96,7 @@ impl Types<'_> {
         });
         let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
         let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
-        let Entries { entries, rotor, .. } = step;
+        let StepCode { entries, rotor, .. } = step;
         let observe = self.observe();
         quote! {
             impl Control for #name {

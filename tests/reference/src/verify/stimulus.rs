@@ -183,7 +183,7 @@ impl Stimulus {
         let dice = self.random.u32(..);
         let action = if context.tripped && dice.is_multiple_of(2) {
             Some(Action::Reset)
-        } else if self.is_reset && dice & 14 != 0 {
+        } else if self.is_reset && !(dice >> 1).is_multiple_of(8) {
             Some(self.demand())
         } else if dice >> 25 == 0 {
             self.action()
