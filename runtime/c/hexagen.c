@@ -290,18 +290,18 @@ static int32_t on(const hexagen_legs *legs, uint16_t leg)
     return (legs->state[leg] == HEXAGEN_LEG_OFF) ? HEXAGEN_NONE : (int32_t)legs->compare[leg];
 }
 
-void hexagen_answer(hexagen_port *port, const hexagen_checked *checked, const hexagen_legs *legs,
-    const hexagen_observation *observation)
+void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs legs,
+    hexagen_observation observation)
 {
-    port->words[0] = checked->i_a;
-    port->words[1] = checked->i_b;
-    port->words[2] = checked->hall;
-    port->words[3] = on(legs, 0);
-    port->words[4] = on(legs, 1);
-    port->words[5] = on(legs, 2);
-    port->words[6] = observation->e_a;
-    port->words[7] = observation->e_b;
-    port->words[8] = observation->speed;
+    port->words[0] = checked.i_a;
+    port->words[1] = checked.i_b;
+    port->words[2] = checked.hall;
+    port->words[3] = on(&legs, 0);
+    port->words[4] = on(&legs, 1);
+    port->words[5] = on(&legs, 2);
+    port->words[6] = observation.e_a;
+    port->words[7] = observation.e_b;
+    port->words[8] = observation.speed;
     port->turn = 2;
 }
 

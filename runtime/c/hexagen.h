@@ -600,6 +600,21 @@ static inline bool hexagen_bus_is_stale(const hexagen_bus *bus)
 
 /* ---- Signals for people ------------------------------------------------------------------ */
 
+/** A word of what there is not. */
+#define HEXAGEN_NONE INT32_MIN
+
+/** What a law believes of the motor, in its own words; HEXAGEN_NONE of what it does not know. */
+typedef struct {
+    /** EMF of phases a and b, words of voltage. */
+    int32_t e_a;
+    int32_t e_b;
+    /** Speed, forward positive; 0 while it is unknown. */
+    int32_t speed;
+} hexagen_observation;
+
+/** The observation of a law that tells nothing. */
+#define HEXAGEN_UNOBSERVED { HEXAGEN_NONE, HEXAGEN_NONE, HEXAGEN_NONE }
+
 /*
  * Where HEXAGEN_SIGNALS is defined, for all files of a program alike: the look whether somebody
  * asks takes some ten instructions of every control period, and a drive 40 bytes more.
@@ -620,7 +635,7 @@ typedef struct {
     int32_t voltages[3];
     /** Whether the legs are off. */
     bool is_off[3];
-    /** Whether the law keeps an EMF, and that of phases a, b, c, volt; else 0. */
+    /** Whether the law knows an EMF, and that of phases a, b, c, volt; else 0. */
     bool has_emf;
     int32_t emf[3];
     /** Whether the law follows Hall edges, and the speed in rpm, forward positive; 0 if unknown. */
@@ -650,18 +665,6 @@ typedef struct {
     uint16_t sectors[8];
 } hexagen_units;
 
-/** A word of what there is not. */
-#define HEXAGEN_NONE INT32_MIN
-
-/** What a law believes of the motor, in its own words; HEXAGEN_NONE of what it does not keep. */
-typedef struct {
-    /** EMF of phases a and b, words of voltage. */
-    int32_t e_a;
-    int32_t e_b;
-    /** Speed, forward positive; 0 while it is unknown. */
-    int32_t speed;
-} hexagen_observation;
-
 /**
  * Where the words of a period go over. The control loop writes while it is asked, and at no other
  * time; the main program writes while it is not, and reads while it is answered. Neither side ever
@@ -682,9 +685,9 @@ static inline bool hexagen_is_asked(const hexagen_port *port)
     return port->turn == 1;
 }
 
-/** Answers with the words of this period. */
-HEXAGEN_COLD void hexagen_answer(hexagen_port *port, const hexagen_checked *checked,
-    const hexagen_legs *legs, const hexagen_observation *observation);
+/** Answers with the words of this period; by value, so that they stand in memory on this path alone. */
+HEXAGEN_COLD void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs legs,
+    hexagen_observation observation);
 
 /** The signals that are there; else asks for those of the next controlled period. */
 bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signals *signals);

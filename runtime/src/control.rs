@@ -66,7 +66,7 @@ pub trait Control: Sized + 'static {
     const FORMATS: &'static [Format];
     /// What samples are judged by, and how the drive starts up.
     const LIMITS: Limits;
-    /// Units of the words of [`observe`](Self::observe) and of commands.
+    /// Units of the words of an [`Observation`] and of commands.
     const UNITS: Units;
     /// The set-point word of a drive that begins: 0, or with `speed_loop: on` the greatest current.
     const SET_POINT: Word;
@@ -86,15 +86,15 @@ pub trait Control: Sized + 'static {
     fn track(state: &mut Self::State, sample: &Checked) -> Self::Rotor;
     /// A period without control: forgets what was commanded.
     fn rest(state: &mut Self::State, sample: &Checked, rotor: Self::Rotor);
-    /// A controlled period.
+    /// A controlled period. `observation` is for people and begins empty: what the law knows of the
+    /// motor it tells there, and where nobody asks nothing of it is left once this is inlined.
     fn step(
         state: &mut Self::State,
         set_point: &Words<Self>,
         sample: &Checked,
         rotor: Self::Rotor,
+        observation: &mut Observation,
     ) -> Self::Command;
-    /// What the law believes of the motor, behind a step.
-    fn observe(state: &Self::State) -> Observation;
 }
 
 /// The words of a drive's bus voltage.
@@ -180,11 +180,11 @@ pub struct Units {
     pub sectors: [u8; 8],
 }
 
-/// What a law believes of the motor, in its own words.
+/// What a law knows of the motor in one control period, in its own words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Observation {
-    /// EMF of phases a and b, words of voltage, of a law that keeps one.
+    /// EMF of phases a and b, words of voltage, of a law that works one out.
     pub emf: Option<[Word; 2]>,
-    /// Speed, forward positive, of a law that follows the Hall edges; 0 while it is unknown.
+    /// Speed, forward positive, of a law that times the Hall edges; 0 while it is unknown.
     pub speed: Option<Word>,
 }

@@ -3,7 +3,7 @@
 use crate::arith::Word;
 use crate::bus::Bus;
 use crate::set_point::debug;
-use crate::{Checked, Command, Control, Legs, Sample, SetPoint, State, Status, Supervisor};
+use crate::{Command, Control, Legs, Observation, Sample, SetPoint, State, Status, Supervisor};
 use core::fmt;
 use core::ops::Deref;
 
@@ -182,9 +182,12 @@ impl<C: Control> ControlLoop<'_, C> {
             return rest(set_point, core, *sample);
         };
         let rotor = C::track(&mut core.law, &checked);
-        let command = C::step(&mut core.law, &set_point.words, &checked, rotor);
+        let (law, words) = (&mut core.law, &set_point.words);
+        let mut observation = Observation::default();
+        let command = C::step(law, words, &checked, rotor, &mut observation);
         if set_point.signals.is_asked() {
-            tell(set_point, &core.law, checked, command);
+            let on = command.on();
+            set_point.signals.answer(checked, on, observation);
         }
         command
     }
@@ -241,19 +244,6 @@ fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample)
     C::rest(&mut core.law, &checked, rotor);
     set_point.status.store(core.supervisor.status_bits().into());
     C::Command::at_rest(leg)
-}
-
-/// Answers a main program that has asked for the signals of a period; by value as in [`rest`].
-#[cold]
-#[inline(never)]
-fn tell<C: Control>(
-    set_point: &SetPoint<C>,
-    law: &C::State,
-    checked: Checked,
-    command: C::Command,
-) {
-    let (on, observation) = (command.on(), C::observe(law));
-    set_point.signals.answer(checked, on, observation);
 }
 
 impl<C: Control> fmt::Debug for ControlLoop<'_, C> {

@@ -22,10 +22,10 @@ pub struct Signals {
     /// nominal bus; none of a leg that is off.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub voltages: [Option<I16F16>; 3],
-    /// EMF of phases a, b, c that the law believes in, volt; none of a law that keeps none.
+    /// EMF of phases a, b, c that the law goes by, volt; none of a law that works none out.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub emf: Option<[I16F16; 3]>,
-    /// Speed in rpm, forward positive, 0 while it is unknown; none of a law that follows no edges.
+    /// Speed in rpm, forward positive, 0 while it is unknown; none of a law that does not time the Hall edges.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub speed: Option<I16F16>,
     /// Sector 1 to 6.
@@ -135,7 +135,9 @@ impl Port {
         self.turn.load(Ordering::Relaxed) == ASKED
     }
 
-    /// What this period saw, commanded and believed, where it is wanted.
+    /// What this period saw, commanded and observed, where it is wanted.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn answer(&self, seen: Checked, on: [Option<u16>; 3], observation: Observation) {
         let words = PeriodWords {
             currents: [seen.i_a(), seen.i_b()],

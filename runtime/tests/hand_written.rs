@@ -84,9 +84,11 @@ impl Control for SixStep {
         set_point: &Words<Self>,
         sample: &Checked,
         is_same: bool,
+        observation: &mut Observation,
     ) -> Intervals {
         use LegState::{Low, Off, Pulsed};
         kept.periods = kept.periods + 1;
+        observation.speed = Some(Word(SPEED));
         let [high, low] = match sample.hall().0 {
             1 => [2, 1],
             5 => [0, 1],
@@ -105,13 +107,12 @@ impl Control for SixStep {
         let on = set_point.current().to_u16();
         Intervals::new([on, PERIOD, PERIOD], [driven, freewheeling, freewheeling])
     }
-
-    fn observe(_: &Kept) -> Observation {
-        Observation::default()
-    }
 }
 
 const HALL: u8 = 5;
+
+/// An angle per period.
+const SPEED: i32 = -3;
 
 fn sample(hall: u8) -> Sample {
     Sample::with_hall([2048; 2], hall)

@@ -67,8 +67,12 @@ fn limits(inverter: &InverterSpec, scale: Scale) -> Limits {
 }
 
 fn units(spec: &Spec, scale: Scale) -> Units {
-    let ticks = spec.inverter.hall_capture.ticks_per_period() / spec.inverter.t_s;
-    let turns = ticks / 32_f64.exp2() / f64::from(spec.motor.pole_pairs);
+    // A speed loop goes by the angle per tick, all else by the one per control period.
+    let per_period = match spec.controller.common().speed {
+        Some(_) => spec.inverter.hall_capture.ticks_per_period(),
+        None => 1.0,
+    };
+    let turns = per_period / spec.inverter.t_s / 32_f64.exp2() / f64::from(spec.motor.pole_pairs);
     Units {
         ampere: Unit::of(1.0 / scale.current()),
         volt: Unit::of(1.0 / scale.voltage()),

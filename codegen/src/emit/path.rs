@@ -27,6 +27,19 @@ pub(super) fn output(function: &Function, name: &str) -> Option<Value> {
     found.map(|&(_, value)| value)
 }
 
+/// A value that people are told, by name.
+pub(super) fn told(function: &Function, name: &str) -> Option<Value> {
+    let mut told = function.told.iter();
+    let found = told.find(|(known, _)| known == name);
+    found.map(|&(_, value)| value)
+}
+
+/// What goes out of a function besides its words.
+pub(super) fn results(function: &Function) -> impl Iterator<Item = Value> {
+    let outputs = function.outputs.iter().map(|&(_, value)| value);
+    outputs.chain(function.told.iter().map(|&(_, value)| value))
+}
+
 /// Positions of the set-point words that a function reads.
 pub(super) fn params_read(function: &Function) -> Vec<usize> {
     let read = function.nodes.iter().filter_map(|node| match node.op {
@@ -74,8 +87,7 @@ pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Par
         }
     }
     let mut reads: Vec<Value> = vec![];
-    let outputs = function.outputs.iter().map(|&(_, value)| value);
-    let outputs = outputs.filter(|_| part == Part::Control);
+    let outputs = results(function).filter(|_| part == Part::Control);
     for value in words.iter().map(|&(_, value)| value).chain(outputs) {
         let is_old = matches!(function.node(value).op, Op::State(_));
         if is_old && !reads.contains(&value) {

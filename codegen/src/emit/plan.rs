@@ -269,7 +269,8 @@ fn users(function: &Function) -> Vec<Vec<User>> {
         users[value.index()].push(if leg { User::Leg } else { User::Other });
     }
     let params = function.next_params.iter().map(|&(_, value)| value);
-    for value in params {
+    let told = function.told.iter().map(|&(_, value)| value);
+    for value in params.chain(told) {
         users[value.index()].push(User::Other);
     }
     users

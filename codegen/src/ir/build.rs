@@ -150,6 +150,7 @@ impl Function {
             outputs: vec![],
             next_state: vec![],
             next_params: vec![],
+            told: vec![],
             quantities: vec![],
             tracking: 0,
         }
@@ -201,6 +202,11 @@ impl<'p> FunctionBuilder<'p> {
             joins: vec![],
             rare,
         });
+    }
+
+    /// Tells people a value.
+    pub fn tell(&mut self, name: &str, value: Value) {
+        self.function.told.push((name.to_owned(), value));
     }
 
     /// Ends the tracking: what follows runs in controlled periods only. A new stage must be opened.

@@ -149,6 +149,8 @@ pub struct Function {
     pub stages: Vec<Stage>,
     /// Named results, in order.
     pub outputs: Vec<(String, Value)>,
+    /// What it tells people besides: `e_a` and `e_b`, `speed`, each where it knows one.
+    pub told: Vec<(String, Value)>,
     /// New state words.
     pub next_state: Vec<(StateId, Value)>,
     /// New set-point words.

@@ -80,6 +80,9 @@ impl Function {
         self.outputs
             .iter_mut()
             .for_each(|(_, value)| *value = moved(*value));
+        self.told
+            .iter_mut()
+            .for_each(|(_, value)| *value = moved(*value));
         self.next_state
             .iter_mut()
             .for_each(|(_, value)| *value = moved(*value));
@@ -104,6 +107,7 @@ impl Function {
             }
         }
         let results = self.outputs.iter().map(|&(_, value)| value);
+        let results = results.chain(self.told.iter().map(|&(_, value)| value));
         let words = self
             .next_state
             .iter()

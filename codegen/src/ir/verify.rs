@@ -414,6 +414,8 @@ impl FunctionCheck<'_> {
         self.violations
             .repeated(function.outputs.iter().map(|(name, _)| name));
         self.violations
+            .repeated(function.told.iter().map(|(name, _)| name));
+        self.violations
             .repeated(function.stages.iter().map(|stage| &stage.name));
         let stage_of = self.stage_of_nodes();
         let mut names = HashSet::new();
@@ -436,6 +438,12 @@ impl FunctionCheck<'_> {
         for root in self.roots() {
             note(root, None);
         }
+        for &(_, value) in &function.told {
+            if uses[value.index()].0 == 0 {
+                self.fail(value.index(), "is told to people and used for nothing else");
+            }
+            uses[value.index()] = (uses[value.index()].0 + 1, None);
+        }
         for (index, node) in function.nodes.iter().enumerate() {
             let free = matches!(node.op, Op::Constant(_) | Op::Literal(_));
             if uses[index].0 == 0 {
@@ -451,7 +459,8 @@ impl FunctionCheck<'_> {
 
     fn check_results(&mut self) {
         let function = self.function;
-        let results: Vec<Value> = self.results().collect();
+        let told = function.told.iter().map(|&(_, value)| value);
+        let results: Vec<Value> = self.results().chain(told).collect();
         for result in results {
             if function.node(result).kind != Kind::Word {
                 self.fail(result.index(), "a result is no word");

@@ -249,6 +249,14 @@ fn there_are_no_dead_nodes() {
 }
 
 #[test]
+fn nothing_is_computed_for_people_alone() {
+    refused("is told to people and used for nothing else", |program| {
+        let (_, value) = program.step.outputs.remove(0);
+        program.step.told.push(("speed".to_owned(), value));
+    });
+}
+
+#[test]
 fn tracking_ends_with_a_stage_and_what_it_leaves_can_be_forgotten() {
     refused("tracking does not end with a stage", |program| {
         program.step.tracking = program.step.stages[1].first + 1;

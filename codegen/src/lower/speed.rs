@@ -33,6 +33,8 @@ pub struct SpeedState {
 pub struct Regulated {
     /// The set-point, in place of the one that is set.
     pub j: Value,
+    /// The speed, signed, words of speed.
+    pub speed: Value,
     /// Its integral, and the state that keeps it.
     pub integral: (StateId, Value),
 }
@@ -149,6 +151,7 @@ impl Lowering<'_> {
         self.b.name("speed_integral_moved", moved);
         Regulated {
             j,
+            speed,
             integral: (state.integral, moved),
         }
     }

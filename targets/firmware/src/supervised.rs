@@ -45,12 +45,8 @@ impl<C: Control> Control for Supervised<C> {
     fn rest(_: &mut Nothing, _: &Checked, (): ()) {}
 
     #[inline]
-    fn step(_: &mut Nothing, _: &Words<Self>, _: &Checked, (): ()) -> Legs {
+    fn step(_: &mut Nothing, _: &Words<Self>, _: &Checked, (): (), _: &mut Observation) -> Legs {
         const { Legs::new([0; 3], [LegState::Pulsed; 3]) }
-    }
-
-    fn observe(_: &Nothing) -> Observation {
-        Observation::default()
     }
 }
 

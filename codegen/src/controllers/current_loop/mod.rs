@@ -238,6 +238,15 @@ impl CurrentLoop<'_, '_> {
             outgoing,
         );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
+        let speed = regulated.as_ref().map(|regulated| regulated.speed);
+        let speed = speed.or_else(|| rotor.as_ref().map(|rotor| rotor.step_angle));
+        // Of the target period, where the law goes by that.
+        let believed = if self.needs.emf == EmfUse::Prediction {
+            e_now
+        } else {
+            e
+        };
+        self.tell(believed, speed);
         let off_leg = self.off_leg_of(bus, third);
         let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
         Front {
@@ -257,6 +266,18 @@ impl CurrentLoop<'_, '_> {
             integral: emf.and_then(|emf| emf.integral),
             held,
             speed_integral: regulated.map(|regulated| regulated.integral),
+        }
+    }
+
+    /// Tells people what the law knows of the motor.
+    fn tell(&mut self, e: Option<[Value; 2]>, speed: Option<Value>) {
+        let b = &mut self.lowering.b;
+        if let Some([e_a, e_b]) = e {
+            b.tell("e_a", e_a);
+            b.tell("e_b", e_b);
+        }
+        if let Some(speed) = speed {
+            b.tell("speed", speed);
         }
     }
 

@@ -116,7 +116,7 @@ impl Drive<'_> {
 
     /// What stands behind the law: the public functions, and those that they call.
     pub(super) fn functions(&self) -> String {
-        let mut text = self.step_at_rest() + &where_defined(SIGNALS, &self.tell());
+        let mut text = self.step_at_rest();
         let setters = self.program.setters.iter();
         text.extend(setters.map(|setter| emit_setter(self.program, setter, self.names).stages));
         let methods = self.methods();
@@ -149,6 +149,7 @@ impl Drive<'_> {
             "state" => "&drive->state",
             "sample" => "&checked",
             "rotor" => rotor,
+            "observation" => "&observation",
             other => other,
         });
         let arguments: Vec<&str> = arguments.collect();
@@ -202,40 +203,6 @@ impl Drive<'_> {
         )
     }
 
-    /// The answer to a main program that has asked for signals.
-    fn tell(&self) -> String {
-        let states = &self.program.states;
-        let field = |name: &str| {
-            let word = states.iter().find(|word| word.name == name)?;
-            let place = format!("drive->state.{}", self.names.local(name));
-            Some(match word.storage_bits {
-                16 => format!("(int32_t){place}"),
-                _ => place,
-            })
-        };
-        let none = || "HEXAGEN_NONE".to_owned();
-        let [e_a, e_b] = ["e_a_prev", "e_b_prev"].map(|name| field(name).unwrap_or_else(none));
-        let speed = field("direction").zip(field("omega"));
-        let speed = speed.map_or_else(none, |(direction, omega)| format!("{direction} * {omega}"));
-        let comment = self.names.comment(
-            "",
-            &["Answers a main program that has asked for the signals of a period; by value, so that these stand in memory on this path alone."],
-        );
-        let head = format!(
-            "static void tell({}, hexagen_checked checked, hexagen_legs legs)",
-            self.drive()
-        );
-        let inner = INDENT.repeat(2);
-        let fields = [("e_a", e_a), ("e_b", e_b), ("speed", speed)];
-        let fields = fields.map(|(name, value)| format!("{inner}.{name} = {value}"));
-        format!(
-            "{comment}HEXAGEN_COLD\n{}{{\n{INDENT}const hexagen_observation observation = {{\n{}\n{INDENT}}};\n\
-             {INDENT}hexagen_answer(&drive->signals, &checked, &legs, &observation);\n}}\n",
-            wrapped("", &head),
-            fields.join(",\n")
-        )
-    }
-
     fn init(&self) -> Method {
         let mut body = lines(&[&format!("drive->current = {};", self.initial("j"))]);
         if self.has_speed() {
@@ -285,11 +252,19 @@ impl Drive<'_> {
         );
         let takes_rotor = self.step.arguments[2].contains(&"rotor");
         body.push_str(&self.track(takes_rotor));
+        let observation = lines(&["hexagen_observation observation = HEXAGEN_UNOBSERVED;"]);
+        let mut signals = String::new();
+        if self.step.arguments[2].contains(&"observation") {
+            body.push_str(&observation);
+        } else {
+            signals.push_str(&observation);
+        }
         let step = self.call(2, "step", "rotor");
         body.push_str(&lines(&[&format!("const hexagen_legs legs = {step};")]));
-        let signals = format!(
+        let _ = write!(
+            signals,
             "{INDENT}if (hexagen_is_asked(&drive->signals)) {{\n\
-             {INDENT}{INDENT}tell(drive, checked, legs);\n{INDENT}}}\n"
+             {INDENT}{INDENT}hexagen_answer(&drive->signals, checked, legs, observation);\n{INDENT}}}\n"
         );
         body.push_str(where_defined(SIGNALS, &signals).trim_end());
         let _ = write!(body, "\n{INDENT}return legs;\n");

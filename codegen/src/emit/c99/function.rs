@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, results, told, writes,
 };
 use super::super::plan::Context;
 use super::super::signal::Shape;
@@ -148,7 +148,7 @@ impl<'a> StepFunctions<'a> {
             .collect();
         used.extend(kept.words.iter().map(|&(_, value)| value));
         if part == Part::Control {
-            used.extend(function.outputs.iter().map(|&(_, value)| value));
+            used.extend(results(function));
         }
         used
     }
@@ -206,6 +206,7 @@ impl<'a> StepFunctions<'a> {
             "drive" => format!("{} *drive", self.names.prefix),
             "state" => format!("{state} *state"),
             "rotor" => "tracked rotor".to_owned(),
+            "observation" => "hexagen_observation *observation".to_owned(),
             _ => "const hexagen_checked *sample".to_owned(),
         });
         let parameters = match parameters.collect::<Vec<String>>() {
@@ -287,10 +288,22 @@ impl<'a> StepFunctions<'a> {
         body.push_str(&self.inputs(used.into_iter()));
         body.push_str(&self.rotor_words(self.rotor.iter()));
         body.push_str(&self.body(Part::Control, kept));
+        body.push_str(&self.observation());
         body.push('\n');
         body.push_str(&self.legs());
         let head = ["hexagen_legs", "step", "A controlled period."];
-        self.entry(head, &["drive", "sample", "rotor"], &body)
+        let arguments = ["drive", "sample", "rotor", "observation"];
+        self.entry(head, &arguments, &body)
+    }
+
+    /// What people are told.
+    fn observation(&self) -> String {
+        let printer = self.printer(false);
+        let tell = |name: &&str| {
+            let value = printer.whole(told(self.function(), name)?);
+            Some(wrapped(INDENT, &format!("observation->{name} = {value};")))
+        };
+        ["e_a", "e_b", "speed"].iter().filter_map(tell).collect()
     }
 
     /// The command. Old state words that go out of the step are read under their names before any is written.

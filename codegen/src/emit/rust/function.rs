@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, results, told, writes,
 };
 use super::super::plan::Context;
 use super::super::rows::WholeCommand;
@@ -127,7 +127,7 @@ impl<'a> StepFunctions<'a> {
             .collect();
         used.extend(kept.words.iter().map(|&(_, value)| value));
         if part == Part::Control {
-            used.extend(function.outputs.iter().map(|&(_, value)| value));
+            used.extend(results(function));
         }
         used
     }
@@ -254,7 +254,8 @@ impl<'a> StepFunctions<'a> {
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let rotor = named("rotor", self.has_rotor());
         let kind = self.rotor_type();
-        let legs = self.legs(whole);
+        let (observation, legs) = (self.observation(), self.legs(whole));
+        let observed = named("observation", !observation.as_str().is_empty());
         quote! {
             #[inline]
             fn step(
@@ -262,14 +263,29 @@ impl<'a> StepFunctions<'a> {
                 #set_point: &Words<Self>,
                 #sample: &Checked,
                 #rotor: #kind,
+                #observed: &mut Observation,
             ) -> Legs {
                 #words
                 #inputs
                 #pattern
                 #body
+                #observation
                 #legs
             }
         }
+    }
+
+    /// What people are told.
+    fn observation(&self) -> Source {
+        let scope = Scope {
+            context: self.context,
+            reads_state: false,
+        };
+        let word = |name| told(self.function(), name).map(|value| scope.whole(value));
+        let emf = word("e_a").zip(word("e_b"));
+        let emf = emf.map(|(e_a, e_b)| quote!(observation.emf = Some([#e_a, #e_b]);));
+        let speed = word("speed").map(|speed| quote!(observation.speed = Some(#speed);));
+        quote!(#emf #speed)
     }
 
     fn legs(&self, whole: Option<&WholeCommand<'_>>) -> Source {

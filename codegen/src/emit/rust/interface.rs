@@ -97,7 +97,6 @@ impl Types<'_> {
         let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
         let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
         let StepCode { entries, rotor, .. } = step;
-        let observe = self.observe();
         quote! {
             impl Control for #name {
                 type State = State;
@@ -124,7 +123,6 @@ impl Types<'_> {
                 #current
                 #torque
                 #entries
-                #observe
             }
 
             #speed
@@ -154,30 +152,6 @@ impl Types<'_> {
             quote!(ToldBus<#count, #periods>),
             quote!(ToldBus::new([#(Word(#words)),*])),
         )
-    }
-
-    fn observe(&self) -> Source {
-        let has = |name: &str| self.program.states.iter().any(|word| word.name == name);
-        let emf = if has("e_a_prev") {
-            quote!(Some([state.e_a_prev, state.e_b_prev]))
-        } else {
-            quote!(None)
-        };
-        let speed = if has("omega") {
-            quote!(Some(state.direction * state.omega))
-        } else {
-            quote!(None)
-        };
-        let state = if has("e_a_prev") || has("omega") {
-            quote!(state)
-        } else {
-            quote!(_state)
-        };
-        quote! {
-            fn observe(#state: &State) -> Observation {
-                Observation { emf: #emf, speed: #speed }
-            }
-        }
     }
 }
 
