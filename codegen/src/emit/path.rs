@@ -1,7 +1,7 @@
 //! The step and the setters as calls of their stages: what every language's functions are made of.
 
 use super::plan::{Context, StagePlan};
-use crate::ir::{AtRest, Function, Op, Value, Word};
+use crate::ir::{AtRest, Function, Op, StateId, Value, Word};
 
 /// The two parts of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,34 +67,61 @@ pub(super) fn inputs_used(function: &Function, values: impl Iterator<Item = Valu
 
 /// What a part of a step leaves behind.
 pub(super) struct Kept<'a> {
-    /// Old words that go into other words or out of the step: read before anything is written.
+    /// Old words that go out of the step: read before anything is written.
     pub reads: Vec<Value>,
-    /// New state words, each written once at the end.
+    /// New state words, each written once at the end, in this order: one that takes over the old word of another
+    /// before that is written.
     pub words: Vec<(&'a Word, Value)>,
+}
+
+impl Kept<'_> {
+    /// Whether a new word is read where it is written: an old one that no name holds.
+    pub(super) fn is_moved(&self, function: &Function, value: Value) -> bool {
+        matches!(function.node(value).op, Op::State(_)) && !self.reads.contains(&value)
+    }
 }
 
 /// The words that a part of the step keeps at its end: those that its stages store themselves are left out.
 pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Part) -> Kept<'a> {
     let (program, function) = (context.program, context.function);
-    let mut words: Vec<(&Word, Value)> = vec![];
-    for &(state, value) in &function.next_state {
+    let is_kept = |&(state, value): &(StateId, Value)| {
         let mut stores = plans.iter().flat_map(|plan| &plan.stores);
         let is_stored = stores.any(|&(stored, _)| stored == state);
         let is_changed = function.node(value).op != Op::State(state);
         let is_tracked = context.is_tracked(state);
-        if is_changed && !is_stored && is_tracked == (part == Part::Tracking) {
-            words.push((&program.states[state.index()], value));
-        }
-    }
+        is_changed && !is_stored && is_tracked == (part == Part::Tracking)
+    };
+    let is_old = |value: Value| matches!(function.node(value).op, Op::State(_));
+    let words = function.next_state.iter().copied().filter(is_kept);
+    let (mut moved, mut computed): (Vec<_>, Vec<_>) = words.partition(|&(_, value)| is_old(value));
     let mut reads: Vec<Value> = vec![];
-    let outputs = results(function).filter(|_| part == Part::Control);
-    for value in words.iter().map(|&(_, value)| value).chain(outputs) {
-        let is_old = matches!(function.node(value).op, Op::State(_));
-        if is_old && !reads.contains(&value) {
-            reads.push(value);
-        }
+    if part == Part::Control {
+        reads.extend(results(function).filter(|&value| is_old(value)));
+        reads.sort_unstable();
+        reads.dedup();
     }
-    Kept { reads, words }
+    let mut words = vec![];
+    while !moved.is_empty() {
+        let is_read = |state| {
+            let mut moved = moved.iter();
+            moved.any(|&(_, value)| function.node(value).op == Op::State(state))
+        };
+        let Some(next) = moved.iter().position(|&(state, _)| !is_read(state)) else {
+            // A circle.
+            reads.extend(moved.iter().map(|&(_, value)| value));
+            break;
+        };
+        words.push(moved.remove(next));
+    }
+    words.append(&mut moved);
+    words.append(&mut computed);
+    let words = words.into_iter();
+    Kept {
+        reads,
+        words: words
+            .map(|(state, value)| (&program.states[state.index()], value))
+            .collect(),
+    }
 }
 
 /// What a period without control leaves in the words that the tracking does not store.

@@ -194,7 +194,7 @@ static void answer(void)
         { HEXAGEN_LEG_PULSED, HEXAGEN_LEG_OFF, HEXAGEN_LEG_LOW } };
     const hexagen_observation observation = { now, now, -now };
     if (hexagen_is_asked(&port)) {
-        hexagen_answer(&port, &checked, &legs, &observation);
+        hexagen_answer(&port, checked, legs, observation);
     }
     now += 1;
 }

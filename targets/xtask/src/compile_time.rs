@@ -10,7 +10,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// What a hundred controllers may add.
-const GOAL: Duration = Duration::from_secs(6);
+const GOAL: Duration = Duration::from_secs(5);
 
 /// Motors of the library of which every controller can be made: those whose current no vector moves too far.
 const MOTORS: [&str; 11] = [

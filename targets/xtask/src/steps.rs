@@ -63,6 +63,18 @@ pub fn checks() -> Result<Vec<Step>, String> {
             ..step("documentation", &["doc", "--workspace", "--no-deps"])
         },
         step("tests", &["test", "--workspace", "--no-fail-fast"]),
+        step(
+            "a drive chosen by a feature",
+            &[
+                "test",
+                "--package",
+                "hexagen-ui",
+                "--features",
+                "front",
+                "--test",
+                "crate_of_drives",
+            ],
+        ),
         on_target("firmware", &[]),
         on_target("pil", &[]),
         on_target("cost", &[]),

@@ -163,21 +163,16 @@ impl<'a> StepFunctions<'a> {
     }
 
     /// Calls of a part's stages, and the words that it keeps.
-    fn body(&self, part: Part, kept: Kept<'_>) -> String {
-        let (outside, named) = (self.printer(true), self.printer(false));
+    fn body(&self, part: Part, kept: &Kept<'_>) -> String {
         let mut text: String = self.stages(part).map(StageFunction::call).collect();
-        let Kept { reads, words } = kept;
-        for value in reads {
-            let line = format!(
-                "const int32_t {} = {};",
-                self.local(value),
-                outside.whole(value)
-            );
-            text.push_str(&wrapped(INDENT, &line));
+        for &value in &kept.reads {
+            let (name, old) = (self.local(value), self.printer(true).whole(value));
+            text.push_str(&wrapped(INDENT, &format!("const int32_t {name} = {old};")));
         }
-        for (word, value) in words {
+        for &(word, value) in &kept.words {
             let field = self.names.local(&word.name);
-            let line = format!("state->{field} = {};", named.kept(word, value));
+            let printer = self.printer(kept.is_moved(self.function(), value));
+            let line = format!("state->{field} = {};", printer.kept(word, value));
             text.push_str(&wrapped(INDENT, &line));
         }
         text
@@ -225,7 +220,7 @@ impl<'a> StepFunctions<'a> {
     fn track(&self) -> Entry {
         let kept = self.kept(Part::Tracking);
         let used = self.used(Part::Tracking, &kept);
-        let mut body = self.inputs(used.into_iter()) + &self.body(Part::Tracking, kept);
+        let mut body = self.inputs(used.into_iter()) + &self.body(Part::Tracking, &kept);
         let result = if self.has_rotor() {
             let names: Vec<String> = self.rotor.iter().map(|&value| self.local(value)).collect();
             body.push_str(&wrapped(
@@ -287,7 +282,7 @@ impl<'a> StepFunctions<'a> {
         let mut body = read_words(self.context.program, self.function(), self.names);
         body.push_str(&self.inputs(used.into_iter()));
         body.push_str(&self.rotor_words(self.rotor.iter()));
-        body.push_str(&self.body(Part::Control, kept));
+        body.push_str(&self.body(Part::Control, &kept));
         body.push_str(&self.observation());
         body.push('\n');
         body.push_str(&self.legs());

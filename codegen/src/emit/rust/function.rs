@@ -133,22 +133,22 @@ impl<'a> StepFunctions<'a> {
     }
 
     /// Calls of a part's stages, and the words that it keeps.
-    fn body(&self, part: Part, kept: Kept<'_>) -> Source {
+    fn body(&self, part: Part, kept: &Kept<'_>) -> Source {
         let calls = self.stages(part).map(StageFunction::call);
         let scope = |reads_state| Scope {
             context: self.context,
             reads_state,
         };
-        let (outside, named) = (scope(true), scope(false));
-        let Kept { reads, words } = kept;
-        let reads = reads.into_iter().map(|value| {
+        let outside = scope(true);
+        let reads = kept.reads.iter().map(|&value| {
             let name = snake(&self.function().node(value).name);
             let value = outside.whole(value);
             quote!(let #name = #value;)
         });
-        let writes = words.into_iter().map(|(word, value)| {
+        let writes = kept.words.iter().map(|&(word, value)| {
             let field = snake(&word.name);
-            let value = named.kept(word, value);
+            let scope = scope(kept.is_moved(self.function(), value));
+            let value = scope.kept(word, value);
             quote!(state.#field = #value;)
         });
         quote! { #(#calls)* #(#reads)* #(#writes)* }
@@ -174,7 +174,7 @@ impl<'a> StepFunctions<'a> {
         let (inputs, has_inputs) = self.inputs(used.into_iter());
         let has_state =
             self.reads_state(Part::Tracking) || !kept.words.is_empty() || !kept.reads.is_empty();
-        let body = self.body(Part::Tracking, kept);
+        let body = self.body(Part::Tracking, &kept);
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let signature = quote!(#state: &mut State, #sample: &Checked);
         if !self.has_rotor() {
@@ -244,7 +244,7 @@ impl<'a> StepFunctions<'a> {
         let (inputs, has_inputs) = self.inputs(used.into_iter());
         let has_state =
             self.reads_state(Part::Control) || !kept.words.is_empty() || !kept.reads.is_empty();
-        let body = self.body(Part::Control, kept);
+        let body = self.body(Part::Control, &kept);
         let names = self.rotor_names();
         let pattern = self
             .has_rotor()
