@@ -91,7 +91,8 @@ impl Limits {
     fn is_over(&self, [i_a, i_b]: [Word; 2]) -> bool {
         let i_c = -(i_a + i_b);
         let range = self.trip.wrapping_neg()..=self.trip;
-        ![i_a, i_b, i_c].iter().all(|i| range.contains(&i.0))
+        let is_within = |i: Word| range.contains(&i.0);
+        !(is_within(i_a) && is_within(i_b) && is_within(i_c))
     }
 }
 
