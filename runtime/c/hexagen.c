@@ -206,9 +206,10 @@ hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *l
     leg = (supervisor->mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE)
         ? HEXAGEN_LEG_LOW
         : HEXAGEN_LEG_OFF;
-    start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
     if (fault != HEXAGEN_FAULT_NONE) {
         trip(supervisor, fault);
+    } else {
+        start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
     }
     return leg;
 }
@@ -287,7 +288,10 @@ void hexagen_start_port(hexagen_port *port)
 /** Timer counts for which the upper switch of a leg is on; none of a leg that is off. */
 static int32_t on(const hexagen_legs *legs, uint16_t leg)
 {
-    return (legs->state[leg] == HEXAGEN_LEG_OFF) ? HEXAGEN_NONE : (int32_t)legs->compare[leg];
+    if (legs->state[leg] == HEXAGEN_LEG_OFF) {
+        return HEXAGEN_NONE;
+    }
+    return (legs->state[leg] == HEXAGEN_LEG_PULSED) ? (int32_t)legs->compare[leg] : 0;
 }
 
 void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs legs,
@@ -341,6 +345,8 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
         }
         return false;
     }
+    /* Who interrupts this finds nothing to take. */
+    port->turn = 3;
     of_phases(signals->currents, units->ampere, port->words[0], port->words[1]);
     signals->sector = units->sectors[(uint32_t)port->words[2] & 7U];
     of_leg(signals, units, 0, port->words[3]);

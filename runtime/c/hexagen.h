@@ -629,13 +629,16 @@ typedef struct {
     /** Currents of phases a, b, c into the motor at the begin of the period, ampere. */
     int32_t currents[3];
     /**
-     * Mean terminal voltages that the period commands, volt against the negative rail at the
-     * nominal bus; 0 of a leg that is off.
+     * Mean terminal voltages that the period commands, for the next one with `delay: 1`, volt
+     * against the negative rail at the nominal bus; 0 of a leg that is off.
      */
     int32_t voltages[3];
     /** Whether the legs are off. */
     bool is_off[3];
-    /** Whether the law knows an EMF, and that of phases a, b, c, volt; else 0. */
+    /**
+     * Whether the law works an EMF out, and that of phases a, b, c which it expects in the period
+     * in which the command takes effect (PHCC: in the one that begins), volt; else 0.
+     */
     bool has_emf;
     int32_t emf[3];
     /** Whether the law follows Hall edges, and the speed in rpm, forward positive; 0 if unknown. */
@@ -671,7 +674,10 @@ typedef struct {
  * waits for the other.
  */
 typedef struct {
-    /** 0: nobody has asked. 1: the next controlled period's words are wanted. 2: they are there. */
+    /**
+     * 0: nobody has asked. 1: the next controlled period's words are wanted. 2: they are there.
+     * 3: they are being taken.
+     */
     volatile int32_t turn;
     volatile int32_t words[9];
 } hexagen_port;

@@ -41,12 +41,6 @@ impl BusWatch {
     }
 }
 
-impl Default for BusWatch {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// `told`: not since the last period. Any other number: since then.
 pub(crate) const NO: i32 = 0;
 const YES: i32 = 1;

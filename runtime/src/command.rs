@@ -128,7 +128,11 @@ impl Command for Legs {
     #[inline]
     fn on(self) -> [Option<u16>; 3] {
         let ([a, b, c], [state_a, state_b, state_c]) = (self.compare(), self.state());
-        let on = |state, compare| (state != LegState::Off).then_some(compare);
+        let on = |state, compare| match state {
+            LegState::Pulsed => Some(compare),
+            LegState::Low => Some(0),
+            LegState::Off => None,
+        };
         [on(state_a, a), on(state_b, b), on(state_c, c)]
     }
 }
@@ -185,9 +189,9 @@ pub struct Intervals {
 
 impl Intervals {
     /// All legs off for the whole period: the safe command of a tripped drive.
-    pub const OFF: Self = Self::new([0; 3], [[LegState::Off; 3]; 3]);
+    pub const OFF: Self = Self::new([0, 0, u16::MAX], [[LegState::Off; 3]; 3]);
 
-    /// Where the intervals end, the third with the period, and the states of legs a, b, c in each.
+    /// Where the intervals end, the third with the period (or later, which is the same), and the states of legs a, b, c in each.
     #[inline]
     #[must_use]
     pub const fn new([first, second, third]: [u16; 3], state: [[LegState; 3]; 3]) -> Self {
@@ -217,7 +221,7 @@ impl Intervals {
 impl Command for Intervals {
     #[inline]
     fn at_rest(state: LegState) -> Self {
-        Self::new([0; 3], [[state; 3]; 3])
+        Self::new([0, 0, u16::MAX], [[state; 3]; 3])
     }
 
     fn on(self) -> [Option<u16>; 3] {

@@ -72,9 +72,11 @@ pub trait Control: Sized + 'static {
     const SET_POINT: Word;
     /// The bus voltage of a drive that begins.
     const BUS: Self::Bus;
-    /// [`SpeedLoop::speed`] of a drive whose speed loop asks for the current; none of others.
+    /// [`SpeedLoop::speed`] of a drive whose speed loop asks for the current; none of others. The macro
+    /// sets it wherever it implements `SpeedLoop`.
     const SPEED: Option<fn(Word) -> Word> = None;
-    /// [`MeasuredBus::bus`] of a drive that is told its bus voltage; none of others.
+    /// [`MeasuredBus::bus`] of a drive that is told its bus voltage; none of others. The macro sets it
+    /// wherever it implements `MeasuredBus`.
     const TOLD_BUS: Option<fn(Word) -> BusWords<Self>> = None;
 
     /// The set-point word of a current: bits of a number with 16 fraction bits, ampere.

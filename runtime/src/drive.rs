@@ -97,6 +97,7 @@ impl<C: Control> Drive<C> {
 
     /// Sets the speed, bits of an `I16F16` in rpm; does nothing without a speed loop. For
     /// verification, which treats all drives alike; firmware has [`SetPoint::set_speed`].
+    #[doc(hidden)]
     pub fn set_speed_bits(&self, bits: i32) {
         if let Some(speed) = C::SPEED {
             self.set_point.words.speed.store(speed(Word(bits)));
@@ -105,6 +106,7 @@ impl<C: Control> Drive<C> {
 
     /// Tells the bus voltage as an ADC count; does nothing with a fixed bus. For verification, which
     /// treats all drives alike; firmware has [`SetPoint::set_bus`].
+    #[doc(hidden)]
     pub fn set_bus_counts(&self, counts: u16) {
         if let Some(words) = C::TOLD_BUS {
             self.set_point.words.bus.tell(words(counts.into()));
@@ -194,6 +196,10 @@ impl<C: Control> ControlLoop<'_, C> {
 
     /// Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.
     /// Ignored while calibrating and pre-charging.
+    ///
+    /// What follows is control, not start-up: where the bootstrap capacitors need it, call
+    /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and speed 0
+    /// brakes a rotor that turns, with up to the current that is set.
     pub fn reset(&mut self) {
         if self.core.supervisor.reset(&C::LIMITS) {
             self.core.law = C::State::INITIAL;
@@ -234,8 +240,8 @@ impl<C: Control> ControlLoop<'_, C> {
     }
 }
 
-/// A period without control, in start-up or with a fault. Here alone mode and fault change, so here
-/// they are published. The sample goes by value, so that it stands in memory on this path alone.
+/// A period without control, in start-up or with a fault. Of all periods these alone change mode and
+/// fault, so they are published here. The sample goes by value, so that it stands in memory on this path alone.
 #[cold]
 #[inline(never)]
 fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> C::Command {

@@ -41,7 +41,7 @@ impl Sample {
     }
 
     /// The same with an electrical angle in place of a Hall code, 2^32 a turn, 0 where the EMF of
-    /// phase a rises through 0. It has no Hall code: a drive that needs one trips.
+    /// phase a rises through 0. It has no Hall code: a drive that needs one, as all do so far, trips.
     #[inline]
     #[must_use]
     pub const fn with_angle([adc_a, adc_b]: [u16; 2], angle: u32) -> Self {
@@ -68,7 +68,7 @@ impl Sample {
         }
     }
 
-    /// The ADC count of the current of phase c, for drives with three sensors.
+    /// The ADC count of the current of phase c, for drives with three sensors; none reads it so far.
     #[inline]
     #[must_use]
     pub const fn third_current(self, adc_c: u16) -> Self {

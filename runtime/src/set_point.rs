@@ -70,7 +70,8 @@ impl<C: Control> SetPoint<C> {
     }
 
     /// Sets the speed in rpm, forward positive; saturates at the specification's `max_speed` to both
-    /// sides.
+    /// sides. Speed 0 brakes a rotor that turns, and holds it, with up to the current that is set;
+    /// for no current set that to 0.
     #[inline]
     pub fn set_speed(&self, speed: I16F16)
     where
@@ -150,8 +151,8 @@ impl<C: Control> SetPoint<C> {
     /// }
     /// ```
     ///
-    /// From one context of the main program; neither side ever waits for the other. Feature
-    /// `signals`, which takes about ten instructions of every control period.
+    /// Neither side ever waits for the other. Several contexts may ask: each gets words of one period, or
+    /// none. Feature `signals`, which takes about ten instructions of every control period.
     #[cfg(feature = "signals")]
     #[must_use]
     pub fn signals(&self) -> Option<Signals> {

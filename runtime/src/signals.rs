@@ -18,11 +18,12 @@ pub struct Signals {
     /// Currents of phases a, b, c into the motor at the begin of the period, ampere.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub currents: [I16F16; 3],
-    /// Mean terminal voltages that the period commands, volt against the negative rail at the
-    /// nominal bus; none of a leg that is off.
+    /// Mean terminal voltages that the period commands, for the next one with `delay: 1`, volt against
+    /// the negative rail at the nominal bus; none of a leg that is off.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub voltages: [Option<I16F16>; 3],
-    /// EMF of phases a, b, c that the law goes by, volt; none of a law that works none out.
+    /// EMF of phases a, b, c that the law expects in the period in which the command takes effect
+    /// (PHCC: in the one that begins), volt; none of a law that works none out.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub emf: Option<[I16F16; 3]>,
     /// Speed in rpm, forward positive, 0 while it is unknown; none of a law that does not time the Hall edges.
@@ -112,6 +113,8 @@ const IDLE: i32 = 0;
 const ASKED: i32 = 1;
 /// The words are there.
 const ANSWERED: i32 = 2;
+/// Somebody takes them; who interrupts that finds nothing to take.
+const TAKING: i32 = 3;
 
 /// Where the words go over. The control loop writes while it is asked, and at no other time; the
 /// main program writes while it is not, and reads while it is answered.
@@ -155,12 +158,12 @@ impl Port {
     /// The words that are there; else asks for them.
     pub(crate) fn take(&self) -> Option<PeriodWords> {
         match self.turn.load(Ordering::Relaxed) {
-            ANSWERED => {}
-            ASKED => return None,
-            _ => {
+            ANSWERED => self.turn.store(TAKING, Ordering::Relaxed),
+            IDLE => {
                 self.turn.store(ASKED, Ordering::Relaxed);
                 return None;
             }
+            _ => return None,
         }
         compiler_fence(Ordering::Acquire);
         let words = PeriodWords::from_words(core::array::from_fn(|index| {

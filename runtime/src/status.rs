@@ -81,8 +81,8 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// What a drive is doing and what tripped it, as of one instant: the end of the last control
-/// period, or of the last call of its control loop.
+/// What a drive is doing and what tripped it: mode and fault of one instant, the end of the last
+/// control period or of the last call of its control loop, and staleness as of the last period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -119,6 +119,9 @@ const fn is_hall_code(hall: u8) -> bool {
 ///    charge the bootstrap capacitors, and short-circuit a motor that turns.
 /// 3. Control, at the set-point that stands.
 ///
+/// A fault ends start-up, and what it had gathered counts for nothing; a reset leads to control, not
+/// back into start-up.
+///
 /// # Safe states
 ///
 /// Each [`Fault`] turns all legs off until a reset. A Hall code that skips sectors is no fault: it is
@@ -285,9 +288,9 @@ impl Supervisor {
         } else {
             LegState::Off
         };
-        self.start_up(limits, counts);
-        if let Some(fault) = found {
-            self.trip(fault);
+        match found {
+            Some(fault) => self.trip(fault),
+            None => self.start_up(limits, counts),
         }
         (checked, leg)
     }
@@ -349,7 +352,7 @@ impl Supervisor {
         self.mode = Mode::Tripped;
     }
 
-    /// Clears a trip; keeps calibrated offsets. False, and nothing done, while calibrating and
+    /// Clears a trip; keeps calibrated offsets. What follows is control, not start-up. False, and nothing done, while calibrating and
     /// pre-charging.
     pub fn reset(&mut self, limits: &Limits) -> bool {
         let may_reset = matches!(self.mode, Mode::Run | Mode::Tripped);

@@ -234,7 +234,7 @@ static void signals_are_of_one_period(void)
                 CHECK(of >= asked && of < now);
                 CHECK(signals.currents[1] == -4 * of && signals.currents[2] == 2 * of);
                 CHECK(signals.sector == of % 6 + 1);
-                CHECK(signals.voltages[0] == 2 * of && signals.voltages[2] == 2 * of);
+                CHECK(signals.voltages[0] == 2 * of && signals.voltages[2] == 0);
                 CHECK(!signals.is_off[0] && signals.is_off[1] && !signals.is_off[2]);
                 CHECK(signals.has_emf && signals.emf[0] == 2 * of && signals.emf[2] == -4 * of);
                 CHECK(signals.has_speed && signals.speed == -2 * of);
@@ -267,6 +267,39 @@ static void no_answer_is_lost(void)
     CHECK(struck > 0);
 }
 
+static int taken;
+
+/* Who asks from a context that interrupts another one which asks; what is there it takes, and the next, too. */
+static void take_too(void)
+{
+    hexagen_signals signals;
+    taken += hexagen_take(&port, &units, &signals) ? 1 : 0;
+    taken += hexagen_take(&port, &units, &signals) ? 1 : 0;
+    answer();
+}
+
+static void who_asks_is_not_torn_by_another_who_asks(void)
+{
+    for (int strike = 0; strike < BEHIND; strike++) {
+        hexagen_signals signals;
+        bool is_there;
+        hexagen_start_port(&port);
+        none_pend();
+        CHECK(!hexagen_take(&port, &units, &signals));
+        answer();
+        taken = 0;
+        accesses = 0;
+        pending[0].at = strike;
+        pending[0].run = take_too;
+        is_there = hexagen_take(&port, &units, &signals);
+        CHECK(is_there || taken > 0);
+        if (is_there) {
+            const int32_t of = signals.currents[0] / 2;
+            CHECK(signals.currents[1] == -4 * of && signals.emf[2] == -4 * of);
+        }
+    }
+}
+
 int main(void)
 {
     shows_that_calls_cease();
@@ -274,6 +307,7 @@ int main(void)
     never_tears_words_that_belong_together();
     signals_are_of_one_period();
     no_answer_is_lost();
+    who_asks_is_not_torn_by_another_who_asks();
     printf("%d failures\n", failures);
     return (failures == 0) ? 0 : 1;
 }

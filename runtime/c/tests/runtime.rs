@@ -310,6 +310,7 @@ fn what_contexts_share_is_whole_wherever_they_interrupt_each_other() {
             "    of_phases(signals->currents",
             "    port->turn = 1;\n    of_phases(signals->currents",
         ),
+        ("    port->turn = 3;\n", ""),
     ] {
         let [header, source] = planted(old, new);
         let said = check([&header, &source]);

@@ -242,10 +242,12 @@ fn faults_are_told_in_their_order() {
             let sample = Sample::with_hall([adc_a, adc_b], hall);
             let expected = (0..4).find(|&index| has(index)).map(|index| order[index].0);
             for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
+                // The last sample of a calibration to an offset that is too far is the last of all faults.
+                let ends = mode == Mode::Calibrate;
                 let mut supervisor = Supervisor {
                     mode,
                     fault: (mode == Mode::Tripped).then_some(Fault::Offset),
-                    countdown: 9,
+                    countdown: if ends { 1 } else { 9 },
                     hall_prev: HALL,
                     stall_count: Word(if has(3) { limits.stall_periods - 1 } else { 0 }),
                     ..Supervisor::new(limits)
@@ -264,8 +266,10 @@ fn faults_are_told_in_their_order() {
                 let should = match (mode, expected) {
                     (Mode::Tripped, _) => (mode, Some(Fault::Offset)),
                     (_, Some(fault)) => (Mode::Tripped, Some(fault)),
+                    (Mode::Calibrate, None) => (Mode::Tripped, Some(Fault::Offset)),
                     (_, None) => (mode, None),
                 };
+                assert_eq!(supervisor.offsets, Supervisor::new(limits).offsets);
                 assert_eq!(is, should, "{mode:?}, {set:04b}");
             }
         }

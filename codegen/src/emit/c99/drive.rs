@@ -190,7 +190,7 @@ impl Drive<'_> {
         let comment = names.comment(
             "",
             &[
-                "A period without control, in start-up or with a fault. Here alone mode and fault change, so here they are published.",
+                "A period without control, in start-up or with a fault. Of all periods these alone change mode and fault, so they are published here.",
             ],
         );
         let head = format!(
@@ -390,7 +390,7 @@ impl Drive<'_> {
                 "reset",
                 &[
                     "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
-                    "Ignored while calibrating and pre-charging.",
+                    "Ignored while calibrating and pre-charging. What follows is control, not start-up. With a speed loop the set-point is the speed, and speed 0 brakes a rotor that turns, with up to the current that is set.",
                 ],
                 reset,
             ),

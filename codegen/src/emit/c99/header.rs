@@ -32,6 +32,12 @@ impl Drive<'_> {
         let constants = self.interface.constants.iter();
         text.extend(constants.map(|constant| self.constant(constant)));
         text.push_str(&self.types());
+        let doc =
+            "Files that disagree on HEXAGEN_SIGNALS, and so on the size of a drive, do not link.";
+        text.push_str(&names.comment("", &[doc]));
+        let init = names.public("init");
+        let other = format!("#define {init} {init}_with_signals");
+        text.push_str(&where_defined(SIGNALS, &other));
         let declare = |method: &Method| {
             let comment = names.comment("", &method.doc);
             format!("{comment}{};\n\n", method.head())
@@ -125,7 +131,10 @@ impl Drive<'_> {
                 "volatile int32_t status",
             ),
             ("The control loop's own.", "hexagen_supervisor supervisor"),
-            ("Likewise.", &format!("{state} state")),
+            (
+                "What the law keeps; the control loop's own.",
+                &format!("{state} state"),
+            ),
         ] {
             text.push_str(&names.comment(INDENT, &[doc]));
             let _ = writeln!(text, "{INDENT}{field};");

@@ -254,6 +254,11 @@ impl Supervisor {
         } else {
             Period::Off
         };
+        if found.is_some() && self.mode != Mode::Tripped {
+            // A fault ends start-up.
+            self.mode = Mode::Tripped;
+            self.fault = found;
+        }
         let mut calibrated = false;
         match self.mode {
             Mode::Run | Mode::Tripped => {}
@@ -285,10 +290,6 @@ impl Supervisor {
                     self.mode = Mode::Run;
                 }
             }
-        }
-        if found.is_some() && self.mode != Mode::Tripped {
-            self.mode = Mode::Tripped;
-            self.fault = found;
         }
         Verdict { period, calibrated }
     }
