@@ -5,7 +5,9 @@ use hexagen::arith::{
     mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry,
     select, turn_over,
 };
-use hexagen_codegen::ir::{Comparison, FunctionBuilder, Interval, Machine, Program, Value, verify};
+use hexagen_codegen::ir::{
+    Builder, Expr, Interval, Lut, Machine, Named, mul_add_floor as sum_of_products, verify,
+};
 use proptest::prelude::*;
 
 /// Result of a function of one operator, by the interpreter.
@@ -13,23 +15,19 @@ fn interpreted(
     intervals: &[Interval],
     operands: &[i32],
     table: &[i32],
-    build: impl Fn(&mut FunctionBuilder<'_>, &[Value], hexagen_codegen::ir::TableId) -> Value,
+    build: impl for<'b> Fn(&[Expr<'b>], Lut<'b>) -> Expr<'b>,
 ) -> i32 {
-    let mut program = Program::new("Operator");
-    let table = program.table("table", table.to_vec(), &[]);
-    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+    let b = Builder::new("Operator", &[]);
+    let table = b.table("table", table.to_vec(), &[]);
     b.stage("apply", &[]);
     let names = ["x", "y", "z", "w"];
-    let inputs: Vec<Value> = names
+    let inputs: Vec<Expr<'_>> = names
         .iter()
         .zip(intervals)
         .map(|(name, &interval)| b.input(name, interval, ""))
         .collect();
-    let result = build(&mut b, &inputs, table);
-    b.name("result", result);
-    b.output("result", result);
-    program.step = b.finish();
-    let graph = verify(program).expect("the program is right");
+    b.output("result", build(&inputs, table).named("result"));
+    let graph = verify(b.finish()).expect("the program is right");
     let outputs = Machine::new(&graph).step(operands);
     outputs.expect("no value leaves its interval")[0]
 }
@@ -81,8 +79,8 @@ proptest! {
 
     #[test]
     fn extremes_of_words_that_lie_near(x in word(31), y in word(31)) {
-        let low = interpreted(&[symmetric(31); 2], &[x, y], &[0], |b, x, _| b.min(x[0], x[1]));
-        let high = interpreted(&[symmetric(31); 2], &[x, y], &[0], |b, x, _| b.max(x[0], x[1]));
+        let low = interpreted(&[symmetric(31); 2], &[x, y], &[0], |x, _| x[0].min(x[1]));
+        let high = interpreted(&[symmetric(31); 2], &[x, y], &[0], |x, _| x[0].max(x[1]));
         prop_assert_eq!(Word(x).lesser(Word(y)).0, low);
         prop_assert_eq!(Word(x).greater(Word(y)).0, high);
     }
@@ -110,28 +108,29 @@ proptest! {
 
     #[test]
     fn rounded_products(c in word(32), x in word(32), shift in 32_u32..=62) {
-        let expected = interpreted(&[symmetric(32); 2], &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift));
+        let expected = interpreted(&[symmetric(32); 2], &[c, x], &[0], |x, _| x[1].mul_round(x[0], shift));
         prop_assert_eq!(mul_round(Word(c), Word(x), shift).0, expected);
     }
 
     #[test]
     fn rounded_narrow_products(c in word(15), x in word(16), shift in 1_u32..=30) {
         let intervals = [symmetric(15), symmetric(16)];
-        let expected = interpreted(&intervals, &[c, x], &[0], |b, x, _| b.mul(x[0], x[1], shift));
+        let expected = interpreted(&intervals, &[c, x], &[0], |x, _| x[1].mul_round(x[0], shift));
         prop_assert_eq!(mul_round_narrow(Word(c), Word(x), shift).0, expected);
         prop_assert_eq!(mul_round(Word(c), Word(x), shift).0, expected);
     }
 
     #[test]
     fn floored_products(a in word(24), c in word(24), shift in 16_u32..=40) {
-        let expected = interpreted(&[symmetric(24); 2], &[a, c], &[0], |b, x, _| b.mul_floor(x[0], x[1], shift));
+        let expected = interpreted(&[symmetric(24); 2], &[a, c], &[0], |x, _| x[0].mul_floor(x[1], shift));
         prop_assert_eq!(mul_floor(Word(a), Word(c), shift).0, expected);
     }
 
     #[test]
     fn floored_sums_of_products(words in [word(26), word(26), word(26), word(26)], shift in 22_u32..=40) {
-        let sum = |b: &mut FunctionBuilder<'_>, x: &[Value], _| b.mul_add_floor([x[0], x[1]], [x[2], x[3]], shift);
-        let expected = interpreted(&[symmetric(26); 4], &words, &[0], sum);
+        let expected = interpreted(&[symmetric(26); 4], &words, &[0], |x, _| {
+            sum_of_products([x[0], x[1]], [x[2], x[3]], shift)
+        });
         let [a, b, c, d] = words.map(Word);
         prop_assert_eq!(mul_add_floor(a, b, c, d, shift).0, expected);
     }
@@ -139,7 +138,7 @@ proptest! {
     #[test]
     fn limited_products(a in natural(31), c in natural(31), limit in natural(30)) {
         let intervals = [Interval::new(0, i64::from(i32::MAX)), Interval::new(0, i64::from(i32::MAX)), Interval::new(0, 1 << 30)];
-        let expected = interpreted(&intervals, &[a, c, limit], &[0], |b, x, _| b.mul_limited(x[0], x[1], x[2]));
+        let expected = interpreted(&intervals, &[a, c, limit], &[0], |x, _| x[0].mul_limited(x[1], x[2]));
         prop_assert_eq!(mul_limited(Word(a), Word(c), Word(limit)).0, expected);
     }
 
@@ -147,7 +146,7 @@ proptest! {
     fn quotients(n in natural(31), d in natural(31), limit in natural(30), shift in 0_u32..=31) {
         let d = d.max(1);
         let intervals = [Interval::new(0, i64::from(i32::MAX)), Interval::new(1, i64::from(i32::MAX)), Interval::new(0, 1 << 30)];
-        let expected = interpreted(&intervals, &[n, d, limit], &[0], |b, x, _| b.divide(x[0], shift, x[1], x[2]));
+        let expected = interpreted(&intervals, &[n, d, limit], &[0], |x, _| x[0].divide(shift, x[1], x[2]));
         prop_assert_eq!(divide(Word(n), Word(d), Word(limit), shift).0, expected);
         prop_assert_eq!(divide_by_digits(Word(n), Word(d), Word(limit), shift).0, expected);
         if i64::from(n) << shift <= i64::from(u32::MAX) {
@@ -168,17 +167,17 @@ proptest! {
     #[test]
     fn angles_of_a_tick(ticks in natural(31)) {
         let ticks = ticks.max(2);
-        let expected = interpreted(&[Interval::new(2, i64::from(i32::MAX))], &[ticks], &[0], |b, x, _| b.turn_over(x[0]));
+        let expected = interpreted(&[Interval::new(2, i64::from(i32::MAX))], &[ticks], &[0], |x, _| x[0].turn_over());
         prop_assert_eq!(turn_over(Word(ticks)).0, expected);
     }
 
     #[test]
     fn angles(theta in any::<i32>(), other in any::<i32>(), segments in 1_u32..=1 << 16) {
         let full = [Interval::WORD; 2];
-        let index = interpreted(&full[..1], &[theta], &[0], |b, x, _| b.angle_index(x[0], segments));
-        let fraction = interpreted(&full[..1], &[theta], &[0], |b, x, _| b.angle_fraction(x[0], segments));
-        let sum = interpreted(&full, &[theta, other], &[0], |b, x, _| b.angle_add(x[0], x[1]));
-        let difference = interpreted(&full, &[theta, other], &[0], |b, x, _| b.angle_sub(x[0], x[1]));
+        let index = interpreted(&full[..1], &[theta], &[0], |x, _| x[0].angle_index(segments));
+        let fraction = interpreted(&full[..1], &[theta], &[0], |x, _| x[0].angle_fraction(segments));
+        let sum = interpreted(&full, &[theta, other], &[0], |x, _| x[0].angle_add(x[1]));
+        let difference = interpreted(&full, &[theta, other], &[0], |x, _| x[0].angle_sub(x[1]));
         prop_assert_eq!(angle_index(Word(theta), segments).0, index);
         prop_assert_eq!(angle_fraction(Word(theta), segments).0, fraction);
         prop_assert_eq!((Word(theta) + Word(other)).0, sum);
@@ -188,40 +187,32 @@ proptest! {
     #[test]
     fn table_entries(index in any::<i32>()) {
         let table = TABLE.map(i32::from);
-        let expected = interpreted(&[Interval::WORD], &[index], &table, |b, x, table| b.lookup(table, x[0]));
+        let expected = interpreted(&[Interval::WORD], &[index], &table, |x, table| table.at(x[0]));
         prop_assert_eq!(lookup(&TABLE, Word(index)).0, expected);
     }
 
     #[test]
     fn operators_of_words(a in word(30), c in word(30), bits in 0_u32..=31) {
         let wide = [symmetric(30); 2];
-        macro_rules! two {
-            ($operator:ident) => {
-                interpreted(&wide, &[a, c], &[0], |b, x, _| b.$operator(x[0], x[1]))
-            };
-        }
-        macro_rules! one {
-            ($operator:ident) => {
-                interpreted(&wide[..1], &[a], &[0], |b, x, _| b.$operator(x[0]))
-            };
-        }
+        let two = |of: fn([Expr<'_>; 2]) -> Expr<'_>| {
+            interpreted(&wide, &[a, c], &[0], |x, _| of([x[0], x[1]]))
+        };
+        let one = |of: fn(Expr<'_>) -> Expr<'_>| interpreted(&wide[..1], &[a], &[0], |x, _| of(x[0]));
         let (x, y) = (Word(a), Word(c));
-        prop_assert_eq!((x + y).0, two!(add));
-        prop_assert_eq!((x - y).0, two!(sub));
-        prop_assert_eq!(x.min(y).0, two!(min));
-        prop_assert_eq!(x.max(y).0, two!(max));
-        prop_assert_eq!((-x).0, one!(neg));
-        prop_assert_eq!(x.abs().0, one!(abs));
-        let shifted = interpreted(&wide[..1], &[a], &[0], |b, x, _| b.shift_right(x[0], bits));
+        prop_assert_eq!((x + y).0, two(|[x, y]| x + y));
+        prop_assert_eq!((x - y).0, two(|[x, y]| x - y));
+        prop_assert_eq!(x.min(y).0, two(|[x, y]| x.min(y)));
+        prop_assert_eq!(x.max(y).0, two(|[x, y]| x.max(y)));
+        prop_assert_eq!((-x).0, one(|x| -x));
+        prop_assert_eq!(x.abs().0, one(Expr::abs));
+        let shifted = interpreted(&wide[..1], &[a], &[0], |x, _| x[0] >> bits);
         prop_assert_eq!((x >> bits).0, shifted);
         let limits = [symmetric(30), Interval::new(-9000, -7), Interval::new(-6, 9000)];
         let (low, high) = (-7 - c.rem_euclid(8000), c.rem_euclid(9000));
-        let clamped = interpreted(&limits, &[a, low, high], &[0], |b, x, _| b.clamp(x[0], x[1], x[2]));
+        let clamped = interpreted(&limits, &[a, low, high], &[0], |x, _| x[0].clamp(x[1], x[2]));
         prop_assert_eq!(x.clamp(Word(low), high).0, clamped);
-        let less = interpreted(&wide, &[a, c], &[0], |b, x, _| {
-            let less = b.compare(Comparison::Less, x[0], x[1]);
-            b.name("less", less);
-            b.select(less, x[1], x[0])
+        let less = interpreted(&wide, &[a, c], &[0], |x, _| {
+            x[0].is_below(x[1]).named("less").choose(x[1], x[0])
         });
         prop_assert_eq!(select(x < y, y, x).0, less);
         prop_assert_eq!(x < c, x < y);

@@ -6,8 +6,8 @@
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
-use crate::ir::{Exact, TableId, Value};
-use crate::lower::{Applied, Coefficient, Command, Lowering};
+use crate::ir::{Coefficient, Exact, Expr, Lut, Phases, named};
+use crate::lower::{Applied, Command, LOW, Lowering, OFF, PULSED};
 use crate::spec::BusSource;
 
 /// What a number of [`CurrentLoop::apply_vector`] means.
@@ -117,54 +117,60 @@ pub(super) fn zero_vectors() -> Vec<i32> {
         .collect()
 }
 
-impl CurrentLoop<'_, '_> {
+/// The chosen vector: its number, and what that means.
+#[derive(Clone, Copy)]
+struct Vector<'l, 'b> {
+    l: &'l Lowering<'b>,
+    /// Word of the arithmetic, bits.
+    word: u32,
+    number: Expr<'b>,
+    numbers: Numbers,
+}
+
+impl<'b> CurrentLoop<'_, 'b> {
     /// Drives the legs of the chosen vector and closes the step; `numbers` says what its number means.
     pub(super) fn apply_vector(
-        &mut self,
-        front: &Front,
-        vector: Value,
+        &self,
+        front: &Front<'b>,
+        number: Expr<'b>,
         numbers: Numbers,
-        mut remembered: Remembered,
+        mut remembered: Remembered<'b>,
     ) {
-        let is_tabled = self.tables_left_over();
-        let l = &mut *self.lowering;
-        l.b.stage(
-            "drive_legs",
-            &["Legs of the chosen vector: a high leg is pulsed with a full compare value."],
-        );
-        let command = command(l, vector, numbers);
-        l.b.stage(
-            "remember_vector",
-            &["What later steps need to know of the chosen vector."],
-        );
-        if let (Some(held), true) = (&front.held, is_tabled) {
-            let left = tabled_left_over(l, self.options.word, held, (vector, numbers));
+        let vector = Vector {
+            l: self.l,
+            word: self.options.word,
+            number,
+            numbers,
+        };
+        let doc = "Legs of the chosen vector: a high leg is pulsed with a full compare value.";
+        self.l.b.stage("drive_legs", &[doc]);
+        let command = vector.command();
+        let doc = "What later steps need to know of the chosen vector.";
+        self.l.b.stage("remember_vector", &[doc]);
+        if let (Some(held), true) = (&front.held, self.tables_left_over()) {
+            let left = vector.tabled_left_over(held);
             remembered.extend(self.fold(held, left));
             self.remember(front, &command, None, None, remembered);
             return;
         }
-        let v_cmd =
-            (!self.needs.off_leg).then(|| voltage(l, self.options.word, front, (vector, numbers)));
-        let applied = self
-            .needs
-            .off_leg
-            .then(|| terminals(l, front, (vector, numbers)));
+        let off_leg = self.needs.off_leg;
+        let v_cmd = (!off_leg).then(|| vector.voltage(front));
+        let applied = off_leg.then(|| vector.terminals(front));
         self.remember(front, &command, v_cmd, applied, remembered);
     }
 }
 
 /// A table over the vectors.
-fn over_vectors(
-    l: &mut Lowering<'_>,
+fn over_vectors<'b>(
+    l: &Lowering<'b>,
     numbers: Numbers,
     name: &str,
     doc: &str,
     entry: impl Fn(LegSigns) -> i32,
-) -> TableId {
+) -> Lut<'b> {
     let values = numbers.legs().into_iter().map(entry).collect();
-    let name = format!("{}_{name}", numbers.row());
-    l.b.program
-        .column(numbers.row(), &name, values, &[doc.to_owned()])
+    let row = numbers.row();
+    l.b.column(row, &format!("{row}_{name}"), values, doc)
 }
 
 /// Entries of a table over the vectors, phases a, b, c.
@@ -177,182 +183,167 @@ fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
         .collect()
 }
 
-/// Looks up phases a and b of a voltage of the chosen vector, in words, at most so many from the exact one, and names them;
-/// `meaning` says what it is.
-fn look_up_volts(
-    l: &mut Lowering<'_>,
-    signals: [&str; 2],
-    [name, meaning]: [&str; 2],
-    volts: &Volts,
-    within: u32,
-    (vector, numbers): (Value, Numbers),
-) -> [Value; 2] {
-    [0, 1].map(|x| {
-        let phase = ["a", "b"][x];
-        let values = volts.iter().map(|volts| volts[x] as i32).collect();
-        let row = numbers.row();
-        let doc = format!("{meaning}, by {row}, words of voltage.");
-        let exact = (Exact::Within(within), None);
-        let table = format!("{row}_{name}_{phase}");
-        let table = l.b.program.rounded_table(&table, values, exact, &[doc]);
-        l.b.program.put_in_row(table, row);
-        let entry = l.b.lookup(table, vector);
-        l.b.name(signals[x], entry)
-    })
-}
+impl<'b> Vector<'_, 'b> {
+    /// A table over the vectors at this one.
+    fn at(&self, name: &str, doc: &str, entry: impl Fn(LegSigns) -> i32) -> Expr<'b> {
+        over_vectors(self.l, self.numbers, name, doc, entry).at(self.number)
+    }
 
-/// A sixth of the bus, the unit of vector voltages, as a coefficient of the bus.
-fn sixth(l: &mut Lowering<'_>, word: u32) -> Coefficient {
-    l.coefficient(
-        "k_sixth",
-        1.0 / 6.0,
-        word,
-        "The unit of vector voltages: a sixth of the bus.",
-        "1/6",
-    )
-}
+    /// Phases a and b of a voltage of the vector, in words, at most so many from the exact one; `meaning` says what it is.
+    fn volts(&self, [name, meaning]: [&str; 2], volts: &Volts, within: u32) -> Phases<'b> {
+        let row = self.numbers.row();
+        Phases::each(|x| {
+            let values = volts.iter().map(|volts| volts[x] as i32).collect();
+            let doc = format!("{meaning}, by {row}, words of voltage.");
+            let exact = (Exact::Within(within), None);
+            let table = format!("{row}_{name}_{}", ["a", "b"][x]);
+            let table = self.l.b.rounded_table(&table, values, exact, &[doc]);
+            table.in_row(row).at(self.number)
+        })
+    }
 
-/// What the voltage of the chosen vector leaves to later steps, from tables: with a fixed bus it is known beforehand.
-fn tabled_left_over(
-    l: &mut Lowering<'_>,
-    word: u32,
-    held: &Held,
-    vector: (Value, Numbers),
-) -> LeftOver {
-    let k_sixth = sixth(l, word);
-    let unit = l.rounded_product(k_sixth, l.nominal_bus());
-    let volts = fixed_volts(vector.1, unit);
-    let Some(k_fade) = held.fade() else {
-        let later = fixed_voltage(l, unit, vector);
-        let Numbers::Choices(Choices { memory, .. }) = vector.1 else {
-            return held.unfaded(later);
+    /// A sixth of the bus, the unit of vector voltages, as a coefficient of the bus.
+    fn k_sixth(&self) -> Coefficient {
+        let doc = "The unit of vector voltages: a sixth of the bus.";
+        self.l
+            .coefficient("k_sixth", 1.0 / 6.0, self.word, doc, "1/6")
+    }
+
+    /// A sixth of the fixed bus, words of voltage.
+    fn fixed_sixth(&self) -> i64 {
+        self.l.rounded_product(self.k_sixth(), self.l.nominal_bus())
+    }
+
+    /// What the voltage of the chosen vector leaves to later steps, from tables: with a fixed bus it is known beforehand.
+    fn tabled_left_over(&self, held: &Held<'b>) -> LeftOver<'b> {
+        let volts = fixed_volts(self.numbers, self.fixed_sixth());
+        let Some(k_fade) = held.fade() else {
+            let later = self.fixed_voltage();
+            let Numbers::Choices(Choices { memory, .. }) = self.numbers else {
+                return held.unfaded(later);
+            };
+            let volts = volts.into_iter().zip(memory.iter().cycle());
+            let entries: Volts = volts
+                .map(|([a, b, c], memory)| [a - memory[0], b - memory[1], c])
+                .collect();
+            let texts = [
+                "left",
+                "Phase voltage of the vector less the memory of the wishes",
+            ];
+            // Two for four sixths that are half a word off each; of b two bands and the half of their difference besides.
+            named! {
+                let left = self.volts(texts, &entries, 4);
+            }
+            return LeftOver {
+                left,
+                ..held.unfaded(later)
+            };
         };
-        let volts = volts.into_iter().zip(memory.iter().cycle());
-        let left: Volts = volts
-            .map(|([a, b, c], memory)| [a - memory[0], b - memory[1], c])
+        let fade = |volts: i64| volts + self.l.rounded_product(k_fade, volts);
+        let faded: Volts = volts.iter().map(|volts| volts.map(fade)).collect();
+        let sums = volts.iter().zip(&faded);
+        let sums: Volts = sums
+            .map(|(volts, left)| std::array::from_fn(|x| volts[x] + left[x]))
             .collect();
-        let texts = [
+        let of_left = [
             "left",
-            "Phase voltage of the vector less the memory of the wishes",
+            "What is left of the vector's voltage one period later, a v",
         ];
-        // Two for four sixths that are half a word off each; of b two bands and the half of their difference besides.
-        let left = look_up_volts(l, ["left_a", "left_b"], texts, &left, 4, vector);
-        return LeftOver {
+        let of_both = [
+            "both",
+            "The vector's voltage and what is left of it one period later, (1 + a) v",
+        ];
+        named! {
+            let left = self.volts(of_left, &faded, 3);
+            let both = self.volts(of_both, &sums, 5);
+        }
+        LeftOver {
             left,
-            ..held.unfaded(later)
-        };
-    };
-    let fade = |volts: i64| volts + l.rounded_product(k_fade, volts);
-    let left: Volts = volts.iter().map(|volts| volts.map(fade)).collect();
-    let both = volts.iter().zip(&left);
-    let both: Volts = both
-        .map(|(volts, left)| std::array::from_fn(|x| volts[x] + left[x]))
-        .collect();
-    let texts = [
-        "left",
-        "What is left of the vector's voltage one period later, a v",
-    ];
-    let left = look_up_volts(l, ["left_a", "left_b"], texts, &left, 3, vector);
-    let texts = [
-        "both",
-        "The vector's voltage and what is left of it one period later, (1 + a) v",
-    ];
-    let both = look_up_volts(l, ["both_a", "both_b"], texts, &both, 5, vector);
-    LeftOver {
-        left,
-        both: Some(both),
-    }
-}
-
-/// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
-fn command(l: &mut Lowering<'_>, vector: Value, numbers: Numbers) -> Command {
-    let turns_off = numbers.turns_off();
-    let top = l.spec.inverter.timer_period as i32;
-    let compares = [0, 1, 2].map(|x| {
-        let name = ["compare_a", "compare_b", "compare_c"][x];
-        let doc = format!("Compare value of the leg {}", numbers.meaning());
-        let high = |legs: LegSigns| if legs[x] == 1 { top } else { 0 };
-        let table = over_vectors(l, numbers, name, &doc, high);
-        l.b.lookup(table, vector)
-    });
-    let legs = [0, 1, 2].map(|x| {
-        if !turns_off {
-            return l.b.literal(0);
-        }
-        let name = ["leg_a", "leg_b", "leg_c"][x];
-        let doc = format!(
-            "State of the leg, 0 pulsed, 1 low, 2 off, {}",
-            numbers.meaning()
-        );
-        let table = over_vectors(l, numbers, name, &doc, |legs| match legs[x] {
-            1 => 0,
-            -1 => 1,
-            _ => 2,
-        });
-        l.b.program.hold_legs(table);
-        l.b.lookup(table, vector)
-    });
-    for x in 0..3 {
-        l.b.name(
-            ["compare_a_chosen", "compare_b_chosen", "compare_c_chosen"][x],
-            compares[x],
-        );
-        if turns_off {
-            l.b.name(["leg_a_chosen", "leg_b_chosen", "leg_c_chosen"][x], legs[x]);
+            both: Some(both),
         }
     }
-    Command { compares, legs }
-}
 
-/// The zero-sum voltage that the chosen vector stands for, phases a and b.
-fn voltage(
-    l: &mut Lowering<'_>,
-    word: u32,
-    front: &Front,
-    (vector, numbers): (Value, Numbers),
-) -> [Value; 2] {
-    let k_sixth = sixth(l, word);
-    if let BusSource::Fixed = l.spec.inverter.bus {
-        let unit = l.rounded_product(k_sixth, l.nominal_bus());
-        return fixed_voltage(l, unit, (vector, numbers));
+    /// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
+    fn command(&self) -> Command<'b> {
+        let l = self.l;
+        let top = l.spec.inverter.timer_period as i32;
+        let meaning = self.numbers.meaning();
+        named! {
+            let compare_chosen = Phases::each(|x| {
+                let name = ["compare_a", "compare_b", "compare_c"][x];
+                let doc = format!("Compare value of the leg {meaning}");
+                self.at(name, &doc, |legs| if legs[x] == 1 { top } else { 0 })
+            });
+        }
+        if !self.numbers.turns_off() {
+            return Command {
+                compares: compare_chosen,
+                legs: Phases::each(|_| l.b.number(PULSED)),
+            };
+        }
+        named! {
+            let leg_chosen = Phases::each(|x| {
+                let name = ["leg_a", "leg_b", "leg_c"][x];
+                let doc = format!("State of the leg, 0 pulsed, 1 low, 2 off, {meaning}");
+                let state = |legs: LegSigns| match legs[x] {
+                    1 => PULSED,
+                    -1 => LOW,
+                    _ => OFF,
+                };
+                let table = over_vectors(l, self.numbers, name, &doc, state);
+                table.of_legs().at(self.number)
+            });
+        }
+        Command {
+            compares: compare_chosen,
+            legs: leg_chosen,
+        }
     }
-    let product = l.times(k_sixth, front.bus.volts);
-    let unit = l.b.name("sixth_of_bus", product);
-    [0, 1].map(|x| {
-        let name = ["sixths_a", "sixths_b"][x];
-        let doc = "Phase voltage of the vector, sixths of the bus.";
-        let table = over_vectors(l, numbers, name, doc, |legs| sixths(legs)[x]);
-        let share = l.b.lookup(table, vector);
-        let volts = l.b.mul(share, unit, 0);
-        l.b.name(["v_a_chosen", "v_b_chosen"][x], volts)
-    })
-}
 
-/// The same from tables, where a sixth of the bus is `unit` words.
-fn fixed_voltage(l: &mut Lowering<'_>, unit: i64, vector: (Value, Numbers)) -> [Value; 2] {
-    let names = ["v_a_chosen", "v_b_chosen"];
-    let texts = ["volts", "Phase voltage of the vector"];
-    look_up_volts(l, names, texts, &fixed_volts(vector.1, unit), 2, vector)
-}
+    /// The zero-sum voltage that the chosen vector stands for, phases a and b.
+    fn voltage(&self, front: &Front<'b>) -> Phases<'b> {
+        if let BusSource::Fixed = self.l.spec.inverter.bus {
+            return self.fixed_voltage();
+        }
+        named! {
+            let sixth_of_bus = self.k_sixth() * front.bus.volts;
+            let v_chosen = Phases::each(|x| {
+                let name = ["sixths_a", "sixths_b"][x];
+                let doc = "Phase voltage of the vector, sixths of the bus.";
+                self.at(name, doc, |legs| sixths(legs)[x]) * sixth_of_bus
+            });
+        }
+        v_chosen
+    }
 
-/// The terminals that the chosen vector drives, and which leg it turns off.
-fn terminals(l: &mut Lowering<'_>, front: &Front, (vector, numbers): (Value, Numbers)) -> Applied {
-    let terminals = [0, 1, 2].map(|x| {
-        let name = ["high_a", "high_b", "high_c"][x];
-        let doc = "1 where the vector turns the leg's upper switch on.";
-        let table = over_vectors(l, numbers, name, doc, |legs| i32::from(legs[x] == 1));
-        let high = l.b.lookup(table, vector);
-        let volts = l.b.mul(high, front.bus.volts, 0);
-        l.b.name(["t_a_chosen", "t_b_chosen", "t_c_chosen"][x], volts)
-    });
-    let table = off_leg_table(l);
-    let off = l.b.lookup(table, vector);
-    l.b.name("off_chosen", off);
-    Applied { terminals, off }
+    /// The same from tables.
+    fn fixed_voltage(&self) -> Phases<'b> {
+        let volts = fixed_volts(self.numbers, self.fixed_sixth());
+        named! {
+            let v_chosen = self.volts(["volts", "Phase voltage of the vector"], &volts, 2);
+        }
+        v_chosen
+    }
+
+    /// The terminals that the chosen vector drives, and which leg it turns off.
+    fn terminals(&self, front: &Front<'b>) -> Applied<'b> {
+        named! {
+            let t_chosen = Phases::each(|x| {
+                let name = ["high_a", "high_b", "high_c"][x];
+                let doc = "1 where the vector turns the leg's upper switch on.";
+                self.at(name, doc, |legs| i32::from(legs[x] == 1)) * front.bus.volts
+            });
+            let off_chosen = off_leg_table(self.l).at(self.number);
+        }
+        Applied {
+            terminals: t_chosen,
+            off: off_chosen,
+        }
+    }
 }
 
 /// The leg that a vector turns off: 1 a, 2 b, 3 c, 0 none.
-pub(super) fn off_leg_table(l: &mut Lowering<'_>) -> TableId {
+pub(super) fn off_leg_table<'b>(l: &Lowering<'b>) -> Lut<'b> {
     let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
     over_vectors(l, Numbers::Vectors, "off", doc, |legs| {
         legs.iter()

@@ -430,16 +430,15 @@ fn fits_word(interval: Interval) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{Context, Expression, Primitive, Scope};
-    use crate::ir::{FunctionBuilder, Interval, Program};
+    use crate::ir::{Builder, Expr, Interval};
 
     /// The primitives that the lesser and the greater of two words become.
     fn extremes(x: Interval, y: Interval) -> Vec<Primitive> {
-        let mut program = Program::new("Extremes");
-        let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+        let b = Builder::new("Extremes", &[]);
         b.stage("compare", &[]);
         let (x, y) = (b.input("x", x, ""), b.input("y", y, ""));
-        let all = [b.min(x, y), b.max(x, y), b.min(y, x), b.max(y, x)];
-        program.step = b.finish();
+        let all = [x.min(y), x.max(y), y.min(x), y.max(x)].map(Expr::value);
+        let program = b.finish();
         let context = Context::new(&program, &program.step);
         let scope = Scope {
             context: &context,

@@ -66,14 +66,6 @@ pub(super) struct StagePlan<'a> {
     pub stores: Vec<(StateId, Value)>,
 }
 
-/// Whether a value is read where it is used rather than computed by a stage.
-pub(super) fn is_leaf(op: &Op) -> bool {
-    matches!(
-        op,
-        Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_) | Op::Literal(_)
-    )
-}
-
 impl<'a> Context<'a> {
     /// Looks at all values of `function`.
     pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
@@ -106,7 +98,7 @@ impl<'a> Context<'a> {
             User::NextState(state) => !self.is_tracked(state),
             User::Leg | User::Other => true,
         };
-        let computed = tracking.filter(|&value| !is_leaf(&self.function.node(value).op));
+        let computed = tracking.filter(|&value| !self.function.node(value).op.is_leaf());
         computed
             .filter(|value| self.users[value.index()].iter().any(is_used))
             .collect()
@@ -166,7 +158,7 @@ impl<'a> Context<'a> {
         let body: Vec<Value> = inside
             .clone()
             .map(|index| Value(index as u32))
-            .filter(|value| !is_leaf(&function.node(*value).op) && !self.left_out.contains(value))
+            .filter(|value| !function.node(*value).op.is_leaf() && !self.left_out.contains(value))
             .collect();
         let (mut outcomes, mut stores) = (vec![], vec![]);
         match &stage.guard {

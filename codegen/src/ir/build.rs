@@ -1,19 +1,33 @@
-//! Construction of functions: one method per operator, intervals computed on the way.
+//! Construction of programs: functions one after the other, stage by stage, intervals computed on the way.
 //!
 //! The builder never fails: a value that leaves its word keeps its interval (clipped far outside the
 //! word), and [`super::verify()`] reports it. So a caller may try a scaling, look at the violations
-//! and try the next.
+//! and try the next. Values are handed out as expressions ([`super::expr`]), which share the builder.
 
 use super::error::{Exact, Real};
+use super::expr::{Expr, Flag, Lut, Memory, Param};
 use super::graph::{
     Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
 };
 use super::interval::Interval;
-use super::op::{Comparison, ConstantId, Op, ParamId, StateId, TableId, Value};
+use super::op::{ConstantId, Op, ParamId, StateId, TableId, Value};
+use std::cell::RefCell;
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
 /// cannot overflow however wrong a program is.
 const CLIP: i64 = 1 << 40;
+
+/// Builds a program; one of its functions is open at a time, which begins as the step.
+#[derive(Debug)]
+pub struct Builder {
+    draft: RefCell<Draft>,
+}
+
+#[derive(Debug)]
+struct Draft {
+    program: Program,
+    function: Function,
+}
 
 impl Program {
     /// An empty program.
@@ -28,99 +42,29 @@ impl Program {
             setters: vec![],
         }
     }
+}
 
-    /// Adds a named constant that stands for itself, or finds the one of the same name and value.
-    pub fn constant(&mut self, name: &str, raw: i32, doc: &[String]) -> ConstantId {
-        self.rounded_constant(name, raw, Exact::Itself, doc)
-    }
-
-    /// Adds a named constant that was rounded, or finds the one of the same name and value.
-    pub fn rounded_constant(
-        &mut self,
-        name: &str,
-        raw: i32,
-        exact: Exact,
-        doc: &[String],
-    ) -> ConstantId {
-        if let Some(known) = self
-            .constants
-            .iter()
-            .position(|known| known.name == name && known.raw == raw)
-        {
-            return ConstantId(known as u32);
+impl Function {
+    /// An empty function.
+    pub fn new(name: &str, doc: &[&str]) -> Self {
+        Self {
+            name: name.to_owned(),
+            doc: owned(doc),
+            inputs: vec![],
+            nodes: vec![],
+            stages: vec![],
+            outputs: vec![],
+            next_state: vec![],
+            next_params: vec![],
+            told: vec![],
+            quantities: vec![],
+            tracking: 0,
         }
-        self.constants.push(Constant {
-            name: name.to_owned(),
-            raw,
-            exact,
-            doc: doc.to_vec(),
-        });
-        ConstantId(self.constants.len() as u32 - 1)
     }
+}
 
-    /// Adds a table whose entries stand for themselves, padded with zeros to a power of two.
-    pub fn table(&mut self, name: &str, values: Vec<i32>, doc: &[String]) -> TableId {
-        self.rounded_table(name, values, (Exact::Itself, None), doc)
-    }
-
-    /// Adds a table that is read by one index together with others of the same `row`.
-    pub fn column(
-        &mut self,
-        row: &'static str,
-        name: &str,
-        values: Vec<i32>,
-        doc: &[String],
-    ) -> TableId {
-        let table = self.table(name, values, doc);
-        self.put_in_row(table, row);
-        table
-    }
-
-    /// Says that a table is read by one index together with others of the same `row`.
-    pub fn put_in_row(&mut self, table: TableId, row: &'static str) {
-        self.tables[table.index()].row = Some(row);
-    }
-
-    /// Says that the entries of a table are states of legs, and are read as such alone.
-    pub fn hold_legs(&mut self, table: TableId) {
-        self.tables[table.index()].holds_legs = true;
-    }
-
-    /// Adds a table of rounded entries, which may belong to a function of the angle; padded as [`Self::table`].
-    pub fn rounded_table(
-        &mut self,
-        name: &str,
-        mut values: Vec<i32>,
-        (exact, periodic): (Exact, Option<Periodic>),
-        doc: &[String],
-    ) -> TableId {
-        values.resize(values.len().next_power_of_two(), 0);
-        self.tables.push(Table {
-            name: name.to_owned(),
-            values,
-            exact,
-            periodic,
-            row: None,
-            holds_legs: false,
-            doc: doc.to_vec(),
-        });
-        TableId(self.tables.len() as u32 - 1)
-    }
-
-    /// Adds a state word; it is stored in 16 bits where its interval allows that, see [`Word::storage_bits`].
-    pub fn state(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> StateId {
-        self.states.push(word(name, initial, interval, doc));
-        StateId(self.states.len() as u32 - 1)
-    }
-
-    /// Adds a set-point word.
-    pub fn param(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> ParamId {
-        self.params.push(Word {
-            storage_bits: 32,
-            ..word(name, initial, interval, doc)
-        });
-        ParamId(self.params.len() as u32 - 1)
-    }
+fn owned(lines: &[&str]) -> Vec<String> {
+    lines.iter().map(|&line| line.to_owned()).collect()
 }
 
 fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
@@ -138,184 +82,335 @@ fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
     }
 }
 
-impl Function {
-    /// An empty function.
-    pub fn new(name: &str, doc: &[&str]) -> Self {
+/// What all functions of a program share.
+impl Builder {
+    /// Starts a program of that name, and its step.
+    pub fn new(name: &str, step_doc: &[&str]) -> Self {
         Self {
-            name: name.to_owned(),
-            doc: doc.iter().map(|&line| line.to_owned()).collect(),
-            inputs: vec![],
-            nodes: vec![],
-            stages: vec![],
-            outputs: vec![],
-            next_state: vec![],
-            next_params: vec![],
-            told: vec![],
-            quantities: vec![],
-            tracking: 0,
-        }
-    }
-}
-
-/// Builds one function of a program, stage by stage.
-#[derive(Debug)]
-pub struct FunctionBuilder<'p> {
-    /// The program: constants, tables and words may be added while building.
-    pub program: &'p mut Program,
-    function: Function,
-}
-
-impl<'p> FunctionBuilder<'p> {
-    /// Starts a function.
-    pub fn new(program: &'p mut Program, name: &str, doc: &[&str]) -> Self {
-        Self {
-            program,
-            function: Function::new(name, doc),
+            draft: RefCell::new(Draft {
+                program: Program::new(name),
+                function: Function::new("step", step_doc),
+            }),
         }
     }
 
-    /// The function, complete.
-    pub fn finish(self) -> Function {
-        self.function
+    /// The program, whose step is the open function.
+    pub fn finish(self) -> Program {
+        let Draft { program, function } = self.draft.into_inner();
+        Program {
+            step: function,
+            ..program
+        }
     }
 
-    /// Opens a stage; all nodes up to the next stage belong to it.
-    pub fn stage(&mut self, name: &str, doc: &[&str]) {
-        self.close();
-        let first = self.function.nodes.len();
-        let doc = doc.iter().map(|&line| line.to_owned()).collect();
-        self.function.stages.push(Stage {
-            name: name.to_owned(),
-            doc,
-            first,
-            end: first,
-            guard: None,
+    /// Adds a function that sets words of the set-point: `build` opens its stages. The step is the
+    /// open function again behind it.
+    pub fn setter<'b>(&'b self, name: &str, doc: &[&str], build: impl FnOnce(&'b Self)) {
+        let step = self.draft.borrow_mut().open(Function::new(name, doc));
+        build(self);
+        let mut draft = self.draft.borrow_mut();
+        let setter = draft.open(step);
+        draft.program.setters.push(setter);
+    }
+
+    /// Adds a named constant that stands for the number `exact` says, or finds the one of the same
+    /// name and value.
+    pub fn declare_constant(
+        &self,
+        name: &str,
+        raw: i32,
+        exact: Exact,
+        doc: &[String],
+    ) -> ConstantId {
+        let constants = &mut self.draft.borrow_mut().program.constants;
+        let is_same = |known: &Constant| known.name == name && known.raw == raw;
+        let place = constants.iter().position(is_same).unwrap_or_else(|| {
+            constants.push(Constant {
+                name: name.to_owned(),
+                raw,
+                exact,
+                doc: doc.to_vec(),
+            });
+            constants.len() - 1
         });
+        ConstantId(place as u32)
+    }
+
+    /// Adds a named constant that stands for itself, and reads it.
+    pub fn constant(&self, name: &str, raw: i32, doc: &[String]) -> Expr<'_> {
+        self.read_constant(self.declare_constant(name, raw, Exact::Itself, doc))
+    }
+
+    /// The value of a constant.
+    pub fn constant_value(&self, id: ConstantId) -> i32 {
+        self.draft.borrow().program.constants[id.index()].raw
+    }
+
+    /// Adds a table whose entries stand for themselves, padded with zeros to a power of two.
+    pub fn table(&self, name: &str, values: Vec<i32>, doc: &[String]) -> Lut<'_> {
+        self.rounded_table(name, values, (Exact::Itself, None), doc)
+    }
+
+    /// Adds a table that is read by one index together with others of the same `row`.
+    pub fn column(&self, row: &'static str, name: &str, values: Vec<i32>, doc: &str) -> Lut<'_> {
+        self.table(name, values, &[doc.to_owned()]).in_row(row)
+    }
+
+    /// Adds a table of rounded entries, which may belong to a function of the angle; padded as [`Self::table`].
+    pub fn rounded_table(
+        &self,
+        name: &str,
+        mut values: Vec<i32>,
+        (exact, periodic): (Exact, Option<Periodic>),
+        doc: &[String],
+    ) -> Lut<'_> {
+        values.resize(values.len().next_power_of_two(), 0);
+        let tables = &mut self.draft.borrow_mut().program.tables;
+        tables.push(Table {
+            name: name.to_owned(),
+            values,
+            exact,
+            periodic,
+            row: None,
+            holds_legs: false,
+            doc: doc.to_vec(),
+        });
+        Lut {
+            b: self,
+            id: TableId(tables.len() as u32 - 1),
+        }
+    }
+
+    pub(super) fn put_in_row(&self, table: TableId, row: &'static str) {
+        self.draft.borrow_mut().program.tables[table.index()].row = Some(row);
+    }
+
+    pub(super) fn hold_legs(&self, table: TableId) {
+        self.draft.borrow_mut().program.tables[table.index()].holds_legs = true;
+    }
+
+    /// Adds a state word; it is stored in 16 bits where its interval allows that, see [`Word::storage_bits`].
+    pub fn memory(&self, name: &str, initial: i32, interval: Interval, doc: &str) -> Memory<'_> {
+        let states = &mut self.draft.borrow_mut().program.states;
+        states.push(word(name, initial, interval, doc));
+        Memory {
+            b: self,
+            id: StateId(states.len() as u32 - 1),
+        }
+    }
+
+    /// Adds a set-point word.
+    pub fn param(&self, name: &str, initial: i32, interval: Interval, doc: &str) -> Param<'_> {
+        let params = &mut self.draft.borrow_mut().program.params;
+        params.push(Word {
+            storage_bits: 32,
+            ..word(name, initial, interval, doc)
+        });
+        Param {
+            b: self,
+            id: ParamId(params.len() as u32 - 1),
+        }
+    }
+
+    pub(super) fn param_interval(&self, id: ParamId) -> Interval {
+        self.draft.borrow().program.params[id.index()].interval
+    }
+}
+
+/// The open function.
+impl Builder {
+    /// Opens a stage; all nodes up to the next stage belong to it.
+    pub fn stage(&self, name: &str, doc: &[&str]) {
+        self.draft.borrow_mut().open_stage(name, doc, None);
     }
 
     /// Opens a stage that runs only where `condition` holds; close it with [`Self::join`].
-    pub fn guarded_stage(&mut self, name: &str, condition: Value, rare: bool, doc: &[&str]) {
-        self.stage(name, doc);
-        let last = self.function.stages.len() - 1;
-        self.function.stages[last].guard = Some(Guard {
-            condition,
+    pub fn guarded_stage(&self, name: &str, condition: Flag<'_>, rare: bool, doc: &[&str]) {
+        let guard = Guard {
+            condition: condition.value,
             joins: vec![],
             rare,
-        });
-    }
-
-    /// Tells people a value.
-    pub fn tell(&mut self, name: &str, value: Value) {
-        self.function.told.push((name.to_owned(), value));
-    }
-
-    /// Ends the tracking: what follows runs in controlled periods only. A new stage must be opened.
-    pub fn end_tracking(&mut self) {
-        self.close();
-        self.function.tracking = self.function.nodes.len();
+        };
+        let mut draft = self.draft.borrow_mut();
+        draft.open_stage(name, doc, Some(guard));
     }
 
     /// Closes the guarded stage: per result its name, the value from inside, and the value that holds
     /// where the stage did not run. A new stage must be opened before further nodes are added.
-    pub fn join<const N: usize>(&mut self, results: [(&str, Value, Value); N]) -> [Value; N] {
-        let joined = self.join_all(&results);
-        std::array::from_fn(|index| joined[index])
+    pub fn join<'b, const N: usize>(
+        &'b self,
+        results: [(&str, Expr<'b>, Expr<'b>); N],
+    ) -> [Expr<'b>; N] {
+        self.draft.borrow_mut().end_stage();
+        let joined = results.map(|(name, taken, otherwise)| {
+            let (taken, otherwise) = (taken.value, otherwise.value);
+            self.expr(self.push(name, Op::Join { taken, otherwise }))
+        });
+        self.draft
+            .borrow_mut()
+            .note_joins(joined.map(|join| join.value));
+        joined
     }
 
     /// [`Self::join`] for a list of any length.
-    pub fn join_all(&mut self, results: &[(&str, Value, Value)]) -> Vec<Value> {
-        let last = self.function.stages.len() - 1;
-        self.function.stages[last].end = self.function.nodes.len();
-        let joins: Vec<Value> = results
-            .iter()
-            .map(|&(name, taken, otherwise)| self.push(name, Op::Join { taken, otherwise }))
-            .collect();
-        if let Some(guard) = &mut self.function.stages[last].guard {
-            guard.joins.clone_from(&joins);
-        }
-        joins
+    pub fn join_all<'b>(&'b self, results: &[(&str, Expr<'b>, Expr<'b>)]) -> Vec<Expr<'b>> {
+        let joined = results.iter().map(|&result| self.join([result])[0]);
+        joined.collect()
     }
 
-    fn close(&mut self) {
-        let end = self.function.nodes.len();
-        if let Some(stage) = self.function.stages.last_mut()
-            && stage
-                .guard
-                .as_ref()
-                .is_none_or(|guard| guard.joins.is_empty())
-        {
-            stage.end = end;
-        }
+    /// Ends the tracking: what follows runs in controlled periods only. A new stage must be opened.
+    pub fn end_tracking(&self) {
+        let function = &mut self.draft.borrow_mut().function;
+        function.close();
+        function.tracking = function.nodes.len();
+    }
+
+    /// Tells people a value.
+    pub fn tell(&self, name: &str, value: Expr<'_>) {
+        let mut draft = self.draft.borrow_mut();
+        draft.function.told.push((name.to_owned(), value.value));
     }
 
     /// Names a result of the function.
-    pub fn output(&mut self, name: &str, value: Value) {
-        self.close();
-        self.function.outputs.push((name.to_owned(), value));
+    pub fn output(&self, name: &str, value: Expr<'_>) {
+        let function = &mut self.draft.borrow_mut().function;
+        function.close();
+        function.outputs.push((name.to_owned(), value.value));
     }
 
-    /// Sets a state word's new value.
-    pub fn set_state(&mut self, state: StateId, value: Value) {
-        self.close();
-        self.function.next_state.push((state, value));
+    pub(super) fn set_state(&self, state: StateId, value: Value) {
+        let function = &mut self.draft.borrow_mut().function;
+        function.close();
+        function.next_state.push((state, value));
     }
 
-    /// Sets a set-point word's new value.
-    pub fn set_param(&mut self, param: ParamId, value: Value) {
-        self.close();
-        self.function.next_params.push((param, value));
+    pub(super) fn set_param(&self, param: ParamId, value: Value) {
+        let function = &mut self.draft.borrow_mut().function;
+        function.close();
+        function.next_params.push((param, value));
     }
 
     /// States the error of a value: of what quantity, in which unit, and what a word is worth in it.
-    pub fn state_error(&mut self, name: &str, value: Value, [doc, unit]: [&str; 2], word: f64) {
-        self.function.quantities.push(Quantity {
+    pub fn state_error(&self, name: &str, value: Expr<'_>, [doc, unit]: [&str; 2], word: f64) {
+        let mut draft = self.draft.borrow_mut();
+        draft.function.quantities.push(Quantity {
             name: name.to_owned(),
             doc: doc.to_owned(),
             unit: unit.to_owned(),
             word: Real::of(word),
-            value,
+            value: value.value,
         });
     }
 
-    /// The proven interval of a value.
-    pub fn interval(&self, value: Value) -> Interval {
-        self.function.node(value).interval
+    /// Adds an input word and reads it.
+    pub fn input(&self, name: &str, interval: Interval, doc: &str) -> Expr<'_> {
+        let number = {
+            let inputs = &mut self.draft.borrow_mut().function.inputs;
+            inputs.push(Input {
+                name: name.to_owned(),
+                interval,
+                doc: doc.to_owned(),
+            });
+            inputs.len() as u32 - 1
+        };
+        self.expr(self.push(name, Op::Input(number)))
     }
 
-    /// Gives an unnamed value a name, so that it becomes a `let` of the emitted code.
-    pub fn name(&mut self, name: &str, value: Value) -> Value {
-        name.clone_into(&mut self.function.nodes[value.index()].name);
-        value
+    /// A small number.
+    pub fn number(&self, value: i32) -> Expr<'_> {
+        self.expr(self.push("", Op::Literal(value)))
+    }
+
+    /// Reads a named constant.
+    pub fn read_constant(&self, id: ConstantId) -> Expr<'_> {
+        self.expr(self.push("", Op::Constant(id)))
+    }
+
+    pub(super) fn read_param(&self, id: ParamId) -> Expr<'_> {
+        self.read_word(Op::Param(id))
+    }
+
+    pub(super) fn read_state(&self, id: StateId) -> Expr<'_> {
+        self.read_word(Op::State(id))
+    }
+
+    fn read_word(&self, op: Op) -> Expr<'_> {
+        let known = self.draft.borrow().find(op);
+        let value = known.unwrap_or_else(|| {
+            let name = self.draft.borrow().name_of(op);
+            self.push(&name, op)
+        });
+        self.expr(value)
+    }
+
+    fn expr(&self, value: Value) -> Expr<'_> {
+        Expr { b: self, value }
+    }
+
+    pub(super) fn interval(&self, value: Value) -> Interval {
+        self.draft.borrow().function.node(value).interval
+    }
+
+    pub(super) fn name(&self, value: Value, name: &str) {
+        let nodes = &mut self.draft.borrow_mut().function.nodes;
+        name.clone_into(&mut nodes[value.index()].name);
+    }
+
+    pub(super) fn push(&self, name: &str, op: Op) -> Value {
+        self.draft.borrow_mut().push(name, op)
+    }
+}
+
+impl Draft {
+    /// Opens a function in place of the open one, which it returns.
+    fn open(&mut self, function: Function) -> Function {
+        self.function.close();
+        std::mem::replace(&mut self.function, function)
+    }
+
+    fn open_stage(&mut self, name: &str, doc: &[&str], guard: Option<Guard>) {
+        self.function.close();
+        let first = self.function.nodes.len();
+        self.function.stages.push(Stage {
+            name: name.to_owned(),
+            doc: owned(doc),
+            first,
+            end: first,
+            guard,
+        });
+    }
+
+    /// Ends the guarded stage that is open, once.
+    fn end_stage(&mut self) {
+        self.function.close();
+    }
+
+    fn note_joins(&mut self, joins: impl IntoIterator<Item = Value>) {
+        let stage = self.function.stages.last_mut();
+        if let Some(guard) = stage.and_then(|stage| stage.guard.as_mut()) {
+            guard.joins.extend(joins);
+        }
+    }
+
+    fn find(&self, op: Op) -> Option<Value> {
+        let nodes = &self.function.nodes;
+        let index = nodes.iter().position(|node| node.op == op)?;
+        Some(Value(index as u32))
+    }
+
+    /// The name of the word that is read.
+    fn name_of(&self, op: Op) -> String {
+        let word = match op {
+            Op::Param(id) => self.program.params.get(id.index()),
+            Op::State(id) => self.program.states.get(id.index()),
+            _ => None,
+        };
+        word.map(|word| word.name.clone()).unwrap_or_default()
     }
 
     fn push(&mut self, name: &str, op: Op) -> Value {
         let kind = op.kind(|value| self.function.node(value).kind);
-        let operands: Vec<Interval> = op
-            .operands()
-            .iter()
-            .map(|&value| self.interval(value))
-            .collect();
-        let interval = match op {
-            Op::Input(n) => self.function.inputs[n as usize].interval,
-            Op::Param(id) => self.program.params[id.index()].interval,
-            Op::State(id) => self.program.states[id.index()].interval,
-            Op::Constant(id) => Interval::point(i64::from(self.program.constants[id.index()].raw)),
-            Op::Join { taken, otherwise } => {
-                let guard = self
-                    .function
-                    .stages
-                    .last()
-                    .and_then(|stage| stage.guard.as_ref());
-                let outside = match guard {
-                    Some(guard) => self.function.interval_where_not(guard.condition, otherwise),
-                    None => self.interval(otherwise),
-                };
-                self.interval(taken).union(outside)
-            }
-            _ => op
-                .interval(&operands, |id| self.program.tables[id.index()].interval())
-                .unwrap_or(Interval::symmetric(CLIP)),
-        };
+        let interval = self.interval(op);
         let interval = Interval::new(
             interval.low.clamp(-CLIP, CLIP),
             interval.high.clamp(-CLIP, CLIP),
@@ -329,204 +424,41 @@ impl<'p> FunctionBuilder<'p> {
         Value(self.function.nodes.len() as u32 - 1)
     }
 
-    /// Adds an input word and reads it.
-    pub fn input(&mut self, name: &str, interval: Interval, doc: &str) -> Value {
-        self.function.inputs.push(Input {
-            name: name.to_owned(),
-            interval,
-            doc: doc.to_owned(),
-        });
-        self.push(name, Op::Input(self.function.inputs.len() as u32 - 1))
-    }
-
-    /// Reads a set-point word; a second read is the same value.
-    pub fn param(&mut self, param: ParamId) -> Value {
-        if let Some(value) = self.find(Op::Param(param)) {
-            return value;
-        }
-        let name = self.program.params[param.index()].name.clone();
-        self.push(&name, Op::Param(param))
-    }
-
-    /// Reads a state word as it was before the step; a second read is the same value.
-    pub fn state(&mut self, state: StateId) -> Value {
-        if let Some(value) = self.find(Op::State(state)) {
-            return value;
-        }
-        let name = self.program.states[state.index()].name.clone();
-        self.push(&name, Op::State(state))
-    }
-
-    fn find(&self, op: Op) -> Option<Value> {
-        self.function
-            .nodes
-            .iter()
-            .position(|node| node.op == op)
-            .map(|index| Value(index as u32))
-    }
-
-    /// Reads a named constant.
-    pub fn constant(&mut self, id: ConstantId) -> Value {
-        self.push("", Op::Constant(id))
-    }
-
-    /// A small number.
-    pub fn literal(&mut self, value: i32) -> Value {
-        self.push("", Op::Literal(value))
-    }
-
-    /// table[index mod length]
-    pub fn lookup(&mut self, table: TableId, index: Value) -> Value {
-        self.push("", Op::Lookup { table, index })
-    }
-
-    /// `c x` rounded half up at `shift`; the bare product for shift 0.
-    pub fn mul(&mut self, coefficient: Value, signal: Value, shift: u32) -> Value {
-        match shift {
-            0 => self.push("", Op::Product(coefficient, signal)),
-            _ => self.push(
-                "",
-                Op::MulRound {
-                    coefficient,
-                    signal,
-                    shift,
-                },
-            ),
-        }
-    }
-
-    /// A small multiple, `factor` times `a`.
-    pub fn mul_by(&mut self, factor: i32, a: Value) -> Value {
-        let factor = self.literal(factor);
-        self.push("", Op::Product(factor, a))
-    }
-
-    /// floor(a b / 2^shift)
-    pub fn mul_floor(&mut self, a: Value, b: Value, shift: u32) -> Value {
-        self.push("", Op::MulFloor { a, b, shift })
-    }
-
-    /// floor((a b + c d) / 2^shift) of factors a, b and c, d
-    pub fn mul_add_floor(&mut self, first: [Value; 2], second: [Value; 2], shift: u32) -> Value {
-        self.push(
-            "",
-            Op::MulAddFloor {
-                first,
-                second,
-                shift,
-            },
-        )
-    }
-
-    /// min(a b, limit), a and b not negative
-    pub fn mul_limited(&mut self, a: Value, b: Value, limit: Value) -> Value {
-        self.push("", Op::MulLimited { a, b, limit })
-    }
-
-    /// a 2^n
-    pub fn shift_left(&mut self, a: Value, n: u32) -> Value {
-        self.push("", Op::ShiftLeft(a, n))
-    }
-
-    /// floor(a / 2^n)
-    pub fn shift_right(&mut self, a: Value, n: u32) -> Value {
-        self.push("", Op::ShiftRight(a, n))
-    }
-
-    /// min(max(x, low), high)
-    pub fn clamp(&mut self, x: Value, low: Value, high: Value) -> Value {
-        self.push("", Op::Clamp { x, low, high })
-    }
-
-    /// min(max(x, -limit), limit)
-    pub fn clamp_both(&mut self, x: Value, limit: Value) -> Value {
-        let low = self.neg(limit);
-        self.clamp(x, low, limit)
-    }
-
-    /// min(floor(numerator 2^shift / denominator), limit)
-    pub fn divide(
-        &mut self,
-        numerator: Value,
-        shift: u32,
-        denominator: Value,
-        limit: Value,
-    ) -> Value {
-        self.push(
-            "",
-            Op::Divide {
-                numerator,
-                shift,
-                denominator,
-                limit,
-            },
-        )
-    }
-
-    /// floor((2^32 - 1) / a)
-    pub fn turn_over(&mut self, a: Value) -> Value {
-        self.push("", Op::TurnOver(a))
-    }
-
-    /// Segment of the angle.
-    pub fn angle_index(&mut self, angle: Value, segments: u32) -> Value {
-        self.push("", Op::AngleIndex { angle, segments })
-    }
-
-    /// Position within the angle's segment, 31 bits.
-    pub fn angle_fraction(&mut self, angle: Value, segments: u32) -> Value {
-        self.push("", Op::AngleFraction { angle, segments })
-    }
-
-    /// Flag: `a` compared with `b`.
-    pub fn compare(&mut self, how: Comparison, a: Value, b: Value) -> Value {
-        self.push("", Op::Compare(how, a, b))
-    }
-
-    /// `then` where the flag holds, else `otherwise`.
-    pub fn select(&mut self, condition: Value, then: Value, otherwise: Value) -> Value {
-        self.push(
-            "",
-            Op::Select {
-                condition,
-                then,
-                otherwise,
-            },
-        )
-    }
-}
-
-macro_rules! operators {
-    ($($(#[$doc:meta])* $name:ident($($operand:ident),+) = $op:ident;)*) => {
-        impl FunctionBuilder<'_> {$(
-            $(#[$doc])*
-            pub fn $name(&mut self, $($operand: Value),+) -> Value {
-                self.push("", Op::$op($($operand),+))
+    fn interval(&self, op: Op) -> Interval {
+        let (program, function) = (&self.program, &self.function);
+        let of = |value: Value| function.node(value).interval;
+        match op {
+            Op::Input(n) => function.inputs[n as usize].interval,
+            Op::Param(id) => program.params[id.index()].interval,
+            Op::State(id) => program.states[id.index()].interval,
+            Op::Constant(id) => Interval::point(i64::from(program.constants[id.index()].raw)),
+            Op::Join { taken, otherwise } => {
+                let stage = function.stages.last();
+                let outside = match stage.and_then(|stage| stage.guard.as_ref()) {
+                    Some(guard) => function.interval_where_not(guard.condition, otherwise),
+                    None => of(otherwise),
+                };
+                of(taken).union(outside)
             }
-        )*}
-    };
+            _ => {
+                let operands: Vec<Interval> = op.operands().into_iter().map(of).collect();
+                op.interval(&operands, |id| program.tables[id.index()].interval())
+                    .unwrap_or(Interval::symmetric(CLIP))
+            }
+        }
+    }
 }
-operators! {
-    /// a + b
-    add(a, b) = Add;
-    /// a - b
-    sub(a, b) = Sub;
-    /// -a
-    neg(a) = Neg;
-    /// |a|
-    abs(a) = Abs;
-    /// min(a, b)
-    min(a, b) = Min;
-    /// max(a, b)
-    max(a, b) = Max;
-    /// (a + b) mod 2^32
-    angle_add(a, b) = AngleAdd;
-    /// (a - b) mod 2^32
-    angle_sub(a, b) = AngleSub;
-    /// Both flags.
-    and(a, b) = And;
-    /// Either flag.
-    or(a, b) = Or;
-    /// Not the flag.
-    not(a) = Not;
+
+impl Function {
+    /// Ends the open stage, unless joins have ended it.
+    fn close(&mut self) {
+        let end = self.nodes.len();
+        let is_open = |stage: &&mut Stage| {
+            let guard = stage.guard.as_ref();
+            guard.is_none_or(|guard| guard.joins.is_empty())
+        };
+        if let Some(stage) = self.stages.last_mut().filter(is_open) {
+            stage.end = end;
+        }
+    }
 }

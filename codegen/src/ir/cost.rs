@@ -171,26 +171,25 @@ pub fn live_words(function: &Function) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{Cost, PathCost, live_words};
-    use crate::ir::{Comparison, FunctionBuilder, Interval, Program};
+    use crate::ir::{Builder, Interval, named};
 
     #[test]
     fn rare_stages_count_in_the_worst_case_only() {
-        let mut program = Program::new("Count");
-        let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+        let b = Builder::new("Count", &[]);
         b.stage("read", &[]);
         let word = Interval::symmetric(1000);
         let (x, y) = (b.input("x", word, ""), b.input("y", word, ""));
-        let sum = b.add(x, y);
-        b.name("sum", sum);
-        let zero = b.literal(0);
-        let large = b.compare(Comparison::Less, zero, sum);
-        b.name("large", large);
+        named! {
+            let sum = x + y;
+            let large = sum.is_above(0);
+        }
         b.guarded_stage("shrink", large, true, &[]);
-        let product = b.mul(x, y, 4);
-        b.name("product", product);
+        named! {
+            let product = y.mul_round(x, 4);
+        }
         let [result] = b.join([("result", product, sum)]);
         b.output("result", result);
-        let function = b.finish();
+        let function = b.finish().step;
         let normal = Cost {
             additions: 1,
             comparisons: 1,

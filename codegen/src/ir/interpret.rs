@@ -135,8 +135,8 @@ impl<'g> Machine<'g> {
                 .guard
                 .as_ref()
                 .is_none_or(|guard| self.values[guard.condition.index()] == 1);
-            if runs {
-                for index in stage.first..stage.end {
+            for index in stage.first..stage.end {
+                if runs || function.nodes[index].op.is_leaf() {
                     self.evaluate(number, function, index, inputs)?;
                 }
             }

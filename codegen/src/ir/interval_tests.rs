@@ -1,7 +1,9 @@
 //! Intervals against all values of small ranges: none too narrow, and none wider than its values
 //! but where that is said.
 
-use super::{Bounds, Comparison, Function, FunctionBuilder, Interval, Op, Program, TableId, Value};
+use super::{
+    Bounds, Builder, Comparison, Expr, Flag, Function, Interval, Named, Op, Program, Value, named,
+};
 
 fn hull(values: impl IntoIterator<Item = i64>) -> Option<Interval> {
     values
@@ -160,12 +162,9 @@ fn intervals_of_angles_and_tables_are_those_of_all_words() {
         segments: 1,
     });
     assert_eq!(found, stated);
-    let mut program = Program::new("Table");
-    let table: TableId = program.table("table", vec![5, -7, 2, 3], &[]);
-    assert_eq!(
-        program.tables[table.index()].interval(),
-        Interval::new(-7, 5)
-    );
+    let b = Builder::new("Table", &[]);
+    b.table("table", vec![5, -7, 2, 3], &[]);
+    assert_eq!(b.finish().tables[0].interval(), Interval::new(-7, 5));
 }
 
 #[test]
@@ -185,20 +184,18 @@ fn bits_are_those_of_the_smallest_word_that_holds_both_ends() {
 }
 
 /// A step of this shape, which is not verified: `build` names its values.
-fn program(inputs: &[Interval], build: impl Fn(&mut FunctionBuilder<'_>, &[Value])) -> Program {
-    let mut program = Program::new("Conditions");
-    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+fn program(inputs: &[Interval], build: impl for<'b> Fn(&'b Builder, &[Expr<'b>])) -> Program {
+    let b = Builder::new("Conditions", &[]);
     b.stage("read", &[]);
     let names = ["x", "y", "z"].into_iter().zip(inputs);
-    let values: Vec<Value> = names
+    let values: Vec<Expr<'_>> = names
         .map(|(name, &interval)| b.input(name, interval, ""))
         .collect();
-    build(&mut b, &values);
-    program.step = b.finish();
-    program
+    build(&b, &values);
+    b.finish()
 }
 
-fn named(function: &Function, name: &str) -> Value {
+fn value_named(function: &Function, name: &str) -> Value {
     let mut values = function.values();
     let found = values.find(|&value| function.node(value).name == name);
     found.expect("a value of this name")
@@ -217,7 +214,7 @@ fn results(function: &Function, inputs: &[i64]) -> Vec<i64> {
         let result = match node.op {
             Op::Input(number) => inputs[number as usize],
             Op::Join { taken, otherwise } => {
-                let holds = results[named(function, "holds").index()] == 1;
+                let holds = results[value_named(function, "holds").index()] == 1;
                 results[if holds { taken } else { otherwise }.index()]
             }
             op => op.apply(&operands, |_, _| 0).expect("inside its domain"),
@@ -239,30 +236,29 @@ const HOWS: [Comparison; 4] = [
 fn check_condition(
     ranges: &[Interval],
     is_exact: bool,
-    condition: impl Fn(&mut FunctionBuilder<'_>, &[Value]) -> Value,
+    condition: impl for<'b> Fn(&[Expr<'b>]) -> Flag<'b>,
 ) {
     let selected = program(ranges, |b, x| {
-        let one = b.literal(1);
-        let (then, otherwise) = (b.add(x[0], one), b.sub(x[1], one));
-        b.name("then", then);
-        b.name("otherwise", otherwise);
-        let holds = condition(b, x);
-        b.name("holds", holds);
-        let chosen = b.select(holds, then, otherwise);
-        b.output("chosen", chosen);
-        let direct = b.select(holds, x[0], x[1]);
-        b.name("direct", direct);
+        named! {
+            let then = x[0] + 1;
+            let otherwise = x[1] - 1;
+            let holds = condition(x);
+        }
+        b.output("chosen", holds.choose(then, otherwise));
+        named! {
+            let direct = holds.choose(x[0], x[1]);
+        }
         b.output("direct", direct);
     });
     let guarded = program(ranges, |b, x| {
-        let holds = condition(b, x);
-        b.name("holds", holds);
-        let one = b.literal(1);
-        let otherwise = b.sub(x[1], one);
-        b.name("otherwise", otherwise);
+        named! {
+            let holds = condition(x);
+            let otherwise = x[1] - 1;
+        }
         b.guarded_stage("rarely", holds, true, &[]);
-        let then = b.add(x[0], one);
-        b.name("then", then);
+        named! {
+            let then = x[0] + 1;
+        }
         let [joined] = b.join([("joined", then, otherwise)]);
         b.output("joined", joined);
     });
@@ -272,9 +268,9 @@ fn check_condition(
             .iter()
             .map(|inputs| results(step, inputs))
             .collect();
-        let holds = named(step, "holds").index();
+        let holds = value_named(step, "holds").index();
         let seen = |name: &str, when: Option<bool>| {
-            let place = named(step, name).index();
+            let place = value_named(step, name).index();
             let matters = all
                 .iter()
                 .filter(|values| when.is_none_or(|when| (values[holds] == 1) == when));
@@ -296,7 +292,7 @@ fn check_condition(
             let Some(seen) = seen(name, when) else {
                 continue;
             };
-            let stated = bounds.interval(named(step, name));
+            let stated = bounds.interval(value_named(step, name));
             assert!(
                 stated.contains(seen),
                 "{name} in {stated}, but takes {seen}: {ranges:?} {:?}",
@@ -311,7 +307,10 @@ fn check_condition(
         let known = [true, false].map(|when| {
             let name = if when { "then" } else { "otherwise" };
             let bounds = Bounds::where_known(program, step, &[(Value(holds as u32), when)]);
-            (bounds.interval(named(step, name)), seen(name, Some(when)))
+            (
+                bounds.interval(value_named(step, name)),
+                seen(name, Some(when)),
+            )
         });
         for (stated, seen) in known {
             assert!(
@@ -328,12 +327,9 @@ fn comparisons_bound_what_they_compare() {
         for y in intervals(-2, 3) {
             for how in HOWS {
                 let is_order = matches!(how, Comparison::Less | Comparison::LessEqual);
-                check_condition(&[x, y], is_order, |b, x| b.compare(how, x[0], x[1]));
-                check_condition(&[x, y], is_order, |b, x| b.compare(how, x[1], x[0]));
-                check_condition(&[x, y], is_order, |b, x| {
-                    let compared = b.compare(how, x[0], x[1]);
-                    b.not(compared)
-                });
+                check_condition(&[x, y], is_order, |x| x[0].compare(how, x[1]));
+                check_condition(&[x, y], is_order, |x| x[1].compare(how, x[0]));
+                check_condition(&[x, y], is_order, |x| !x[0].compare(how, x[1]));
             }
         }
     }
@@ -348,16 +344,11 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
             for z in few {
                 for first in HOWS {
                     for second in HOWS {
-                        let pair = |b: &mut FunctionBuilder<'_>, x: &[Value]| {
-                            [b.compare(first, x[0], x[1]), b.compare(second, x[2], x[0])]
-                        };
-                        check_condition(&[x, y, z], false, |b, x| {
-                            let [one, other] = pair(b, x);
-                            b.and(one, other)
+                        check_condition(&[x, y, z], false, |x| {
+                            x[0].compare(first, x[1]) & x[2].compare(second, x[0])
                         });
-                        check_condition(&[x, y, z], false, |b, x| {
-                            let [one, other] = pair(b, x);
-                            b.or(one, other)
+                        check_condition(&[x, y, z], false, |x| {
+                            x[0].compare(first, x[1]) | x[2].compare(second, x[0])
                         });
                     }
                 }
@@ -367,18 +358,15 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
     // Both say something: x < y and x < z.
     let ranges = [(0, 9), (2, 6), (3, 5)].map(|(low, high)| Interval::new(low, high));
     let either = program(&ranges, |b, x| {
-        let one = b.literal(1);
-        let then = b.add(x[0], one);
-        b.name("then", then);
-        let other = b.sub(x[0], one);
-        b.name("otherwise", other);
-        let flags = [1, 2].map(|y| b.compare(Comparison::Less, x[0], x[y]));
-        let holds = b.and(flags[0], flags[1]);
-        let chosen = b.select(holds, then, other);
-        b.output("chosen", chosen);
+        named! {
+            let then = x[0] + 1;
+            let otherwise = x[0] - 1;
+        }
+        let holds = x[0].is_below(x[1]) & x[0].is_below(x[2]);
+        b.output("chosen", holds.choose(then, otherwise));
     });
     let bounds = Bounds::new(&either, &either.step);
-    let then = bounds.interval(named(&either.step, "then"));
+    let then = bounds.interval(value_named(&either.step, "then"));
     assert_eq!(then, Interval::new(1, 5), "x is below 5 there");
 }
 
@@ -398,39 +386,32 @@ fn a_spread_bounds_its_legs_and_their_middle() {
     ];
     let mut tight = [0; 7];
     for limit in 0..=18 {
-        let program = program(&[range, range], |b, x| {
-            let sum = b.add(x[0], x[1]);
-            let c = b.neg(sum);
-            let legs = [x[0], x[1], c];
-            b.name("c", c);
-            let (high, low) = (b.max(x[0], x[1]), b.min(x[0], x[1]));
-            let (high, low) = (b.max(high, c), b.min(low, c));
-            let spread = b.sub(high, low);
-            let limit = b.literal(limit);
-            let holds = b.compare(Comparison::Less, limit, spread);
-            b.name("holds", holds);
-            let both = b.add(high, low);
-            let middle = b.shift_right(both, 1);
-            b.name("middle", middle);
-            for (name, leg) in [("centred_a", legs[0]), ("centred_c", legs[2])] {
-                let centred = b.sub(leg, middle);
-                b.name(name, centred);
+        let program = program(&[range, range], |_, x| {
+            named! {
+                let a = x[0];
+                let b = x[1];
+                let c = -(a + b);
             }
-            let seven = b.literal(7);
-            let lift = b.sub(seven, middle);
-            let lifted = b.add(legs[1], lift);
-            b.name("lifted_b", lifted);
-            b.name("a", x[0]);
-            b.name("b", x[1]);
+            let (high, low) = (a.max(b).max(c), a.min(b).min(c));
+            let spread = high - low;
+            let both = high + low;
+            named! {
+                let holds = spread.is_above(limit);
+                let middle = both >> 1;
+            }
+            (a - middle).named("centred_a");
+            (c - middle).named("centred_c");
+            (b + (7 - middle)).named("lifted_b");
+            holds.named("holds");
         });
         let step = &program.step;
         let all: Vec<Vec<i64>> = choices(&[range, range])
             .iter()
             .map(|inputs| results(step, inputs))
             .collect();
-        let holds = named(step, "holds");
+        let holds = value_named(step, "holds");
         for (name, tight) in names.iter().zip(&mut tight) {
-            let value = named(step, name);
+            let value = value_named(step, name);
             let inside = all.iter().filter(|values| values[holds.index()] == 0);
             let seen = hull(inside.map(|values| values[value.index()])).expect("0 has no spread");
             let stated = step.interval_where_not(holds, value);

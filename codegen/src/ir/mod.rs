@@ -10,6 +10,7 @@ pub mod bounds;
 pub mod build;
 pub mod cost;
 pub mod error;
+pub mod expr;
 pub mod graph;
 pub mod interpret;
 pub mod interval;
@@ -23,9 +24,14 @@ pub mod verify;
 mod verify_tests;
 
 pub use bounds::{Bounds, Case, StatedError, cases, stated_errors};
-pub use build::FunctionBuilder;
+pub use build::Builder;
 pub use cost::{Cost, PathCost, live_words};
 pub use error::{ErrorInterval, Exact, Real};
+pub(crate) use expr::named;
+pub use expr::{
+    Choice, Coefficient, Expr, Flag, Lut, Memory, Named, Operand, Param, Phases, mul_add_floor,
+    pick,
+};
 pub use graph::{
     AtRest, Constant, Function, Guard, Input, Node, Periodic, Program, Quantity, Stage, Table, Word,
 };

@@ -220,6 +220,14 @@ pub enum Op {
 }
 
 impl Op {
+    /// Whether the value is read, wherever it is used, rather than computed by a stage.
+    pub fn is_leaf(&self) -> bool {
+        matches!(
+            self,
+            Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) | Self::Literal(_)
+        )
+    }
+
     /// The operands, in order.
     pub fn operands(&self) -> Vec<Value> {
         let mut operands = Vec::with_capacity(4);

@@ -3,8 +3,8 @@
 //! Invariants:
 //! 1. Every operand is defined earlier; words, constants, tables and results that are named exist.
 //! 2. Stages and their joins partition the nodes in order.
-//! 3. Values of a guarded stage leave it through its joins only; joins stand right behind their stage, and
-//!    its guard is defined before it.
+//! 3. Values that a guarded stage computes leave it through its joins only; joins stand right behind their
+//!    stage, and its guard is defined before it.
 //! 4. Operand kinds fit, and results are words.
 //! 5. Every stored interval is the one that follows from the operands (and, at a join, the guard:
 //!    [`Function::interval_where_not`]), and lies in the 32-bit word.
@@ -291,11 +291,12 @@ impl FunctionCheck<'_> {
             for join in stage.guard.iter().flat_map(|guard| &guard.joins) {
                 let behind = join.index() == next;
                 next += 1;
+                let is_before =
+                    |value: Value| value.index() < stage.first || function.node(value).op.is_leaf();
                 let from_inside = match function.node(*join).op {
                     Op::Join { taken, otherwise } => {
-                        (stage.first..stage.end).contains(&taken.index())
-                            && otherwise.index() < stage.first
-                            || taken.index() < stage.first && otherwise.index() < stage.first
+                        let is_inside = (stage.first..stage.end).contains(&taken.index());
+                        (is_inside || is_before(taken)) && is_before(otherwise)
                     }
                     _ => false,
                 };
@@ -326,7 +327,8 @@ impl FunctionCheck<'_> {
                         .as_ref()
                         .is_some_and(|guard| guard.joins.contains(&Value(index as u32)))
                 });
-                if inside.is_some() && stage_of[index] != inside && !own_join {
+                let is_leaf = function.node(operand).op.is_leaf();
+                if inside.is_some() && stage_of[index] != inside && !own_join && !is_leaf {
                     self.fail(
                         operand.index(),
                         "leaves its guarded stage other than by a join",
@@ -335,7 +337,8 @@ impl FunctionCheck<'_> {
             }
         }
         for root in self.roots() {
-            if guarded(root.index()).is_some() {
+            let is_leaf = function.node(root).op.is_leaf();
+            if guarded(root.index()).is_some() && !is_leaf {
                 self.fail(
                     root.index(),
                     "leaves its guarded stage other than by a join",

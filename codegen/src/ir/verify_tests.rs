@@ -3,49 +3,40 @@
 use super::graph::{Function, Program};
 use super::interval::Interval;
 use super::op::{Op, ParamId, StateId, Value};
-use super::{Comparison, FunctionBuilder, verify};
+use super::{Builder, named, verify};
 
 /// A program with all that the invariants speak of, that keeps them.
 fn right() -> Program {
-    let mut program = Program::new("Right");
+    let b = Builder::new("Right", &[]);
     let word = Interval::symmetric(1000);
-    let table = program.table("shape", vec![1, 2, 3, 4], &[]);
-    let gain = program.constant("gain", 3, &[]);
-    let memory = program.state("memory", 0, word, "");
-    let param = program.param("wanted", 0, word, "");
-    let mut b = FunctionBuilder::new(&mut program, "step", &[]);
+    let table = b.table("shape", vec![1, 2, 3, 4], &[]);
+    let memory = b.memory("memory", 0, word, "");
+    let param = b.param("wanted", 0, word, "");
     b.stage("read", &[]);
     let x = b.input("x", word, "");
     let index = b.input("index", Interval::new(0, 3), "");
-    let wanted = b.param(param);
-    let kept = b.state(memory);
-    let entry = b.lookup(table, index);
-    b.name("entry", entry);
-    let gain = b.constant(gain);
-    let scaled = b.mul(gain, x, 1);
-    b.name("scaled", scaled);
-    let error = b.sub(wanted, kept);
-    b.name("error", error);
-    let large = b.compare(Comparison::Less, entry, scaled);
-    b.name("large", large);
+    named! {
+        let entry = table.at(index);
+        let scaled = x.mul_round(b.constant("gain", 3, &[]), 1);
+        let error = param.read() - memory.read();
+        let large = entry.is_below(scaled);
+    }
     b.guarded_stage("divide", large, true, &[]);
-    let share = b.divide(entry, 2, entry, entry);
-    b.name("share", share);
+    named! {
+        let share = entry.divide(2, entry, entry);
+    }
     let [result] = b.join([("result", share, error)]);
     b.stage("keep", &[]);
-    let (low, high) = (b.literal(-5), b.literal(5));
-    let limited = b.clamp(scaled, low, high);
-    b.name("limited", limited);
-    b.set_state(memory, limited);
+    named! {
+        let limited = scaled.clamp(-5, 5);
+    }
+    memory.set(limited);
     b.output("result", result);
-    program.step = b.finish();
-    let mut b = FunctionBuilder::new(&mut program, "set_wanted", &[]);
-    b.stage("round", &[]);
-    let given = b.input("given", word, "");
-    b.set_param(param, given);
-    let setter = b.finish();
-    program.setters.push(setter);
-    program
+    b.setter("set_wanted", &[], |b| {
+        b.stage("round", &[]);
+        param.set(b.input("given", word, ""));
+    });
+    b.finish()
 }
 
 /// That the spoilt program is refused with these words.

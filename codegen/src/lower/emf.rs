@@ -5,9 +5,10 @@ use super::Lowering;
 use super::number::round_half_up;
 use super::rotor::Rotor;
 use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
+use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
-use crate::ir::{Exact, Interval, Periodic, Real, TableId, Value};
+use crate::ir::{Exact, Expr, Lut, Named, Periodic, Phases, Real, named};
 
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;
@@ -16,48 +17,50 @@ const SHAPE_BITS: u32 = 28;
 
 /// A periodic function as tables of parabola coefficients.
 #[derive(Clone, Copy, Debug)]
-struct PeriodicTable {
-    coefficients: [TableId; 3],
+struct PeriodicTable<'b> {
+    coefficients: [Lut<'b>; 3],
     segments: u32,
 }
 
 /// The flux linkage table and its fraction bits.
 #[derive(Clone, Copy, Debug)]
-pub struct FluxModel {
-    table: PeriodicTable,
+struct FluxModel<'b> {
+    table: PeriodicTable<'b>,
     frac_bits: u32,
+    /// Largest EMF that is believed, words of voltage.
+    limit: i64,
 }
 
 /// What says where the quasi-square reference stands.
 #[derive(Clone, Copy, Debug)]
-pub enum Corner {
+pub enum Corner<'b> {
     /// A sector, 0 to 6.
-    Sector(Value),
+    Sector(Expr<'b>),
     /// A Hall code.
-    HallCode(Value),
+    HallCode(Expr<'b>),
 }
 
 /// Mean EMF of phases a and b over two periods.
 #[derive(Clone, Copy, Debug)]
-pub struct ModelledEmf {
+pub struct ModelledEmf<'b> {
     /// Over the period in which the new command takes effect.
-    pub target: [Value; 2],
+    pub target: Phases<'b>,
     /// Over the period that begins now.
-    pub present: [Value; 2],
+    pub present: Phases<'b>,
 }
 
-impl Lowering<'_> {
-    fn periodic_table(
-        &mut self,
+impl<'b> PeriodicTable<'b> {
+    fn new(
+        l: &Lowering<'b>,
         name: &'static str,
         fit: &Parabolas,
         frac_bits: u32,
         [doc, error]: [&str; 2],
-    ) -> PeriodicTable {
+    ) -> Self {
         let scale = f64::from(frac_bits).exp2();
         let segments = fit.coefficients.len() as u32;
         let coefficients = [0, 1, 2].map(|power| {
-            let words = fit.coefficients.iter().map(|c| round_half_up(c[power] * scale) as i32).collect();
+            let words = fit.coefficients.iter().map(|c| round_half_up(c[power] * scale) as i32);
             let lines = [
                 format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from 0 to 1."),
                 String::new(),
@@ -69,11 +72,10 @@ impl Lowering<'_> {
                 slope: Real::of(fit.steepest() * f64::from(segments) * scale),
             });
             let exact = (Exact::Within(1), periodic);
-            let table = self.b.program.rounded_table(&format!("{name}_c{power}"), words, exact, &lines);
-            self.b.program.put_in_row(table, name);
-            table
+            l.b.rounded_table(&format!("{name}_c{power}"), words.collect(), exact, &lines)
+                .in_row(name)
         });
-        self.formats.push(FormatEntry {
+        l.note_format(FormatEntry {
             name: name.to_owned(),
             storage_bits: 32,
             frac_bits: frac_bits as i32,
@@ -81,223 +83,190 @@ impl Lowering<'_> {
             segments: Some(segments),
             meaning: format!("{doc}; a parabola over each of {segments} segments of a turn"),
         });
-        PeriodicTable {
+        Self {
             coefficients,
             segments,
         }
     }
 
-    fn evaluate(&mut self, name: &str, table: PeriodicTable, angle: Value) -> Value {
-        let index = self.b.angle_index(angle, table.segments);
-        self.b.name(&format!("{name}_segment"), index);
-        let t = self.b.angle_fraction(angle, table.segments);
-        self.b.name(&format!("{name}_t"), t);
-        let c2 = self.b.lookup(table.coefficients[2], index);
-        let slope = self.b.mul(t, c2, 31);
-        let c1 = self.b.lookup(table.coefficients[1], index);
-        let slope = self.b.add(c1, slope);
-        let rise = self.b.mul(t, slope, 31);
-        let c0 = self.b.lookup(table.coefficients[0], index);
-        let value = self.b.add(c0, rise);
-        self.b.name(name, value)
+    /// The function's value at an angle: c0 + t (c1 + t c2).
+    fn at(&self, name: &str, angle: Expr<'b>) -> Expr<'b> {
+        let [c0, c1, c2] = self.coefficients;
+        let segment = angle.angle_index(self.segments);
+        let segment = segment.named(&format!("{name}_segment"));
+        let t = angle.angle_fraction(self.segments);
+        let t = t.named(&format!("{name}_t"));
+        let slope = c1.at(segment) + c2.at(segment).mul_round(t, 31);
+        (c0.at(segment) + slope.mul_round(t, 31)).named(name)
     }
+}
 
-    fn lagging(&mut self, name: &str, theta: Value) -> Value {
-        let third = self.rounded_number(
-            "third_turn",
-            THIRD_TURN,
-            Exact::Number(Real::of(f64::from(32).exp2() / 3.0)),
-            "A third of a turn: phase b lags phase a by it.",
-        );
-        let lagged = self.b.angle_sub(theta, third);
-        self.b.name(name, lagged)
-    }
+/// The angle of phase b, which lags that of phase a.
+fn lagging<'b>(l: &Lowering<'b>, name: &str, theta: Expr<'b>) -> Expr<'b> {
+    let exact = Exact::Number(Real::of(f64::from(32).exp2() / 3.0));
+    let doc = "A third of a turn: phase b lags phase a by it.";
+    let third = l.rounded_number("third_turn", THIRD_TURN, exact, doc);
+    theta.angle_sub(third).named(name)
+}
 
-    /// Angle `periods` control periods ahead of now, for `periods` 0, 1 or 2.
-    fn ahead(&mut self, name: &str, rotor: &Rotor, periods: u32) -> Value {
-        let step = match periods {
-            0 => return rotor.theta,
-            1 => rotor.step_angle,
-            _ => self.b.shift_left(rotor.step_angle, 1),
-        };
-        let angle = self.b.angle_add(rotor.theta, step);
-        self.b.name(name, angle)
-    }
+/// Angle `periods` control periods ahead of now, for `periods` 0, 1 or 2.
+fn ahead<'b>(name: &str, rotor: &Rotor<'b>, periods: u32) -> Expr<'b> {
+    let step = match periods {
+        0 => return rotor.theta,
+        1 => rotor.step_angle,
+        _ => rotor.step_angle << 1,
+    };
+    rotor.theta.angle_add(step).named(name)
+}
 
+impl<'b> FluxModel<'b> {
     /// Prepares the flux table; its scale is the finest at which differences fit a word.
-    pub fn flux_model(&mut self) -> FluxModel {
-        let (motor, inverter) = (&self.spec.motor, &self.spec.inverter);
+    fn new(l: &Lowering<'b>, e_limit: f64) -> Self {
+        let (motor, inverter) = (&l.spec.motor, &l.spec.inverter);
         let shape = motor.emf_shape;
         let volts = motor.emf_constant
             / (f64::from(motor.pole_pairs) * inverter.t_s)
-            / self.scale.volt_per_count;
+            / l.scale.volt_per_count;
         let unit = Parabolas::fit(|theta| zero_sum_integral(shape, theta), 1e-5);
-        let coefficients = unit
-            .coefficients
-            .iter()
-            .map(|c| c.map(|x| x * volts))
-            .collect();
+        let scaled = unit.coefficients.iter().map(|c| c.map(|x| x * volts));
         let fit = Parabolas {
-            coefficients,
+            coefficients: scaled.collect(),
             error: unit.error * volts,
         };
         // Two values and a slope must fit one word together: 2^29 for each.
         let frac_bits = (29.0 - fit.magnitude().log2()).floor().clamp(0.0, 28.0) as u32;
+        if frac_bits < l.scale.voltage_bits {
+            l.misfit("flux");
+        }
         let doc = "Flux linkage of phase a over the period, in timer counts of bus voltage, over the electrical angle";
         let error = format!(
             "{:.1e} timer counts of voltage ({})",
             fit.error,
-            engineering(fit.error * self.scale.volt_per_count, "V")
+            engineering(fit.error * l.scale.volt_per_count, "V")
         );
-        let table = self.periodic_table("flux", &fit, frac_bits, [doc, &error]);
-        FluxModel { table, frac_bits }
-    }
-
-    /// Mean EMF over the target period and, with delay 1, over the present one, as differences of flux
-    /// linkage at their ends; phases a and b.
-    pub fn model_emf(
-        &mut self,
-        flux: FluxModel,
-        rotor: &Rotor,
-        delay: u32,
-        e_limit: f64,
-    ) -> ModelledEmf {
-        if flux.frac_bits < self.scale.voltage_bits {
-            self.misfits.push("flux".to_owned());
+        Self {
+            table: PeriodicTable::new(l, "flux", &fit, frac_bits, [doc, &error]),
+            frac_bits,
+            limit: l.volts_word(e_limit),
         }
-        self.b.stage(
-            "model_emf",
-            &[
-                "Mean EMF over the target period (and the present one, for the prediction): the difference of",
-                "flux linkage between end and start, which is exact for any shape and needs no speed factor.",
-            ],
-        );
-        let start = self.ahead("theta_start", rotor, delay);
-        let end = self.ahead("theta_end", rotor, delay + 1);
-        let at_start = self.flux_at(
-            ["flux_start_a", "flux_start_b"],
-            "theta_start_b",
-            flux,
-            start,
-        );
-        let at_end = self.flux_at(["flux_end_a", "flux_end_b"], "theta_end_b", flux, end);
-        let target = self.emf_between(["e_a", "e_b"], flux, at_start, at_end, e_limit);
-        let present = if delay == 0 {
-            target
-        } else {
-            let at_now = self.flux_at(
-                ["flux_now_a", "flux_now_b"],
-                "theta_now_b",
-                flux,
-                rotor.theta,
-            );
-            self.emf_between(["e_a_now", "e_b_now"], flux, at_now, at_start, e_limit)
+    }
+
+    /// Flux linkage of phases a and b at an angle, "start" and so on.
+    fn at(&self, l: &Lowering<'b>, when: &str, theta: Expr<'b>) -> Phases<'b> {
+        let theta_b = lagging(l, &format!("theta_{when}_b"), theta);
+        Phases([
+            self.table.at(&format!("flux_{when}_a"), theta),
+            self.table.at(&format!("flux_{when}_b"), theta_b),
+        ])
+    }
+
+    /// The mean EMF between two flux linkages.
+    fn emf(&self, l: &Lowering<'b>, start: Phases<'b>, end: Phases<'b>) -> Phases<'b> {
+        let doc = "Largest EMF that is believed, one and a half times that of the greatest speed";
+        let change = end - start;
+        let volts = match self.frac_bits.checked_sub(l.scale.voltage_bits) {
+            None | Some(0) => change,
+            Some(shift) => change >> shift,
         };
-        ModelledEmf { target, present }
+        volts.map(|volts| volts.within(l.voltage("e_max", self.limit, doc)))
     }
+}
 
-    fn flux_at(
-        &mut self,
-        names: [&str; 2],
-        lagging: &str,
-        flux: FluxModel,
-        theta: Value,
-    ) -> [Value; 2] {
-        let theta_b = self.lagging(lagging, theta);
-        [
-            self.evaluate(names[0], flux.table, theta),
-            self.evaluate(names[1], flux.table, theta_b),
-        ]
+/// Mean EMF over the target period and, with delay 1, over the present one, as differences of flux
+/// linkage at their ends; phases a and b. `e_limit` is the largest that is believed, volt.
+pub fn model_emf<'b>(
+    l: &Lowering<'b>,
+    rotor: &Rotor<'b>,
+    delay: u32,
+    e_limit: f64,
+) -> ModelledEmf<'b> {
+    let flux = FluxModel::new(l, e_limit);
+    l.b.stage(
+        "model_emf",
+        &[
+            "Mean EMF over the target period (and the present one, for the prediction): the difference of",
+            "flux linkage between end and start, which is exact for any shape and needs no speed factor.",
+        ],
+    );
+    let start = ahead("theta_start", rotor, delay);
+    let end = ahead("theta_end", rotor, delay + 1);
+    let at_start = flux.at(l, "start", start);
+    let at_end = flux.at(l, "end", end);
+    named! {
+        let e = flux.emf(l, at_start, at_end);
     }
-
-    fn emf_between(
-        &mut self,
-        names: [&str; 2],
-        flux: FluxModel,
-        starts: [Value; 2],
-        ends: [Value; 2],
-        e_limit: f64,
-    ) -> [Value; 2] {
-        let bits = self.scale.voltage_bits;
-        let limit = self.volts_word(e_limit);
-        [0, 1].map(|x| {
-            let change = self.b.sub(ends[x], starts[x]);
-            let volts = match flux.frac_bits.checked_sub(bits) {
-                None | Some(0) => change,
-                Some(shift) => self.b.shift_right(change, shift),
-            };
-            let doc =
-                "Largest EMF that is believed, one and a half times that of the greatest speed";
-            let e = self.within_volts(volts, "e_max", limit, doc);
-            self.b.name(names[x], e)
-        })
-    }
-
-    /// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and b.
-    pub fn proportional_reference(
-        &mut self,
-        rotor: &Rotor,
-        set_point: Value,
-        delay: u32,
-    ) -> [Value; 2] {
-        let motor = &self.spec.motor;
-        let (shape, ratio) = (
-            motor.emf_shape,
-            self.spec.torque_constant() / motor.emf_constant,
-        );
-        let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
-        let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
-        let error = format!("{:.1e} A per ampere of set-point", fit.error);
-        let table = self.periodic_table("shape", &fit, SHAPE_BITS, [doc, &error]);
-        self.b.stage(
-            "reference_proportional",
-            &["Reference parallel to the EMF at the end of the target period: constant torque at least copper loss."],
-        );
-        let theta = self.ahead("theta_ref", rotor, delay + 1);
-        let angles = [theta, self.lagging("theta_ref_b", theta)];
-        [0, 1].map(|x| {
-            let current = self.evaluate(["shape_a", "shape_b"][x], table, angles[x]);
-            let volts = self.b.mul(current, set_point, SHAPE_BITS);
-            self.b.name(["j_a", "j_b"][x], volts)
-        })
-    }
-
-    /// Reference at the sector's corner, as voltage words of phases a and b.
-    pub fn quasi_square_reference(&mut self, at: Corner, set_point: Value) -> [Value; 2] {
-        let (row, index, places, by) = match at {
-            Corner::Sector(sector) => ("sector", sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
-            Corner::HallCode(code) => (
-                "hall",
-                code,
-                self.spec.motor.hall_codes.map(|code| usize::from(code & 7)),
-                "by Hall code",
-            ),
+    if delay == 0 {
+        return ModelledEmf {
+            target: e,
+            present: e,
         };
-        let tables = [("corner_a", "a"), ("corner_b", "b")];
-        let tables = [0, 1].map(|phase| {
-            let (name, letter) = tables[phase];
-            let mut signs = vec![0; 8];
-            for (place, legs) in places
-                .into_iter()
-                .zip(crate::design::vectors::SECTOR_CURRENT)
-            {
-                signs[place] = legs[phase];
-            }
-            let doc = format!(
-                "Sign of the phase-{letter} reference {by}: the conducting pair carries (+I, -I)."
-            );
-            self.b.program.column(row, name, signs, &[doc])
-        });
-        self.b.stage("reference_quasi_square", &["Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there."]);
-        [0, 1].map(|x| {
-            let sign = self.b.lookup(tables[x], index);
-            let volts = self.b.mul(sign, set_point, 0);
-            self.b.name(["j_a", "j_b"][x], volts)
-        })
     }
+    let at_now = flux.at(l, "now", rotor.theta);
+    named! {
+        let e_now = flux.emf(l, at_now, at_start);
+    }
+    ModelledEmf {
+        target: e,
+        present: e_now,
+    }
+}
 
-    /// The interval of a clamped signal, for state declared before the clamp is built.
-    pub fn clamped(&self, volts: f64) -> Interval {
-        Interval::symmetric(self.volts_word(volts))
+/// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and b.
+pub fn proportional_reference<'b>(
+    l: &Lowering<'b>,
+    rotor: &Rotor<'b>,
+    set_point: Expr<'b>,
+    delay: u32,
+) -> Phases<'b> {
+    let motor = &l.spec.motor;
+    let (shape, ratio) = (
+        motor.emf_shape,
+        l.spec.torque_constant() / motor.emf_constant,
+    );
+    let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
+    let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
+    let error = format!("{:.1e} A per ampere of set-point", fit.error);
+    let table = PeriodicTable::new(l, "shape", &fit, SHAPE_BITS, [doc, &error]);
+    let doc = "Reference parallel to the EMF at the end of the target period: constant torque at least copper loss.";
+    l.b.stage("reference_proportional", &[doc]);
+    let theta = ahead("theta_ref", rotor, delay + 1);
+    let theta_b = lagging(l, "theta_ref_b", theta);
+    let shape = Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)]);
+    named! {
+        let j = shape.map(|shape| set_point.mul_round(shape, SHAPE_BITS));
     }
+    j
+}
+
+/// Reference at the sector's corner, as voltage words of phases a and b.
+pub fn quasi_square_reference<'b>(
+    l: &Lowering<'b>,
+    at: Corner<'b>,
+    set_point: Expr<'b>,
+) -> Phases<'b> {
+    let (row, index, places, by) = match at {
+        Corner::Sector(sector) => ("sector", sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
+        Corner::HallCode(code) => {
+            let codes = l.spec.motor.hall_codes;
+            let places = codes.map(|code| usize::from(code & 7));
+            ("hall", code, places, "by Hall code")
+        }
+    };
+    let corner = [0, 1].map(|phase| {
+        let letter = ["a", "b"][phase];
+        let mut signs = vec![0; 8];
+        for (place, legs) in places.into_iter().zip(SECTOR_CURRENT) {
+            signs[place] = legs[phase];
+        }
+        let doc = format!(
+            "Sign of the phase-{letter} reference {by}: the conducting pair carries (+I, -I)."
+        );
+        l.b.column(row, &format!("corner_{letter}"), signs, &doc)
+    });
+    let doc = "Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there.";
+    l.b.stage("reference_quasi_square", &[doc]);
+    named! {
+        let j = Phases(corner.map(|corner| corner.at(index) * set_point));
+    }
+    j
 }

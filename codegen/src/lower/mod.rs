@@ -4,6 +4,7 @@
 //! controller's own folder strings them together. Real numbers end here: what leaves is integers
 //! with their meaning as documentation.
 
+mod commutation;
 mod emf;
 mod limit;
 mod measure;
@@ -13,19 +14,24 @@ mod rotor;
 pub mod set_point;
 mod speed;
 
-pub use emf::{Corner, FluxModel, ModelledEmf};
-pub use limit::{Limited, Priority};
-pub use measure::{Currents, Hall, Sample};
-pub use modulate::{Applied, Command, Commutation, OffLeg, PairModulation, PairPulses};
+pub use commutation::{Commutation, CommutationRule};
+pub use emf::{Corner, ModelledEmf, model_emf, proportional_reference, quasi_square_reference};
+pub use limit::{Hexagon, Limited, Priority};
+pub use measure::{Hall, Sample, find_sector, sample, sector_of, sector_word, third_current};
+pub use modulate::{
+    Applied, Command, LOW, Modulator, OFF, OffLeg, PULSED, across_pair, compare_of, limit_line,
+    pair_signs,
+};
 use number::round_half_up;
-pub use number::{Coefficient, product_bound, round_down};
-pub use rotor::{Rotor, RotorWords};
-pub use speed::{Regulated, SpeedState};
+pub use number::{product_bound, round_down};
+pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
+pub use speed::{Regulated, SpeedRegulator};
 
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
-use crate::ir::{FunctionBuilder, Interval, Program, StateId, Value};
+use crate::ir::{Builder, Expr, Interval, Memory, Phases};
 use crate::spec::{BusSource, Spec};
+use std::cell::RefCell;
 
 /// The scale of a program: how physical quantities become integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,22 +62,28 @@ impl Scale {
 
 /// The bus voltage as the step sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Bus {
+pub struct Bus<'b> {
     /// V_BUS in words of voltage.
-    pub volts: Value,
+    pub volts: Expr<'b>,
     /// Nominal over measured, and its shift, where the bus is measured.
-    pub ratio: Option<(Value, u32)>,
+    pub ratio: Option<(Expr<'b>, u32)>,
 }
 
-/// A step under construction.
+/// What all blocks of a program need: the builder, the specification and the scale.
 #[derive(Debug)]
-pub struct Lowering<'p> {
-    /// The function builder.
-    pub b: FunctionBuilder<'p>,
+pub struct Lowering<'b> {
+    /// The builder.
+    pub b: &'b Builder,
     /// The specification.
-    pub spec: &'p Spec,
+    pub spec: &'b Spec,
     /// The scale.
     pub scale: Scale,
+    notes: RefCell<Notes>,
+}
+
+/// What is noted on the way.
+#[derive(Debug, Default)]
+pub struct Notes {
     /// Formats used so far.
     pub formats: Vec<FormatEntry>,
     /// Names of coefficients too large for their word.
@@ -80,17 +92,14 @@ pub struct Lowering<'p> {
     pub long_products: Vec<&'static str>,
 }
 
-impl<'p> Lowering<'p> {
-    /// Starts the step of `program`.
-    pub fn new(program: &'p mut Program, spec: &'p Spec, scale: Scale) -> Self {
-        let b = FunctionBuilder::new(program, "step", &["One control period."]);
-        let mut lowering = Self {
+impl<'b> Lowering<'b> {
+    /// Starts to lower a program.
+    pub fn new(b: &'b Builder, spec: &'b Spec, scale: Scale) -> Self {
+        let lowering = Self {
             b,
             spec,
             scale,
-            formats: vec![],
-            misfits: vec![],
-            long_products: vec![],
+            notes: RefCell::default(),
         };
         let ampere = engineering(scale.ampere_per_count, "A");
         let volt = engineering(scale.volt_per_count, "V");
@@ -113,37 +122,72 @@ impl<'p> Lowering<'p> {
         lowering
     }
 
+    /// What was noted.
+    pub fn into_notes(self) -> Notes {
+        self.notes.into_inner()
+    }
+
     /// Notes a format, once.
     pub fn format(
-        &mut self,
+        &self,
         name: &str,
         storage_bits: u32,
         frac_bits: i32,
         rounding: Rounding,
         meaning: &str,
     ) {
-        if self.formats.iter().all(|known| known.name != name) {
-            self.formats.push(FormatEntry {
-                name: name.to_owned(),
-                storage_bits,
-                frac_bits,
-                rounding,
-                segments: None,
-                meaning: meaning.to_owned(),
-            });
+        self.note_format(FormatEntry {
+            name: name.to_owned(),
+            storage_bits,
+            frac_bits,
+            rounding,
+            segments: None,
+            meaning: meaning.to_owned(),
+        });
+    }
+
+    fn note_format(&self, format: FormatEntry) {
+        let formats = &mut self.notes.borrow_mut().formats;
+        if formats.iter().all(|known| known.name != format.name) {
+            formats.push(format);
         }
     }
 
-    /// Notes the format of products of two voltages that are shifted right by so many bits.
-    pub fn product_format(&mut self, name: &str, shift: u32, meaning: &str) {
+    /// Notes what does not fit its word at this scale, once.
+    pub fn misfit(&self, name: &str) {
+        let misfits = &mut self.notes.borrow_mut().misfits;
+        if misfits.iter().all(|known| known != name) {
+            misfits.push(name.to_owned());
+        }
+    }
+
+    /// Notes the format of products of two voltages that are shifted right by so many bits; more than
+    /// 31 fit no word.
+    pub fn product_format(&self, name: &str, shift: u32, meaning: &str) {
+        if shift > 31 {
+            self.misfit(name);
+        }
         let frac_bits = 2 * self.scale.voltage_bits as i32 - shift as i32;
         let meaning = format!("{meaning}, base one squared timer count of voltage");
         self.format(name, 32, frac_bits, Rounding::Floor, &meaning);
     }
 
-    /// Adds a state word.
-    pub fn state(&mut self, name: &str, initial: i32, interval: Interval, doc: &str) -> StateId {
-        self.b.program.state(name, initial, interval, doc)
+    /// States the error of a voltage.
+    pub fn state_volts(&self, name: &str, volts: Expr<'b>, doc: &str) {
+        let word = 1.0 / self.scale.voltage();
+        self.b.state_error(name, volts, [doc, "V"], word);
+    }
+
+    /// States the error of a voltage of phases a and b.
+    pub fn state_phase_volts(&self, name: &str, volts: Phases<'b>, doc: &str) {
+        for volts in volts.0 {
+            self.state_volts(name, volts, doc);
+        }
+    }
+
+    /// Adds state words of phases a and b, which begin at 0.
+    pub fn memories(&self, names: [&str; 2], interval: Interval, doc: &str) -> [Memory<'b>; 2] {
+        names.map(|name| self.b.memory(name, 0, interval, doc))
     }
 
     /// Currents of all counts at all offsets that calibration accepts, words of current.
@@ -181,34 +225,5 @@ impl<'p> Lowering<'p> {
     /// A current in words, rounded half up.
     pub fn ampere_word(&self, ampere: f64) -> i64 {
         round_half_up(ampere * self.scale.current()) as i64
-    }
-
-    /// The commonest select: the value of one of three phases, by two flags: `a` if `is_a`, else `b` if `is_b`, else `c`.
-    pub fn pick(&mut self, is_a: Value, is_b: Value, [a, b, c]: [Value; 3]) -> Value {
-        let rest = self.b.select(is_b, b, c);
-        self.b.select(is_a, a, rest)
-    }
-
-    /// A zero that may be used anywhere behind this point.
-    pub fn zero(&mut self) -> Value {
-        self.b.literal(0)
-    }
-
-    /// Named largest and smallest of three phase values, in the form that the spread rule knows.
-    pub fn extremes(&mut self, names: [&str; 2], [a, b, c]: [Value; 3]) -> [Value; 2] {
-        let pair = self.b.max(a, b);
-        let high = self.b.max(pair, c);
-        self.b.name(names[0], high);
-        let pair = self.b.min(a, b);
-        let low = self.b.min(pair, c);
-        self.b.name(names[1], low);
-        [high, low]
-    }
-
-    /// `-(a + b)`, the third of three values that sum to zero.
-    pub fn third_phase(&mut self, name: &str, a: Value, b: Value) -> Value {
-        let sum = self.b.add(a, b);
-        let c = self.b.neg(sum);
-        self.b.name(name, c)
     }
 }

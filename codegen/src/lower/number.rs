@@ -7,7 +7,7 @@
 use super::Lowering;
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{ConstantId, Exact, Real, Value};
+use crate::ir::{Coefficient, Exact, Expr, Real};
 
 /// What is added before a real constant is rounded: far more than the error of its computation in f64, so
 /// that an exact tie (or whole number) comes out the same whatever the order of the operations.
@@ -44,23 +44,14 @@ pub fn product_bound(value: f64, word: u32, signal: i64) -> i64 {
     product(signal).abs().max(product(-signal).abs()) as i64
 }
 
-/// A coefficient: a constant and the shift of the products with it.
-#[derive(Clone, Copy, Debug)]
-pub struct Coefficient {
-    /// The constant.
-    pub id: ConstantId,
-    /// Shift of `mul`.
-    pub shift: u32,
-}
-
-impl Lowering<'_> {
+impl<'b> Lowering<'b> {
     /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift of at most
     /// `word`. `physical` says the value: "1 - a = 0.0302".
     ///
     /// With a 32-bit word a shift of 32 is as good as any larger one: the coefficient's half ulp times a
     /// full-scale signal is a quarter ulp of the product.
     pub fn coefficient(
-        &mut self,
+        &self,
         name: &'static str,
         value: f64,
         word: u32,
@@ -73,7 +64,7 @@ impl Lowering<'_> {
     /// As [`Self::coefficient`], for a quantity with a unit: `physical` says its value in SI units, "K = 4.468
     /// V/A", and `scaled` by which formula `value` comes of it and what unit that has.
     pub fn scaled_coefficient(
-        &mut self,
+        &self,
         name: &'static str,
         value: f64,
         word: u32,
@@ -86,7 +77,7 @@ impl Lowering<'_> {
 
     /// A coefficient that makes a voltage of a current: `symbol` in V/A, shown in `unit`.
     pub fn impedance(
-        &mut self,
+        &self,
         name: &'static str,
         ohm: f64,
         word: u32,
@@ -104,13 +95,13 @@ impl Lowering<'_> {
             ],
         );
         if word == 32 && coefficient.shift < 32 {
-            self.long_products.push(name);
+            self.notes.borrow_mut().long_products.push(name);
         }
         coefficient
     }
 
     fn rounded(
-        &mut self,
+        &self,
         name: &'static str,
         value: f64,
         word: u32,
@@ -119,7 +110,7 @@ impl Lowering<'_> {
     ) -> Coefficient {
         let rounded = round_coefficient(value, word);
         if rounded.is_none() {
-            self.misfits.push(name.to_owned());
+            self.misfit(name);
         }
         let (raw, shift) = rounded.unwrap_or((0, 0));
         let error = f64::from(raw) / f64::from(shift).exp2() / value - 1.0;
@@ -137,7 +128,7 @@ impl Lowering<'_> {
         ));
         // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
-        let id = self.b.program.rounded_constant(name, raw, exact, &lines);
+        let id = self.b.declare_constant(name, raw, exact, &lines);
         self.format(
             name,
             word,
@@ -151,15 +142,9 @@ impl Lowering<'_> {
         Coefficient { id, shift }
     }
 
-    /// `mul(coefficient, signal)`.
-    pub fn times(&mut self, coefficient: Coefficient, signal: Value) -> Value {
-        let constant = self.b.constant(coefficient.id);
-        self.b.mul(constant, signal, coefficient.shift)
-    }
-
-    /// `mul(coefficient, word)` for a word that is known beforehand.
+    /// A coefficient's product with a word that is known beforehand.
     pub fn rounded_product(&self, coefficient: Coefficient, word: i64) -> i64 {
-        let raw = self.b.program.constants[coefficient.id.index()].raw;
+        let raw = self.b.constant_value(coefficient.id);
         let product = i128::from(raw) * i128::from(word);
         match coefficient.shift {
             0 => product as i64,
@@ -168,41 +153,33 @@ impl Lowering<'_> {
     }
 
     /// A named current that was rounded to a whole word; `doc` says what it is, its value in ampere follows.
-    pub fn current(&mut self, name: &str, raw: i64, doc: &str) -> Value {
+    pub fn current(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         let ampere = engineering(raw as f64 / self.scale.current(), "A");
         let doc = format!("{doc}: {ampere}, words of current.");
         self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
     /// A named voltage that was rounded to a whole word; `doc` says what it is, its value in volt follows.
-    pub fn voltage(&mut self, name: &str, raw: i64, doc: &str) -> Value {
+    pub fn voltage(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         let volt = engineering(raw as f64 / self.scale.voltage(), "V");
         let doc = format!("{doc}: {volt}, words of voltage.");
         self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
-    /// A value held within a named voltage to both sides.
-    pub fn within_volts(&mut self, value: Value, name: &str, limit: i64, doc: &str) -> Value {
-        let high = self.voltage(name, limit, doc);
-        self.b.clamp_both(value, high)
-    }
-
     /// A named integer constant; `doc` says what it counts. Currents and voltages have functions of their
     /// own.
-    pub fn number(&mut self, name: &str, raw: i64, doc: &str) -> Value {
+    pub fn number(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         self.rounded_number(name, raw, Exact::Itself, doc)
     }
 
     /// A named integer constant that stands for the real number `exact`.
-    pub fn rounded_number(&mut self, name: &str, raw: i64, exact: Exact, doc: &str) -> Value {
-        let doc = [doc.to_owned()];
+    pub fn rounded_number(&self, name: &str, raw: i64, exact: Exact, doc: &str) -> Expr<'b> {
+        if i64::from(raw as i32) != raw {
+            self.misfit(name);
+        }
         let id = self
             .b
-            .program
-            .rounded_constant(name, raw as i32, exact, &doc);
-        if i64::from(raw as i32) != raw && !self.misfits.iter().any(|known| known == name) {
-            self.misfits.push(name.to_owned());
-        }
-        self.b.constant(id)
+            .declare_constant(name, raw as i32, exact, &[doc.to_owned()]);
+        self.b.read_constant(id)
     }
 }

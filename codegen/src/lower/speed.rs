@@ -1,10 +1,10 @@
 //! The speed regulator: the current that the speed's error asks for (semantics of predictive deadbeat, "Speed loop").
 
 use super::set_point::SpeedWords;
-use super::{Lowering, round_down};
+use super::{Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Exact, Interval, Real, StateId, Value};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
@@ -19,68 +19,64 @@ pub(super) fn speed_word(spec: &Spec) -> f64 {
     TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
 }
 
-/// The state of the regulator.
+/// The regulator: its options, and its integral.
 #[derive(Clone, Copy, Debug)]
-pub struct SpeedState {
-    integral: StateId,
+pub struct SpeedRegulator<'b> {
+    options: SpeedLoop,
+    integral: Memory<'b>,
     /// Fraction bits that the integral has beyond those of voltages.
     extra: u32,
-    top: i64,
+    words: SpeedWords<'b>,
+    /// The set-point's gain, V/A.
+    stiffness: f64,
 }
 
 /// What the regulator decides.
 #[derive(Clone, Copy, Debug)]
-pub struct Regulated {
+pub struct Regulated<'b> {
     /// The set-point, in place of the one that is set.
-    pub j: Value,
+    pub j: Expr<'b>,
     /// The speed, signed, words of speed.
-    pub speed: Value,
-    /// Its integral, and the state that keeps it.
-    pub integral: (StateId, Value),
+    pub speed: Expr<'b>,
+    /// The state that keeps the integral, and its new value.
+    pub integral: (Memory<'b>, Expr<'b>),
 }
 
-impl Lowering<'_> {
-    /// Declares the integral; the greatest set-point is `top`.
-    pub fn speed_state(&mut self, top: i64) -> SpeedState {
-        let bits = Interval::symmetric(top).bits();
+impl<'b> SpeedRegulator<'b> {
+    /// Declares the integral.
+    pub fn new(
+        l: &Lowering<'b>,
+        options: SpeedLoop,
+        words: SpeedWords<'b>,
+        stiffness: f64,
+    ) -> Self {
+        let bits = Interval::symmetric(words.top).bits();
         let extra = INTEGRAL_BITS.saturating_sub(bits).min(12);
-        let frac_bits = (self.scale.voltage_bits + extra) as i32;
+        let frac_bits = (l.scale.voltage_bits + extra) as i32;
         let meaning = "integral of the speed regulator, base one timer count of voltage";
-        self.format(
-            "speed_integral",
-            32,
-            frac_bits,
-            Rounding::RoundHalfUp,
-            meaning,
-        );
-        let integral = self.state(
-            "speed_integral",
-            0,
-            Interval::symmetric(top << extra),
-            "Integral of the speed regulator, words of voltage with more fraction bits.",
-        );
-        SpeedState {
-            integral,
+        let rounding = Rounding::RoundHalfUp;
+        l.format("speed_integral", 32, frac_bits, rounding, meaning);
+        let range = Interval::symmetric(words.top << extra);
+        let doc = "Integral of the speed regulator, words of voltage with more fraction bits.";
+        Self {
+            options,
+            integral: l.b.memory("speed_integral", 0, range, doc),
             extra,
-            top,
+            words,
+            stiffness,
         }
     }
 
-    /// The set-point that the error of the speed asks for.
-    pub fn regulate_speed(
-        &mut self,
-        options: SpeedLoop,
-        stiffness: f64,
-        words: SpeedWords,
-        state: SpeedState,
-        [direction, omega, most]: [Value; 3],
-    ) -> Regulated {
-        let (spec, word) = (self.spec, speed_word(self.spec));
-        let bandwidth = TAU * options.bandwidth;
-        let gain = bandwidth * options.inertia / spec.torque_constant();
-        let k_speed = self.scaled_coefficient(
+    /// 2 pi f J/k_t, A s/rad.
+    fn gain(&self, spec: &Spec) -> f64 {
+        TAU * self.options.bandwidth * self.options.inertia / spec.torque_constant()
+    }
+
+    fn coefficients(&self, l: &Lowering<'b>) -> [Coefficient; 2] {
+        let gain = self.gain(l.spec);
+        let k_speed = l.scaled_coefficient(
             "k_speed",
-            gain * word * stiffness * self.scale.voltage(),
+            gain * speed_word(l.spec) * self.stiffness * l.scale.voltage(),
             32,
             [
                 "Set-point per error of speed: 2 pi f J/k_t.",
@@ -91,68 +87,71 @@ impl Lowering<'_> {
                 "words of voltage per word of speed",
             ],
         );
-        let share = bandwidth * spec.inverter.t_s / 4.0;
-        let k_share = self.coefficient(
+        let share = TAU * self.options.bandwidth * l.spec.inverter.t_s / 4.0;
+        let k_share = l.coefficient(
             "k_speed_share",
-            share * f64::from(state.extra).exp2(),
+            share * f64::from(self.extra).exp2(),
             32,
             "Share of it that one period integrates, in the integral's words.",
-            &format!("2 pi f Ts/4 2^n = {} 2^{}", significant(share), state.extra),
+            &format!("2 pi f Ts/4 2^n = {} 2^{}", significant(share), self.extra),
         );
-        self.b.stage(
+        [k_speed, k_share]
+    }
+
+    /// The greatest error of speed that counts.
+    fn greatest_error(&self, l: &Lowering<'b>) -> Expr<'b> {
+        let word = speed_word(l.spec);
+        let error = 2.0 * l.spec.inverter.max_current / (self.gain(l.spec) * word);
+        let raw = round_down(error).min(30_f64.exp2()) as i64;
+        let doc = format!(
+            "Greatest error of speed that counts, {}: it asks for twice the greatest current, words of speed.",
+            engineering(raw as f64 * word, "rad/s")
+        );
+        l.rounded_number("error_max", raw, Exact::Number(Real::of(error)), &doc)
+    }
+
+    fn greatest_integral(&self, l: &Lowering<'b>) -> Expr<'b> {
+        let exact = l.spec.inverter.max_current
+            * self.stiffness
+            * l.scale.voltage()
+            * f64::from(self.extra).exp2();
+        let doc = "The integral that alone asks for the greatest current.";
+        let (name, top) = ("speed_integral_max", self.words.top << self.extra);
+        l.rounded_number(name, top, Exact::Number(Real::of(exact)), doc)
+    }
+
+    /// The set-point that the error of the speed asks for, up to `most`.
+    pub fn regulate(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, most: Expr<'b>) -> Regulated<'b> {
+        let [k_speed, k_share] = self.coefficients(l);
+        l.b.stage(
             "regulate_speed",
             &[
                 "PI regulator of the speed: what it asks for is limited to the current that is set, and where it is the integral follows",
                 "the limit. Until the speed is known it counts as none.",
             ],
         );
-        let speed = self.b.mul(direction, omega, 0);
-        self.b.name("speed", speed);
-        let wanted = self.b.param(words.reference);
-        let error = self.b.sub(wanted, speed);
-        let most_error = 2.0 * spec.inverter.max_current / (gain * word);
-        let raw = round_down(most_error).min(30_f64.exp2()) as i64;
-        let doc = format!(
-            "Greatest error of speed that counts, {}: it asks for twice the greatest current, words of speed.",
-            engineering(raw as f64 * word, "rad/s")
-        );
-        let exact = Exact::Number(Real::of(most_error));
-        let limit = self.rounded_number("error_max", raw, exact, &doc);
-        let error = self.b.clamp_both(error, limit);
-        self.b.name("speed_error", error);
-        let part = self.times(k_speed, error);
-        self.b.name("speed_part", part);
-        let integral = self.b.state(state.integral);
-        let whole = match state.extra {
+        let integral = self.integral.read();
+        let whole = match self.extra {
             0 => integral,
-            extra => self.b.shift_right(integral, extra),
+            extra => integral >> extra,
         };
-        let open = self.b.add(part, whole);
-        self.b.name("j_open", open);
-        let high = self.b.abs(most);
-        self.b.name("j_most", high);
-        let low = self.b.neg(high);
-        let j = self.b.clamp(open, low, high);
-        self.b.name("j_regulated", j);
-        let excess = self.b.sub(j, open);
-        let tracking = self.b.shift_left(excess, TRACKING_LOG2);
-        let taken = self.b.add(part, tracking);
-        let step = self.times(k_share, taken);
-        let moved = self.b.add(integral, step);
-        let top = state.top << state.extra;
-        let exact = spec.inverter.max_current
-            * stiffness
-            * self.scale.voltage()
-            * f64::from(state.extra).exp2();
-        let doc = "The integral that alone asks for the greatest current.";
-        let exact = Exact::Number(Real::of(exact));
-        let limit = self.rounded_number("speed_integral_max", top, exact, doc);
-        let moved = self.b.clamp_both(moved, limit);
-        self.b.name("speed_integral_moved", moved);
+        named! {
+            let speed = rotor.direction * rotor.omega;
+            let speed_error = (self.words.reference.read() - speed).within(self.greatest_error(l));
+            let speed_part = k_speed * speed_error;
+            let j_open = speed_part + whole;
+            let j_most = most.abs();
+            let j_regulated = j_open.within(j_most);
+        }
+        let tracking = (j_regulated - j_open) << TRACKING_LOG2;
+        let moved = integral + k_share * (speed_part + tracking);
+        named! {
+            let speed_integral_moved = moved.within(self.greatest_integral(l));
+        }
         Regulated {
-            j,
+            j: j_regulated,
             speed,
-            integral: (state.integral, moved),
+            integral: (self.integral, speed_integral_moved),
         }
     }
 }

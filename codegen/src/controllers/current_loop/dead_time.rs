@@ -2,37 +2,35 @@
 
 use super::CurrentLoop;
 use crate::diagnostics::engineering;
-use crate::ir::Value;
+use crate::ir::{Phases, named};
 
 /// Share of the largest set-point below which the shift is in proportion to the current: above the ripple's
 /// chatter about zero, far below what makes torque.
 const SOFT_BAND: f64 = 0.1;
 
-impl CurrentLoop<'_, '_> {
+impl<'b> CurrentLoop<'_, 'b> {
     /// Shifts of phases a, b, c, words of the nominal bus. `reference` is the wanted current and `held` the measured
     /// one, both as voltages with `stiffness` volt per ampere.
     pub fn dead_time_shifts(
-        &mut self,
-        reference: [Value; 2],
-        held: [Value; 2],
+        &self,
+        reference: Phases<'b>,
+        held: Phases<'b>,
         stiffness: f64,
-    ) -> [Value; 3] {
-        let word = self.options.word;
-        let l = &mut *self.lowering;
+    ) -> Phases<'b, 3> {
+        let l = self.l;
         let inverter = &l.spec.inverter;
         let lost = inverter.dead_time / inverter.t_s * inverter.v_bus;
         let band = SOFT_BAND * inverter.max_current;
-        let dead_time = engineering(inverter.dead_time, "s");
         let share = lost / (2.0 * stiffness * band);
-        let limit = l.volts_word(lost);
+        let doc = format!(
+            "Slope of the dead-time compensation within {}.",
+            engineering(band, "A")
+        );
         let k_dead = l.coefficient(
             "k_dead",
             share,
-            word,
-            &format!(
-                "Slope of the dead-time compensation within {}.",
-                engineering(band, "A")
-            ),
+            self.options.word,
+            &doc,
             &format!("{share:.6}"),
         );
         l.b.stage(
@@ -42,16 +40,15 @@ impl CurrentLoop<'_, '_> {
                 "out; the current is the mean of the wanted and the measured one, and near zero the shift is in proportion.",
             ],
         );
-        let [a, b] = [0, 1].map(|x| {
-            let twice = l.b.add(reference[x], held[x]);
-            l.b.name(["flow_a", "flow_b"][x], twice)
-        });
-        let c = l.third_phase("flow_c", a, b);
-        [0, 1, 2].map(|x| {
-            let shift = l.times(k_dead, [a, b, c][x]);
-            let doc = format!("What {dead_time} of dead time cost");
-            let shift = l.within_volts(shift, "dead_max", limit, &doc);
-            l.b.name(["shift_a", "shift_b", "shift_c"][x], shift)
-        })
+        let dead_time = engineering(inverter.dead_time, "s");
+        let doc = format!("What {dead_time} of dead time cost");
+        let limit = l.volts_word(lost);
+        named! {
+            let flow = reference + held;
+            let shift = (k_dead * flow.with_c("flow")).map(|shift| {
+                shift.within(l.voltage("dead_max", limit, &doc))
+            });
+        }
+        shift
     }
 }

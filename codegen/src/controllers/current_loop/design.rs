@@ -1,7 +1,6 @@
 //! Numbers of the predictive laws in SI units.
 
 use crate::design::DiscretePlant;
-use crate::lower::{Coefficient, Lowering};
 use crate::scaling::Scaled;
 use crate::spec::{EmfShape, LoopOptions, Spec};
 use std::f64::consts::{FRAC_PI_6, PI};
@@ -86,28 +85,6 @@ impl LoopDesign {
             },
             line_limit: line * greatest_turn(shape, options.emf_filter) / electrical,
         }
-    }
-
-    /// 1 - a as a coefficient.
-    pub fn decay(&self, l: &mut Lowering<'_>, word: u32) -> Coefficient {
-        l.coefficient(
-            "k_decay",
-            self.k_decay,
-            word,
-            "Share of current lost in one period.",
-            &format!("1 - a = {:.6}", self.k_decay),
-        )
-    }
-
-    /// K as a coefficient.
-    pub fn stiffness(&self, l: &mut Lowering<'_>, word: u32) -> Coefficient {
-        l.impedance(
-            "k_di",
-            self.k_di,
-            word,
-            "K = 1/b: voltage over one period per change of current.",
-            ["K", "V/A"],
-        )
     }
 
     /// The same design with the coefficients as they were rounded.

@@ -2,10 +2,8 @@
 //! samples and commands add to this step's voltage, or error, and to the next one's (semantics, `emf: held`).
 
 use super::emf::believed;
-use super::{CurrentLoop, EmfUse, LoopDesign, Needs, Remembered, asked_for};
-use crate::ir::{Interval, StateId, Value};
-use crate::lower::{Coefficient, Lowering};
-use crate::spec::LoopOptions;
+use super::{CurrentLoop, EmfUse, Remembered, asked_for, kept, read};
+use crate::ir::{Coefficient, Interval, Memory, Phases, named};
 
 /// The coefficients.
 #[derive(Clone, Copy)]
@@ -19,11 +17,33 @@ struct Folded {
     fade: Option<Coefficient>,
 }
 
-impl Folded {
-    fn new(l: &mut Lowering<'_>, options: &LoopOptions, needs: Needs, design: &LoopDesign) -> Self {
-        let (a, word) = (design.plant.pole, options.word);
+/// The folded words of a step.
+#[derive(Clone, Copy)]
+pub struct Held<'b> {
+    folded: Folded,
+    due: [Memory<'b>; 2],
+    /// With delay 1.
+    later: Option<[Memory<'b>; 2]>,
+    /// What is due and the present current's part together.
+    carried: Phases<'b>,
+    currents: Phases<'b>,
+}
+
+/// What a command leaves to later steps, phases a and b.
+#[derive(Clone, Copy, Debug)]
+pub struct LeftOver<'b> {
+    /// What is left of the voltage when the next step's takes effect: a v in deadbeat control with delay 1, else v.
+    pub left: Phases<'b>,
+    /// With delay 1, what the step after the next has of it: in deadbeat control (1 + a) v, else v.
+    pub both: Option<Phases<'b>>,
+}
+
+impl<'b> CurrentLoop<'_, 'b> {
+    fn folded(&self) -> Folded {
+        let (l, k_di) = (self.l, self.design.k_di);
+        let (a, word) = (self.design.plant.pole, self.options.word);
         // Deadbeat control looks a second period ahead then.
-        let fades = options.delay == 1 && needs.emf == EmfUse::Deadbeat;
+        let fades = self.options.delay == 1 && self.needs.emf == EmfUse::Deadbeat;
         let (now, past, symbols) = if fades {
             (
                 1.0 + a + a * a,
@@ -33,39 +53,25 @@ impl Folded {
         } else {
             (1.0 + a, a, ["-K (1 + a)", "K a"])
         };
-        let now = l.impedance(
-            "k_now",
-            -design.k_di * now,
-            word,
-            "Weight of the present current.",
-            [symbols[0], "V/A"],
-        );
-        let past = l.impedance(
-            "k_past",
-            design.k_di * past,
-            word,
-            "Weight of the present current in the next step's voltage.",
-            [symbols[1], "V/A"],
-        );
+        let doc = "Weight of the present current.";
+        let now = l.impedance("k_now", -k_di * now, word, doc, [symbols[0], "V/A"]);
+        let doc = "Weight of the present current in the next step's voltage.";
+        let past = l.impedance("k_past", k_di * past, word, doc, [symbols[1], "V/A"]);
         let fade = fades.then(|| {
-            let symbol = format!("a - 1 = {:.6}", -design.k_decay);
-            l.coefficient(
-                "k_fade",
-                -design.k_decay,
-                word,
-                "What a voltage's effect changes by in one period.",
-                &symbol,
-            )
+            let change = -self.design.k_decay;
+            let doc = "What a voltage's effect changes by in one period.";
+            l.coefficient("k_fade", change, word, doc, &format!("a - 1 = {change:.6}"))
         });
-        Self { now, past, fade }
+        Folded { now, past, fade }
     }
 
     /// Greatest magnitudes of the words `due` and `later`.
-    fn bounds(&self, l: &Lowering<'_>, delayed: bool) -> [i64; 2] {
+    fn folded_bounds(&self, folded: &Folded) -> [i64; 2] {
+        let l = self.l;
         let volts = l.bus_interval().high;
-        let past = l.rounded_product(self.past, l.current_span()).abs() + 1;
-        match self.fade {
-            None if delayed => [past + 2 * volts, volts],
+        let past = l.rounded_product(folded.past, l.current_span()).abs() + 1;
+        match folded.fade {
+            None if self.options.delay == 1 => [past + 2 * volts, volts],
             None => [past + volts, 0],
             Some(fade) => {
                 let lost = l.rounded_product(fade, volts).abs() + 1;
@@ -74,97 +80,65 @@ impl Folded {
             }
         }
     }
-}
 
-/// The folded words of a step.
-pub struct Held {
-    folded: Folded,
-    due: [StateId; 2],
-    later: Option<[StateId; 2]>,
-    due_words: [Value; 2],
-    /// What is due and the present current's part together.
-    carried: [Value; 2],
-    later_words: Option<[Value; 2]>,
-    currents: [Value; 3],
-}
-
-impl CurrentLoop<'_, '_> {
-    /// Declares the folded words and reads them.
-    pub(super) fn held(&mut self, currents: [Value; 3]) -> Held {
-        let l = &mut *self.lowering;
-        let folded = Folded::new(l, self.options, self.needs, self.design);
-        let delayed = self.options.delay == 1;
-        let [due_bound, later_bound] = folded.bounds(l, delayed);
+    /// Declares the folded words, and adds up what is carried.
+    pub(super) fn held(&self, currents: Phases<'b>) -> Held<'b> {
+        let l = self.l;
+        let folded = self.folded();
+        let [due_bound, later_bound] = self.folded_bounds(&folded);
         let memory = self.needs.memory;
         let doc = if memory == 0 {
             "What past samples and commands add to this step's voltage."
         } else {
             "What past samples, commands and wishes add to this step's voltage."
         };
-        let due = ["due_a", "due_b"]
-            .map(|name| l.state(name, 0, Interval::symmetric(due_bound + memory), doc));
-        let later = delayed.then(|| {
-            ["later_a", "later_b"].map(|name| {
-                let doc = "What past commands add to the next step's voltage.";
-                l.state(name, 0, Interval::symmetric(later_bound), doc)
-            })
+        let range = Interval::symmetric(due_bound + memory);
+        let due = l.memories(["due_a", "due_b"], range, doc);
+        let later = (self.options.delay == 1).then(|| {
+            let doc = "What past commands add to the next step's voltage.";
+            l.memories(
+                ["later_a", "later_b"],
+                Interval::symmetric(later_bound),
+                doc,
+            )
         });
-        l.b.stage(
-            "carry_past",
-            &["What past samples and commands and the present current add to this step's voltage: due + k_now i."],
-        );
-        let due_words = due.map(|word| l.b.state(word));
-        let carried = [0, 1].map(|x| {
-            let taken = l.times(folded.now, currents[x]);
-            let carried = l.b.add(due_words[x], taken);
-            l.b.name(["carried_a", "carried_b"][x], carried)
-        });
+        let doc = "What past samples and commands and the present current add to this step's voltage: due + k_now i.";
+        l.b.stage("carry_past", &[doc]);
+        named! {
+            let carried = read(due) + folded.now * currents;
+        }
         Held {
             folded,
             due,
             later,
-            due_words,
             carried,
-            later_words: later.map(|words| words.map(|word| l.b.state(word))),
             currents,
         }
     }
 
     /// Step 9 with a held EMF: the voltage of phases a, b.
-    pub(super) fn held_voltage(&mut self, held: &Held, reference: [Value; 2]) -> [Value; 2] {
-        let l = &mut *self.lowering;
-        l.b.stage(
+    pub(super) fn held_voltage(&self, held: &Held<'b>, reference: Phases<'b>) -> Phases<'b> {
+        self.l.b.stage(
             "deadbeat_voltage",
             &[
                 "Deadbeat voltage, the paper's (11) corrected, with its estimate (9) and prediction (7) put in and the terms",
                 "collected by their age: v = K i_ref + k_now i + due; the rest was summed up when it was sampled or commanded.",
             ],
         );
-        [0, 1].map(|x| {
-            let volts = held.sum(l, x, reference[x]);
-            asked_for(l, x, volts)
-        })
+        asked_for(self.l, held.sum(reference))
     }
 
     /// Step 12 with a held EMF: what the voltage `u` that this step commands leaves to the next two.
-    pub(super) fn left_over(&mut self, held: &Held, u: [Value; 2]) -> LeftOver {
-        let l = &mut *self.lowering;
+    pub(super) fn left_over(&self, held: &Held<'b>, u: Phases<'b>) -> LeftOver<'b> {
         let Some(fade) = held.folded.fade else {
             return held.unfaded(u);
         };
-        l.b.stage(
-            "decay",
-            &["What is left of this step's voltage one period later, a v, and both together."],
-        );
-        let left = [0, 1].map(|x| {
-            let change = l.times(fade, u[x]);
-            let left = l.b.add(u[x], change);
-            l.b.name(["left_a", "left_b"][x], left)
-        });
-        let both = [0, 1].map(|x| {
-            let both = l.b.add(u[x], left[x]);
-            l.b.name(["both_a", "both_b"][x], both)
-        });
+        let doc = "What is left of this step's voltage one period later, a v, and both together.";
+        self.l.b.stage("decay", &[doc]);
+        named! {
+            let left = u + fade * u;
+            let both = u + left;
+        }
         LeftOver {
             left,
             both: Some(both),
@@ -172,50 +146,56 @@ impl CurrentLoop<'_, '_> {
     }
 
     /// Step 12 with a held EMF: what this step's currents and its command leave to the next two.
-    pub fn fold(&mut self, held: &Held, left_over: LeftOver) -> Remembered {
-        let l = &mut *self.lowering;
-        l.b.stage(
-            "fold",
-            &["What this step's current and voltage add to the voltages of the next two steps."],
-        );
-        let mut remembered = vec![];
-        for x in 0..2 {
-            let sampled = l.times(held.folded.past, held.currents[x]);
-            let left = left_over.left[x];
-            let due_next = match held.later_words {
-                Some(later) => {
-                    let rest = l.b.sub(later[x], left);
-                    l.b.add(rest, sampled)
-                }
-                None => l.b.add(left, sampled),
+    pub fn fold(&self, held: &Held<'b>, left_over: LeftOver<'b>) -> Remembered<'b> {
+        let doc = "What this step's current and voltage add to the voltages of the next two steps.";
+        self.l.b.stage("fold", &[doc]);
+        let sampled = held.folded.past * held.currents;
+        named! {
+            let due_now = match held.later {
+                Some(later) => read(later) - left_over.left + sampled,
+                None => left_over.left + sampled,
             };
-            l.b.name(["due_a_now", "due_b_now"][x], due_next);
-            remembered.push((held.due[x], due_next));
-            if let (Some(words), Some(both)) = (held.later, left_over.both) {
-                remembered.push((words[x], both[x]));
-            }
         }
-        remembered
+        let later = held.later.zip(left_over.both);
+        let later = later.map(|(words, both)| kept(words, both));
+        let due = kept(held.due, due_now).into_iter();
+        due.chain(later.into_iter().flatten()).collect()
+    }
+
+    /// The EMF of the last period out of the folded words, added to the open stage.
+    pub fn held_emf(&self, held: &Held<'b>) -> Phases<'b> {
+        let (l, a, word) = (self.l, self.design.plant.pole, self.options.word);
+        let k_di = self.k_di();
+        let due = read(held.due);
+        let known = match held.later {
+            None => due,
+            Some(later) => {
+                let share = 1.0 / (1.0 + a);
+                let doc = "Share of the EMF in what is due.";
+                let physical = format!("1/(1 + a) = {share:.6}");
+                let k_due = l.coefficient("k_due", share, word, doc, &physical);
+                let weight = a / (1.0 + a).powi(2);
+                let doc = "Weight of the last command in what is due.";
+                let physical = format!("a/(1 + a)^2 = {weight:.6}");
+                let k_later = l.coefficient("k_later", weight, word, doc, &physical);
+                k_due * due + k_later * read(later)
+            }
+        };
+        named! {
+            let e = (known - k_di * held.currents).map(|e| believed(l, e));
+        }
+        e
     }
 }
 
-/// What a command leaves to later steps, phases a and b.
-#[derive(Clone, Copy, Debug)]
-pub struct LeftOver {
-    /// What is left of the voltage when the next step's takes effect: a v in deadbeat control with delay 1, else v.
-    pub left: [Value; 2],
-    /// With delay 1, what the step after the next has of it: in deadbeat control (1 + a) v, else v.
-    pub both: Option<[Value; 2]>,
-}
-
-impl Held {
-    /// Reference, past and present current of phase `x` together, added to the open stage.
-    pub fn sum(&self, l: &mut Lowering<'_>, x: usize, reference: Value) -> Value {
-        l.b.add(self.carried[x], reference)
+impl<'b> Held<'b> {
+    /// Reference, past and present current together, added to the open stage.
+    pub fn sum(&self, reference: Phases<'b>) -> Phases<'b> {
+        self.carried + reference
     }
 
     /// What voltages leave that count in full: all but those of deadbeat control with delay 1.
-    pub fn unfaded(&self, volts: [Value; 2]) -> LeftOver {
+    pub fn unfaded(&self, volts: Phases<'b>) -> LeftOver<'b> {
         LeftOver {
             left: volts,
             both: self.later.map(|_| volts),
@@ -225,43 +205,5 @@ impl Held {
     /// a - 1, in deadbeat control with delay 1.
     pub fn fade(&self) -> Option<Coefficient> {
         self.folded.fade
-    }
-
-    /// The EMF of the last period out of the folded words, added to the open stage.
-    pub fn seen_emf(&self, l: &mut Lowering<'_>, design: &LoopDesign, word: u32) -> [Value; 2] {
-        let a = design.plant.pole;
-        let k_di = design.stiffness(l, word);
-        let unfolded = self.later_words.map(|later| {
-            let k_due = l.coefficient(
-                "k_due",
-                1.0 / (1.0 + a),
-                word,
-                "Share of the EMF in what is due.",
-                &format!("1/(1 + a) = {:.6}", 1.0 / (1.0 + a)),
-            );
-            let weight = a / (1.0 + a).powi(2);
-            let k_later = l.coefficient(
-                "k_later",
-                weight,
-                word,
-                "Weight of the last command in what is due.",
-                &format!("a/(1 + a)^2 = {weight:.6}"),
-            );
-            (k_due, k_later, later)
-        });
-        [0, 1].map(|x| {
-            let known = match unfolded {
-                Some((k_due, k_later, later)) => {
-                    let due = l.times(k_due, self.due_words[x]);
-                    let last = l.times(k_later, later[x]);
-                    l.b.add(due, last)
-                }
-                None => self.due_words[x],
-            };
-            let drop = l.times(k_di, self.currents[x]);
-            let seen = l.b.sub(known, drop);
-            let seen = believed(l, seen);
-            l.b.name(["e_a", "e_b"][x], seen)
-        })
     }
 }

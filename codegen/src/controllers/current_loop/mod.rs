@@ -1,6 +1,7 @@
 //! The step that all controllers share: from the sample to the voltage asked for, and what the next
 //! step needs to know (semantics page of predictive deadbeat, steps 1 to 9 and 12).
 
+mod coefficients;
 mod dead_time;
 mod design;
 mod emf;
@@ -14,10 +15,12 @@ pub use held::{Held, LeftOver};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
-use crate::ir::{Program, StateId, Value};
-use crate::lower::set_point::{SetPointWords, setters};
+use crate::ir::{Builder, Coefficient, Expr, Memory, Phases, named};
+use crate::lower::set_point::SetPointWords;
 use crate::lower::{
-    Applied, Bus, Coefficient, Command, Commutation, Corner, Currents, Lowering, OffLeg, Scale,
+    Applied, Bus, Command, Commutation, Corner, Hall, Lowering, OffLeg, Rotor, Sample, Scale,
+    advanced_sector, find_sector, proportional_reference, quasi_square_reference, sample,
+    sector_of, sense_direction, third_current,
 };
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
@@ -27,28 +30,19 @@ pub fn lower_with(
     spec: &Spec,
     scale: Scale,
     stiffness: f64,
-    law: impl FnOnce(&mut Lowering, SetPointWords),
+    law: impl for<'b> FnOnce(&Lowering<'b>, &SetPointWords<'b>),
 ) -> Lowered {
-    let mut program = Program::new(&spec.name);
-    let set_point = SetPointWords::new(&mut program, spec, scale, stiffness);
-    let mut lowering = Lowering::new(&mut program, spec, scale);
-    let setters = setters(&mut lowering, set_point);
-    law(&mut lowering, set_point);
-    let Lowering {
-        b,
-        formats,
-        misfits,
-        long_products,
-        ..
-    } = lowering;
-    let step = b.finish();
-    program.step = step;
-    program.setters = setters;
+    let builder = Builder::new(&spec.name, &["One control period."]);
+    let lowering = Lowering::new(&builder, spec, scale);
+    let set_point = SetPointWords::new(&lowering, stiffness);
+    set_point.add_setters(&lowering);
+    law(&lowering, &set_point);
+    let notes = lowering.into_notes();
     Lowered {
-        program: program.pruned(),
-        formats,
-        misfits,
-        long_products,
+        program: builder.finish().pruned(),
+        formats: notes.formats,
+        misfits: notes.misfits,
+        long_products: notes.long_products,
     }
 }
 
@@ -57,9 +51,10 @@ pub fn lower_with(
 pub const EMF_INTEGRAL_SHARE: f64 = 0.125;
 
 /// A step under construction.
-pub struct CurrentLoop<'l, 'p> {
-    /// The builder.
-    pub lowering: &'l mut Lowering<'p>,
+#[derive(Clone, Copy)]
+pub struct CurrentLoop<'l, 'b> {
+    /// Builder, specification and scale.
+    pub l: &'l Lowering<'b>,
     /// Shared options.
     pub options: &'l LoopOptions,
     /// Coefficients in SI units.
@@ -70,190 +65,120 @@ pub struct CurrentLoop<'l, 'p> {
 
 /// The deadbeat voltage.
 #[derive(Clone, Copy, Debug)]
-pub struct Deadbeat {
+pub struct Deadbeat<'b> {
     /// Voltages of phases a and b, not limited.
-    pub u: [Value; 2],
+    pub u: Phases<'b>,
     /// Shifts of the compare values against the dead time, where the law compensates it.
-    pub shifts: Option<[Value; 3]>,
+    pub shifts: Option<Phases<'b, 3>>,
 }
 
 /// What the shared part of a step knows.
-pub struct Front {
+pub struct Front<'b> {
     /// State words.
-    pub words: Words,
+    pub words: Words<'b>,
     /// Phase currents.
-    pub currents: Currents,
+    pub currents: Phases<'b, 3>,
     /// Sector in force, with its advance.
-    pub sector: Value,
-    /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
-    pub direction: Option<Value>,
+    pub sector: Expr<'b>,
     /// Set-point as a voltage word.
-    pub set_point: Value,
+    pub set_point: Expr<'b>,
     /// The commutation; where the law follows it.
-    pub commutation: Option<Commutation>,
+    pub commutation: Option<Commutation<'b>>,
     /// Reference as voltage words, phases a, b.
-    pub reference: [Value; 2],
+    pub reference: Phases<'b>,
     /// 1/3.
     pub third: Coefficient,
     /// The bus.
-    pub bus: Bus,
+    pub bus: Bus<'b>,
     /// Voltage applied in the period that begins now, where the step needs it.
-    pub now: Option<[Value; 2]>,
+    pub now: Option<Phases<'b>>,
     /// EMF over the target period; none where the law needs no EMF.
-    pub e: Option<[Value; 2]>,
+    pub e: Option<Phases<'b>>,
     /// EMF over the period that begins now.
-    pub e_now: Option<[Value; 2]>,
+    pub e_now: Option<Phases<'b>>,
     /// The same as the next step shall compare it with what it sees.
-    pub e_expected: Option<[Value; 2]>,
+    pub e_expected: Option<Phases<'b>>,
     /// What the modelled EMF lacks; where the law integrates that.
-    pub integral: Option<[Value; 2]>,
+    pub integral: Option<Phases<'b>>,
     /// The folded words; where the EMF is held.
-    pub held: Option<Held>,
+    pub held: Option<Held<'b>>,
     /// Integral of the speed regulator, and its state; with a speed loop.
-    pub speed_integral: Option<(StateId, Value)>,
+    pub speed_integral: Option<(Memory<'b>, Expr<'b>)>,
 }
 
-/// Names the voltage of phase `x`, 0 or 1, that the law asks for, and states its error.
-fn asked_for(l: &mut Lowering<'_>, x: usize, volts: Value) -> Value {
-    let doc = "Voltage of a phase that the law asks for, before the limit";
-    let word = 1.0 / l.scale.voltage();
-    l.b.state_error("voltage", volts, [doc, "V"], word);
-    l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
+/// What runs in every period: the sector, and what follows its edges.
+struct Tracked<'b> {
+    sample: Sample<'b>,
+    hall: Option<Hall<'b>>,
+    rotor: Option<Rotor<'b>>,
+    /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
+    direction: Option<Expr<'b>>,
+    /// Samples for which a commutation may last, where it began where the direction is sensed.
+    kept: Option<Expr<'b>>,
+    /// Sector in force where the reference runs ahead of the sample.
+    ahead: Option<Expr<'b>>,
 }
 
 /// State words and their new values.
-pub type Remembered = Vec<(StateId, Value)>;
+pub type Remembered<'b> = Vec<(Memory<'b>, Expr<'b>)>;
 
-impl CurrentLoop<'_, '_> {
+/// The words of phases a and b.
+pub fn read<'b>(words: [Memory<'b>; 2]) -> Phases<'b> {
+    Phases(words.map(Memory::read))
+}
+
+/// New values of the words of phases a and b.
+pub fn kept<'b>(words: [Memory<'b>; 2], values: Phases<'b>) -> [(Memory<'b>, Expr<'b>); 2] {
+    [(words[0], values.a()), (words[1], values.b())]
+}
+
+/// Names the voltage of phases a and b that the law asks for, and states its error.
+pub fn asked_for<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> {
+    let doc = "Voltage of a phase that the law asks for, before the limit";
+    l.state_phase_volts("voltage", volts, doc);
+    named! {
+        let u_unsat = volts;
+    }
+    u_unsat
+}
+
+impl<'b> CurrentLoop<'_, 'b> {
     /// Steps 1 to 8.
-    pub fn front(&mut self, set_point: SetPointWords) -> Front {
+    pub fn front(&self, set_point: &SetPointWords<'b>) -> Front<'b> {
+        let (l, options) = (self.l, self.options);
         let words = self.declare(set_point);
-        let options = *self.options;
-        let l = &mut *self.lowering;
-        let sample = l.sample();
-        let word = words.sector_prev;
-        let hall = word.map(|word| l.find_sector(&sample, word));
-        // Read here, in an open stage: the stage that senses the direction is a guarded one.
-        for word in words
-            .direction
-            .into_iter()
-            .chain(words.pair.map(|pair| pair.left))
-        {
-            l.b.state(word);
-        }
-        let rotor = words.rotor.zip(hall.as_ref());
-        let rotor = rotor.map(|(words, hall)| l.track_rotor(words, hall, sample.hall_ticks));
-        let timeout = options.commutation_timeout;
-        let advances = options.advance > 0.0;
-        // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
-        let (direction, kept) = match (&rotor, words.direction, &hall) {
-            (None, Some(word), Some(hall)) => {
-                let commutation = words.pair.map(|pair| (pair.left, timeout));
-                let (direction, kept) = l.sense_direction(word, hall, commutation);
-                (Some(direction), kept)
-            }
-            // With an angle the edge is looked at in every period.
-            (rotor, _, hall) => {
-                if let Some(hall) = hall {
-                    l.b.set_state(hall.sector_prev_word, hall.sector);
-                }
-                (rotor.as_ref().map(|rotor| rotor.direction), None)
-            }
-        };
-        let ahead = match (&rotor, &hall) {
-            (Some(rotor), Some(hall)) if advances => {
-                Some(l.advanced_sector(options.advance, hall.sector, rotor))
-            }
-            _ => None,
-        };
+        let tracked = self.track(&words);
         l.b.end_tracking();
-        let currents = l.third_current(&sample);
-        let sector_seen = match hall {
+        let currents = third_current(l, &tracked.sample);
+        let sector_seen = match &tracked.hall {
             Some(hall) => hall.sector,
-            None => l.sector_of(&sample),
+            None => sector_of(l, &tracked.sample),
         };
-        let sector = ahead.unwrap_or(sector_seen);
-        let j = l.b.param(set_point.j);
-        let regulated = match (options.speed, set_point.speed, words.speed, &rotor) {
-            (Some(options), Some(words), Some(state), Some(rotor)) => {
-                let inputs = [rotor.direction, rotor.omega, j];
-                Some(l.regulate_speed(options, set_point.stiffness, words, state, inputs))
-            }
-            _ => None,
-        };
+        let sector = tracked.ahead.unwrap_or(sector_seen);
+        let j = set_point.j.read();
+        let regulated = words.speed.zip(tracked.rotor);
+        let regulated = regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j));
         let j = regulated.map_or(j, |regulated| regulated.j);
-        let (commutation, outgoing) = match (words.pair, direction.zip(hall)) {
-            (Some(pair), Some((direction, hall))) => {
-                let kept = kept.unwrap_or_else(|| {
-                    let began = pair
-                        .sector_prev
-                        .map_or(hall.edge, |word| l.sector_in_force_changed(word, sector));
-                    let left = l.b.state(pair.left);
-                    l.commutation_kept(began, left, timeout)
-                });
-                let (commutation, outgoing) = l.commutation(
-                    [sector, kept, direction, j],
-                    pair.left,
-                    &currents,
-                    options.commutation_threshold,
-                    timeout,
-                );
-                (Some(commutation), Some(outgoing))
-            }
-            _ => (None, None),
-        };
+        let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Ahead of the reference, so that its product with a sign is added last, by one instruction.
-        let held = self.holds_emf().then(|| self.held(currents.phases));
-        let l = &mut *self.lowering;
-        // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
-        // legs off.
-        let corner = if advances {
-            Corner::Sector(sector)
-        } else {
-            Corner::HallCode(sample.hall)
-        };
-        let reference = match (&rotor, options.reference) {
-            (Some(rotor), Reference::Proportional) => {
-                l.proportional_reference(rotor, j, options.delay)
-            }
-            _ => l.quasi_square_reference(corner, j),
-        };
-        let third = l.coefficient(
-            "k_third",
-            1.0 / 3.0,
-            options.word,
-            "Mean of three legs.",
-            "1/3",
-        );
-        let bus = l.read_bus(set_point);
-        // Read here, in an open stage: the last one of the EMF may be a guarded one.
-        let commanded = words.v_cmd.map(|word| word.map(|word| l.b.state(word)));
-        let terminals = self.commanded_terminals(&words);
-        let emf = self.emf(
-            &words,
-            &currents,
-            sector_seen,
-            rotor.as_ref(),
-            third,
-            outgoing,
-        );
+        let held = self.holds_emf().then(|| self.held(currents.pair()));
+        let reference = self.reference(&tracked, sector, j);
+        let doc = "Mean of three legs.";
+        let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
+        let bus = set_point.read_bus(l);
+        let outgoing = commutation.map(|commutation| commutation.outgoing);
+        let rotor = tracked.rotor.as_ref();
+        let emf = self.emf(&words, currents, sector_seen, rotor, third, outgoing);
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
-        let speed = regulated.as_ref().map(|regulated| regulated.speed);
-        let speed = speed.or_else(|| rotor.as_ref().map(|rotor| rotor.step_angle));
-        // Of the target period, where the law goes by that.
-        let believed = if self.needs.emf == EmfUse::Prediction {
-            e_now
-        } else {
-            e
-        };
-        self.tell(believed, speed);
-        let off_leg = self.off_leg_of(bus, third);
-        let now = commanded.or_else(|| self.applied_now(terminals, &currents, e_now, &off_leg));
+        let speed = regulated.map(|regulated| regulated.speed);
+        self.tell([e, e_now], speed.or(rotor.map(|rotor| rotor.step_angle)));
+        let off_leg = self.off_leg(bus, third);
+        let commanded = words.v_cmd.map(read);
+        let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
         Front {
             words,
             currents,
             sector,
-            direction,
             set_point: j,
             commutation,
             reference,
@@ -269,15 +194,93 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// Tells people what the law knows of the motor.
-    fn tell(&mut self, e: Option<[Value; 2]>, speed: Option<Value>) {
-        let b = &mut self.lowering.b;
-        if let Some([e_a, e_b]) = e {
-            b.tell("e_a", e_a);
-            b.tell("e_b", e_b);
+    /// Steps 1, 2 and 4: the sector, direction, angle and speed.
+    fn track(&self, words: &Words<'b>) -> Tracked<'b> {
+        let l = self.l;
+        let sample = sample(l);
+        let hall = words.sector_prev.map(|word| find_sector(l, &sample, word));
+        let mut tracked = Tracked {
+            sample,
+            hall,
+            rotor: None,
+            direction: None,
+            kept: None,
+            ahead: None,
+        };
+        let Some(hall) = hall else {
+            return tracked;
+        };
+        if let Some(rotor) = words.rotor {
+            // With an angle the edge is looked at in every period.
+            let rotor = rotor.track(l, &hall, tracked.sample.hall_ticks);
+            hall.sector_prev.set(hall.sector);
+            let advance = self.options.advance;
+            tracked.ahead =
+                (advance > 0.0).then(|| advanced_sector(l, advance, hall.sector, &rotor));
+            tracked.direction = Some(rotor.direction);
+            tracked.rotor = Some(rotor);
+        } else if let Some(direction) = words.direction {
+            // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
+            let (direction, kept) = sense_direction(l, direction, &hall, words.pair);
+            tracked.direction = Some(direction);
+            tracked.kept = kept;
+        } else {
+            hall.sector_prev.set(hall.sector);
+        }
+        tracked
+    }
+
+    /// Step 5.
+    fn commutation(
+        &self,
+        words: &Words<'b>,
+        tracked: &Tracked<'b>,
+        [sector, j]: [Expr<'b>; 2],
+        currents: Phases<'b, 3>,
+    ) -> Option<Commutation<'b>> {
+        let (rule, direction, hall) = (words.pair?, tracked.direction?, tracked.hall?);
+        let kept = tracked.kept.unwrap_or_else(|| {
+            let last = rule.sector_prev;
+            let changed = last.map(|last| rule.sector_changed(self.l, last, sector));
+            rule.kept(self.l, changed.unwrap_or(hall.edge))
+        });
+        Some(rule.follow(self.l, [sector, kept, direction, j], currents))
+    }
+
+    /// Step 6.
+    fn reference(
+        &self,
+        tracked: &Tracked<'b>,
+        sector: Expr<'b>,
+        set_point: Expr<'b>,
+    ) -> Phases<'b> {
+        let (l, options) = (self.l, self.options);
+        match (&tracked.rotor, options.reference) {
+            (Some(rotor), Reference::Proportional) => {
+                proportional_reference(l, rotor, set_point, options.delay)
+            }
+            _ if options.advance > 0.0 => {
+                quasi_square_reference(l, Corner::Sector(sector), set_point)
+            }
+            // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
+            // legs off.
+            _ => {
+                let code = tracked.sample.hall;
+                quasi_square_reference(l, Corner::HallCode(code), set_point)
+            }
+        }
+    }
+
+    /// Tells people what the law knows of the motor: the EMF of the target period, or where the law
+    /// predicts alone that of the present one.
+    fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
+        let predicts = self.needs.emf == EmfUse::Prediction;
+        if let Some(e) = if predicts { present } else { target } {
+            self.l.b.tell("e_a", e.a());
+            self.l.b.tell("e_b", e.b());
         }
         if let Some(speed) = speed {
-            b.tell("speed", speed);
+            self.l.b.tell("speed", speed);
         }
     }
 
@@ -288,15 +291,11 @@ impl CurrentLoop<'_, '_> {
 
     /// Whether tables have what a whole vector leaves to later steps: with a fixed bus that is known beforehand.
     pub fn tables_left_over(&self) -> bool {
-        self.holds_emf() && matches!(self.lowering.spec.inverter.bus, BusSource::Fixed)
+        self.holds_emf() && matches!(self.l.spec.inverter.bus, BusSource::Fixed)
     }
 
     /// Where an off leg's terminal sits.
-    pub fn off_leg(&self, front: &Front) -> OffLeg {
-        self.off_leg_of(front.bus, front.third)
-    }
-
-    fn off_leg_of(&self, bus: Bus, third: Coefficient) -> OffLeg {
+    fn off_leg(&self, bus: Bus<'b>, third: Coefficient) -> OffLeg<'b> {
         OffLeg {
             bus,
             third,
@@ -304,72 +303,46 @@ impl CurrentLoop<'_, '_> {
         }
     }
 
-    /// The last step's command, where it may have turned a leg off.
-    fn commanded_terminals(&mut self, words: &Words) -> Option<Applied> {
-        let b = &mut self.lowering.b;
-        words.t_cmd.map(|(terminals, off)| Applied {
-            terminals: terminals.map(|word| b.state(word)),
-            off: b.state(off),
-        })
-    }
-
     /// The voltage that a command which may turn a leg off applies in the period that begins now (delay 1),
     /// with the EMF of that period.
     fn applied_now(
-        &mut self,
-        commanded: Option<Applied>,
-        currents: &Currents,
-        e_now: Option<[Value; 2]>,
-        off_leg: &OffLeg,
-    ) -> Option<[Value; 2]> {
-        let names = ["v_a_now", "v_b_now"];
-        let (commanded, e_now) = (commanded?, e_now?);
-        Some(
-            self.lowering
-                .applied_voltage(names, commanded, currents, e_now, off_leg),
-        )
-    }
-
-    /// Shifts against the dead time where no deadbeat term holds the present current by itself.
-    fn shifts_of_held(&mut self, reference: [Value; 2], currents: &Currents) -> [Value; 3] {
-        let k_hold = self.hold();
-        let l = &mut *self.lowering;
-        l.b.stage(
-            "hold_current",
-            &["What the present current still contributes when the voltage takes effect."],
-        );
-        let held = [0, 1].map(|x| {
-            let held = l.times(k_hold, currents.phases[x]);
-            l.b.name(["held_a", "held_b"][x], held)
-        });
-        self.dead_time_shifts(reference, held, self.design.k_di)
-    }
-
-    /// The weight of the present current when the voltage takes effect.
-    fn hold(&mut self) -> Coefficient {
-        let delayed = self.options.delay == 1;
-        self.lowering.impedance(
-            "k_hold",
-            self.design.k_hold,
-            self.options.word,
-            "What the present current still contributes when the voltage takes effect.",
-            [if delayed { "K a^2" } else { "K a" }, "V/A"],
-        )
+        &self,
+        words: &Words<'b>,
+        currents: Phases<'b, 3>,
+        e_now: Option<Phases<'b>>,
+        off_leg: &OffLeg<'b>,
+    ) -> Option<Phases<'b>> {
+        let ((terminals, off), e_now) = (words.t_cmd?, e_now?);
+        let commanded = Applied {
+            terminals: Phases(terminals.map(Memory::read)),
+            off: off.read(),
+        };
+        named! {
+            let v_now = off_leg.applied_voltage(self.l, &commanded, currents, e_now);
+        }
+        Some(v_now)
     }
 
     /// Step 9: the deadbeat voltage of phases a, b, with shifts against the dead time where it is compensated.
-    pub fn deadbeat(&mut self, front: &Front, compensates: bool) -> Deadbeat {
-        let (reference, currents, now) = (front.reference, &front.currents, front.now);
-        let (options, design) = (*self.options, self.design);
+    pub fn deadbeat(&self, front: &Front<'b>, compensates: bool) -> Deadbeat<'b> {
+        let (reference, i) = (front.reference, front.currents.pair());
         if let Some(held) = &front.held {
             let u = self.held_voltage(held, reference);
-            let shifts = compensates.then(|| self.shifts_of_held(reference, currents));
+            let shifts = compensates.then(|| {
+                let k_hold = self.k_hold();
+                let doc =
+                    "What the present current still contributes when the voltage takes effect.";
+                self.l.b.stage("hold_current", &[doc]);
+                named! {
+                    let held = k_hold * i;
+                }
+                self.dead_time_shifts(reference, held, self.design.k_di)
+            });
             return Deadbeat { u, shifts };
         }
-        let k_hold = self.hold();
-        let l = &mut *self.lowering;
-        let k_decay = (options.delay == 1).then(|| design.decay(l, options.word));
-        let doc: &[&str] = if options.delay == 1 {
+        let k_hold = self.k_hold();
+        let k_decay = (self.options.delay == 1).then(|| self.k_decay());
+        let doc: &[&str] = if self.options.delay == 1 {
             &[
                 "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
                 "i_pred = a i + b (v_now - e_now) of (7) folded in:",
@@ -378,103 +351,99 @@ impl CurrentLoop<'_, '_> {
         } else {
             &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
         };
-        l.b.stage("deadbeat_voltage", doc);
-        let found = [0, 1].map(|x| {
-            let held = l.times(k_hold, currents.phases[x]);
-            if compensates {
-                l.b.name(["held_a", "held_b"][x], held);
+        self.l.b.stage("deadbeat_voltage", doc);
+        let held = k_hold * i;
+        let held = if compensates {
+            named! {
+                let held = held;
             }
-            let open = l.b.sub(reference[x], held);
-            let volts = match (k_decay, now, front.e, front.e_now) {
-                (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
-                    let driving = l.b.sub(now[x], e_now[x]);
-                    let lost = l.times(k_decay, driving);
-                    let open = l.b.add(open, lost);
-                    let open = l.b.add(open, e[x]);
-                    let open = l.b.add(open, e_now[x]);
-                    l.b.sub(open, now[x])
-                }
-                (_, _, Some(e), _) => l.b.add(open, e[x]),
-                _ => open,
-            };
-            [held, asked_for(l, x, volts)]
-        });
-        let held = found.map(|[held, _]| held);
-        let shifts = compensates.then(|| self.dead_time_shifts(reference, held, design.k_di));
-        let u = found.map(|[_, u]| u);
+            held
+        } else {
+            held
+        };
+        let open = reference - held;
+        let u = match (k_decay, front.now, front.e, front.e_now) {
+            (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
+                open + k_decay * (now - e_now) + e + e_now - now
+            }
+            (_, _, Some(e), _) => open + e,
+            _ => open,
+        };
+        let u = asked_for(self.l, u);
+        let stiffness = self.design.k_di;
+        let shifts = compensates.then(|| self.dead_time_shifts(reference, held, stiffness));
         Deadbeat { u, shifts }
     }
 
     /// Step 12: closes the step. `v_cmd` are the commanded voltages; `applied` are the terminals instead, where a
     /// command may turn a leg off whose real voltage counts.
     pub fn remember(
-        &mut self,
-        front: &Front,
-        command: &Command,
-        v_cmd: Option<[Value; 2]>,
-        applied: Option<Applied>,
-        mut remembered: Remembered,
+        &self,
+        front: &Front<'b>,
+        command: &Command<'b>,
+        v_cmd: Option<Phases<'b>>,
+        applied: Option<Applied<'b>>,
+        mut remembered: Remembered<'b>,
     ) {
         let words = &front.words;
         if let (Some(held), Some(u)) = (&front.held, v_cmd) {
             let left_over = self.left_over(held, u);
             remembered.extend(self.fold(held, left_over));
         }
-        if let Some((state, integral)) = front.speed_integral {
-            remembered.push((state, integral));
-        }
-        if let (Some(commutation), Some(pair)) = (front.commutation, words.pair) {
-            if let Some(sector_prev) = pair.sector_prev {
-                remembered.push((sector_prev, front.sector));
-            }
-            remembered.push((pair.left, commutation.left));
+        remembered.extend(front.speed_integral);
+        if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
+            remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));
+            remembered.push((rule.left, commutation.left));
         }
         if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
-            remembered.extend(terminals.into_iter().zip(applied.terminals));
+            remembered.extend(terminals.into_iter().zip(applied.terminals.0));
             remembered.push((off, applied.off));
         }
-        if let (Some(words), Some(v_cmd)) = (words.v_cmd, v_cmd) {
-            remembered.push((words[0], v_cmd[0]));
-            remembered.push((words[1], v_cmd[1]));
+        let mut keep = |words: Option<[Memory<'b>; 2]>, values: Option<Phases<'b>>| {
+            remembered.extend(
+                words
+                    .zip(values)
+                    .into_iter()
+                    .flat_map(|(words, values)| kept(words, values)),
+            );
+        };
+        keep(words.v_cmd, v_cmd);
+        if words.v_prev.is_some() {
+            keep(
+                words.v_prev,
+                self.applied_to_remember(front, v_cmd, applied),
+            );
         }
-        if let Some(v_prev) = words.v_prev {
-            let volts = match (front.now, applied, front.e) {
-                (Some(now), ..) => Some(now),
-                (None, Some(applied), Some(e)) => {
-                    let off_leg = self.off_leg(front);
-                    let names = ["v_a_applied", "v_b_applied"];
-                    let currents = &front.currents;
-                    Some(
-                        self.lowering
-                            .applied_voltage(names, applied, currents, e, &off_leg),
-                    )
-                }
-                _ => v_cmd,
-            };
-            if let Some(volts) = volts {
-                remembered.push((v_prev[0], volts[0]));
-                remembered.push((v_prev[1], volts[1]));
-            }
-        }
+        keep(words.e_prev, front.e_expected);
+        keep(words.integral, front.integral);
+        keep(words.i_prev, Some(front.currents.pair()));
         if let Some(off_prev) = words.off_prev {
-            let off = match (words.t_cmd, applied) {
-                (Some((_, off_cmd)), _) => Some(self.lowering.b.state(off_cmd)),
-                (None, applied) => applied.map(|applied| applied.off),
+            let off = match words.t_cmd {
+                Some((_, off_cmd)) => Some(off_cmd.read()),
+                None => applied.map(|applied| applied.off),
             };
             remembered.extend(off.map(|off| (off_prev, off)));
         }
-        if let (Some(e_prev), Some(e)) = (words.e_prev, front.e_expected) {
-            remembered.push((e_prev[0], e[0]));
-            remembered.push((e_prev[1], e[1]));
+        command.close_step(self.l, &remembered);
+    }
+
+    /// The voltage that the next step finds applied in the period that begins now.
+    fn applied_to_remember(
+        &self,
+        front: &Front<'b>,
+        v_cmd: Option<Phases<'b>>,
+        applied: Option<Applied<'b>>,
+    ) -> Option<Phases<'b>> {
+        match (front.now, applied, front.e) {
+            (Some(now), ..) => Some(now),
+            (None, Some(applied), Some(e)) => {
+                let off_leg = self.off_leg(front.bus, front.third);
+                named! {
+                    let v_applied = off_leg.applied_voltage(self.l, &applied, front.currents, e);
+                }
+                Some(v_applied)
+            }
+            _ => v_cmd,
         }
-        if let (Some(words), Some(integral)) = (words.integral, front.integral) {
-            remembered.push((words[0], integral[0]));
-            remembered.push((words[1], integral[1]));
-        }
-        if let Some(i_prev) = words.i_prev {
-            remembered.push((i_prev[0], front.currents.phases[0]));
-            remembered.push((i_prev[1], front.currents.phases[1]));
-        }
-        self.lowering.close_step(command, &remembered);
     }
 }

@@ -1,9 +1,9 @@
 //! State words of the shared step, each only where the variant needs it.
 
 use super::CurrentLoop;
-use crate::ir::{Interval, StateId};
+use crate::ir::{Interval, Memory};
 use crate::lower::set_point::SetPointWords;
-use crate::lower::{PairModulation, RotorWords, SpeedState};
+use crate::lower::{CommutationRule, RotorWords, SpeedRegulator, direction_word, sector_word};
 use crate::spec::{EmfSource, Reference};
 
 /// What a law needs of the step around it.
@@ -42,142 +42,114 @@ pub enum EmfUse {
 }
 
 /// State words of the shared step.
-pub struct Words {
+pub struct Words<'b> {
     /// Sector of the last sample, where anything follows the edges.
-    pub sector_prev: Option<StateId>,
+    pub sector_prev: Option<Memory<'b>>,
     /// Direction of rotation, where no rotor words hold it.
-    pub direction: Option<StateId>,
+    pub direction: Option<Memory<'b>>,
     /// Timing of Hall edges.
-    pub rotor: Option<RotorWords>,
+    pub rotor: Option<RotorWords<'b>>,
     /// The speed regulator.
-    pub speed: Option<SpeedState>,
+    pub speed: Option<SpeedRegulator<'b>>,
     /// Commutation.
-    pub pair: Option<PairModulation>,
+    pub pair: Option<CommutationRule<'b>>,
     /// Current of the last sample.
-    pub i_prev: Option<[StateId; 2]>,
+    pub i_prev: Option<[Memory<'b>; 2]>,
     /// Commanded voltage.
-    pub v_cmd: Option<[StateId; 2]>,
+    pub v_cmd: Option<[Memory<'b>; 2]>,
     /// Commanded terminals and the leg that is off.
-    pub t_cmd: Option<([StateId; 3], StateId)>,
+    pub t_cmd: Option<([Memory<'b>; 3], Memory<'b>)>,
     /// Voltage of the period that ended.
-    pub v_prev: Option<[StateId; 2]>,
+    pub v_prev: Option<[Memory<'b>; 2]>,
     /// The leg that was off in the period that ended.
-    pub off_prev: Option<StateId>,
+    pub off_prev: Option<Memory<'b>>,
     /// EMF expected of the period that ended.
-    pub e_prev: Option<[StateId; 2]>,
+    pub e_prev: Option<[Memory<'b>; 2]>,
     /// What the modelled EMF lacks.
-    pub integral: Option<[StateId; 2]>,
+    pub integral: Option<[Memory<'b>; 2]>,
 }
 
-impl CurrentLoop<'_, '_> {
-    pub(super) fn declare(&mut self, set_point: SetPointWords) -> Words {
-        let (options, needs) = (*self.options, self.needs);
-        let needs_rotor = (needs.emf != EmfUse::None && options.emf == EmfSource::Model)
-            || options.advance > 0.0
-            || options.reference == Reference::Proportional
-            || options.speed.is_some();
-        let estimated = needs.emf != EmfUse::None && options.emf == EmfSource::Estimated;
-        let holds = self.holds_emf();
+impl<'b> CurrentLoop<'_, 'b> {
+    /// Whether the law looks at an EMF of this source.
+    fn uses(&self, source: EmfSource) -> bool {
+        self.needs.emf != EmfUse::None && self.options.emf == source
+    }
+
+    /// Whether anything follows the rotor's angle or speed.
+    fn needs_rotor(&self) -> bool {
+        self.uses(EmfSource::Model)
+            || self.options.advance > 0.0
+            || self.options.reference == Reference::Proportional
+            || self.options.speed.is_some()
+    }
+
+    pub(super) fn declare(&self, set_point: &SetPointWords<'b>) -> Words<'b> {
+        let (l, options, needs) = (self.l, self.options, self.needs);
+        let estimated = self.uses(EmfSource::Estimated);
+        let needs_rotor = self.needs_rotor();
         // What a period shows of its EMF takes part.
         let sees = estimated || needs.integral;
         let e_bound = self.e_bound();
-        let moves = if estimated {
+        let e_moves = if estimated {
             self.motion_bound(e_bound)
         } else {
             0
         };
-        let e_expected = e_bound + moves;
-        let l = &mut *self.lowering;
-        let current = Interval::symmetric(l.current_span());
         let bus = l.bus_interval().high;
         let volts = Interval::symmetric(bus);
-        let sector_prev = (needs_rotor || needs.commutation).then(|| l.sector_word());
-        let rotor = needs_rotor.then(|| l.rotor_words());
-        let direction = (needs.commutation && !needs_rotor).then(|| l.direction_word());
-        let speed = set_point.speed.map(|words| l.speed_state(words.top));
-        let pair_words = needs
-            .commutation
-            .then(|| l.pair_words(options.commutation_timeout, options.advance > 0.0));
-        let i_prev = sees.then(|| {
-            ["i_a_prev", "i_b_prev"].map(|name| {
-                l.state(
-                    name,
-                    0,
-                    current,
-                    "Current of the last sample, words of current.",
-                )
-            })
+        let legs = Interval::new(0, 3);
+        let is_delayed = options.delay == 1;
+        let sector_prev = (needs_rotor || needs.commutation).then(|| sector_word(l));
+        let rotor = needs_rotor.then(|| RotorWords::new(l));
+        let direction = (needs.commutation && !needs_rotor).then(|| direction_word(l));
+        let speed = options.speed.zip(set_point.speed);
+        let speed = speed
+            .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point.stiffness));
+        let pair = needs.commutation.then(|| {
+            let advances = options.advance > 0.0;
+            let (threshold, timeout) = (options.commutation_threshold, options.commutation_timeout);
+            CommutationRule::new(l, threshold, timeout, advances)
         });
-        let v_cmd = (options.delay == 1 && !needs.off_leg && !holds && (needs.predicts() || sees))
-            .then(|| {
-                ["v_a_cmd", "v_b_cmd"].map(|name| {
-                    l.state(
-                        name,
-                        0,
-                        volts,
-                        "Limited voltage of the last step, applied during this period.",
-                    )
-                })
-            });
-        let t_cmd = (options.delay == 1 && needs.off_leg).then(|| {
-            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"].map(|name| {
-                l.state(
-                    name,
-                    0,
-                    Interval::new(0, bus),
-                    "Terminal voltage of the last step's command; of an off leg 0.",
-                )
-            });
-            (
-                terminals,
-                l.state(
-                    "off_cmd",
-                    0,
-                    Interval::new(0, 3),
-                    "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.",
-                ),
-            )
+        let i_prev = sees.then(|| {
+            let range = Interval::symmetric(l.current_span());
+            let doc = "Current of the last sample, words of current.";
+            l.memories(["i_a_prev", "i_b_prev"], range, doc)
+        });
+        let needs_command = is_delayed && !needs.off_leg && !self.holds_emf();
+        let v_cmd = (needs_command && (needs.predicts() || sees)).then(|| {
+            let doc = "Limited voltage of the last step, applied during this period.";
+            l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
+        });
+        let t_cmd = (is_delayed && needs.off_leg).then(|| {
+            let doc = "Terminal voltage of the last step's command; of an off leg 0.";
+            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"];
+            let terminals = terminals.map(|name| l.b.memory(name, 0, Interval::new(0, bus), doc));
+            let doc = "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.";
+            (terminals, l.b.memory("off_cmd", 0, legs, doc))
         });
         let v_prev = sees.then(|| {
-            ["v_a_prev", "v_b_prev"].map(|name| {
-                l.state(
-                    name,
-                    0,
-                    volts,
-                    "Voltage applied during the period that just ended.",
-                )
-            })
+            let doc = "Voltage applied during the period that just ended.";
+            l.memories(["v_a_prev", "v_b_prev"], volts, doc)
         });
         let off_prev = (estimated && needs.off_leg).then(|| {
-            l.state(
-                "off_prev",
-                0,
-                Interval::new(0, 3),
-                "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.",
-            )
+            let doc = "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.";
+            l.b.memory("off_prev", 0, legs, doc)
         });
         let e_prev = (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
-            ["e_a_prev", "e_b_prev"].map(|name| {
-                l.state(
-                    name,
-                    0,
-                    Interval::symmetric(e_expected),
-                    "EMF that the last step expects of the period that it began.",
-                )
-            })
+            let range = Interval::symmetric(e_bound + e_moves);
+            let doc = "EMF that the last step expects of the period that it began.";
+            l.memories(["e_a_prev", "e_b_prev"], range, doc)
         });
         let integral = needs.integral.then(|| {
-            ["integral_a", "integral_b"].map(|name| {
-                let doc = "What the modelled EMF lacks, words of voltage.";
-                l.state(name, 0, volts, doc)
-            })
+            let doc = "What the modelled EMF lacks, words of voltage.";
+            l.memories(["integral_a", "integral_b"], volts, doc)
         });
         Words {
             sector_prev,
             direction,
             rotor,
             speed,
-            pair: pair_words,
+            pair,
             i_prev,
             v_cmd,
             t_cmd,

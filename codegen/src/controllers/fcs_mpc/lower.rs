@@ -9,9 +9,9 @@ use crate::spec::{Candidates, FcsMpcSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    lower_with(spec, scale, design.k_di, |lowering, set_point| {
-        let mut step = CurrentLoop {
-            lowering,
+    lower_with(spec, scale, design.k_di, |l, set_point| {
+        let step = CurrentLoop {
+            l,
             options: &options.common,
             design,
             needs: Needs {
@@ -34,10 +34,15 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             step.apply_vector(&front, vector, numbers, vec![]);
             return;
         }
-        if options.weighted() && !options.modulated {
+        if options.modulated {
+            let choice = step.choose(options, &front, u);
+            step.apply_two_vectors(&front, &choice);
+            return;
+        }
+        if options.weighted() {
             let memory = (options.switching_weight > 0.0).then(|| {
                 let doc = "Vector that the last step chose: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
-                step.lowering.state("vector_prev", 0, Interval::new(0, 15), doc)
+                l.b.memory("vector_prev", 0, Interval::new(0, 15), doc)
             });
             let vector = step.choose_weighted(options, &front, u, memory);
             let remembered = memory.map(|memory| (memory, vector));
@@ -45,22 +50,19 @@ pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scal
             step.apply_vector(&front, vector, numbers, remembered);
             return;
         }
-        let of_table2 = options.candidates == Candidates::Table2 && !options.modulated;
-        if let (true, Some(commutation)) = (of_table2, front.commutation) {
-            let vector = step.choose_of_table2(options, &front, u, commutation.flag);
-            step.apply_vector(&front, vector, numbers, vec![]);
-            return;
-        }
-        if options.candidates == Candidates::ThreePhase && !options.modulated {
-            let pattern = step.choose_low_legs(&front, u);
-            step.apply_vector(&front, pattern, Numbers::LowLegs, vec![]);
-            return;
-        }
-        let choice = step.choose(options, &front, u);
-        if options.modulated {
-            step.apply_two_vectors(&front, &choice);
-        } else {
-            step.apply_vector(&front, choice.vector, numbers, vec![]);
+        match (options.candidates, front.commutation) {
+            (Candidates::Table2, Some(commutation)) => {
+                let vector = step.choose_of_table2(options, &front, u, commutation.flag);
+                step.apply_vector(&front, vector, numbers, vec![]);
+            }
+            (Candidates::ThreePhase, _) => {
+                let pattern = step.choose_low_legs(&front, u);
+                step.apply_vector(&front, pattern, Numbers::LowLegs, vec![]);
+            }
+            _ => {
+                let choice = step.choose(options, &front, u);
+                step.apply_vector(&front, choice.vector, numbers, vec![]);
+            }
         }
     })
 }

@@ -3,6 +3,9 @@
 mod choose;
 mod divide;
 mod lower;
+mod off_legs;
+mod score;
+mod torque;
 mod two_steps;
 mod weighted;
 

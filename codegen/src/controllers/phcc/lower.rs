@@ -7,19 +7,19 @@ use super::table::{
 use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::controllers::whole_vectors::{Choices, Numbers, WISHES};
 use crate::diagnostics::engineering;
-use crate::ir::{Comparison, Interval, StateId, Value};
+use crate::ir::{Expr, Flag, Interval, Memory, Named, Phases, named};
 use crate::lower::{Lowering, Scale};
 use crate::scaling::Lowered;
 use crate::spec::{PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    lower_with(spec, scale, design.k_di, |lowering, set_point| {
-        let bands = [1.0, 3.0_f64.sqrt()]
-            .map(|share| lowering.volts_word(share * design.k_di * options.band));
+    lower_with(spec, scale, design.k_di, |l, set_point| {
+        let bands =
+            [1.0, 3.0_f64.sqrt()].map(|share| l.volts_word(share * design.k_di * options.band));
         let common = &options.common;
         let mut step = CurrentLoop {
-            lowering,
+            l,
             options: common,
             design,
             needs: Needs {
@@ -40,16 +40,17 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
             step.needs.memory = bands[1] + 1;
         }
         let front = step.front(set_point);
-        let memory = (!folds).then(|| {
-            [("h_a", bands[0]), ("h_b", bands[1])].map(|(name, band)| {
+        let axes = [("alpha", "h_a"), ("beta", "h_b")];
+        let axes = [0, 1].map(|axis| {
+            let ((name, memory), band) = (axes[axis], bands[axis]);
+            let memory = (!folds).then(|| {
                 let doc = "Memory of the axis, added to its error: half the band while its component shall rise, one word more and negative while it shall fall; 0 while it has no wish.";
-                let range = Interval::new(-band - 1, band);
-                (step.lowering.state(name, 0, range, doc), band)
-            })
+                l.b.memory(memory, 0, Interval::new(-band - 1, band), doc)
+            });
+            Axis { name, band, memory }
         });
         let q = step.predicted_error(&front);
-        let axes = compare_with_bands(step.lowering, options, design, q, memory);
-        let falls = axes.map(|axis| axis.falls);
+        let wishes = compare_with_bands(l, options, design, q, axes);
         let pairs = options.candidates == PhccCandidates::Table2;
         let numbers = match (folds, pairs) {
             (true, pairs) => Numbers::Choices(Choices {
@@ -59,12 +60,10 @@ pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale)
             (false, true) => Numbers::Vectors,
             (false, false) => Numbers::WithoutPairs,
         };
-        let number = look_up(step.lowering, options, &front, falls, numbers);
-        let words = memory.iter().flatten().zip(axes);
-        let remembered = words
-            .filter_map(|(&(word, _), axis)| Some((word, axis.memory?)))
-            .collect();
-        step.apply_vector(&front, number, numbers, remembered);
+        let falls = wishes.map(|wish| wish.falls);
+        let number = look_up(l, options, &front, falls, numbers);
+        let remembered = wishes.into_iter().filter_map(|wish| wish.remembered);
+        step.apply_vector(&front, number, numbers, remembered.collect());
     })
 }
 
@@ -84,11 +83,11 @@ fn wish(band: i64, falls: bool) -> i64 {
     if falls { -band - 1 } else { band }
 }
 
-impl CurrentLoop<'_, '_> {
+impl<'b> CurrentLoop<'_, 'b> {
     /// K (i_ref - i(k+1)) of phases a, b, words of voltage; with delay 0 K (i_ref - i).
-    fn predicted_error(&mut self, front: &Front) -> [Value; 2] {
+    fn predicted_error(&self, front: &Front<'b>) -> Phases<'b> {
+        let (l, reference) = (self.l, front.reference);
         if let Some(held) = &front.held {
-            let l = &mut *self.lowering;
             l.b.stage(
                 "predict_error",
                 &[
@@ -96,27 +95,22 @@ impl CurrentLoop<'_, '_> {
                     "(9) put into the prediction (7) and the terms collected by their age: K i_ref + k_now i + due.",
                 ],
             );
-            return [0, 1].map(|x| {
-                let error = held.sum(l, x, front.reference[x]);
-                deviation(l, x, error)
-            });
+            return deviation(l, held.sum(reference));
         }
-        let delayed = self.options.delay == 1;
-        let hold = if delayed {
-            self.design.k_di * self.design.plant.pole
-        } else {
-            self.design.k_di
-        };
-        let word = self.options.word;
-        let l = &mut *self.lowering;
+        let is_delayed = self.options.delay == 1;
         let k_hold = l.impedance(
             "k_hold",
-            hold,
-            word,
+            self.design.k_di
+                * if is_delayed {
+                    self.design.plant.pole
+                } else {
+                    1.0
+                },
+            self.options.word,
             "What is left of the present current when the vector takes effect, as the voltage K i.",
-            [if delayed { "K a" } else { "K" }, "V/A"],
+            [if is_delayed { "K a" } else { "K" }, "V/A"],
         );
-        let doc: &[&str] = if delayed {
+        let doc: &[&str] = if is_delayed {
             &[
                 "Error of the current predicted for the end of this period, as a voltage: K (i_ref - i(k+1)) with",
                 "i(k+1) = a i + b (v_now - e_now) of (7).",
@@ -125,112 +119,108 @@ impl CurrentLoop<'_, '_> {
             &["Error of the current, as a voltage: K (i_ref - i)."]
         };
         l.b.stage("predict_error", doc);
-        [0, 1].map(|x| {
-            let held = l.times(k_hold, front.currents.phases[x]);
-            let open = l.b.sub(front.reference[x], held);
-            let error = match (front.now, front.e_now) {
-                (Some(now), Some(e_now)) => {
-                    let driving = l.b.sub(now[x], e_now[x]);
-                    l.b.sub(open, driving)
-                }
-                _ => open,
-            };
-            deviation(l, x, error)
-        })
+        let open = reference - k_hold * front.currents.pair();
+        let error = match front.now.zip(front.e_now) {
+            Some((now, e_now)) => open - (now - e_now),
+            None => open,
+        };
+        deviation(l, error)
     }
 }
 
-/// Names the predicted error of phase `x`, 0 or 1, and states its own.
-fn deviation(l: &mut Lowering<'_>, x: usize, error: Value) -> Value {
+/// Names the predicted error of phases a and b, and states its own.
+fn deviation<'b>(l: &Lowering<'b>, error: Phases<'b>) -> Phases<'b> {
     let doc = "Predicted error of a phase current, as the voltage K (i_ref - i)";
-    let word = 1.0 / l.scale.voltage();
-    l.b.state_error("deviation", error, [doc, "V"], word);
-    l.b.name(["q_a", "q_b"][x], error)
+    l.state_phase_volts("deviation", error, doc);
+    named! {
+        let q = error;
+    }
+    q
+}
+
+/// An axis of the plane, alpha or beta.
+#[derive(Clone, Copy)]
+struct Axis<'b> {
+    name: &'static str,
+    /// Half its band, words of voltage.
+    band: i64,
+    /// What is added to its error, unless that is folded into what is due.
+    memory: Option<Memory<'b>>,
 }
 
 /// What an axis asks for, and what it remembers of that.
 #[derive(Clone, Copy)]
-struct Axis {
-    /// Flag: its component shall fall.
-    falls: Value,
-    /// What is added to its next error, unless that is folded into what is due.
-    memory: Option<Value>,
+struct Wish<'b> {
+    /// Its component shall fall.
+    falls: Flag<'b>,
+    remembered: Option<(Memory<'b>, Expr<'b>)>,
 }
 
-/// The wishes of the two axes; `memory` has the state words and half the bands, unless what is due holds the memory.
-fn compare_with_bands(
-    l: &mut Lowering<'_>,
+/// The wishes of the two axes.
+fn compare_with_bands<'b>(
+    l: &Lowering<'b>,
     options: &PhccSpec,
     design: &LoopDesign,
-    q: [Value; 2],
-    memory: Option<[(StateId, i64); 2]>,
-) -> [Axis; 2] {
-    let folded: &[&str] = if memory.is_none() {
-        &[
-            "",
-            "An error already holds the memory of the last wish, with what is due to it, so that its sign decides.",
-        ]
-    } else {
-        &[]
-    };
+    q: Phases<'b>,
+    axes: [Axis<'b>; 2],
+) -> [Wish<'b>; 2] {
     let doc = [
         "Each axis asks for a rise or a fall of its component once the error leaves the band, and keeps asking: while it asks",
         "for a rise, an error down to the band's lower edge will do, otherwise it takes one above the upper edge. An axis",
         "that comes from rest goes by the sign. Beta is taken times the square root of 3: (b - c) = 2 b + a.",
+        "",
+        "An error already holds the memory of the last wish, with what is due to it, so that its sign decides.",
     ];
-    let doc = [&doc, folded].concat();
-    l.b.stage("compare_with_bands", &doc);
-    let twice = l.b.shift_left(q[1], 1);
-    let beta = l.b.add(twice, q[0]);
-    l.b.name("q_beta", beta);
+    let is_folded = axes[0].memory.is_none();
+    l.b.stage(
+        "compare_with_bands",
+        if is_folded { &doc } else { &doc[..3] },
+    );
+    named! {
+        let q_beta = (q.b() << 1) + q.a();
+    }
     // Alpha, phase a itself, is less far off.
     let doc = "Predicted error of the current on alpha and beta, which is compared with the band";
     let word = 1.0 / (l.scale.voltage() * design.k_di * 3.0_f64.sqrt());
-    l.b.state_error("current", beta, [doc, "A"], word);
-    [0, 1].map(|x| {
-        let error = [q[0], beta][x];
-        let lifted = memory.map(|memory| {
-            let before = l.b.state(memory[x].0);
-            let lifted = l.b.add(error, before);
-            l.b.name(["lifted_alpha", "lifted_beta"][x], lifted)
-        });
-        let zero = l.zero();
-        let falls = l.b.compare(Comparison::Less, lifted.unwrap_or(error), zero);
-        l.b.name(["alpha_falls", "beta_falls"][x], falls);
-        let memory = memory.map(|memory| next_memory(l, options, x, memory[x].1, falls));
-        Axis { falls, memory }
-    })
+    l.b.state_error("current", q_beta, [doc, "A"], word);
+    [0, 1].map(|x| axes[x].wish(l, options, [q.a(), q_beta][x]))
 }
 
-/// What axis `x`, 0 alpha or 1 beta, adds to its next error; `band` is half of it.
-fn next_memory(
-    l: &mut Lowering<'_>,
-    options: &PhccSpec,
-    x: usize,
-    band: i64,
-    falls: Value,
-) -> Value {
-    let (name, other) = [
-        ("band_alpha", "band_alpha_below"),
-        ("band_beta", "band_beta_below"),
-    ][x];
-    let half = engineering(options.band, "A");
-    let doc = format!("Half width of the band of {half} as a voltage");
-    let above = l.voltage(name, wish(band, false), &doc);
-    let doc = format!("Half width of the band of {half} and one word more, negative, as a voltage");
-    let below = l.voltage(other, wish(band, true), &doc);
-    let memory = l.b.select(falls, below, above);
-    l.b.name(["memory_alpha", "memory_beta"][x], memory)
+impl<'b> Axis<'b> {
+    fn wish(self, l: &Lowering<'b>, options: &PhccSpec, error: Expr<'b>) -> Wish<'b> {
+        let falls = |error: Expr<'b>| error.is_below(0).named(&format!("{}_falls", self.name));
+        let Some(memory) = self.memory else {
+            return Wish {
+                falls: falls(error),
+                remembered: None,
+            };
+        };
+        let lifted = error + memory.read();
+        let falls = falls(lifted.named(&format!("lifted_{}", self.name)));
+        let half = engineering(options.band, "A");
+        let band = format!("band_{}", self.name);
+        let doc = format!("Half width of the band of {half} as a voltage");
+        let above = l.voltage(&band, wish(self.band, false), &doc);
+        let doc =
+            format!("Half width of the band of {half} and one word more, negative, as a voltage");
+        let below = l.voltage(&format!("{band}_below"), wish(self.band, true), &doc);
+        let next = falls.choose(below, above);
+        let next = next.named(&format!("memory_{}", self.name));
+        Wish {
+            falls,
+            remembered: Some((memory, next)),
+        }
+    }
 }
 
 /// The vector that the switching table holds for sector, commutation and wishes, as a number.
-fn look_up(
-    l: &mut Lowering<'_>,
+fn look_up<'b>(
+    l: &Lowering<'b>,
     options: &PhccSpec,
-    front: &Front,
-    [alpha, beta]: [Value; 2],
+    front: &Front<'b>,
+    [alpha, beta]: [Flag<'b>; 2],
     numbers: Numbers,
-) -> Value {
+) -> Expr<'b> {
     let sets = switching_table(options, l.spec.motor.emf_shape);
     // Direction unknown, forward, none, backward (the index wraps); then a set-point of 0 and more, and one below.
     let table = [
@@ -260,7 +250,7 @@ fn look_up(
         ),
         _ => ("Vector", "vector"),
     };
-    let table = l.b.program.table(
+    let table = l.b.table(
         "switching",
         table,
         &[
@@ -273,22 +263,15 @@ fn look_up(
         "look_up_vector",
         &["The switching table: rows by direction, sign of the set-point, sector and commutation, columns by the wishes."],
     );
-    let zero = l.zero();
-    let negative = l.b.compare(Comparison::Less, front.set_point, zero);
-    let mut index = l.b.shift_left(front.sector, 3);
+    let negative = front.set_point.is_below(0);
+    let row = front.sector << 3;
     // Without a commutation no direction is known.
-    if let Some(commutation) = front.commutation {
-        let turning = l.b.shift_left(commutation.direction, 7);
-        index = l.b.add(turning, index);
-        let bit = l.b.shift_left(commutation.word, 2);
-        index = l.b.add(index, bit);
+    let row = match front.commutation {
+        Some(commutation) => (commutation.direction << 7) + row + (commutation.word << 2),
+        None => row,
+    };
+    named! {
+        let entry = row + negative.choose(64, 0) + beta.choose(2, 0) + alpha.choose(1, 0);
     }
-    for (flag, weight) in [(negative, 64), (beta, 2), (alpha, 1)] {
-        let (set, clear) = (l.b.literal(weight), l.zero());
-        let bits = l.b.select(flag, set, clear);
-        index = l.b.add(index, bits);
-    }
-    l.b.name("entry", index);
-    let number = l.b.lookup(table, index);
-    l.b.name(name, number)
+    table.at(entry).named(name)
 }

@@ -1,8 +1,12 @@
 //! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
 
-use crate::controllers::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
-use crate::ir::{Interval, Value};
-use crate::lower::{Coefficient, Command, Lowering, Priority, Scale};
+use crate::controllers::current_loop::{
+    CurrentLoop, EmfUse, Front, LoopDesign, Needs, asked_for, kept, lower_with, read,
+};
+use crate::ir::{Coefficient, Expr, Interval, named};
+use crate::lower::{
+    Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line, pair_signs,
+};
 use crate::scaling::Lowered;
 use crate::spec::{PiPwmSpec, Spec};
 
@@ -12,114 +16,172 @@ const INTEGRATION: &[&str] = &[
     "for and v what the limit left of it, so the integral part follows v - e.",
 ];
 
+/// What the integral part is whose error is stated.
+const INTEGRAL: &str = "Integral part after one step";
+
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     let gain = options.proportional_gain(&spec.motor);
-    lower_with(spec, scale, gain, |lowering, set_point| {
-        let mut step = CurrentLoop {
-            lowering,
+    lower_with(spec, scale, gain, |l, set_point| {
+        let emf = if options.feed_forward {
+            EmfUse::FeedForward
+        } else {
+            EmfUse::None
+        };
+        let step = CurrentLoop {
+            l,
             options: &options.common,
             design,
             needs: Needs {
                 commutation: false,
                 off_leg: false,
-                emf: if options.feed_forward {
-                    EmfUse::FeedForward
-                } else {
-                    EmfUse::None
-                },
+                emf,
                 integral: false,
                 memory: 0,
             },
         };
         let front = step.front(set_point);
+        let regulator = Regulator::new(l, options);
         if options.six_step {
-            return six_step(&mut step, &front, spec, options);
+            regulator.six_step(&step, &front);
+        } else {
+            regulator.per_phase(&step, &front);
         }
-        let l = &mut *step.lowering;
-        let range = integral_range(l, options);
-        let integrals = ["integral_a", "integral_b"].map(|name| {
-            let doc = "Integral part of the regulator, words of voltage.";
-            l.state(name, 0, range, doc)
-        });
-        let [k_drop, k_i] = gains(l, spec, options);
-        l.b.stage(
-            "regulate",
-            &["PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward."],
-        );
-        let regulated = [0, 1].map(|x| {
-            let drop = l.times(k_drop, front.currents.phases[x]);
-            let held = options.dead_time_compensation.then(|| {
-                l.b.name(["drop_a", "drop_b"][x], drop);
-                let held = l.b.neg(drop);
-                l.b.name(["held_a", "held_b"][x], held)
-            });
-            let part = l.b.add(front.reference[x], drop);
-            (held, l.b.name(["p_a", "p_b"][x], part))
-        });
-        let sums = [0, 1].map(|x| l.b.state(integrals[x]));
-        let u = [0, 1].map(|x| {
-            let volts = l.b.add(regulated[x].1, sums[x]);
-            let volts = match front.e {
-                Some(e) => l.b.add(volts, e[x]),
-                None => volts,
-            };
-            let doc = "Voltage of a phase that the law asks for, before the limit";
-            let word = 1.0 / l.scale.voltage();
-            l.b.state_error("voltage", volts, [doc, "V"], word);
-            l.b.name(["u_a_unsat", "u_b_unsat"][x], volts)
-        });
-        let shifts = match regulated {
-            [(Some(a), _), (Some(b), _)] => {
-                Some(step.dead_time_shifts(front.reference, [a, b], gain))
-            }
-            _ => None,
-        };
-        let l = &mut *step.lowering;
-        let emf = front.e.map(|e| move |_: &mut Lowering<'_>| e);
-        let lifts = front.bus.ratio.is_none();
-        let bus = (front.bus, front.third);
-        let priority = Priority::of(options.saturation, emf);
-        let limited = l.limit_voltage(priority, u, bus, lifts);
-        l.b.stage("integrate", INTEGRATION);
-        let mut remembered = vec![];
-        for x in 0..2 {
-            let target = match front.e {
-                Some(e) => l.b.sub(limited.u[x], e[x]),
-                None => limited.u[x],
-            };
-            let names = [
-                ["distance_a", "integral_a_now"],
-                ["distance_b", "integral_b_now"],
-            ][x];
-            let held = integrate(l, range, k_i, [sums[x], target], names);
-            remembered.push((integrals[x], held));
-        }
-        let command = l.modulate(limited, front.bus, shifts);
-        step.remember(&front, &command, Some(limited.u), None, remembered);
     })
 }
 
-/// -k_p, by which a product is added in one instruction, and k_i.
-fn gains(l: &mut Lowering<'_>, spec: &Spec, options: &PiPwmSpec) -> [Coefficient; 2] {
-    let gain = options.proportional_gain(&spec.motor);
-    let word = options.common.word;
-    let k_drop = l.impedance(
-        "k_drop",
-        -gain,
-        word,
-        "Weight of the present current: the proportional gain k_p = 2 pi f L, negative.",
-        ["-k_p", "V/A"],
-    );
-    let share = options.integral_share(spec);
-    let k_i = l.coefficient(
-        "k_i",
-        share,
-        word,
-        "Share of its distance that the integral part covers in one period, T_s/T_i.",
-        &format!("T_s/T_i = {share:.6}"),
-    );
-    [k_drop, k_i]
+/// The regulator's options and coefficients.
+struct Regulator<'l, 'b> {
+    l: &'l Lowering<'b>,
+    options: &'l PiPwmSpec,
+    /// k_p, V/A.
+    gain: f64,
+    /// Range of the integral part.
+    range: Interval,
+    /// -k_p, by which a product is added in one instruction.
+    k_drop: Coefficient,
+    k_i: Coefficient,
+}
+
+impl<'l, 'b> Regulator<'l, 'b> {
+    fn new(l: &'l Lowering<'b>, options: &'l PiPwmSpec) -> Self {
+        let (gain, word) = (
+            options.proportional_gain(&l.spec.motor),
+            options.common.word,
+        );
+        let doc = "Weight of the present current: the proportional gain k_p = 2 pi f L, negative.";
+        let k_drop = l.impedance("k_drop", -gain, word, doc, ["-k_p", "V/A"]);
+        let share = options.integral_share(l.spec);
+        let doc = "Share of its distance that the integral part covers in one period, T_s/T_i.";
+        let k_i = l.coefficient("k_i", share, word, doc, &format!("T_s/T_i = {share:.6}"));
+        Self {
+            l,
+            options,
+            gain,
+            range: integral_range(l, options),
+            k_drop,
+            k_i,
+        }
+    }
+
+    /// A regulator for each phase.
+    fn per_phase(&self, step: &CurrentLoop<'_, 'b>, front: &Front<'b>) {
+        let l = self.l;
+        let doc = "Integral part of the regulator, words of voltage.";
+        let memories = l.memories(["integral_a", "integral_b"], self.range, doc);
+        let doc = "PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward.";
+        l.b.stage("regulate", &[doc]);
+        let integral = read(memories);
+        let drop = self.k_drop * front.currents.pair();
+        let held = self.options.dead_time_compensation.then(|| {
+            named! {
+                let drop = drop;
+                let held = -drop;
+            }
+            held
+        });
+        named! {
+            let p = front.reference + drop;
+        }
+        let asked = p + integral;
+        let asked = front.e.map_or(asked, |e| asked + e);
+        let u = asked_for(l, asked);
+        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain));
+        let emf = front.e.map(|e| move || e);
+        let hexagon = Hexagon {
+            bus: front.bus,
+            third: front.third,
+            lifts: front.bus.ratio.is_none(),
+        };
+        let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
+        l.b.stage("integrate", INTEGRATION);
+        let target = front.e.map_or(limited.u, |e| limited.u - e);
+        named! {
+            let distance = target - integral;
+            let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
+        }
+        l.state_phase_volts("integral", integral_now, INTEGRAL);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let command = modulator.centred(l, &limited);
+        let remembered = kept(memories, integral_now).to_vec();
+        step.remember(front, &command, Some(limited.u), None, remembered);
+    }
+
+    /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
+    fn six_step(&self, step: &CurrentLoop<'_, 'b>, front: &Front<'b>) {
+        let (l, i) = (self.l, front.currents);
+        let doc = "Integral part of the regulator, words of voltage.";
+        let memory = l.b.memory("integral", 0, self.range, doc);
+        let doc =
+            "PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding.";
+        l.b.stage("regulate", &[doc]);
+        let integral = memory.read();
+        let sign = pair_signs(l, front.sector);
+        named! {
+            let pair_current = across_pair(sign, i >> 1);
+            let part = front.set_point + self.k_drop * pair_current;
+        }
+        let flow = self.options.dead_time_compensation.then(|| {
+            named! {
+                let held = -(self.k_drop * i.pair());
+            }
+            held
+        });
+        named! {
+            let u = part + integral;
+        }
+        let doc = "Voltage of a winding that the law asks for, before the limit";
+        l.state_volts("voltage", u, doc);
+        let line = limit_line(u << 1, front.bus);
+        l.b.stage("integrate", INTEGRATION);
+        named! {
+            let distance = (line >> 1) - integral;
+            let integral_now = self.held(integral + self.k_i * distance);
+        }
+        l.state_volts("integral", integral_now, INTEGRAL);
+        let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, self.gain));
+        let doc =
+            "One leg of the pair pulsed, its partner low, the third off, in commutation as well.";
+        l.b.stage("modulate_pair", &[doc]);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let pulses = modulator.pulse_pair(l, sign, line);
+        let remembered = vec![(memory, integral_now)];
+        step.remember(front, &pulses.command, None, None, remembered);
+    }
+
+    /// An integral part within its range.
+    fn held(&self, sum: Expr<'b>) -> Expr<'b> {
+        let doc = "Largest integral part";
+        let low = self.l.voltage("integral_min", self.range.low, doc);
+        let high = self.l.voltage("integral_max", self.range.high, doc);
+        sum.clamp(low, high)
+    }
 }
 
 /// Where the integral part may lie: within the greatest bus. Without an EMF it cannot leave that, as a mean of itself and
@@ -132,80 +194,4 @@ fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
     }
     let limit = bus.unsigned_abs().next_power_of_two() as i64;
     Interval::new(-limit, limit - 1)
-}
-
-/// The new integral part `sum`, which follows `target`: what the limit left of the voltage, less the EMF fed forward.
-/// `names` are those of its distance and of itself.
-fn integrate(
-    l: &mut Lowering<'_>,
-    range: Interval,
-    k_i: Coefficient,
-    [sum, target]: [Value; 2],
-    names: [&str; 2],
-) -> Value {
-    let distance = l.b.sub(target, sum);
-    l.b.name(names[0], distance);
-    let change = l.times(k_i, distance);
-    let sum = l.b.add(sum, change);
-    let doc = "Largest integral part";
-    let (low, high) = (
-        l.voltage("integral_min", range.low, doc),
-        l.voltage("integral_max", range.high, doc),
-    );
-    let held = l.b.clamp(sum, low, high);
-    let doc = "Integral part after one step";
-    let word = 1.0 / l.scale.voltage();
-    l.b.state_error("integral", held, [doc, "V"], word);
-    l.b.name(names[1], held)
-}
-
-/// One regulator for the current of the conducting pair, and the pulses of its line voltage.
-fn six_step(step: &mut CurrentLoop<'_, '_>, front: &Front, spec: &Spec, options: &PiPwmSpec) {
-    let l = &mut *step.lowering;
-    let range = integral_range(l, options);
-    let doc = "Integral part of the regulator, words of voltage.";
-    let integral = l.state("integral", 0, range, doc);
-    let [k_drop, k_i] = gains(l, spec, options);
-    l.b.stage(
-        "regulate",
-        &["PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding."],
-    );
-    let sign = l.pair_signs(front.sector);
-    let halves = [0, 1, 2].map(|x| l.b.shift_right(front.currents.phases[x], 1));
-    let current = l.across_pair(sign, halves);
-    l.b.name("pair_current", current);
-    let drop = l.times(k_drop, current);
-    let part = l.b.add(front.set_point, drop);
-    l.b.name("part", part);
-    let flow = options.dead_time_compensation.then(|| {
-        [0, 1].map(|x| {
-            let drop = l.times(k_drop, front.currents.phases[x]);
-            let flow = l.b.neg(drop);
-            l.b.name(["held_a", "held_b"][x], flow)
-        })
-    });
-    let sum = l.b.state(integral);
-    let u = l.b.add(part, sum);
-    let doc = "Voltage of a winding that the law asks for, before the limit";
-    let word = 1.0 / l.scale.voltage();
-    l.b.state_error("voltage", u, [doc, "V"], word);
-    l.b.name("u", u);
-    let line = l.b.shift_left(u, 1);
-    let line = l.limit_line(line, front.bus);
-    l.b.stage("integrate", INTEGRATION);
-    let limited = l.b.shift_right(line, 1);
-    let held = integrate(l, range, k_i, [sum, limited], ["distance", "integral_now"]);
-    let gain = options.proportional_gain(&spec.motor);
-    let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, gain));
-    let l = &mut *step.lowering;
-    l.b.stage(
-        "modulate_pair",
-        &["One leg of the pair pulsed, its partner low, the third off, in commutation as well."],
-    );
-    let pulses = l.pulse_pair(sign, line, front.bus, shifts);
-    let command = Command {
-        compares: pulses.compares,
-        legs: pulses.legs,
-    };
-    step.remember(front, &command, None, None, vec![(integral, held)]);
 }
