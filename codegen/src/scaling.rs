@@ -161,8 +161,9 @@ fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable
             bits: None,
         });
     }
+    let wide = (scale.word == 16).then(|| wide_product(&program)).flatten();
     let graph = Part::ProofRanges
-        .timed(|| verify(program))
+        .timed(|| verify(program.rewritten().pruned()))
         .map_err(|violations| {
             let escape =
                 |violation: &Violation| Some((violation.place.clone(), violation.escaped?));
@@ -174,9 +175,7 @@ fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable
                 None => Unscalable::Broken(violations),
             }
         })?;
-    if scale.word == 16
-        && let Some(signal) = wide_product(graph.program())
-    {
+    if let Some(signal) = wide {
         return Err(Unscalable::TooNarrow { signal, bits: None });
     }
     Ok(Scaled {

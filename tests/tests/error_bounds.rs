@@ -68,15 +68,19 @@ fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
         Op::Neg(_) => -x[0].1,
         Op::Abs(_) => x[0].1.abs(),
         Op::Product(..) => x[0].1 * x[1].1,
-        Op::MulRound { shift, .. } | Op::MulFloor { shift, .. } => x[0].1 * x[1].1 * scale(shift),
+        Op::MulRound { shift, .. }
+        | Op::MulRoundNarrow { shift, .. }
+        | Op::MulFloor { shift, .. } => x[0].1 * x[1].1 * scale(shift),
         Op::MulAddFloor { shift, .. } => (x[0].1 * x[1].1 + x[2].1 * x[3].1) * scale(shift),
         Op::MulLimited { .. } => (x[0].1 * x[1].1).min(x[2].1),
         Op::ShiftLeft(_, n) => x[0].1 / scale(n),
-        Op::ShiftRight(_, n) => x[0].1 * scale(n),
-        Op::Min(..) => x[0].1.min(x[1].1),
-        Op::Max(..) => x[0].1.max(x[1].1),
+        Op::ShiftRight(_, n) | Op::ShiftRound(_, n) => x[0].1 * scale(n),
+        Op::Min(..) | Op::Lesser(..) => x[0].1.min(x[1].1),
+        Op::Max(..) | Op::Greater(..) => x[0].1.max(x[1].1),
         Op::Clamp { .. } => x[0].1.max(x[1].1).min(x[2].1),
-        Op::Divide { shift, .. } => (x[0].1 / scale(shift) / x[1].1).min(x[2].1),
+        Op::Divide { shift, .. } | Op::DivideNarrow { shift, .. } => {
+            (x[0].1 / scale(shift) / x[1].1).min(x[2].1)
+        }
         Op::Select { .. } => x[if x[0].0 == 1 { 1 } else { 2 }].1,
         _ => result as f64,
     }

@@ -215,6 +215,10 @@ impl<'p> Bounds<'p> {
     pub fn band(&self, value: Value) -> Option<ErrorInterval> {
         let band = match self.function.node(value).op {
             Op::Compare(_, a, b) => self.error(a).minus(self.error(b)),
+            Op::Exceeds(a, limit) => {
+                let [a, limit] = [a, limit].map(|value| self.error(value).magnitude());
+                ErrorInterval::symmetric(a + limit)
+            }
             Op::AngleIndex { angle, .. } => self.error(angle),
             _ => return None,
         };
@@ -266,6 +270,11 @@ impl<'p> Bounds<'p> {
                 } else if value == greatest {
                     interval.low = interval.low.max(known(least).low + strict);
                 }
+            }
+            Op::Exceeds(a, limit) if !holds && a == value => {
+                let limit = known(limit).high;
+                interval.low = interval.low.max(-limit);
+                interval.high = interval.high.min(limit);
             }
             _ => {}
         }
@@ -379,6 +388,11 @@ impl<'p> Bounds<'p> {
                 coefficient,
                 signal,
                 shift,
+            }
+            | Op::MulRoundNarrow {
+                coefficient,
+                signal,
+                shift,
             } => {
                 let exact = product(coefficient, signal).shifted_right(shift);
                 exact.plus(ErrorInterval::nearest())
@@ -398,20 +412,27 @@ impl<'p> Bounds<'p> {
                 of(a).shifted_right(n).plus(ErrorInterval::new(lost, lost))
             }
             Op::ShiftRight(a, n) => shifted(of(a), n),
-            Op::Min(x, high) => {
+            Op::ShiftRound(a, n) => of(a).shifted_right(n).plus(ErrorInterval::nearest()),
+            Op::Min(x, high) | Op::Lesser(x, high) => {
                 let error = of(x).union(of(high));
                 match self.function.node(x).op {
                     // Kept within two limits, one after the other.
-                    Op::Max(_, low) => self.limited(error, user, [low, high]),
+                    Op::Max(_, low) | Op::Greater(_, low) => self.limited(error, user, [low, high]),
                     _ => error,
                 }
             }
-            Op::Max(a, b) => of(a).union(of(b)),
+            Op::Max(a, b) | Op::Greater(a, b) => of(a).union(of(b)),
             Op::Clamp { x, low, high } => {
                 let error = of(x).union(of(low)).union(of(high));
                 self.limited(error, user, [low, high])
             }
             Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            }
+            | Op::DivideNarrow {
                 numerator,
                 shift,
                 denominator,
@@ -450,7 +471,12 @@ impl<'p> Bounds<'p> {
             Op::Join { taken, otherwise } => {
                 self.chosen(index, self.guard(index), [taken, otherwise])
             }
-            Op::Compare(..) | Op::And(..) | Op::Or(..) | Op::Not(_) => ErrorInterval::ZERO,
+            Op::Compare(..)
+            | Op::Exceeds(..)
+            | Op::And(..)
+            | Op::Or(..)
+            | Op::Not(_)
+            | Op::FlagWord(_) => ErrorInterval::ZERO,
         }
     }
 

@@ -62,10 +62,12 @@ impl Cost {
             | Op::Abs(_)
             | Op::ShiftLeft(..)
             | Op::ShiftRight(..)
+            | Op::FlagWord(_)
             | Op::AngleAdd(..)
             | Op::AngleSub(..) => cost.additions = 1,
             Op::Product(..)
             | Op::MulRound { .. }
+            | Op::MulRoundNarrow { .. }
             | Op::MulFloor { .. }
             | Op::MulLimited { .. }
             | Op::AngleIndex { .. }
@@ -74,8 +76,12 @@ impl Cost {
                 cost.additions = 1;
                 cost.multiplications = 2;
             }
+            Op::ShiftRound(..) => cost.additions = 2,
             Op::Min(..)
             | Op::Max(..)
+            | Op::Lesser(..)
+            | Op::Greater(..)
+            | Op::Exceeds(..)
             | Op::Compare(..)
             | Op::And(..)
             | Op::Or(..)
@@ -83,7 +89,7 @@ impl Cost {
             | Op::Select { .. } => cost.comparisons = 1,
             Op::Clamp { .. } => cost.comparisons = 2,
             Op::Lookup { .. } => cost.lookups = 1,
-            Op::Divide { .. } | Op::TurnOver(_) => cost.divisions = 1,
+            Op::Divide { .. } | Op::DivideNarrow { .. } | Op::TurnOver(_) => cost.divisions = 1,
         }
         cost
     }

@@ -201,6 +201,34 @@ impl Function {
         }
     }
 
+    /// Replaces every value that anything refers to but operands.
+    pub(super) fn map_values(&mut self, f: impl Fn(Value) -> Value) {
+        let guards = self
+            .stages
+            .iter_mut()
+            .filter_map(|stage| stage.guard.as_mut());
+        for guard in guards {
+            guard.condition = f(guard.condition);
+            guard.joins.iter_mut().for_each(|join| *join = f(*join));
+        }
+        let outputs = self.outputs.iter_mut().map(|(_, value)| value);
+        let told = self.told.iter_mut().map(|(_, value)| value);
+        let states = self.next_state.iter_mut().map(|(_, value)| value);
+        let params = self.next_params.iter_mut().map(|(_, value)| value);
+        let quantities = self
+            .quantities
+            .iter_mut()
+            .map(|quantity| &mut quantity.value);
+        for value in outputs
+            .chain(told)
+            .chain(states)
+            .chain(params)
+            .chain(quantities)
+        {
+            *value = f(*value);
+        }
+    }
+
     /// All values, in order.
     pub fn values(&self) -> impl Iterator<Item = Value> + use<> {
         (0..self.nodes.len() as u32).map(Value)
@@ -261,21 +289,22 @@ impl Function {
         let Op::Sub(high, low) = self.node(spread).op else {
             return None;
         };
-        let Op::Max(high_pair, c) = self.node(high).op else {
-            return None;
+        let greater = |value: Value| match self.node(value).op {
+            Op::Max(a, b) | Op::Greater(a, b) => Some((a, b)),
+            _ => None,
         };
-        let Op::Max(a, b) = self.node(high_pair).op else {
-            return None;
+        let lesser = |value: Value| match self.node(value).op {
+            Op::Min(a, b) | Op::Lesser(a, b) => Some((a, b)),
+            _ => None,
         };
-        let Op::Min(low_pair, low_c) = self.node(low).op else {
-            return None;
-        };
+        let (high_pair, c) = greater(high)?;
+        let (a, b) = greater(high_pair)?;
+        let (low_pair, low_c) = lesser(low)?;
         let Op::Neg(sum) = self.node(c).op else {
             return None;
         };
-        let same = self.node(low_pair).op == Op::Min(a, b)
-            && low_c == c
-            && self.node(sum).op == Op::Add(a, b);
+        let same =
+            lesser(low_pair) == Some((a, b)) && low_c == c && self.node(sum).op == Op::Add(a, b);
         same.then_some((limit, [a, b, c], high, low))
     }
 

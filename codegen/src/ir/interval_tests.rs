@@ -50,6 +50,7 @@ fn intervals_of_one_operand_are_those_of_all_values() {
         for n in 0..4 {
             check(Op::ShiftLeft(X, n), &[x]);
             check(Op::ShiftRight(X, n), &[x]);
+            check(Op::ShiftRound(X, n + 1), &[x]);
         }
     }
 }
@@ -64,6 +65,8 @@ fn intervals_of_two_operands_are_those_of_all_values() {
             check(Op::Product(X, X), &pair);
             check(Op::Min(X, X), &pair);
             check(Op::Max(X, X), &pair);
+            check(Op::Lesser(X, X), &pair);
+            check(Op::Greater(X, X), &pair);
             for shift in 0..4 {
                 check(Op::MulFloor { a: X, b: X, shift }, &pair);
                 if shift > 0 {

@@ -1,6 +1,6 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
-//! [`graph`] defines it, [`op`] its one arithmetic, [`interval`] what is proven of a value, [`build`] constructs it and computes intervals, `prune` drops what no result needs,
+//! [`graph`] defines it, [`op`] its one arithmetic, [`interval`] what is proven of a value, [`build`] constructs it and computes intervals, `rewrite` puts it into the form that is proved and emitted, `prune` drops what no result needs,
 //! [`verify()`] turns a [`Program`] into a [`VerifiedGraph`] or says which invariant is broken,
 //! [`bounds`] says how far its values are from ideal ones,
 //! [`interpret`] runs it, [`text`] prints it, [`cost`] counts its operations. Nothing here knows motors, units or Rust syntax:
@@ -18,6 +18,7 @@ pub mod interval;
 mod interval_tests;
 pub mod op;
 mod prune;
+mod rewrite;
 pub mod text;
 pub mod verify;
 #[cfg(test)]

@@ -111,6 +111,15 @@ pub enum Op {
         /// 1 to 62.
         shift: u32,
     },
+    /// The same of a rounded product that fits a word
+    MulRoundNarrow {
+        /// Coefficient.
+        coefficient: Value,
+        /// Signal.
+        signal: Value,
+        /// 1 to 30.
+        shift: u32,
+    },
     /// floor(a b / 2^shift)
     MulFloor {
         /// Factor.
@@ -142,10 +151,16 @@ pub enum Op {
     ShiftLeft(Value, u32),
     /// floor(a / 2^n)
     ShiftRight(Value, u32),
+    /// floor((a + 2^(n-1)) / 2^n), n at least 1: a part of a, rounded half up; the sum in one word
+    ShiftRound(Value, u32),
     /// min(a, b)
     Min(Value, Value),
     /// max(a, b)
     Max(Value, Value),
+    /// min(a, b) of words whose difference is one
+    Lesser(Value, Value),
+    /// max(a, b) of words whose difference is one
+    Greater(Value, Value),
     /// min(max(x, low), high), low <= high
     Clamp {
         /// What is clamped.
@@ -157,6 +172,17 @@ pub enum Op {
     },
     /// min(floor(numerator 2^shift / denominator), limit), numerator >= 0, denominator >= 1
     Divide {
+        /// Not negative.
+        numerator: Value,
+        /// 0 to 31.
+        shift: u32,
+        /// At least 1.
+        denominator: Value,
+        /// Upper limit, a word.
+        limit: Value,
+    },
+    /// The same of a shifted numerator below 2^32
+    DivideNarrow {
         /// Not negative.
         numerator: Value,
         /// 0 to 31.
@@ -195,12 +221,16 @@ pub enum Op {
     },
     /// Flag: a compared with b
     Compare(Comparison, Value, Value),
+    /// Flag: |a| > limit, limit >= 0
+    Exceeds(Value, Value),
     /// Flag: both flags
     And(Value, Value),
     /// Flag: either flag
     Or(Value, Value),
     /// Flag: not the flag
     Not(Value),
+    /// 1 where the flag holds, else 0
+    FlagWord(Value),
     /// `then` if the flag holds, else `otherwise`; both of the same kind
     Select {
         /// Flag.
@@ -258,8 +288,10 @@ impl Op {
             | Self::Abs(a)
             | Self::ShiftLeft(a, _)
             | Self::ShiftRight(a, _)
+            | Self::ShiftRound(a, _)
             | Self::TurnOver(a)
             | Self::Not(a)
+            | Self::FlagWord(a)
             | Self::AngleIndex { angle: a, .. }
             | Self::AngleFraction { angle: a, .. }
             | Self::Lookup { index: a, .. } => visit(a),
@@ -271,9 +303,17 @@ impl Op {
                 signal: b,
                 ..
             }
+            | Self::MulRoundNarrow {
+                coefficient: a,
+                signal: b,
+                ..
+            }
             | Self::MulFloor { a, b, .. }
             | Self::Min(a, b)
             | Self::Max(a, b)
+            | Self::Lesser(a, b)
+            | Self::Greater(a, b)
+            | Self::Exceeds(a, b)
             | Self::AngleAdd(a, b)
             | Self::AngleSub(a, b)
             | Self::Compare(_, a, b)
@@ -296,6 +336,12 @@ impl Op {
                 limit: c,
                 ..
             }
+            | Self::DivideNarrow {
+                numerator: a,
+                denominator: b,
+                limit: c,
+                ..
+            }
             | Self::Clamp {
                 x: a,
                 low: b,
@@ -313,10 +359,41 @@ impl Op {
         }
     }
 
+    /// Whether a narrow operator may stand for operands in these intervals: what it computes on the way fits a word.
+    /// True of all operators that are not narrow.
+    pub fn is_narrow(&self, x: &[Interval]) -> bool {
+        let fits = |interval: Interval| Interval::WORD.contains(interval);
+        match *self {
+            Self::MulRoundNarrow { shift, .. } => {
+                let is_word = x.iter().all(|&factor| fits(factor));
+                let in_range = (1..=30).contains(&shift);
+                is_word && in_range && {
+                    let products = x[0].corners(x[1], |a, b| a * b);
+                    fits(products) && fits(Interval::point(products.high + (1 << (shift - 1))))
+                }
+            }
+            Self::ShiftRound(_, n) => {
+                (1..=31).contains(&n)
+                    && fits(x[0])
+                    && x[0].high + (1 << (n - 1)) <= Interval::WORD.high
+            }
+            Self::Lesser(..) | Self::Greater(..) => {
+                fits(Interval::new(x[0].low - x[1].high, x[0].high - x[1].low))
+            }
+            Self::DivideNarrow { shift, .. } => {
+                fits(x[0]) && shift <= 31 && x[0].high << shift <= i64::from(u32::MAX)
+            }
+            Self::Exceeds(..) => x[1].low >= 0,
+            _ => true,
+        }
+    }
+
     /// What kind of value the operator yields, from the kinds of its operands.
     pub fn kind(&self, kind_of: impl Fn(Value) -> Kind) -> Kind {
         match *self {
-            Self::Compare(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => Kind::Flag,
+            Self::Compare(..) | Self::Exceeds(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => {
+                Kind::Flag
+            }
             Self::Select { then: a, .. } | Self::Join { taken: a, .. } => kind_of(a),
             _ => Kind::Word,
         }
@@ -326,7 +403,7 @@ impl Op {
     pub fn operand_kinds(&self, result: Kind) -> Vec<Kind> {
         match *self {
             Self::And(..) | Self::Or(..) => vec![Kind::Flag, Kind::Flag],
-            Self::Not(_) => vec![Kind::Flag],
+            Self::Not(_) | Self::FlagWord(_) => vec![Kind::Flag],
             Self::Select { .. } => vec![Kind::Flag, result, result],
             Self::Join { .. } => vec![result, result],
             _ => vec![Kind::Word; self.operands().len()],
@@ -352,7 +429,7 @@ impl Op {
             Self::Neg(_) => -x[0],
             Self::Abs(_) => x[0].abs(),
             Self::Product(..) => x[0] * x[1],
-            Self::MulRound { shift, .. } => {
+            Self::MulRound { shift, .. } | Self::MulRoundNarrow { shift, .. } => {
                 ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64
             }
             Self::MulFloor { shift, .. } => ((i128::from(x[0]) * i128::from(x[1])) >> shift) as i64,
@@ -368,10 +445,11 @@ impl Op {
             }
             Self::ShiftLeft(_, n) => x[0] << n,
             Self::ShiftRight(_, n) => x[0] >> n,
-            Self::Min(..) => x[0].min(x[1]),
-            Self::Max(..) => x[0].max(x[1]),
+            Self::ShiftRound(_, n) => (x[0] + (1 << (n - 1))) >> n,
+            Self::Min(..) | Self::Lesser(..) => x[0].min(x[1]),
+            Self::Max(..) | Self::Greater(..) => x[0].max(x[1]),
             Self::Clamp { .. } => x[0].max(x[1]).min(x[2]),
-            Self::Divide { shift, .. } => {
+            Self::Divide { shift, .. } | Self::DivideNarrow { shift, .. } => {
                 if x[0] < 0 || x[1] < 1 {
                     return None;
                 }
@@ -391,6 +469,8 @@ impl Op {
             }
             Self::Lookup { table: id, .. } => table(id, x[0]),
             Self::Compare(how, ..) => i64::from(how.holds(x[0], x[1])),
+            Self::Exceeds(..) => i64::from(x[0].abs() > x[1]),
+            Self::FlagWord(_) => x[0],
             Self::And(..) => x[0] & x[1],
             Self::Or(..) => x[0] | x[1],
             Self::Not(_) => 1 - x[0],
@@ -414,9 +494,12 @@ impl Op {
             | Self::Sub(..)
             | Self::Product(..)
             | Self::MulRound { .. }
+            | Self::MulRoundNarrow { .. }
             | Self::MulFloor { .. }
             | Self::Min(..)
-            | Self::Max(..) => x[0].corners(x[1], exact),
+            | Self::Max(..)
+            | Self::Lesser(..)
+            | Self::Greater(..) => x[0].corners(x[1], exact),
             Self::Neg(_) => Interval::new(-x[0].high, -x[0].low),
             Self::Abs(_) => {
                 let least = if x[0].low <= 0 && x[0].high >= 0 {
@@ -448,11 +531,13 @@ impl Op {
             }
             Self::ShiftLeft(_, n) => Interval::new(x[0].low << n, x[0].high << n),
             Self::ShiftRight(_, n) => Interval::new(x[0].low >> n, x[0].high >> n),
+            Self::ShiftRound(..) => Interval::new(exact(x[0].low, 0), exact(x[0].high, 0)),
+            Self::FlagWord(_) => x[0],
             Self::Clamp { .. } => {
                 let raised = x[0].corners(x[1], i64::max);
                 raised.corners(x[2], i64::min)
             }
-            Self::Divide { shift, .. } => {
+            Self::Divide { shift, .. } | Self::DivideNarrow { shift, .. } => {
                 if x[0].low < 0 || x[1].low < 1 {
                     return None;
                 }
@@ -472,7 +557,9 @@ impl Op {
             Self::AngleIndex { segments, .. } => Interval::new(0, i64::from(segments) - 1),
             Self::AngleFraction { .. } => Interval::new(0, i64::from(i32::MAX)),
             Self::Lookup { table: id, .. } => table(id),
-            Self::Compare(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => Interval::FLAG,
+            Self::Compare(..) | Self::Exceeds(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => {
+                Interval::FLAG
+            }
             Self::Select { .. } => x[1].union(x[2]),
             Self::Join { .. } => x[0].union(x[1]),
         })

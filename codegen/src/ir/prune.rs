@@ -64,10 +64,10 @@ impl Function {
             stage.end = before(stage.end);
             if let Some(guard) = &mut stage.guard {
                 guard.joins.retain(|join| live[join.index()]);
-                guard.joins.iter_mut().for_each(|join| *join = moved(*join));
-                guard.condition = moved(guard.condition);
             }
         }
+        self.quantities
+            .retain(|quantity| live[quantity.value.index()]);
         self.stages.retain(|stage| match &stage.guard {
             None => stage.first < stage.end,
             Some(guard) => !guard.joins.is_empty(),
@@ -77,23 +77,7 @@ impl Function {
         for node in &mut self.nodes {
             node.op.map_operands(moved);
         }
-        self.outputs
-            .iter_mut()
-            .for_each(|(_, value)| *value = moved(*value));
-        self.told
-            .iter_mut()
-            .for_each(|(_, value)| *value = moved(*value));
-        self.next_state
-            .iter_mut()
-            .for_each(|(_, value)| *value = moved(*value));
-        self.next_params
-            .iter_mut()
-            .for_each(|(_, value)| *value = moved(*value));
-        self.quantities
-            .retain(|quantity| live[quantity.value.index()]);
-        self.quantities
-            .iter_mut()
-            .for_each(|quantity| quantity.value = moved(quantity.value));
+        self.map_values(moved);
         self.tracking = before(self.tracking);
     }
 

@@ -142,6 +142,11 @@ impl Program {
                 coefficient,
                 signal,
                 shift,
+            }
+            | Op::MulRoundNarrow {
+                coefficient,
+                signal,
+                shift,
             } => {
                 format!("round({} * {} >> {shift})", of(coefficient), of(signal))
             }
@@ -157,10 +162,17 @@ impl Program {
             Op::MulLimited { a, b, limit } => format!("min({} * {}, {})", of(a), of(b), of(limit)),
             Op::ShiftLeft(a, n) => format!("{} << {n}", of(a)),
             Op::ShiftRight(a, n) => format!("{} >> {n}", of(a)),
-            Op::Min(a, b) => format!("min({}, {})", of(a), of(b)),
-            Op::Max(a, b) => format!("max({}, {})", of(a), of(b)),
+            Op::ShiftRound(a, n) => format!("round({} >> {n})", of(a)),
+            Op::Min(a, b) | Op::Lesser(a, b) => format!("min({}, {})", of(a), of(b)),
+            Op::Max(a, b) | Op::Greater(a, b) => format!("max({}, {})", of(a), of(b)),
             Op::Clamp { x, low, high } => format!("clamp({}, {}, {})", of(x), of(low), of(high)),
             Op::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            }
+            | Op::DivideNarrow {
                 numerator,
                 shift,
                 denominator,
@@ -190,6 +202,8 @@ impl Program {
                 };
                 format!("{} {sign} {}", of(a), of(b))
             }
+            Op::Exceeds(a, limit) => format!("abs {} > {}", of(a), of(limit)),
+            Op::FlagWord(a) => format!("1 if {} else 0", of(a)),
             Op::And(a, b) => format!("{} and {}", of(a), of(b)),
             Op::Or(a, b) => format!("{} or {}", of(a), of(b)),
             Op::Not(a) => format!("not {}", of(a)),

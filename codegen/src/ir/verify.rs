@@ -528,7 +528,7 @@ fn in_domain(op: &Op, x: &[Interval]) -> bool {
         Op::MulRound { shift, .. } => (1..=62).contains(&shift),
         Op::MulFloor { shift, .. } | Op::MulAddFloor { shift, .. } => shift <= 62,
         Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
-        Op::Divide { shift, .. } => shift <= 31 && x[2].low >= 0,
+        Op::Divide { shift, .. } | Op::DivideNarrow { shift, .. } => shift <= 31 && x[2].low >= 0,
         Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => {
             (1..=1 << 16).contains(&segments)
         }
@@ -539,5 +539,5 @@ fn in_domain(op: &Op, x: &[Interval]) -> bool {
         op,
         Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_)
     );
-    formed && (leaf || op.interval(x, |_| Interval::point(0)).is_some())
+    formed && op.is_narrow(x) && (leaf || op.interval(x, |_| Interval::point(0)).is_some())
 }

@@ -232,7 +232,7 @@ impl<'b> Hexagon<'b> {
         let bus = self.bus.volts;
         let near = self.nearest(free);
         let frame = Frame::of(e.with_c("e"));
-        let forward = frame.lines(free.u, ["u_d", "u_x", "u_y"], "line");
+        let forward = frame.lines(free.u, "u_d", "line");
         let forward = axes("forward", forward);
         let shift = product_shift(l, frame.force, forward);
         let [along_x, along_y] = [0, 1].map(|k| frame.force[k].mul_floor(forward[k], shift));
@@ -241,7 +241,7 @@ impl<'b> Hexagon<'b> {
             let pushing = component_signed.is_at_least(0);
         }
         let turned = |values: [Expr<'b>; 2]| values.map(|value| pushing.sign(value));
-        let near_line = frame.lines(near, ["n_d", "n_x", "n_y"], "near_line");
+        let near_line = frame.lines(near, "near_d", "near_line");
         let asked = Asked {
             line: axes_of(["x", "y"], turned(forward)),
             near: axes(
@@ -292,8 +292,11 @@ impl<'b> Frame<'b> {
             let d_is_b = c.is_at_most(b);
         }
         let d = [d_is_a, d_is_b];
-        let [f_d, f_x, f_y] = rotated(d, e, ["f_d", "f_x", "f_y"]);
+        let [f_d, f_x, f_y] = rotated(d, e);
         named! {
+            let f_d = f_d;
+            let f_x = f_x;
+            let f_y = f_y;
             let f_positive = f_d.is_at_least(0);
             let f_size = f_d.abs();
         }
@@ -307,17 +310,17 @@ impl<'b> Frame<'b> {
     }
 
     /// X and Y of three phases, turned with f_d: the differences of d to x and to y.
-    fn lines(&self, phases: Phases<'b, 3>, names: [&str; 3], line: &str) -> [Expr<'b>; 2] {
-        let [d, x, y] = rotated(self.d, phases, names);
+    fn lines(&self, phases: Phases<'b, 3>, d_name: &str, line: &str) -> [Expr<'b>; 2] {
+        let [d, x, y] = rotated(self.d, phases);
+        let d = d.named(d_name);
         axes(line, [d - x, d - y]).map(|line| self.positive.sign(line))
     }
 }
 
 /// Phases a, b, c as d, x, y.
-fn rotated<'b>(d: [Flag<'b>; 2], phases: Phases<'b, 3>, names: [&str; 3]) -> [Expr<'b>; 3] {
+fn rotated<'b>(d: [Flag<'b>; 2], phases: Phases<'b, 3>) -> [Expr<'b>; 3] {
     let [a, b, c] = phases.0;
-    let rotated = [[a, b, c], [b, c, a], [c, a, b]].map(|phases| pick(d, phases));
-    std::array::from_fn(|place| rotated[place].named(names[place]))
+    [[a, b, c], [b, c, a], [c, a, b]].map(|phases| pick(d, phases))
 }
 
 /// Values on x and y under these names.

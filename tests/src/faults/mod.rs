@@ -314,6 +314,11 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
             coefficient,
             signal,
             shift,
+        }
+        | Op::MulRoundNarrow {
+            coefficient,
+            signal,
+            shift,
         } => vec![
             (
                 "shift one more",
@@ -389,13 +394,27 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
             ("shift one more", Op::ShiftRight(a, n + 1)),
             ("shift one less", Op::ShiftRight(a, n.saturating_sub(1))),
         ],
-        Op::Min(a, b) => vec![("max for min", Op::Max(a, b)), ("limit left out", same(a))],
-        Op::Max(a, b) => vec![("min for max", Op::Min(a, b)), ("limit left out", same(a))],
+        Op::ShiftRound(a, n) => vec![
+            ("rounded down", Op::ShiftRight(a, n)),
+            ("shift one more", Op::ShiftRound(a, n + 1)),
+        ],
+        Op::Min(a, b) | Op::Lesser(a, b) => {
+            vec![("max for min", Op::Max(a, b)), ("limit left out", same(a))]
+        }
+        Op::Max(a, b) | Op::Greater(a, b) => {
+            vec![("min for max", Op::Min(a, b)), ("limit left out", same(a))]
+        }
         Op::Clamp { x, low, high } => vec![
             ("lower limit left out", Op::Min(x, high)),
             ("upper limit left out", Op::Max(x, low)),
         ],
         Op::Divide {
+            numerator,
+            shift,
+            denominator,
+            limit,
+        }
+        | Op::DivideNarrow {
             numerator,
             shift,
             denominator,
@@ -460,7 +479,12 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
             ("and for or", Op::And(a, b)),
             ("second left out", Op::And(a, a)),
         ],
+        Op::Exceeds(a, limit) => vec![
+            ("sign looked at", Op::Compare(Comparison::Less, limit, a)),
+            ("never", Op::Exceeds(limit, limit)),
+        ],
         Op::Not(a) => vec![("not left out", Op::And(a, a))],
+        Op::FlagWord(_) => vec![("always", Op::Literal(1)), ("never", Op::Literal(0))],
         Op::Select {
             condition,
             then,

@@ -168,6 +168,11 @@ impl<'p> Slice<'p> {
                 coefficient,
                 signal,
                 shift,
+            }
+            | Op::MulRoundNarrow {
+                coefficient,
+                signal,
+                shift,
             } => {
                 let (a, b) = (self.word(coefficient, path)?, self.word(signal, path)?);
                 path.product(&a, &b, u32::BITS * 2 + shift)
@@ -177,11 +182,11 @@ impl<'p> Slice<'p> {
                 let a = self.word(a, path)?;
                 path.floored(&a, bits)?
             }
-            Op::Min(a, b) => {
+            Op::Min(a, b) | Op::Lesser(a, b) => {
                 let words = [self.word(a, path)?, self.word(b, path)?];
                 bounded(words, false, path)?
             }
-            Op::Max(a, b) => {
+            Op::Max(a, b) | Op::Greater(a, b) => {
                 let words = [self.word(a, path)?, self.word(b, path)?];
                 bounded(words, true, path)?
             }
@@ -213,11 +218,20 @@ impl<'p> Slice<'p> {
                 return Ok(Symbol::Flag(self.flag(a, path)? || self.flag(b, path)?));
             }
             Op::Not(a) => return Ok(Symbol::Flag(!self.flag(a, path)?)),
+            Op::FlagWord(flag) => Linear::number(i64::from(self.flag(flag, path)?)),
+            Op::Exceeds(a, limit) => {
+                let (a, limit) = (self.word(a, path)?, self.word(limit, path)?);
+                let is_beyond =
+                    path.is_negative(&(&limit - &a))? || path.is_negative(&(&limit + &a))?;
+                return Ok(Symbol::Flag(is_beyond));
+            }
             Op::Input(_)
             | Op::Param(_)
             | Op::State(_)
             | Op::MulLimited { .. }
+            | Op::ShiftRound(..)
             | Op::Divide { .. }
+            | Op::DivideNarrow { .. }
             | Op::TurnOver(_)
             | Op::AngleAdd(..)
             | Op::AngleSub(..)

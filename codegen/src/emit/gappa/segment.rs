@@ -69,6 +69,8 @@ fn is_arithmetic(op: Op) -> bool {
             | Op::Neg(_)
             | Op::Product(..)
             | Op::MulRound { .. }
+            | Op::MulRoundNarrow { .. }
+            | Op::ShiftRound(..)
             | Op::MulFloor { .. }
             | Op::MulAddFloor { .. }
             | Op::ShiftLeft(..)
@@ -107,7 +109,8 @@ impl<'a> Segment<'a> {
         let mut parts: Vec<Vec<Value>> = vec![];
         for value in self.values() {
             let op = self.function.node(value).op;
-            let compares = matches!(op, Op::Compare(..)) && self.bounds.band(value).is_some();
+            let compares = matches!(op, Op::Compare(..) | Op::Exceeds(..))
+                && self.bounds.band(value).is_some();
             if !is_arithmetic(op) && !compares {
                 continue;
             }
@@ -147,7 +150,10 @@ impl<'a> Segment<'a> {
                     self.claim(Goal::error(pair.error(), Subject::Error, error));
                 }
             }
-            if let (Op::Compare(_, a, b), Some(band)) = (op, self.bounds.band(value)) {
+            // The band of a magnitude beyond a limit has both signs.
+            if let (Op::Compare(_, a, b) | Op::Exceeds(a, b), Some(band)) =
+                (op, self.bounds.band(value))
+            {
                 self.compare(value, [a, b], band);
             }
         }
@@ -234,7 +240,12 @@ impl<'a> Segment<'a> {
                     _ => [format!("floor({code})"), ideal],
                 }
             }
-            Op::MulRound { shift, .. } => {
+            Op::ShiftRound(_, n) => {
+                let [code, ideal] =
+                    [&pairs[0].code, &pairs[0].ideal].map(|text| format!("{text} * 1b-{n}"));
+                [format!("nearest({code})"), ideal]
+            }
+            Op::MulRound { shift, .. } | Op::MulRoundNarrow { shift, .. } => {
                 let [code, ideal] = scaled(shift);
                 [format!("nearest({code})"), ideal]
             }
@@ -358,12 +369,18 @@ impl<'a> Segment<'a> {
     fn divisions(&self, stage: &str) -> Vec<Script> {
         let mut scripts = vec![];
         for value in self.values() {
-            let Op::Divide {
+            let (Op::Divide {
                 numerator,
                 shift,
                 denominator,
                 limit,
-            } = self.function.node(value).op
+            }
+            | Op::DivideNarrow {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            }) = self.function.node(value).op
             else {
                 continue;
             };

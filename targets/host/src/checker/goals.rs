@@ -28,12 +28,14 @@ fn duty(op: Op) -> Duty {
         | Op::Neg(_)
         | Op::Product(..)
         | Op::MulRound { .. }
+        | Op::MulRoundNarrow { .. }
         | Op::MulFloor { .. }
         | Op::MulAddFloor { .. }
         | Op::ShiftLeft(..)
-        | Op::ShiftRight(..) => Duty::Arithmetic,
-        Op::Divide { .. } => Duty::Quotient,
-        Op::Compare(..) => Duty::Decision,
+        | Op::ShiftRight(..)
+        | Op::ShiftRound(..) => Duty::Arithmetic,
+        Op::Divide { .. } | Op::DivideNarrow { .. } => Duty::Quotient,
+        Op::Compare(..) | Op::Exceeds(..) => Duty::Decision,
         Op::Input(_)
         | Op::Param(_)
         | Op::State(_)
@@ -43,6 +45,8 @@ fn duty(op: Op) -> Duty {
         | Op::MulLimited { .. }
         | Op::Min(..)
         | Op::Max(..)
+        | Op::Lesser(..)
+        | Op::Greater(..)
         | Op::Clamp { .. }
         | Op::TurnOver(_)
         | Op::AngleAdd(..)
@@ -53,6 +57,7 @@ fn duty(op: Op) -> Duty {
         | Op::And(..)
         | Op::Or(..)
         | Op::Not(_)
+        | Op::FlagWord(_)
         | Op::Select { .. }
         | Op::Join { .. } => Duty::None,
     }
