@@ -1,12 +1,15 @@
-//! The comparison notices every small fault planted in the IR, but for those that change nothing, and a few
-//! that change next to nothing.
+//! The comparison notices small faults planted in the IR: a score per drive, and the survivors by name.
+//!
+//! Many survivors change nothing: padding of tables, limits that cannot act, ties that lead to the same
+//! vector. So the score is less than 100 %, and what counts is that it does not fall.
 
 use hexagen_codegen::ir::{Op, Program};
-use hexagen_tests::faults::{DRIVES, EQUIVALENT, Fault, RARE, faults, listed, wrong_limits};
+use hexagen_tests::faults::{DRIVES, Fault, LEAST_NOTICED, faults, wrong_limits};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_record, record_states};
 use hexagen_tests::options::{Drive, generate_toml};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::fs;
 
 /// Steps of each kind within which a fault must show.
 const STEPS: u64 = 40_000;
@@ -22,23 +25,20 @@ fn constants_of_setters(program: &Program) -> BTreeSet<String> {
 }
 
 /// Names of the unnoticed faults of a drive; the number of all.
-fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize) {
+fn plant(drive: &Drive) -> (Vec<String>, usize) {
     let (_, generated) = generate_toml(&drive.toml(None)).expect("the drive generates");
     let program = generated.graph.program();
     let all = record_states(&generated, STEPS, 1).expect("the drive has a model");
-    // Most faults show at once; of those that are known not to, a sample is enough.
-    let (few, some) = (all.first(250), all.first(2500));
+    // Most faults show at once.
+    let (few, some) = (all.first(250), all.first(5000));
     let setters = constants_of_setters(program);
-    let noticed = |program: &Program, name: &str| {
+    let noticed = |program: &Program| {
         compare_record(&generated, program, &few).is_err()
             || compare(&generated, program, STEPS / 10, 1).is_err()
             || compare_record(&generated, program, &some).is_err()
-            || !listed.contains_key(name)
-                && (compare_record(&generated, program, &all).is_err()
-                    || compare(&generated, program, STEPS, 1).is_err())
     };
     assert!(
-        !noticed(program, ""),
+        !noticed(program),
         "{} differs without a fault",
         drive.name()
     );
@@ -46,7 +46,7 @@ fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize)
     let unnoticed = planted
         .par_iter()
         .map(|fault| (fault, fault.name()))
-        .filter(|(fault, name)| !noticed(&fault.program, name))
+        .filter(|(fault, _)| !noticed(&fault.program))
         .filter(|(fault, _)| {
             let is_of_setters = fault.place.starts_with("set_") || setters.contains(&fault.place);
             !is_of_setters || compare_all_set_points(&generated, &fault.program).is_ok()
@@ -57,30 +57,26 @@ fn plant(drive: &Drive, listed: &BTreeMap<String, &str>) -> (Vec<String>, usize)
 }
 
 #[test]
-fn every_planted_fault_is_noticed() {
-    let mut wrong: Vec<String> = vec![];
-    for drive in DRIVES {
-        let name = &drive.name()[..];
-        let mut equivalent = listed(EQUIVALENT, name, &mut wrong);
-        let mut rare = listed(RARE, name, &mut wrong);
-        let (unnoticed, planted) = plant(drive, &equivalent);
-        println!(
-            "{name}: {planted} faults, {} of them unnoticed",
-            unnoticed.len()
-        );
+fn planted_faults_are_noticed() {
+    let (mut survivors, mut low) = (String::new(), vec![]);
+    for (drive, least) in DRIVES.iter().zip(LEAST_NOTICED) {
+        let name = drive.name();
+        let (unnoticed, planted) = plant(drive);
+        let noticed = planted - unnoticed.len();
+        println!("{name}: {noticed} of {planted} faults noticed");
         assert!(planted >= 250, "{name}: {planted} faults");
-        for fault in unnoticed {
-            // A rare fault may be noticed, or not.
-            if equivalent.remove(&fault).is_none() && rare.remove(&fault).is_none() {
-                wrong.push(format!("{name}: {fault}: unnoticed"));
-            }
+        if 100 * noticed < usize::from(least) * planted {
+            low.push(format!(
+                "{name}: {noticed} of {planted}, less than {least} %"
+            ));
         }
-        for (fault, because) in equivalent {
-            let text = format!("{name}: {fault}: noticed or not planted, against \"{because}\"");
-            wrong.push(text);
-        }
+        let lines = unnoticed.iter().map(|fault| format!("{name}: {fault}\n"));
+        survivors.extend(lines);
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/survivors.txt");
+    fs::write(file, survivors).expect("the folder of test outputs");
+    println!("survivors: {file}");
+    assert!(low.is_empty(), "{low:#?}; survivors: {file}");
 }
 
 /// What differs from drive to drive of the supervisor.

@@ -609,18 +609,18 @@ const PLANTED: [(Settings, usize, usize); 9] = [
         usize::MAX,
         100,
     ),
-    (&[("off_leg", "nominal")], usize::MAX, 140),
+    (&[("off_leg", "nominal")], usize::MAX, 135),
     (
         &[("candidates", "all"), ("off_leg", "nominal")],
         usize::MAX,
-        130,
+        115,
     ),
     (&[], 6, 4),
     (&[("candidates", "all")], 6, 4),
     (
         &[("choice", "fewer_changes"), ("candidates", "three_phase")],
         usize::MAX,
-        105,
+        95,
     ),
     (
         &[("choice", "fewer_changes"), ("off_leg", "nominal")],
