@@ -6,9 +6,10 @@
 //! macro tokens ─┐
 //!               ├─ parse ─> SpecAst ─ check ─> Spec              (spec: spans end here)
 //! TOML, variant ┘             ║ barrier 1: every error of the specification at once
-//!   design ─> gains, vectors, EMF tables, stable range          (design, controllers/*/design: f64, SI)
-//!   scale  ─> formats: the finest that provably fit             (scaling, lower: real numbers end here)
-//!   lower  ─> Program: SSA over 32-bit words, in stages          (lower, controllers/*/lower, ir)
+//!   design ─> gains, vectors, EMF tables, stable range          (design, laws/*/design: f64, SI)
+//!   scale  ─> formats: the finest that provably fit             (scaling, blocks: real numbers end here)
+//!   lower  ─> Program: SSA over 32-bit words, in stages          (laws and blocks, as ir::expr)
+//!   rewrite ─> the same program in the form that is emitted      (ir::rewrite: all rules)
 //!   verify ─> VerifiedGraph                                      (ir::verify: intervals, stages, words)
 //!                             ║ barrier 2: every error of design and scaling at once
 //!   bound  ─> distance of every value from the ideal one         (ir::bounds)
@@ -19,13 +20,13 @@
 //! [`ir::VerifiedGraph`] and an [`interface::Interface`], never a specification. Scaling is a search:
 //! lowering computes the interval of every value, so the finest scale whose program passes the
 //! verifier is the scale. Adding a controller adds its options to `spec::controller`, a folder under
-//! [`controllers`] around the step that all share ([`controllers::current_loop`]) and a variant of
-//! [`spec::ControllerSpec`]; blocks of that step (measurement, supervision, rotor angle,
-//! limits, modulation) live in [`lower`].
+//! [`laws`] around the step that all share ([`laws::current_loop`]) and a variant of
+//! [`spec::ControllerSpec`]; blocks of that step (measurement, rotor angle, EMF, limits, modulation)
+//! live in [`blocks`].
 
 mod at_once;
+pub mod blocks;
 mod builder;
-pub mod controllers;
 mod derive;
 pub mod design;
 pub mod diagnostics;
@@ -33,7 +34,7 @@ pub mod emit;
 mod expand;
 pub mod interface;
 pub mod ir;
-pub mod lower;
+pub mod laws;
 pub mod pipeline;
 pub mod scaling;
 pub mod spec;

@@ -1,16 +1,16 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
 use crate::at_once::at_once;
-use crate::controllers::current_loop::{LinearLoop, LoopDesign};
-use crate::controllers::{
-    StableRange, accuracy_constants, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm,
-    trust_in_estimate, wide_words,
-};
 use crate::diagnostics::{
     Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
 };
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
+use crate::laws::current_loop::{LinearLoop, LoopDesign};
+use crate::laws::{
+    StableRange, accuracy_constants, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm,
+    trust_in_estimate, wide_words,
+};
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
 use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec, SwitchingTable};
@@ -314,9 +314,9 @@ fn check_stability(
 #[cfg(test)]
 mod tests {
     use super::{check_stability, generate};
-    use crate::controllers::current_loop::LinearLoop;
     use crate::design::DiscretePlant;
     use crate::diagnostics::{Code, Collector};
+    use crate::laws::current_loop::LinearLoop;
     use crate::spec::{apply_variant, check, parse_toml};
     use nalgebra::DVector;
 

@@ -6,9 +6,9 @@
 //! upper word, unless no scale at all allows that.
 
 use crate::at_once::at_once;
+use crate::blocks::Scale;
 use crate::interface::FormatEntry;
 use crate::ir::{Function, Op, Program, VerifiedGraph, Violation, verify};
-use crate::lower::Scale;
 use crate::spec::InverterSpec;
 use crate::stopwatch::Part;
 

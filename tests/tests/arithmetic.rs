@@ -6,7 +6,7 @@ use hexagen::arith::{
     select, turn_over,
 };
 use hexagen_codegen::ir::{
-    Builder, Expr, Interval, Lut, Machine, Named, mul_add_floor as sum_of_products, verify,
+    Expr, Interval, Lut, Machine, Named, ProgramBuilder, mul_add_floor as sum_of_products, verify,
 };
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ fn interpreted(
     table: &[i32],
     build: impl for<'b> Fn(&[Expr<'b>], Lut<'b>) -> Expr<'b>,
 ) -> i32 {
-    let b = Builder::new("Operator", &[]);
+    let b = ProgramBuilder::new("Operator", &[]);
     let table = b.table("table", table.to_vec(), &[]);
     b.stage("apply", &[]);
     let names = ["x", "y", "z", "w"];

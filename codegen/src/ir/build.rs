@@ -19,7 +19,7 @@ const CLIP: i64 = 1 << 40;
 
 /// Builds a program; one of its functions is open at a time, which begins as the step.
 #[derive(Debug)]
-pub struct Builder {
+pub struct ProgramBuilder {
     draft: RefCell<Draft>,
 }
 
@@ -83,7 +83,7 @@ fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
 }
 
 /// What all functions of a program share.
-impl Builder {
+impl ProgramBuilder {
     /// Starts a program of that name, and its step.
     pub fn new(name: &str, step_doc: &[&str]) -> Self {
         Self {
@@ -218,7 +218,7 @@ impl Builder {
 }
 
 /// The open function.
-impl Builder {
+impl ProgramBuilder {
     /// Opens a stage; all nodes up to the next stage belong to it.
     pub fn stage(&self, name: &str, doc: &[&str]) {
         self.draft.borrow_mut().open_stage(name, doc, None);

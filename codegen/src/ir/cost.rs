@@ -177,11 +177,11 @@ pub fn live_words(function: &Function) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{Cost, PathCost, live_words};
-    use crate::ir::{Builder, Interval, named};
+    use crate::ir::{Interval, ProgramBuilder, named};
 
     #[test]
     fn rare_stages_count_in_the_worst_case_only() {
-        let b = Builder::new("Count", &[]);
+        let b = ProgramBuilder::new("Count", &[]);
         b.stage("read", &[]);
         let word = Interval::symmetric(1000);
         let (x, y) = (b.input("x", word, ""), b.input("y", word, ""));

@@ -12,7 +12,7 @@
 //! }
 //! ```
 
-use super::build::Builder;
+use super::build::ProgramBuilder;
 use super::interval::Interval;
 use super::op::{Comparison, ConstantId, Op, ParamId, StateId, TableId, Value};
 use std::array;
@@ -21,35 +21,35 @@ use std::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Shl, Shr, Sub};
 /// A word of a function under construction.
 #[derive(Clone, Copy, Debug)]
 pub struct Expr<'b> {
-    pub(super) b: &'b Builder,
+    pub(super) b: &'b ProgramBuilder,
     pub(super) value: Value,
 }
 
 /// A flag of a function under construction: true or false.
 #[derive(Clone, Copy, Debug)]
 pub struct Flag<'b> {
-    pub(super) b: &'b Builder,
+    pub(super) b: &'b ProgramBuilder,
     pub(super) value: Value,
 }
 
 /// A word that outlives a control period.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory<'b> {
-    pub(super) b: &'b Builder,
+    pub(super) b: &'b ProgramBuilder,
     pub(super) id: StateId,
 }
 
 /// A word of the set-point.
 #[derive(Clone, Copy, Debug)]
 pub struct Param<'b> {
-    pub(super) b: &'b Builder,
+    pub(super) b: &'b ProgramBuilder,
     pub(super) id: ParamId,
 }
 
 /// A table of words, read modulo its length.
 #[derive(Clone, Copy, Debug)]
 pub struct Lut<'b> {
-    pub(super) b: &'b Builder,
+    pub(super) b: &'b ProgramBuilder,
     pub(super) id: TableId,
 }
 
@@ -69,17 +69,17 @@ pub struct Phases<'b, const N: usize = 2>(pub [Expr<'b>; N]);
 /// What stands where a word is wanted: an expression, or a number.
 pub trait Operand<'b>: Copy {
     /// The value, as a node of the function.
-    fn node(self, b: &'b Builder) -> Value;
+    fn node(self, b: &'b ProgramBuilder) -> Value;
 }
 
 impl<'b> Operand<'b> for Expr<'b> {
-    fn node(self, _: &'b Builder) -> Value {
+    fn node(self, _: &'b ProgramBuilder) -> Value {
         self.value
     }
 }
 
 impl<'b> Operand<'b> for i32 {
-    fn node(self, b: &'b Builder) -> Value {
+    fn node(self, b: &'b ProgramBuilder) -> Value {
         b.push("", Op::Literal(self))
     }
 }
@@ -152,7 +152,7 @@ impl<'b> Expr<'b> {
     }
 
     /// The function that it belongs to.
-    pub fn builder(self) -> &'b Builder {
+    pub fn builder(self) -> &'b ProgramBuilder {
         self.b
     }
 

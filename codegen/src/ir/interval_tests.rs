@@ -2,7 +2,8 @@
 //! but where that is said.
 
 use super::{
-    Bounds, Builder, Comparison, Expr, Flag, Function, Interval, Named, Op, Program, Value, named,
+    Bounds, Comparison, Expr, Flag, Function, Interval, Named, Op, Program, ProgramBuilder, Value,
+    named,
 };
 
 fn hull(values: impl IntoIterator<Item = i64>) -> Option<Interval> {
@@ -165,7 +166,7 @@ fn intervals_of_angles_and_tables_are_those_of_all_words() {
         segments: 1,
     });
     assert_eq!(found, stated);
-    let b = Builder::new("Table", &[]);
+    let b = ProgramBuilder::new("Table", &[]);
     b.table("table", vec![5, -7, 2, 3], &[]);
     assert_eq!(b.finish().tables[0].interval(), Interval::new(-7, 5));
 }
@@ -187,8 +188,11 @@ fn bits_are_those_of_the_smallest_word_that_holds_both_ends() {
 }
 
 /// A step of this shape, which is not verified: `build` names its values.
-fn program(inputs: &[Interval], build: impl for<'b> Fn(&'b Builder, &[Expr<'b>])) -> Program {
-    let b = Builder::new("Conditions", &[]);
+fn program(
+    inputs: &[Interval],
+    build: impl for<'b> Fn(&'b ProgramBuilder, &[Expr<'b>]),
+) -> Program {
+    let b = ProgramBuilder::new("Conditions", &[]);
     b.stage("read", &[]);
     let names = ["x", "y", "z"].into_iter().zip(inputs);
     let values: Vec<Expr<'_>> = names

@@ -25,7 +25,7 @@ pub mod verify;
 mod verify_tests;
 
 pub use bounds::{Bounds, Case, StatedError, cases, stated_errors};
-pub use build::Builder;
+pub use build::ProgramBuilder;
 pub use cost::{Cost, PathCost, live_words};
 pub use error::{ErrorInterval, Exact, Real};
 pub(crate) use expr::named;

@@ -377,7 +377,7 @@ fn flag_word(r: &mut Rewriter<'_>, op: Op) -> Option<Op> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Builder, Expr, Machine, Named, Program, mul_add_floor, verify};
+    use super::super::{Expr, Machine, Named, Program, ProgramBuilder, mul_add_floor, verify};
     use super::{Interval, Op, RULES, Rewriter};
     use fastrand::Rng;
 
@@ -409,7 +409,7 @@ mod tests {
 
     fn program(shape: fn([Expr<'_>; 3]) -> Expr<'_>, bits: u32) -> Program {
         let range = Interval::symmetric((1 << (bits - 1)) - 1);
-        let b = Builder::new("Shape", &[]);
+        let b = ProgramBuilder::new("Shape", &[]);
         b.stage("apply", &[]);
         let x = ["x", "y", "z"].map(|name| b.input(name, range, ""));
         // Inputs that a shape leaves out are results, too.
@@ -464,7 +464,7 @@ mod tests {
         let most = i64::from(i32::MAX);
         for high in [0, 1, 1 << 30, most] {
             for (low, is_near) in [(high - most, true), (high - most - 2, false)] {
-                let b = Builder::new("Extremes", &[]);
+                let b = ProgramBuilder::new("Extremes", &[]);
                 b.stage("compare", &[]);
                 let x = b.input("x", Interval::new(0, high), "");
                 let y = b.input("y", Interval::new(low, 0), "");

@@ -3,11 +3,11 @@
 use super::graph::{Function, Program};
 use super::interval::Interval;
 use super::op::{Op, ParamId, StateId, Value};
-use super::{Builder, named, verify};
+use super::{ProgramBuilder, named, verify};
 
 /// A program with all that the invariants speak of, that keeps them.
 fn right() -> Program {
-    let b = Builder::new("Right", &[]);
+    let b = ProgramBuilder::new("Right", &[]);
     let word = Interval::symmetric(1000);
     let table = b.table("shape", vec![1, 2, 3, 4], &[]);
     let memory = b.memory("memory", 0, word, "");

@@ -1,0 +1,449 @@
+//! The step that all controllers share: from the sample to the voltage asked for, and what the next
+//! step needs to know (semantics page of predictive deadbeat, steps 1 to 9 and 12).
+
+mod coefficients;
+mod dead_time;
+mod design;
+mod emf;
+mod held;
+mod observer;
+mod stability;
+mod words;
+
+pub use design::LoopDesign;
+pub use held::{Held, LeftOver};
+pub use stability::{LinearLoop, StableRange, estimate};
+pub use words::{EmfUse, Needs, Words};
+
+use crate::blocks::set_point::SetPointWords;
+use crate::blocks::{
+    Applied, Bus, Command, Commutation, Corner, Hall, Lowering, OffLeg, Rotor, Sample, Scale,
+    advanced_sector, find_sector, proportional_reference, quasi_square_reference, sample,
+    sector_of, sense_direction, third_current,
+};
+use crate::ir::{Coefficient, Expr, Memory, Phases, ProgramBuilder, named};
+use crate::scaling::Lowered;
+use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
+
+/// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
+pub fn lower_with(
+    spec: &Spec,
+    scale: Scale,
+    stiffness: f64,
+    law: impl for<'b> FnOnce(&Lowering<'b>, &SetPointWords<'b>),
+) -> Lowered {
+    let builder = ProgramBuilder::new(&spec.name, &["One control period."]);
+    let lowering = Lowering::new(&builder, spec, scale);
+    let set_point = SetPointWords::new(&lowering, stiffness);
+    set_point.add_setters(&lowering);
+    law(&lowering, &set_point);
+    let notes = lowering.into_notes();
+    Lowered {
+        program: builder.finish().pruned(),
+        formats: notes.formats,
+        misfits: notes.misfits,
+        long_products: notes.long_products,
+    }
+}
+
+/// Share that the integral of a modelled EMF takes over in a period of what the model lacks: slow against the
+/// current, quick against the commutations of an EMF whose constant is off.
+pub const EMF_INTEGRAL_SHARE: f64 = 0.125;
+
+/// A step under construction.
+#[derive(Clone, Copy)]
+pub struct CurrentLoop<'l, 'b> {
+    /// ProgramBuilder, specification and scale.
+    pub l: &'l Lowering<'b>,
+    /// Shared options.
+    pub options: &'l LoopOptions,
+    /// Coefficients in SI units.
+    pub design: &'l LoopDesign,
+    /// What the law needs.
+    pub needs: Needs,
+}
+
+/// The deadbeat voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct Deadbeat<'b> {
+    /// Voltages of phases a and b, not limited.
+    pub u: Phases<'b>,
+    /// Shifts of the compare values against the dead time, where the law compensates it.
+    pub shifts: Option<Phases<'b, 3>>,
+}
+
+/// What the shared part of a step knows.
+pub struct Front<'b> {
+    /// State words.
+    pub words: Words<'b>,
+    /// Phase currents.
+    pub currents: Phases<'b, 3>,
+    /// Sector in force, with its advance.
+    pub sector: Expr<'b>,
+    /// Set-point as a voltage word.
+    pub set_point: Expr<'b>,
+    /// The commutation; where the law follows it.
+    pub commutation: Option<Commutation<'b>>,
+    /// Reference as voltage words, phases a, b.
+    pub reference: Phases<'b>,
+    /// 1/3.
+    pub third: Coefficient,
+    /// The bus.
+    pub bus: Bus<'b>,
+    /// Voltage applied in the period that begins now, where the step needs it.
+    pub now: Option<Phases<'b>>,
+    /// EMF over the target period; none where the law needs no EMF.
+    pub e: Option<Phases<'b>>,
+    /// EMF over the period that begins now.
+    pub e_now: Option<Phases<'b>>,
+    /// The same as the next step shall compare it with what it sees.
+    pub e_expected: Option<Phases<'b>>,
+    /// What the modelled EMF lacks; where the law integrates that.
+    pub integral: Option<Phases<'b>>,
+    /// The folded words; where the EMF is held.
+    pub held: Option<Held<'b>>,
+    /// Integral of the speed regulator, and its state; with a speed loop.
+    pub speed_integral: Option<(Memory<'b>, Expr<'b>)>,
+}
+
+/// What runs in every period: the sector, and what follows its edges.
+struct Tracked<'b> {
+    sample: Sample<'b>,
+    hall: Option<Hall<'b>>,
+    rotor: Option<Rotor<'b>>,
+    /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
+    direction: Option<Expr<'b>>,
+    /// Samples for which a commutation may last, where it began where the direction is sensed.
+    kept: Option<Expr<'b>>,
+    /// Sector in force where the reference runs ahead of the sample.
+    ahead: Option<Expr<'b>>,
+}
+
+/// State words and their new values.
+pub type Remembered<'b> = Vec<(Memory<'b>, Expr<'b>)>;
+
+/// The words of phases a and b.
+pub fn read<'b>(words: [Memory<'b>; 2]) -> Phases<'b> {
+    Phases(words.map(Memory::read))
+}
+
+/// New values of the words of phases a and b.
+pub fn kept<'b>(words: [Memory<'b>; 2], values: Phases<'b>) -> [(Memory<'b>, Expr<'b>); 2] {
+    [(words[0], values.a()), (words[1], values.b())]
+}
+
+/// Names the voltage of phases a and b that the law asks for, and states its error.
+pub fn asked_for<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> {
+    let doc = "Voltage of a phase that the law asks for, before the limit";
+    l.state_phase_volts("voltage", volts, doc);
+    named! {
+        let u_unsat = volts;
+    }
+    u_unsat
+}
+
+impl<'b> CurrentLoop<'_, 'b> {
+    /// Steps 1 to 8.
+    pub fn front(&self, set_point: &SetPointWords<'b>) -> Front<'b> {
+        let (l, options) = (self.l, self.options);
+        let words = self.declare(set_point);
+        let tracked = self.track(&words);
+        l.b.end_tracking();
+        let currents = third_current(l, &tracked.sample);
+        let sector_seen = match &tracked.hall {
+            Some(hall) => hall.sector,
+            None => sector_of(l, &tracked.sample),
+        };
+        let sector = tracked.ahead.unwrap_or(sector_seen);
+        let j = set_point.j.read();
+        let regulated = words.speed.zip(tracked.rotor);
+        let regulated = regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j));
+        let j = regulated.map_or(j, |regulated| regulated.j);
+        let commutation = self.commutation(&words, &tracked, [sector, j], currents);
+        // Ahead of the reference, so that its product with a sign is added last, by one instruction.
+        let held = self.holds_emf().then(|| self.held(currents.pair()));
+        let reference = self.reference(&tracked, sector, j);
+        let doc = "Mean of three legs.";
+        let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
+        let bus = set_point.read_bus(l);
+        let outgoing = commutation.map(|commutation| commutation.outgoing);
+        let rotor = tracked.rotor.as_ref();
+        let emf = self.emf(&words, currents, sector_seen, rotor, third, outgoing);
+        let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
+        let speed = regulated.map(|regulated| regulated.speed);
+        self.tell([e, e_now], speed.or(rotor.map(|rotor| rotor.step_angle)));
+        let off_leg = self.off_leg(bus, third);
+        let commanded = words.v_cmd.map(read);
+        let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
+        Front {
+            words,
+            currents,
+            sector,
+            set_point: j,
+            commutation,
+            reference,
+            third,
+            bus,
+            now,
+            e,
+            e_now,
+            e_expected: emf.map(|emf| emf.expected),
+            integral: emf.and_then(|emf| emf.integral),
+            held,
+            speed_integral: regulated.map(|regulated| regulated.integral),
+        }
+    }
+
+    /// Steps 1, 2 and 4: the sector, direction, angle and speed.
+    fn track(&self, words: &Words<'b>) -> Tracked<'b> {
+        let l = self.l;
+        let sample = sample(l);
+        let hall = words.sector_prev.map(|word| find_sector(l, &sample, word));
+        let mut tracked = Tracked {
+            sample,
+            hall,
+            rotor: None,
+            direction: None,
+            kept: None,
+            ahead: None,
+        };
+        let Some(hall) = hall else {
+            return tracked;
+        };
+        if let Some(rotor) = words.rotor {
+            // With an angle the edge is looked at in every period.
+            let rotor = rotor.track(l, &hall, tracked.sample.hall_ticks);
+            hall.sector_prev.set(hall.sector);
+            let advance = self.options.advance;
+            tracked.ahead =
+                (advance > 0.0).then(|| advanced_sector(l, advance, hall.sector, &rotor));
+            tracked.direction = Some(rotor.direction);
+            tracked.rotor = Some(rotor);
+        } else if let Some(direction) = words.direction {
+            // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
+            let (direction, kept) = sense_direction(l, direction, &hall, words.pair);
+            tracked.direction = Some(direction);
+            tracked.kept = kept;
+        } else {
+            hall.sector_prev.set(hall.sector);
+        }
+        tracked
+    }
+
+    /// Step 5.
+    fn commutation(
+        &self,
+        words: &Words<'b>,
+        tracked: &Tracked<'b>,
+        [sector, j]: [Expr<'b>; 2],
+        currents: Phases<'b, 3>,
+    ) -> Option<Commutation<'b>> {
+        let (rule, direction, hall) = (words.pair?, tracked.direction?, tracked.hall?);
+        let kept = tracked.kept.unwrap_or_else(|| {
+            let last = rule.sector_prev;
+            let changed = last.map(|last| rule.sector_changed(self.l, last, sector));
+            rule.kept(self.l, changed.unwrap_or(hall.edge))
+        });
+        Some(rule.follow(self.l, [sector, kept, direction, j], currents))
+    }
+
+    /// Step 6.
+    fn reference(
+        &self,
+        tracked: &Tracked<'b>,
+        sector: Expr<'b>,
+        set_point: Expr<'b>,
+    ) -> Phases<'b> {
+        let (l, options) = (self.l, self.options);
+        match (&tracked.rotor, options.reference) {
+            (Some(rotor), Reference::Proportional) => {
+                proportional_reference(l, rotor, set_point, options.delay)
+            }
+            _ if options.advance > 0.0 => {
+                quasi_square_reference(l, Corner::Sector(sector), set_point)
+            }
+            // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
+            // legs off.
+            _ => {
+                let code = tracked.sample.hall;
+                quasi_square_reference(l, Corner::HallCode(code), set_point)
+            }
+        }
+    }
+
+    /// Tells people what the law knows of the motor: the EMF of the target period, or where the law
+    /// predicts alone that of the present one.
+    fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
+        let predicts = self.needs.emf == EmfUse::Prediction;
+        if let Some(e) = if predicts { present } else { target } {
+            self.l.b.tell("e_a", e.a());
+            self.l.b.tell("e_b", e.b());
+        }
+        if let Some(speed) = speed {
+            self.l.b.tell("speed", speed);
+        }
+    }
+
+    /// Whether the law predicts with the EMF of the last period.
+    fn holds_emf(&self) -> bool {
+        self.needs.predicts() && self.options.emf == EmfSource::Held
+    }
+
+    /// Whether tables have what a whole vector leaves to later steps: with a fixed bus that is known beforehand.
+    pub fn tables_left_over(&self) -> bool {
+        self.holds_emf() && matches!(self.l.spec.inverter.bus, BusSource::Fixed)
+    }
+
+    /// Where an off leg's terminal sits.
+    fn off_leg(&self, bus: Bus<'b>, third: Coefficient) -> OffLeg<'b> {
+        OffLeg {
+            bus,
+            third,
+            threshold: self.options.commutation_threshold,
+        }
+    }
+
+    /// The voltage that a command which may turn a leg off applies in the period that begins now (delay 1),
+    /// with the EMF of that period.
+    fn applied_now(
+        &self,
+        words: &Words<'b>,
+        currents: Phases<'b, 3>,
+        e_now: Option<Phases<'b>>,
+        off_leg: &OffLeg<'b>,
+    ) -> Option<Phases<'b>> {
+        let ((terminals, off), e_now) = (words.t_cmd?, e_now?);
+        let commanded = Applied {
+            terminals: Phases(terminals.map(Memory::read)),
+            off: off.read(),
+        };
+        named! {
+            let v_now = off_leg.applied_voltage(self.l, &commanded, currents, e_now);
+        }
+        Some(v_now)
+    }
+
+    /// Step 9: the deadbeat voltage of phases a, b, with shifts against the dead time where it is compensated.
+    pub fn deadbeat(&self, front: &Front<'b>, compensates: bool) -> Deadbeat<'b> {
+        let (reference, i) = (front.reference, front.currents.pair());
+        if let Some(held) = &front.held {
+            let u = self.held_voltage(held, reference);
+            let shifts = compensates.then(|| {
+                let k_hold = self.k_hold();
+                let doc =
+                    "What the present current still contributes when the voltage takes effect.";
+                self.l.b.stage("hold_current", &[doc]);
+                named! {
+                    let held = k_hold * i;
+                }
+                self.dead_time_shifts(reference, held, self.design.k_di)
+            });
+            return Deadbeat { u, shifts };
+        }
+        let k_hold = self.k_hold();
+        let k_decay = (self.options.delay == 1).then(|| self.k_decay());
+        let doc: &[&str] = if self.options.delay == 1 {
+            &[
+                "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
+                "i_pred = a i + b (v_now - e_now) of (7) folded in:",
+                "v = K i_ref - K a^2 i + (1 - a)(v_now - e_now) + e + e_now - v_now.",
+            ]
+        } else {
+            &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
+        };
+        self.l.b.stage("deadbeat_voltage", doc);
+        let held = k_hold * i;
+        let held = if compensates {
+            named! {
+                let held = held;
+            }
+            held
+        } else {
+            held
+        };
+        let open = reference - held;
+        let u = match (k_decay, front.now, front.e, front.e_now) {
+            (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
+                open + k_decay * (now - e_now) + e + e_now - now
+            }
+            (_, _, Some(e), _) => open + e,
+            _ => open,
+        };
+        let u = asked_for(self.l, u);
+        let stiffness = self.design.k_di;
+        let shifts = compensates.then(|| self.dead_time_shifts(reference, held, stiffness));
+        Deadbeat { u, shifts }
+    }
+
+    /// Step 12: closes the step. `v_cmd` are the commanded voltages; `applied` are the terminals instead, where a
+    /// command may turn a leg off whose real voltage counts.
+    pub fn remember(
+        &self,
+        front: &Front<'b>,
+        command: &Command<'b>,
+        v_cmd: Option<Phases<'b>>,
+        applied: Option<Applied<'b>>,
+        mut remembered: Remembered<'b>,
+    ) {
+        let words = &front.words;
+        if let (Some(held), Some(u)) = (&front.held, v_cmd) {
+            let left_over = self.left_over(held, u);
+            remembered.extend(self.fold(held, left_over));
+        }
+        remembered.extend(front.speed_integral);
+        if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
+            remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));
+            remembered.push((rule.left, commutation.left));
+        }
+        if let (Some((terminals, off)), Some(applied)) = (words.t_cmd, applied) {
+            remembered.extend(terminals.into_iter().zip(applied.terminals.0));
+            remembered.push((off, applied.off));
+        }
+        let mut keep = |words: Option<[Memory<'b>; 2]>, values: Option<Phases<'b>>| {
+            remembered.extend(
+                words
+                    .zip(values)
+                    .into_iter()
+                    .flat_map(|(words, values)| kept(words, values)),
+            );
+        };
+        keep(words.v_cmd, v_cmd);
+        if words.v_prev.is_some() {
+            keep(
+                words.v_prev,
+                self.applied_to_remember(front, v_cmd, applied),
+            );
+        }
+        keep(words.e_prev, front.e_expected);
+        keep(words.integral, front.integral);
+        keep(words.i_prev, Some(front.currents.pair()));
+        if let Some(off_prev) = words.off_prev {
+            let off = match words.t_cmd {
+                Some((_, off_cmd)) => Some(off_cmd.read()),
+                None => applied.map(|applied| applied.off),
+            };
+            remembered.extend(off.map(|off| (off_prev, off)));
+        }
+        command.close_step(self.l, &remembered);
+    }
+
+    /// The voltage that the next step finds applied in the period that begins now.
+    fn applied_to_remember(
+        &self,
+        front: &Front<'b>,
+        v_cmd: Option<Phases<'b>>,
+        applied: Option<Applied<'b>>,
+    ) -> Option<Phases<'b>> {
+        match (front.now, applied, front.e) {
+            (Some(now), ..) => Some(now),
+            (None, Some(applied), Some(e)) => {
+                let off_leg = self.off_leg(front.bus, front.third);
+                named! {
+                    let v_applied = off_leg.applied_voltage(self.l, &applied, front.currents, e);
+                }
+                Some(v_applied)
+            }
+            _ => v_cmd,
+        }
+    }
+}

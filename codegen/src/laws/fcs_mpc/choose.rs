@@ -1,0 +1,397 @@
+//! The vector nearest to the deadbeat voltage, by geometry instead of enumeration (semantics, step 10).
+//!
+//! Over the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector wins while no
+//! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
+//! the sign of a line voltage, so three scores remain.
+
+use super::off_legs::OffLegs;
+use super::score::{
+    Candidate, PAIRS, Pair, Products, as_upper_words, state_exact_scores, state_score,
+    zero_of_pair, zero_vector,
+};
+use super::weighted::Changes;
+use crate::blocks::Lowering;
+use crate::ir::{Expr, Flag, Named, Phases, named};
+use crate::laws::current_loop::{CurrentLoop, Front};
+use crate::laws::whole_vectors::ALL_LOW;
+use crate::spec::{BusSource, Candidates, FcsMpcSpec};
+
+const NEAREST_VECTOR: [&str; 3] = [
+    "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
+    "phase exceeds a third of the bus, else the legs are low by the signs of the phase voltages (a zero goes to the vector",
+    "that stands first in V1 to V6).",
+];
+
+/// The chosen vector, and what else is known of the voltage asked for.
+pub(super) struct Choice<'b> {
+    /// Its number.
+    pub vector: Expr<'b>,
+    /// Phase voltages.
+    pub u: Phases<'b, 3>,
+    /// The legs that are low in the nearest of V1 to V6.
+    pub is_low: [Flag<'b>; 3],
+    /// The greatest phase voltage, and that of the other sign.
+    pub heights: [Expr<'b>; 2],
+    /// The greatest magnitude of a phase voltage.
+    pub largest: Expr<'b>,
+    /// Where the legs would sit if they were off.
+    pub off_legs: Option<OffLegs<'b>>,
+}
+
+impl<'b> CurrentLoop<'_, 'b> {
+    /// The allowed vector nearest to `u`.
+    pub(super) fn choose(
+        &self,
+        options: &FcsMpcSpec,
+        front: &Front<'b>,
+        u: Phases<'b>,
+    ) -> Choice<'b> {
+        let (l, pair) = (self.l, u);
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
+        let u = pair.with_c("u_unsat");
+        let [high, low] = u.extremes(["u_max", "u_min"]);
+        let depth = -low;
+        let depth = if options.modulated {
+            depth.named("u_depth")
+        } else {
+            depth
+        };
+        named! {
+            let u_largest = high.max(depth);
+        }
+        let (three, is_low) = nearest_three_phase(l, u, u_largest, front.bus.volts);
+        let off_legs = self.predict_off_legs(options, front, pair);
+        if off_legs.is_none() {
+            state_exact_scores(l, u);
+        }
+        let rival = Candidate {
+            vector: three,
+            score: u_largest,
+        };
+        let vector = match (options.candidates, front.commutation, &off_legs) {
+            (Candidates::ThreePhase, ..) | (_, None, _) => three,
+            (Candidates::Table2, Some(commutation), off_legs) => {
+                let pair = nearest_pair(l, front, u, off_legs.as_ref());
+                commutation.flag.choose(three, pair)
+            }
+            (Candidates::All, Some(_), Some(off_legs)) => {
+                nearest_physical(l, off_legs, front, u, None, Some(rival))
+            }
+            (Candidates::All, Some(_), None) => nearest_of_all(l, front, u, rival),
+        };
+        Choice {
+            vector: vector.named("vector"),
+            u,
+            is_low,
+            heights: [high, depth],
+            largest: u_largest,
+            off_legs,
+        }
+    }
+
+    /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
+    /// commutation alone.
+    pub(super) fn choose_of_table2(
+        &self,
+        options: &FcsMpcSpec,
+        front: &Front<'b>,
+        u: Phases<'b>,
+        commutating: Flag<'b>,
+    ) -> Expr<'b> {
+        let (l, pair) = (self.l, u);
+        let doc = "The third phase of the deadbeat voltage.";
+        l.b.stage("complete_voltage", &[doc]);
+        let u = pair.with_c("u_unsat");
+        let off_legs = self.predict_off_legs(options, front, pair);
+        if off_legs.is_none() {
+            state_exact_scores(l, u);
+        }
+        named! {
+            let vector_pair = nearest_pair(l, front, u, off_legs.as_ref());
+        }
+        l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
+        let largest = largest_of_zero_sum(u);
+        let (three, _) = nearest_three_phase(l, u, largest, front.bus.volts);
+        let [vector] = l.b.join([("vector", three, vector_pair)]);
+        vector
+    }
+
+    /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
+    pub(super) fn choose_low_legs(&self, front: &Front<'b>, u: Phases<'b>) -> Expr<'b> {
+        let l = self.l;
+        l.b.stage("nearest_vector", &NEAREST_VECTOR);
+        let u = u.with_c("u_unsat");
+        state_exact_scores(l, u);
+        let (low_legs, _) = low_legs_of(u);
+        let beyond = is_beyond_third(l, largest_of_zero_sum(u), front.bus.volts);
+        named! {
+            let pattern = beyond.choose(low_legs, ALL_LOW);
+        }
+        pattern
+    }
+}
+
+/// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`, whose
+/// score is the greatest phase voltage; with `changes` its score over the bus.
+pub(super) fn nearest_physical<'b>(
+    l: &Lowering<'b>,
+    off_legs: &OffLegs<'b>,
+    front: &Front<'b>,
+    u: Phases<'b, 3>,
+    changes: Option<&Changes<'b>>,
+    three_phase: Option<Candidate<'b>>,
+) -> Expr<'b> {
+    let (bus, offsets) = (front.bus.volts, off_legs.offsets);
+    let rival = match three_phase {
+        Some(_) => "the three-phase vector",
+        None => "the zero vector",
+    };
+    l.b.stage(
+        "nearest_pair",
+        &[
+            "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
+            &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
+            "Both products of a score are rounded as one: pairs whose off leg lies at a rail tie exactly with what has their voltage.",
+        ],
+    );
+    // Factors first: their intervals give the shift of all products.
+    let mut pairs = PAIRS.map(|pair| {
+        let better = match changes {
+            Some(changes) => changes.better(pair, bus, u),
+            None => along_better(pair, bus, u),
+        };
+        let offset = offsets.0[pair.0];
+        let aside = offset - 6 * u.0[pair.0];
+        let aside = aside.named(&format!("aside_{}", pair.letter()));
+        let products = Products(vec![[offset, aside], [bus, better.score]]);
+        (better.vector, products)
+    });
+    let (rival, mut rival_products) = match three_phase {
+        Some(three) if changes.is_some() => (three.vector, Products(vec![[bus, three.score]])),
+        Some(three) => {
+            named! {
+                let along_three = (bus << 2) - 12 * three.score;
+            }
+            (three.vector, Products(vec![[bus, along_three]]))
+        }
+        None => {
+            let (vector, is_off) = zero_of_pair(l, front.sector);
+            let aside = off_legs.zero(u, is_off);
+            let change = changes.map(|changes| [bus, changes.to_zero(is_off)]);
+            (
+                vector,
+                Products(std::iter::once(aside).chain(change).collect()),
+            )
+        }
+    };
+    let widths = pairs.iter().map(|(_, products)| products.bits());
+    let widest = widths.chain([rival_products.bits()]).max().unwrap_or(62);
+    // A product of n + m bits fits n + m - 1; the sum of two and one bit to spare make 31 at most.
+    let shift = widest.saturating_sub(31);
+    l.product_format("score", shift, "products of two voltages in scores");
+    let mut all: Vec<&mut Products<'b>> = pairs.iter_mut().map(|(_, products)| products).collect();
+    all.push(&mut rival_products);
+    let left = as_upper_words(&mut all, shift);
+    let scored = |vector, score: Option<Expr<'b>>, name: &str| {
+        let score = score.unwrap_or(bus).named(name);
+        state_score(l, score, shift);
+        Candidate { vector, score }
+    };
+    let candidates = pairs.iter().zip(PAIRS).map(|((vector, products), pair)| {
+        let letter = pair.letter();
+        let name = format!("score_{letter}");
+        (scored(*vector, products.sum(left), &name), letter)
+    });
+    let best = candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
+    let mut score = rival_products.sum(left);
+    if three_phase.is_some() && changes.is_none() {
+        // V0 scores 0, the best three-phase vector less than that or V0 was taken.
+        score = score.map(|score| score.min(0));
+    }
+    let rival = scored(rival, score, "score_to_beat");
+    best.map_or(rival.vector, |(best, _)| best.against(rival))
+}
+
+/// The index of three flags: the sum of 1, 2 and 4.
+fn index_of_flags<'b>([first, second, third]: [Flag<'b>; 3]) -> Expr<'b> {
+    first.choose(1, 0) + second.choose(2, 0) + third.choose(4, 0)
+}
+
+/// `value - 1` where the flag holds, else `value`: negative, too, for a zero that the flag tells to lie low.
+fn lowered_by<'b>(value: Expr<'b>, flag: Flag<'b>) -> Expr<'b> {
+    value - flag.choose(1, 0)
+}
+
+/// The greatest magnitude of three voltages that add up to zero: the sum of those above it.
+fn largest_of_zero_sum<'b>(u: Phases<'b, 3>) -> Expr<'b> {
+    named! {
+        let u_largest = u.map(|u| u.max(0)).sum();
+    }
+    u_largest
+}
+
+/// A magnitude is more than a third of the bus. A whole voltage is beyond the share exactly where it is beyond
+/// its whole part.
+fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Flag<'b> {
+    match l.spec.inverter.bus {
+        BusSource::Fixed => {
+            let third = l.nominal_bus() / 3;
+            let third = l.voltage("third_of_bus", third, "A third of the bus");
+            largest.is_above(third)
+        }
+        BusSource::Measured { .. } => {
+            named! {
+                let u_triple = 3 * largest;
+            }
+            u_triple.is_above(bus)
+        }
+    }
+}
+
+/// One of the line voltages is farther from zero than half the bus.
+fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) -> Flag<'b> {
+    let beyond = [0, 1, 2].map(|order| match l.spec.inverter.bus {
+        BusSource::Fixed => {
+            let half = || l.voltage("half_bus", l.nominal_bus() / 2, "Half the bus");
+            lines[order].is_above(half()) | lines[order].is_below(-half())
+        }
+        BusSource::Measured { .. } => {
+            let name = format!("line_{}_twice", PAIRS[order].letter());
+            let twice = (2 * lines[order]).named(&name);
+            twice.is_above(bus) | twice.is_below(-bus)
+        }
+    });
+    let [a, b, c] = beyond;
+    a | b | c
+}
+
+/// The legs that are low in the nearest to `u` of V1 to V6: as a pattern and as flags.
+fn low_legs_of<'b>(u: Phases<'b, 3>) -> (Expr<'b>, [Flag<'b>; 3]) {
+    // A zero lies as the leg does in the first of the two tied vectors: b low, a as b, c unlike b. The words tell
+    // by their signs once a one is taken from those that lie low.
+    let [a, b, c] = u.0;
+    named! {
+        let b_is_low = (b - 1).is_below(0);
+        let a_is_low = lowered_by(a, b_is_low).is_below(0);
+        let c_is_low = lowered_by(c, !b.is_below(0)).is_below(0);
+        let low_legs = index_of_flags([a_is_low, b_is_low, c_is_low]);
+    }
+    (low_legs, [a_is_low, b_is_low, c_is_low])
+}
+
+/// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
+fn nearest_three_phase<'b>(
+    l: &Lowering<'b>,
+    u: Phases<'b, 3>,
+    largest: Expr<'b>,
+    bus: Expr<'b>,
+) -> (Expr<'b>, [Flag<'b>; 3]) {
+    let (low_legs, is_low) = low_legs_of(u);
+    let doc =
+        "Three-phase vector of a pattern of low legs: bit 0 leg a low, bit 1 leg b, bit 2 leg c.";
+    let vectors = vec![0, 6, 2, 1, 4, 5, 3, 0];
+    let table = l.b.table("vector_of_low_legs", vectors, &[doc.to_owned()]);
+    let active = table.at(low_legs);
+    named! {
+        let vector_three = is_beyond_third(l, largest, bus).choose(active, 0);
+    }
+    (vector_three, is_low)
+}
+
+/// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.
+fn better_of_two<'b>(pair: Pair, u: Phases<'b, 3>) -> [Expr<'b>; 2] {
+    let letter = pair.letter();
+    let line = pair.line(u).named(&format!("line_{letter}"));
+    let [first, second] = pair.numbers().map(|number| number as i32);
+    let vector = line.is_below(0).choose(second, first);
+    [
+        vector.named(&format!("pair_{letter}")),
+        line.abs().named(&format!("size_{letter}")),
+    ]
+}
+
+/// That vector with its score over the bus, the off leg left out.
+fn along_better<'b>(pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b> {
+    let [vector, size] = better_of_two(pair, u);
+    let score = 3 * bus - 6 * size;
+    Candidate {
+        vector,
+        score: score.named(&format!("along_{}", pair.letter())),
+    }
+}
+
+/// The pair vector nearest to the voltage, or the pair's zero vector.
+fn nearest_pair<'b>(
+    l: &Lowering<'b>,
+    front: &Front<'b>,
+    u: Phases<'b, 3>,
+    off_legs: Option<&OffLegs<'b>>,
+) -> Expr<'b> {
+    match off_legs {
+        Some(off_legs) => nearest_physical(l, off_legs, front, u, None, None),
+        None => nearest_nominal(l, front, u),
+    }
+}
+
+fn pair_stage(l: &Lowering<'_>) {
+    l.b.stage(
+        "nearest_pair",
+        &[
+            "The pair vector nearest to the deadbeat voltage: the one of the greatest line voltage, and the zero vector while",
+            "that is at most half the bus. Ties go to the vector that stands first in V12 to V61.",
+        ],
+    );
+}
+
+fn nearest_nominal<'b>(l: &Lowering<'b>, front: &Front<'b>, u: Phases<'b, 3>) -> Expr<'b> {
+    pair_stage(l);
+    let idle = zero_vector(l, front.sector);
+    let lines = PAIRS.map(|pair| pair.line(u).named(&format!("line_{}", pair.letter())));
+    // The order of the phase voltages is that of the vector's legs. Equal phases are in the order that the first of
+    // the tied vectors has: a above b, c above b unless a is below both, and a above c where b is above both.
+    let [line_a, line_c, line_b] = lines;
+    named! {
+        let a_below_b = line_c.is_below(0);
+        let c_below_b = lowered_by(line_a, a_below_b).is_below(0);
+        let a_below_c = lowered_by(line_b, !a_below_b).is_below(0);
+        let order = index_of_flags([a_below_b, c_below_b, a_below_c]);
+    }
+    let doc = "Pair vector of an order of the phase voltages, from the highest to the lowest: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns are none).";
+    let vectors = vec![8, 0, 9, 10, 7, 12, 0, 11];
+    let table = l.b.table("pair_of_order", vectors, &[doc.to_owned()]);
+    let beyond = any_beyond_half(l, lines, front.bus.volts);
+    beyond.choose(table.at(order), idle)
+}
+
+/// The nearest of all vectors; of the rival the score is the greatest phase voltage.
+fn nearest_of_all<'b>(
+    l: &Lowering<'b>,
+    front: &Front<'b>,
+    u: Phases<'b, 3>,
+    three: Candidate<'b>,
+) -> Expr<'b> {
+    pair_stage(l);
+    let candidates = PAIRS.into_iter().map(|pair| {
+        let [vector, size] = better_of_two(pair, u);
+        let score = (-size).named(&format!("score_{}", pair.letter()));
+        (Candidate { vector, score }, pair.letter())
+    });
+    let best = candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
+    let Some((best, _)) = best else {
+        return three.vector;
+    };
+    // Scores over the bus: three-phase 4 V - 12 u or 0, pair 3 V - 6 line.
+    let bus = front.bus.volts;
+    named! {
+        let line_largest = -best.score;
+    }
+    let of_three = Candidate {
+        vector: three.vector,
+        score: ((bus << 2) - 12 * three.score).min(0),
+    };
+    let of_pair = Candidate {
+        vector: best.vector,
+        score: 3 * bus - 6 * line_largest,
+    };
+    of_pair.against(of_three)
+}

@@ -1,0 +1,218 @@
+//! The choice where the cost has weights (semantics, step 10w).
+//!
+//! A weight of switching alone is folded as the plain choice is: over the three-phase set it gives each leg's sign a
+//! hysteresis, and of two pair vectors with the same leg off the better one is told exactly. The weight of the torque
+//! couples the legs: its list is enumerated ([`super::torque`]).
+
+use super::choose::nearest_physical;
+use super::off_legs::OffLegs;
+use super::score::{Candidate, PAIRS, Pair, state_score_over_bus, zero_of_pair};
+use super::torque::Weighing;
+use crate::blocks::Lowering;
+use crate::diagnostics::engineering;
+use crate::ir::{Expr, Flag, Memory, Named, Phases, named, pick};
+use crate::laws::current_loop::{CurrentLoop, Front};
+use crate::laws::whole_vectors::vector_legs;
+use crate::spec::{Candidates, FcsMpcSpec};
+
+/// What the change of each leg to high, low and off costs, in multiples of the bus.
+pub(super) struct Changes<'b>([[Expr<'b>; 3]; 3]);
+
+impl<'b> CurrentLoop<'_, 'b> {
+    /// The allowed vector of least weighted cost.
+    pub(super) fn choose_weighted(
+        &self,
+        options: &FcsMpcSpec,
+        front: &Front<'b>,
+        u: Phases<'b>,
+        memory: Option<Memory<'b>>,
+    ) -> Expr<'b> {
+        let (l, pair) = (self.l, u);
+        let changes = memory.map(|memory| {
+            let volts = 9.0 * (self.design.k_di * options.switching_weight).powi(2);
+            let volts = volts / l.spec.inverter.v_bus;
+            Changes::new(l, memory, volts, options.switching_weight)
+        });
+        let doc = "The deadbeat voltage of the third phase.";
+        l.b.stage("third_phase", &[doc]);
+        let u = pair.with_c("u_unsat");
+        let off_legs = self.predict_off_legs(options, front, pair);
+        let off_legs = off_legs.as_ref();
+        named! {
+            let vector = match changes {
+                Some(changes) if options.torque_weight <= 0.0 => {
+                    changes.fewest(l, options.candidates, front, u, off_legs)
+                }
+                changes => {
+                    let doc = [
+                        "The scores 6 (|v|^2 - 2 u v) of the list, with what the error along the sector's mean EMF, the line of its pair, weighs",
+                        "on top. Each is a sum of products; the least is taken, the first of equals.",
+                    ];
+                    l.b.stage("weigh_candidates", &doc);
+                    let changes = changes.as_ref();
+                    Weighing::new(l, options, front, u, off_legs, changes).best(options.candidates)
+                }
+            };
+        }
+        vector
+    }
+}
+
+impl<'b> Changes<'b> {
+    /// Looks up what the changes cost: `volts` each, in multiples of the bus.
+    fn new(l: &Lowering<'b>, memory: Memory<'b>, volts: f64, weight: f64) -> Self {
+        let doc =
+            "What it costs to turn each leg high, low and off, by the vector of the last step.";
+        l.b.stage("cost_of_changes", &[doc]);
+        let cost = l.volts_word(volts);
+        if i32::try_from(cost).is_err() {
+            l.misfit("switching_weight");
+        }
+        let doc = format!(
+            "by the vector of the last step: 0, or 9 (K {})^2/v_bus = {} in scores over the bus, words of voltage.",
+            engineering(weight, "A"),
+            engineering(volts, "V")
+        );
+        let last = memory.read();
+        Self([0, 1, 2].map(|x| {
+            let phase = ["a", "b", "c"][x];
+            [("high", 1), ("low", -1), ("off", 0)].map(|(state, sign)| {
+                let name = format!("change_to_{state}_{phase}");
+                let costs = vector_legs().map(|legs| if legs[x] == sign { 0 } else { cost as i32 });
+                let doc = format!("What turning leg {phase} {state} costs {doc}");
+                let found = l.b.table(&name, costs.to_vec(), &[doc]).at(last);
+                found.named(&format!("to_{state}_{phase}"))
+            })
+        }))
+    }
+
+    /// What it costs to go to a vector.
+    pub(super) fn to(&self, number: usize) -> Expr<'b> {
+        let legs = vector_legs()[number];
+        let own = |x: usize| match legs[x] {
+            1 => self.0[x][0],
+            -1 => self.0[x][1],
+            _ => self.0[x][2],
+        };
+        own(0) + own(1) + own(2)
+    }
+
+    /// What it costs to go to the zero vector of the sector's pair; flags: leg a, leg b is off in it.
+    pub(super) fn to_zero(&self, is_off: [Flag<'b>; 2]) -> Expr<'b> {
+        named! {
+            let change_to_zero = pick(is_off, [13, 14, 15].map(|number| self.to(number)));
+        }
+        change_to_zero
+    }
+
+    /// The folded choice, with a weight of switching alone.
+    fn fewest(
+        &self,
+        l: &Lowering<'b>,
+        candidates: Candidates,
+        front: &Front<'b>,
+        u: Phases<'b, 3>,
+        off_legs: Option<&OffLegs<'b>>,
+    ) -> Expr<'b> {
+        let three = self.nearest_by_gains(l, u, front.bus.volts);
+        if off_legs.is_none() {
+            state_score_over_bus(l, three.score, 1.0);
+        }
+        let Some(commutation) = front.commutation else {
+            return three.vector;
+        };
+        let rival = (candidates == Candidates::All).then_some(three);
+        let pair = match off_legs {
+            Some(off_legs) => nearest_physical(l, off_legs, front, u, Some(self), rival),
+            None => self.nearest_exact(l, front, u, rival),
+        };
+        match candidates {
+            Candidates::ThreePhase => three.vector,
+            Candidates::All => pair,
+            Candidates::Table2 => commutation.flag.choose(three.vector, pair),
+        }
+    }
+
+    /// The best of V0 to V6, with its exact score over the bus.
+    fn nearest_by_gains(&self, l: &Lowering<'b>, u: Phases<'b, 3>, bus: Expr<'b>) -> Candidate<'b> {
+        l.b.stage(
+            "nearest_vector",
+            &[
+                "The three-phase vector of least cost: a leg is high where twelve times its phase voltage gains more than its change costs",
+                "over staying low. Not all three can be: then the one that gains least is not. V0 while the gains are at most four times the bus.",
+            ],
+        );
+        named! {
+            let gain = Phases::<3>::each(|x| 12 * u.0[x] + (self.0[x][1] - self.0[x][0]));
+        }
+        let [gain_a, gain_b, gain_c] = gain.0;
+        let gates = [0, 1, 2].map(|x| gain.0[x].is_above(0).choose(1 << x, 0));
+        named! {
+            let gates_gained = Phases(gates).sum();
+            let gain_least = gain_a.min(gain_b).min(gain_c);
+            let gained = gain.map(|gain| gain.max(0)).sum() - gain_least.max(0);
+        }
+        let c_is_least = gain_c.is_at_most(gain_least);
+        let b_is_least = gain_b.is_at_most(gain_least);
+        let without_least = c_is_least.choose(3, b_is_least.choose(5, 6));
+        named! {
+            let gates = gain_least.is_above(0).choose(without_least, gates_gained);
+        }
+        let doc =
+            "Three-phase vector of a gate pattern: bit 0 leg a high, bit 1 leg b, bit 2 leg c.";
+        let vectors = vec![0, 3, 5, 4, 1, 2, 6, 0];
+        let table = l.b.table("vector_of_gates", vectors, &[doc.to_owned()]);
+        let active = table.at(gates);
+        named! {
+            let vector_three = gained.is_at_most(bus << 2).choose(0, active);
+            let along_three = ((bus << 2) - gained).min(0) + self.to(0);
+        }
+        Candidate {
+            vector: vector_three,
+            score: along_three,
+        }
+    }
+
+    /// Of the two vectors that leave one leg off, the one of the lesser score over the bus, and that score.
+    pub(super) fn better(&self, pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b> {
+        let letter = pair.letter();
+        let six = (6 * pair.line(u)).named(&format!("line_{letter}"));
+        let [first, second] = pair.numbers();
+        let forward = 3 * bus - six + self.to(first);
+        let forward = forward.named(&format!("forward_{letter}"));
+        let back = 3 * bus + six + self.to(second);
+        let back = back.named(&format!("back_{letter}"));
+        let vector = back.is_below(forward).choose(second as i32, first as i32);
+        Candidate {
+            vector: vector.named(&format!("pair_{letter}")),
+            score: forward.min(back).named(&format!("along_{letter}")),
+        }
+    }
+
+    /// The best pair vector with off legs midway, against the zero vector or the best of V0 to V6: exactly, over the bus.
+    fn nearest_exact(
+        &self,
+        l: &Lowering<'b>,
+        front: &Front<'b>,
+        u: Phases<'b, 3>,
+        three_phase: Option<Candidate<'b>>,
+    ) -> Expr<'b> {
+        let doc = "The pair vector of least cost against the vector without a pair. Ties go to the vector that stands first in V12 to V61.";
+        l.b.stage("nearest_pair", &[doc]);
+        let candidates = PAIRS.into_iter();
+        let candidates =
+            candidates.map(|pair| (self.better(pair, front.bus.volts, u), pair.letter()));
+        let best =
+            candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
+        let rival = three_phase.unwrap_or_else(|| {
+            let (vector, is_off) = zero_of_pair(l, front.sector);
+            let score = self.to_zero(is_off);
+            Candidate { vector, score }
+        });
+        let Some((best, _)) = best else {
+            return rival.vector;
+        };
+        state_score_over_bus(l, best.score, 1.0);
+        best.against(rival)
+    }
+}

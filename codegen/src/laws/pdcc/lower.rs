@@ -1,0 +1,53 @@
+//! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
+
+use crate::blocks::{Hexagon, Modulator, Priority, Scale};
+use crate::laws::current_loop::{CurrentLoop, Deadbeat, EmfUse, LoopDesign, Needs, lower_with};
+use crate::scaling::Lowered;
+use crate::spec::{Modulation, PdccSpec, Spec};
+
+/// Lowers the controller at a scale.
+pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
+    lower_with(spec, scale, design.k_di, |l, set_point| {
+        let pair = options.modulation == Modulation::Pair;
+        let step = CurrentLoop {
+            l,
+            options: &options.common,
+            design,
+            needs: Needs {
+                commutation: pair,
+                off_leg: pair,
+                emf: EmfUse::Deadbeat,
+                integral: options.integral,
+                memory: 0,
+            },
+        };
+        let front = step.front(set_point);
+        let Deadbeat { u, shifts } = step.deadbeat(&front, options.dead_time_compensation);
+        let is_known = front.held.is_some() || front.e.is_some();
+        let emf = is_known.then_some(|| match (&front.held, front.e) {
+            (Some(held), _) => step.held_emf(held),
+            (None, Some(e)) => e,
+            (None, None) => u,
+        });
+        let hexagon = Hexagon {
+            bus: front.bus,
+            third: front.third,
+            // Of a pair the centred voltages are needed as they are, and of a measured bus before their scaling.
+            lifts: !pair && front.bus.ratio.is_none(),
+        };
+        let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let (command, applied) = match front.commutation {
+            None => (modulator.centred(l, &limited), None),
+            Some(commutation) => {
+                let flag = commutation.flag;
+                let (command, applied) = modulator.pair(l, front.sector, flag, u, &limited);
+                (command, Some(applied))
+            }
+        };
+        step.remember(&front, &command, Some(limited.u), applied, vec![]);
+    })
+}

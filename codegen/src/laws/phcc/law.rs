@@ -1,0 +1,88 @@
+//! What the documentation of the type says of the method, and its switching table.
+
+use super::switching_table;
+use crate::diagnostics::engineering;
+use crate::interface::{PublicConstant, PublicValue};
+use crate::laws::Law;
+use crate::laws::current_loop::LoopDesign;
+use crate::spec::{PhccSpec, Spec, SwitchingTable};
+
+const SETS: [&str; 4] = [
+    "motoring forward",
+    "motoring backward",
+    "braking forward",
+    "braking backward",
+];
+
+/// Name of a vector number.
+fn name(vector: i32) -> String {
+    match vector {
+        0..=6 => format!("V{vector}"),
+        7..=12 => format!("V{}{}", vector - 6, (vector - 6) % 6 + 1),
+        _ => "0".to_owned(),
+    }
+}
+
+/// Documentation and constants of the method.
+pub fn law(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Law {
+    let stride = design.plant.gain * 2.0 / 3.0 * spec.inverter.v_bus;
+    let table = switching_table(options, spec.motor.emf_shape);
+    let mut notes = vec![
+        format!(
+            "Two bands of {} around the reference, on alpha and beta, with memory: each axis asks for a rise (1) or a fall (0) of",
+            engineering(options.band, "A")
+        ),
+        "the current predicted for the end of the period, and a table gives the vector.".to_owned(),
+        format!(
+            "One three-phase vector moves the current by at most {} per period.",
+            engineering(stride, "A")
+        ),
+        String::new(),
+        origin(options.table).to_owned(),
+    ];
+    for (set, title) in SETS.iter().enumerate() {
+        notes.extend([
+            String::new(),
+            format!("Switching table, {title}; columns (alpha, beta), 0 is the zero vector of the sector's pair, its third leg off:"),
+            String::new(),
+            "| sector | commutation 11 | 10 | 01 | 00 | otherwise 11 | 10 | 01 | 00 |".to_owned(),
+            "|---|---|---|---|---|---|---|---|---|".to_owned(),
+        ]);
+        for sector in 1..=6 {
+            let row = &table[64 * set + 8 * sector..][..8];
+            let cells: Vec<String> = [7, 6, 5, 4, 3, 2, 1, 0]
+                .iter()
+                .map(|&column: &usize| name(row[column]))
+                .collect();
+            notes.push(format!("| S{sector} | {} |", cells.join(" | ")));
+        }
+    }
+    Law {
+        title: "Predictive hysteresis current controller",
+        notes,
+        stable: None,
+        constants: vec![PublicConstant {
+            name: "SWITCHING_TABLE".to_owned(),
+            value: PublicValue::Integers {
+                rust_type: "u8",
+                values: table.into_iter().map(i64::from).collect(),
+            },
+            doc: vec![
+                "Vector by 64 set + 8 sector + 4 commutating + 2 alpha + beta; sets: 0 motoring forward, 1 motoring backward, 2".to_owned(),
+                "braking forward, 3 braking backward. Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b or c off.".to_owned(),
+            ],
+        }],
+    }
+}
+
+fn origin(table: SwitchingTable) -> &'static str {
+    match table {
+        SwitchingTable::Derived => {
+            "The table is derived from the geometry of the vectors: an entry is the vector nearest to the EMF plus what the wish adds."
+        }
+        SwitchingTable::Printed => {
+            "The motoring rows are those that the paper prints for sector 1, turned through the sectors. They select vectors that\nmove the axes the wrong way: the current is lost at speed. For study only."
+        }
+        SwitchingTable::Given(_) => "The motoring rows are those that the specification gives.",
+    }
+}

@@ -1,0 +1,197 @@
+//! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
+
+use crate::blocks::{
+    Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line, pair_signs,
+};
+use crate::ir::{Coefficient, Expr, Interval, named};
+use crate::laws::current_loop::{
+    CurrentLoop, EmfUse, Front, LoopDesign, Needs, asked_for, kept, lower_with, read,
+};
+use crate::scaling::Lowered;
+use crate::spec::{PiPwmSpec, Spec};
+
+/// What the stage that integrates is about.
+const INTEGRATION: &[&str] = &[
+    "Integration and tracking anti-windup with one time constant: s + k_i (p + v - u) with u = p + s + e the voltage asked",
+    "for and v what the limit left of it, so the integral part follows v - e.",
+];
+
+/// What the integral part is whose error is stated.
+const INTEGRAL: &str = "Integral part after one step";
+
+/// Lowers the controller at a scale.
+pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {
+    let gain = options.proportional_gain(&spec.motor);
+    lower_with(spec, scale, gain, |l, set_point| {
+        let emf = if options.feed_forward {
+            EmfUse::FeedForward
+        } else {
+            EmfUse::None
+        };
+        let step = CurrentLoop {
+            l,
+            options: &options.common,
+            design,
+            needs: Needs {
+                commutation: false,
+                off_leg: false,
+                emf,
+                integral: false,
+                memory: 0,
+            },
+        };
+        let front = step.front(set_point);
+        let regulator = Regulator::new(l, options);
+        if options.six_step {
+            regulator.six_step(&step, &front);
+        } else {
+            regulator.per_phase(&step, &front);
+        }
+    })
+}
+
+/// The regulator's options and coefficients.
+struct Regulator<'l, 'b> {
+    l: &'l Lowering<'b>,
+    options: &'l PiPwmSpec,
+    /// k_p, V/A.
+    gain: f64,
+    /// Range of the integral part.
+    range: Interval,
+    /// -k_p, by which a product is added in one instruction.
+    k_drop: Coefficient,
+    k_i: Coefficient,
+}
+
+impl<'l, 'b> Regulator<'l, 'b> {
+    fn new(l: &'l Lowering<'b>, options: &'l PiPwmSpec) -> Self {
+        let (gain, word) = (
+            options.proportional_gain(&l.spec.motor),
+            options.common.word,
+        );
+        let doc = "Weight of the present current: the proportional gain k_p = 2 pi f L, negative.";
+        let k_drop = l.impedance("k_drop", -gain, word, doc, ["-k_p", "V/A"]);
+        let share = options.integral_share(l.spec);
+        let doc = "Share of its distance that the integral part covers in one period, T_s/T_i.";
+        let k_i = l.coefficient("k_i", share, word, doc, &format!("T_s/T_i = {share:.6}"));
+        Self {
+            l,
+            options,
+            gain,
+            range: integral_range(l, options),
+            k_drop,
+            k_i,
+        }
+    }
+
+    /// A regulator for each phase.
+    fn per_phase(&self, step: &CurrentLoop<'_, 'b>, front: &Front<'b>) {
+        let l = self.l;
+        let doc = "Integral part of the regulator, words of voltage.";
+        let memories = l.memories(["integral_a", "integral_b"], self.range, doc);
+        let doc = "PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward.";
+        l.b.stage("regulate", &[doc]);
+        let integral = read(memories);
+        let drop = self.k_drop * front.currents.pair();
+        let held = self.options.dead_time_compensation.then(|| {
+            named! {
+                let drop = drop;
+                let held = -drop;
+            }
+            held
+        });
+        named! {
+            let p = front.reference + drop;
+        }
+        let asked = p + integral;
+        let asked = front.e.map_or(asked, |e| asked + e);
+        let u = asked_for(l, asked);
+        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain));
+        let emf = front.e.map(|e| move || e);
+        let hexagon = Hexagon {
+            bus: front.bus,
+            third: front.third,
+            lifts: front.bus.ratio.is_none(),
+        };
+        let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
+        l.b.stage("integrate", INTEGRATION);
+        let target = front.e.map_or(limited.u, |e| limited.u - e);
+        named! {
+            let distance = target - integral;
+            let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
+        }
+        l.state_phase_volts("integral", integral_now, INTEGRAL);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let command = modulator.centred(l, &limited);
+        let remembered = kept(memories, integral_now).to_vec();
+        step.remember(front, &command, Some(limited.u), None, remembered);
+    }
+
+    /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
+    fn six_step(&self, step: &CurrentLoop<'_, 'b>, front: &Front<'b>) {
+        let (l, i) = (self.l, front.currents);
+        let doc = "Integral part of the regulator, words of voltage.";
+        let memory = l.b.memory("integral", 0, self.range, doc);
+        let doc =
+            "PI regulator of the pair's current: v = k_p (i_ref - i) + integral, per winding.";
+        l.b.stage("regulate", &[doc]);
+        let integral = memory.read();
+        let sign = pair_signs(l, front.sector);
+        named! {
+            let pair_current = across_pair(sign, i >> 1);
+            let part = front.set_point + self.k_drop * pair_current;
+        }
+        let flow = self.options.dead_time_compensation.then(|| {
+            named! {
+                let held = -(self.k_drop * i.pair());
+            }
+            held
+        });
+        named! {
+            let u = part + integral;
+        }
+        let doc = "Voltage of a winding that the law asks for, before the limit";
+        l.state_volts("voltage", u, doc);
+        let line = limit_line(u << 1, front.bus);
+        l.b.stage("integrate", INTEGRATION);
+        named! {
+            let distance = (line >> 1) - integral;
+            let integral_now = self.held(integral + self.k_i * distance);
+        }
+        l.state_volts("integral", integral_now, INTEGRAL);
+        let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, self.gain));
+        let doc =
+            "One leg of the pair pulsed, its partner low, the third off, in commutation as well.";
+        l.b.stage("modulate_pair", &[doc]);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let pulses = modulator.pulse_pair(l, sign, line);
+        let remembered = vec![(memory, integral_now)];
+        step.remember(front, &pulses.command, None, None, remembered);
+    }
+
+    /// An integral part within its range.
+    fn held(&self, sum: Expr<'b>) -> Expr<'b> {
+        let doc = "Largest integral part";
+        let low = self.l.voltage("integral_min", self.range.low, doc);
+        let high = self.l.voltage("integral_max", self.range.high, doc);
+        sum.clamp(low, high)
+    }
+}
+
+/// Where the integral part may lie: within the greatest bus. Without an EMF it cannot leave that, as a mean of itself and
+/// the limited voltage; the clamp is there for the proof then, and at the next power of two it takes one instruction
+/// where there is one that saturates.
+fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
+    let bus = l.bus_interval().high;
+    if options.feed_forward {
+        return Interval::symmetric(bus);
+    }
+    let limit = bus.unsigned_abs().next_power_of_two() as i64;
+    Interval::new(-limit, limit - 1)
+}
