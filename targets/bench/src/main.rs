@@ -1,5 +1,5 @@
 //! The test bench: builds the firmware of every target, runs it on emulated cores, compares every word with the host,
-//! counts what a step costs; compares on the host what the drives command with what they did before.
+//! counts what a step costs; compares on the host what the drives command with what they did before; counts the house.
 //!
 //! `cargo xtask firmware`, `cargo xtask pil`, `cargo xtask cost` and `cargo xtask commands` come here.
 
@@ -7,6 +7,7 @@ mod commands;
 mod cost;
 mod firmware;
 mod listing;
+mod marks;
 mod pil;
 mod targets;
 mod toolchain;
@@ -42,6 +43,8 @@ enum Command {
     Cost(cost::Options),
     /// Compares a million steps of commands of every counted drive, in closed loop on the host, with the expected ones
     Commands(commands::Options),
+    /// How large the repository is, and which of its files lean on each other in circles
+    Marks,
 }
 
 /// Why the bench stopped.
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Command::Pil(options) => pil::run(&targets, &options),
         Command::Cost(options) => cost::run(&targets, &options),
         Command::Commands(options) => commands::run(&options),
+        Command::Marks => marks::print(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

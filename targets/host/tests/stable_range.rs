@@ -1,7 +1,7 @@
 //! The stable range of L and R that types and data sheets state, against simulation: loops stay calm inside of it
 //! and oscillate outside, by the rule of the robustness sheet.
 
-use hexagen_codegen::controllers::{StableRange, stable_range};
+use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_host::commands::stability::{run_off, sides};
 use hexagen_host::engine::{MotorSource, prepare};
 use hexagen_host::report::Outcome;

@@ -42,6 +42,8 @@ enum Command {
     Cost(Forwarded),
     /// Whether the counted drives command what they did: digests of a million steps each (`--only`, `--accept`)
     Commands(Forwarded),
+    /// How large the repository is beside its marks, and which files lean on each other in circles
+    Marks,
     /// Plants 300 faults and lists who notices each: interval verifier, Gappa, or the comparison with the bit-true model
     Faults,
     /// What 100 controllers add to `cargo check`, and the share of each part of the generator
@@ -74,6 +76,7 @@ fn main() -> ExitCode {
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
         Command::Commands(forwarded) => steps::run(&[steps::bench("commands", &forwarded.options)]),
+        Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::CompileTime => compile_time::measure(steps::root()),
         Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),

@@ -6,7 +6,7 @@ use crate::cli::Failure;
 use crate::closed_loop::RunOptions;
 use crate::engine::{Prepared, plant_of, run_of};
 use crate::report::{Figures, Outcome, Parameter, Stability, StabilityCheck};
-use hexagen_codegen::controllers::stable_range;
+use hexagen_codegen::laws::stable_range;
 use hexagen_codegen::spec::EmfSource;
 use rayon::prelude::*;
 

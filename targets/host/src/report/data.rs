@@ -7,7 +7,7 @@
 use super::expected::Expected;
 use super::robustness::Robustness;
 use crate::closed_loop::{Held, Merits, SpeedLimit, Trace, Trip};
-use hexagen_codegen::controllers::StableRange;
+use hexagen_codegen::laws::StableRange;
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 

@@ -141,7 +141,7 @@ fn generated(variant: &str) -> (Spec, GeneratedTexts, Stability) {
         spec_toml: interface.spec_toml,
     };
     let stability = Stability {
-        range: hexagen_codegen::controllers::StableRange {
+        range: hexagen_codegen::laws::StableRange {
             inductance: (0.8, 1.25),
             resistance: (0.1, 10.0),
         },
