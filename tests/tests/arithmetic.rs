@@ -1,5 +1,10 @@
 //! The integer primitives of emitted code against the meaning of the IR's operators.
 
+#![expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "a method of expressions is of one lifetime, what is wanted of all"
+)]
+
 use hexagen::arith::{
     Word, angle_fraction, angle_index, divide, divide_by_digits, divide_narrow, lookup,
     mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry,

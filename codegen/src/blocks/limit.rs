@@ -388,7 +388,7 @@ impl<'b> Asked<'b> {
 }
 
 /// (max + min) / 2 of three legs, rounded down; added to the open stage.
-fn middle<'b>(legs: Phases<'b, 3>) -> Expr<'b> {
+fn middle(legs: Phases<'_, 3>) -> Expr<'_> {
     let [high, low] = legs.extremes(["limited_max", "limited_min"]);
     named! {
         let limited_middle = (high + low) >> 1;

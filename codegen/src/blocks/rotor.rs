@@ -218,28 +218,6 @@ impl<'b> RotorWords<'b> {
         self.interpolate(l, hall, &edges)
     }
 
-    /// Ticks since the last edge: counted, and with a timer measured.
-    fn age(
-        &self,
-        l: &Lowering<'b>,
-        hall: &Hall<'b>,
-        age_before: Expr<'b>,
-        hall_ticks: Option<Expr<'b>>,
-    ) -> Expr<'b> {
-        let age_max = i64::from(l.spec.age_max());
-        let limit = || l.number("age_limit", age_max + 1, "Ages are counted no further.");
-        let Some(counted) = hall_ticks else {
-            return hall.edge.choose(1, age_before.min(limit()));
-        };
-        // Code and ticks that are read on either side of an edge contradict each other.
-        let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
-        let doc = "Ticks since an edge that the last two samples can have seen.";
-        let recent = l.number("ticks_recent", (2.0 * ticks.exact).floor() as i64, doc);
-        let since_edge = counted.is_above(recent).choose(0, counted);
-        let since = hall.edge.choose(since_edge, counted.max(age_before));
-        since.min(limit())
-    }
-
     /// Time since the last edge, and at an edge the speed.
     fn measure_speed(
         &self,
@@ -260,7 +238,7 @@ impl<'b> RotorWords<'b> {
         let intervals = self.intervals.map(Memory::read);
         named! {
             let age_before = self.age_prev.read() + ticks.number(l);
-            let age = self.age(l, hall, age_before, hall_ticks);
+            let age = age(l, hall, age_before, hall_ticks);
         }
         l.b.guarded_stage(
             "measure_speed",
@@ -373,6 +351,27 @@ impl<'b> RotorWords<'b> {
             omega: omega_next,
         }
     }
+}
+
+/// Ticks since the last edge: counted, and with a timer measured.
+fn age<'b>(
+    l: &Lowering<'b>,
+    hall: &Hall<'b>,
+    age_before: Expr<'b>,
+    hall_ticks: Option<Expr<'b>>,
+) -> Expr<'b> {
+    let age_max = i64::from(l.spec.age_max());
+    let limit = || l.number("age_limit", age_max + 1, "Ages are counted no further.");
+    let Some(counted) = hall_ticks else {
+        return hall.edge.choose(1, age_before.min(limit()));
+    };
+    // Code and ticks that are read on either side of an edge contradict each other.
+    let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
+    let doc = "Ticks since an edge that the last two samples can have seen.";
+    let recent = l.number("ticks_recent", (2.0 * ticks.exact).floor() as i64, doc);
+    let since_edge = counted.is_above(recent).choose(0, counted);
+    let since = hall.edge.choose(since_edge, counted.max(age_before));
+    since.min(limit())
 }
 
 fn greatest_age<'b>(l: &Lowering<'b>, age_max: i64) -> Expr<'b> {

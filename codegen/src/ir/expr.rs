@@ -87,6 +87,7 @@ impl<'b> Operand<'b> for i32 {
 /// What [`named!`] gives a name.
 pub trait Named {
     /// The same under that name, as a `let` of the emitted code.
+    #[must_use]
     fn named(self, name: &str) -> Self;
 }
 

@@ -10,6 +10,7 @@ use petgraph::algo::tarjan_scc;
 use petgraph::graphmap::DiGraphMap;
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 use syn::visit::{self, Visit};
 
@@ -21,7 +22,7 @@ pub fn print() -> Result<(), BenchError> {
     let files = Files::tracked()?;
     let generator = ["codegen/src/", "codegen/macros/"];
     let laws = ["codegen/src/laws/", "codegen/src/blocks/"];
-    let rust = |folders: &[&str]| files.lines(|path| path.ends_with(".rs") && is_in(path, folders));
+    let rust = |folders: &[&str]| files.lines(|path| is_rust(path) && is_in(path, folders));
     let longest = files.longest_function(&laws);
     let circles = files.circles();
     let mut table = Table::new();
@@ -34,7 +35,7 @@ pub fn print() -> Result<(), BenchError> {
         ("longest function of them", longest.0, 60),
         (
             "snapshots",
-            files.lines(|path| path.ends_with(".snap")),
+            files.lines(|path| has_extension(path, "snap")),
             15_000,
         ),
         ("files that name one option", files.that_name(OPTION), 8),
@@ -52,6 +53,16 @@ pub fn print() -> Result<(), BenchError> {
         println!("circle: {}", circle.join(", "));
     }
     Ok(())
+}
+
+fn has_extension(path: &str, extension: &str) -> bool {
+    Path::new(path)
+        .extension()
+        .is_some_and(|known| known == extension)
+}
+
+fn is_rust(path: &str) -> bool {
+    has_extension(path, "rs")
 }
 
 fn is_in(path: &str, folders: &[&str]) -> bool {
@@ -83,7 +94,7 @@ impl Files {
 
     /// Source files that name an option.
     fn that_name(&self, option: &str) -> usize {
-        let mut sources = self.0.iter().filter(|(path, _)| path.ends_with(".rs"));
+        let mut sources = self.0.iter().filter(|(path, _)| is_rust(path));
         let names = |text: &String| text.contains(option);
         sources.by_ref().filter(|(_, text)| names(text)).count()
     }
@@ -101,7 +112,7 @@ impl Files {
     /// Files that lean on each other, crate by crate.
     fn circles(&self) -> Vec<Vec<String>> {
         let mut graph: DiGraphMap<&str, ()> = DiGraphMap::new();
-        for (path, text) in self.0.iter().filter(|(path, _)| path.ends_with(".rs")) {
+        for (path, text) in self.0.iter().filter(|(path, _)| is_rust(path)) {
             let (Some((root, module)), Ok(file)) = (module_of(path), syn::parse_file(text)) else {
                 continue;
             };

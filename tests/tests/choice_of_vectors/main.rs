@@ -641,7 +641,7 @@ const WRONG_RULES_OF: Settings = &[("off_leg", "nominal")];
 /// left out, and the sign that tells two of them apart.
 const WRONG_RULES: [(&str, &str); 6] = [
     ("nearest_vector: b_is_low", "another comparison"),
-    ("nearest_vector: in low_legs", "0 for 1"),
+    ("nearest_vector: in low_legs", "never"),
     ("nearest_vector: in vector_three", "another comparison"),
     ("vector_of_low_legs[5]", "one more"),
     ("nearest_pair: a_below_b", "another comparison"),

@@ -123,7 +123,7 @@ struct Tracked<'b> {
 pub type Remembered<'b> = Vec<(Memory<'b>, Expr<'b>)>;
 
 /// The words of phases a and b.
-pub fn read<'b>(words: [Memory<'b>; 2]) -> Phases<'b> {
+pub fn read(words: [Memory<'_>; 2]) -> Phases<'_> {
     Phases(words.map(Memory::read))
 }
 

@@ -213,7 +213,7 @@ pub(super) fn nearest_physical<'b>(
 }
 
 /// The index of three flags: the sum of 1, 2 and 4.
-fn index_of_flags<'b>([first, second, third]: [Flag<'b>; 3]) -> Expr<'b> {
+fn index_of_flags([first, second, third]: [Flag<'_>; 3]) -> Expr<'_> {
     first.choose(1, 0) + second.choose(2, 0) + third.choose(4, 0)
 }
 
@@ -223,7 +223,7 @@ fn lowered_by<'b>(value: Expr<'b>, flag: Flag<'b>) -> Expr<'b> {
 }
 
 /// The greatest magnitude of three voltages that add up to zero: the sum of those above it.
-fn largest_of_zero_sum<'b>(u: Phases<'b, 3>) -> Expr<'b> {
+fn largest_of_zero_sum(u: Phases<'_, 3>) -> Expr<'_> {
     named! {
         let u_largest = u.map(|u| u.max(0)).sum();
     }
@@ -266,7 +266,7 @@ fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) ->
 }
 
 /// The legs that are low in the nearest to `u` of V1 to V6: as a pattern and as flags.
-fn low_legs_of<'b>(u: Phases<'b, 3>) -> (Expr<'b>, [Flag<'b>; 3]) {
+fn low_legs_of(u: Phases<'_, 3>) -> (Expr<'_>, [Flag<'_>; 3]) {
     // A zero lies as the leg does in the first of the two tied vectors: b low, a as b, c unlike b. The words tell
     // by their signs once a one is taken from those that lie low.
     let [a, b, c] = u.0;
@@ -299,7 +299,7 @@ fn nearest_three_phase<'b>(
 }
 
 /// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.
-fn better_of_two<'b>(pair: Pair, u: Phases<'b, 3>) -> [Expr<'b>; 2] {
+fn better_of_two(pair: Pair, u: Phases<'_, 3>) -> [Expr<'_>; 2] {
     let letter = pair.letter();
     let line = pair.line(u).named(&format!("line_{letter}"));
     let [first, second] = pair.numbers().map(|number| number as i32);

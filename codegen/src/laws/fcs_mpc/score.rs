@@ -25,7 +25,7 @@ impl Pair {
     }
 
     /// The line voltage of the first.
-    pub(super) fn line<'b>(self, u: Phases<'b, 3>) -> Expr<'b> {
+    pub(super) fn line(self, u: Phases<'_, 3>) -> Expr<'_> {
         u.0[self.1] - u.0[self.2]
     }
 }

@@ -7,8 +7,8 @@
 use super::expected::Expected;
 use super::robustness::Robustness;
 use crate::closed_loop::{Held, Merits, SpeedLimit, Trace, Trip};
-use hexagen_codegen::laws::StableRange;
 use hexagen_codegen::interface::FormatEntry;
+use hexagen_codegen::laws::StableRange;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 
 /// Everything on one page.
