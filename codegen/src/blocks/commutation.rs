@@ -49,7 +49,7 @@ impl<'b> CommutationRule<'b> {
         }
     }
 
-    /// Commutation time-out, samples.
+    /// Commutation time-out with its first sample, samples.
     fn whole(&self, l: &Lowering<'b>) -> Expr<'b> {
         let samples = i64::from(self.timeout) + 1;
         let doc = "What a commutation that begins is given: one for its first sample, and one for each that it may last behind it.";

@@ -375,6 +375,7 @@ impl<'b> Asked<'b> {
         let light_force = x_heavy.choose(force_y, force_x).max(frame.size >> 2);
         let force = beyond_corner.choose(light_force, frame.size).max(1);
         named! {
+            // A scale at which the shift is over 31 is refused.
             let quotient = past_corner.abs().divide(self.shift.min(31), force, bus);
         }
         let near_light = x_heavy.choose(self.near[1], self.near[0]);

@@ -147,7 +147,7 @@ impl<'b> Modulator<'b> {
             let pairing = !commutating;
         }
         let doc = "Outside commutation only the line voltage of the conducting pair counts: one leg pulsed, its partner low, the third off.";
-        let none = l.b.number(0);
+        let (none, pulsed) = (l.b.number(0), Phases([l.b.number(PULSED); 3]));
         l.b.guarded_stage("modulate_pair", pairing, false, &[doc]);
         let sign = pair_signs(l, sector);
         let line = across_pair(sign, unlimited.with_c("u_pair"));
@@ -166,7 +166,6 @@ impl<'b> Modulator<'b> {
                 l.b.join([(&*name, inside.0[x], outside.0[x])])[0]
             })
         };
-        let pulsed = Phases([none; 3]);
         let command = Command {
             compares: joined("compare", pulses.command.compares, compare_three),
             legs: joined("leg", pulses.command.legs, pulsed),

@@ -73,7 +73,7 @@ pub struct RotorWords<'b> {
 /// Angle and speed at this sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<'b> {
-    /// Direction of the last edge: 1 or -1.
+    /// Direction of the last edge: 1 or -1; 0 before the first.
     pub direction: Expr<'b>,
     /// Electrical angle.
     pub theta: Expr<'b>,

@@ -111,7 +111,7 @@ struct Tracked<'b> {
     sample: Sample<'b>,
     hall: Option<Hall<'b>>,
     rotor: Option<Rotor<'b>>,
-    /// Direction of rotation, 1 or -1; where the law follows commutations or the rotor.
+    /// Direction of rotation, 1 or -1, 0 before the first edge; where the law follows commutations or the rotor.
     direction: Option<Expr<'b>>,
     /// Samples for which a commutation may last, where it began where the direction is sensed.
     kept: Option<Expr<'b>>,

@@ -152,9 +152,9 @@ impl<'b> CurrentLoop<'_, 'b> {
         named! {
             let e_line_square = line.mul_floor(line, self.options.word);
         }
-        let Phases([with_b, with_a]) = k_slope * weights.map(|weight| weight * e_line_square);
+        let by_weight = k_slope * weights.map(|weight| weight * e_line_square);
         named! {
-            let motion = Phases([-with_a, with_b]);
+            let motion = Phases([-by_weight.b(), by_weight.a()]);
         }
         motion
     }

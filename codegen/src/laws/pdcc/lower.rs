@@ -1,9 +1,20 @@
 //! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
 
 use crate::blocks::{Hexagon, Modulator, Priority, Scale};
-use crate::laws::current_loop::{CurrentLoop, Deadbeat, EmfUse, LoopDesign, Needs, lower_with};
+use crate::ir::Phases;
+use crate::laws::current_loop::{
+    CurrentLoop, Deadbeat, EmfUse, Held, LoopDesign, Needs, lower_with,
+};
 use crate::scaling::Lowered;
 use crate::spec::{Modulation, PdccSpec, Spec};
+
+/// Where the limit finds the EMF.
+enum LimitEmf<'b> {
+    /// In the folded words: it is worked out where the limit acts.
+    Held(Held<'b>),
+    /// Here.
+    Known(Phases<'b>),
+}
 
 /// Lowers the controller at a scale.
 pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -23,11 +34,13 @@ pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale)
         };
         let front = step.front(set_point);
         let Deadbeat { u, shifts } = step.deadbeat(&front, options.dead_time_compensation);
-        let is_known = front.held.is_some() || front.e.is_some();
-        let emf = is_known.then_some(|| match (&front.held, front.e) {
-            (Some(held), _) => step.held_emf(held),
-            (None, Some(e)) => e,
-            (None, None) => u,
+        let held = front.held.map(LimitEmf::Held);
+        let emf = held.or(front.e.map(LimitEmf::Known));
+        let emf = emf.map(|emf| {
+            move || match emf {
+                LimitEmf::Held(held) => step.held_emf(&held),
+                LimitEmf::Known(e) => e,
+            }
         });
         let hexagon = Hexagon {
             bus: front.bus,
