@@ -15,21 +15,21 @@ const IMPORTS: [(&str, &[&str]); 15] = [
     ("spec", &["diagnostics"]),
     ("design", &["spec"]),
     (
-        "lower",
+        "blocks",
         &["design", "diagnostics", "interface", "ir", "spec"],
     ),
     (
         "scaling",
-        &["at_once", "interface", "ir", "lower", "spec", "stopwatch"],
+        &["at_once", "interface", "blocks", "ir", "spec", "stopwatch"],
     ),
     (
-        "controllers",
+        "laws",
         &[
             "design",
             "diagnostics",
             "interface",
             "ir",
-            "lower",
+            "blocks",
             "scaling",
             "spec",
             "stopwatch",
@@ -39,7 +39,7 @@ const IMPORTS: [(&str, &[&str]); 15] = [
         "pipeline",
         &[
             "at_once",
-            "controllers",
+            "laws",
             "diagnostics",
             "interface",
             "ir",
