@@ -3,7 +3,7 @@
 //! Operators add a node each, in the order in which Rust evaluates them. What an operator computes
 //! says [`Op::apply`]; of two products `k * x` with a [`Coefficient`] rounds half up at its shift, and
 //! [`Expr::mul_floor`] rounds down. A value becomes a `let` of the emitted code by its name, which
-//! [`named!`] takes from a binding:
+//! `named!` takes from a binding:
 //!
 //! ```text
 //! named! {
@@ -84,7 +84,7 @@ impl<'b> Operand<'b> for i32 {
     }
 }
 
-/// What [`named!`] gives a name.
+/// What `named!` gives a name.
 pub trait Named {
     /// The same under that name, as a `let` of the emitted code.
     #[must_use]
