@@ -157,11 +157,6 @@ impl<'b> Expr<'b> {
         self.b
     }
 
-    /// The value, as the function's graph knows it.
-    pub fn value(self) -> Value {
-        self.value
-    }
-
     /// The proven interval.
     pub fn interval(self) -> Interval {
         self.b.interval(self.value)

@@ -195,16 +195,13 @@ impl Rewriter<'_> {
 }
 
 fn number_right(r: &mut Rewriter<'_>, op: Op) -> Option<Op> {
-    let (left, right) = match op {
-        Op::Add(a, b) | Op::Product(a, b) => (r.literal(a).is_some(), r.literal(b).is_some()),
-        Op::Min(a, b) | Op::Max(a, b) => (r.is_constant(a), r.is_constant(b)),
-        _ => return None,
-    };
-    let turned = match op {
-        Op::Add(a, b) => Op::Add(b, a),
-        Op::Product(a, b) => Op::Product(b, a),
-        Op::Min(a, b) => Op::Min(b, a),
-        Op::Max(a, b) => Op::Max(b, a),
+    let is_literal = |value| r.literal(value).is_some();
+    let is_constant = |value| r.is_constant(value);
+    let (left, right, turned) = match op {
+        Op::Add(a, b) => (is_literal(a), is_literal(b), Op::Add(b, a)),
+        Op::Product(a, b) => (is_literal(a), is_literal(b), Op::Product(b, a)),
+        Op::Min(a, b) => (is_constant(a), is_constant(b), Op::Min(b, a)),
+        Op::Max(a, b) => (is_constant(a), is_constant(b), Op::Max(b, a)),
         _ => return None,
     };
     (left && !right).then_some(turned)
@@ -458,30 +455,38 @@ mod tests {
         assert!(changed > 100, "{changed}");
     }
 
+    /// The extremes of two words that go by their difference: min and max of x and y, then of y and x.
+    fn by_difference(x: Interval, y: Interval) -> [bool; 4] {
+        let b = ProgramBuilder::new("Extremes", &[]);
+        b.stage("compare", &[]);
+        let (x, y) = (b.input("x", x, ""), b.input("y", y, ""));
+        let all = [x.min(y), x.max(y), y.min(x), y.max(x)];
+        let names = ["min", "max", "min_turned", "max_turned"];
+        for (name, value) in names.into_iter().zip(all) {
+            b.output(name, value.named(name));
+        }
+        let step = b.finish().rewritten().step;
+        names.map(|name| {
+            let node = step.nodes.iter().find(|node| node.name == name);
+            matches!(node.expect("its node").op, Op::Lesser(..) | Op::Greater(..))
+        })
+    }
+
     /// `a + negative part of (b - a)` is right only where neither difference leaves its word.
     #[test]
     fn extremes_go_by_a_difference_only_where_it_fits_a_word() {
         let most = i64::from(i32::MAX);
         for high in [0, 1, 1 << 30, most] {
-            for (low, is_near) in [(high - most, true), (high - most - 2, false)] {
-                let b = ProgramBuilder::new("Extremes", &[]);
-                b.stage("compare", &[]);
-                let x = b.input("x", Interval::new(0, high), "");
-                let y = b.input("y", Interval::new(low, 0), "");
-                let all = [x.min(y), x.max(y), y.min(x), y.max(x)];
-                for (name, value) in ["a", "b", "c", "d"].into_iter().zip(all) {
-                    b.output(name, value.named(name));
-                }
-                let step = b.finish().rewritten().step;
-                let is_by_difference = |op: &Op| matches!(op, Op::Lesser(..) | Op::Greater(..));
-                let count = step
-                    .nodes
-                    .iter()
-                    .filter(|node| is_by_difference(&node.op))
-                    .count();
-                assert_eq!(count, if is_near { 4 } else { 0 }, "{high} {low}");
-            }
+            let x = Interval::new(0, high);
+            let y = |low: i64| Interval::new(low, 0);
+            assert_eq!(by_difference(x, y(high - most)), [true; 4], "{high}");
+            assert_eq!(by_difference(y(high - most), x), [true; 4], "{high}");
+            let beyond = by_difference(x, y(high - most - 1));
+            assert!(!beyond[0], "{high}: x - y may be 2^31");
+            let beyond = by_difference(x, y(high - most - 2));
+            assert_eq!(beyond, [false; 4], "{high}");
         }
+        assert_eq!(by_difference(Interval::WORD, Interval::WORD), [false; 4]);
     }
 
     /// No rule is there that no shape is about.
