@@ -1,0 +1,198 @@
+//! The drives whose texts are kept, and the texts of a drive.
+
+use hexagen_codegen::emit::c99::{Sources, emit_c99};
+use hexagen_codegen::emit::datasheet::emit_datasheet;
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
+use hexagen_codegen::pipeline::{Generated, generate};
+use hexagen_codegen::spec::{apply_variant, check, parse_toml};
+use hexagen_tests::covering::SPECIFICATIONS;
+use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
+use hexagen_tests::options::{generate_toml, kinds};
+use rayon::prelude::*;
+use toml_edit::DocumentMut;
+
+/// Kinds of texts.
+pub const TEXTS: [&str; 4] = ["rust", "c99", "ir", "datasheet"];
+
+/// Name of the type in every text, so that they differ in what the drives differ in.
+const NAME: &str = "Hub";
+
+/// Further fields of a variant's specification: section, field, value.
+type Fields = &'static [(&'static str, &'static str, &'static str)];
+
+/// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
+const VARIANTS: [(&str, &str, Fields); 19] = [
+    ("pdcc.pair", "pdcc:modulation=pair", &[]),
+    (
+        "pdcc.model-advance",
+        "pdcc:emf=model,advance=2,hall_capture=timer",
+        &[],
+    ),
+    (
+        "pdcc.proportional",
+        "pdcc:emf=model,reference=proportional,saturation=nearest",
+        &[],
+    ),
+    (
+        "pdcc.delay-0",
+        "pdcc:delay=0,discretisation=euler,saturation=keep_angle",
+        &[],
+    ),
+    ("pdcc.word-16", "pdcc:word=16,saturation=keep_angle", &[]),
+    ("pdcc.integral", "pdcc:emf=model,integral=on", &[]),
+    (
+        "pdcc.measured-bus",
+        "pdcc",
+        &[
+            ("inverter", "v_bus", "measured"),
+            ("inverter", "bus_adc_bits", "12"),
+            ("inverter", "bus_adc_range", "80 V"),
+            ("inverter", "stall_timeout", "200 ms"),
+        ],
+    ),
+    (
+        "pdcc.speed-loop",
+        "pdcc:speed_loop=on",
+        &[("motor", "inertia", "3 kg cm2")],
+    ),
+    (
+        "pdcc.dead-time",
+        "pdcc:emf=held,dead_time_compensation=on",
+        &[("inverter", "dead_time", "900 ns")],
+    ),
+    (
+        "fcs-mpc.all",
+        "fcs-mpc:candidates=all,emf=model,reference=proportional",
+        &[],
+    ),
+    (
+        "fcs-mpc.nominal",
+        "fcs-mpc:off_leg=nominal,advance=1.5,delay=0,word=16",
+        &[],
+    ),
+    (
+        "fcs-mpc.held",
+        "fcs-mpc:candidates=three_phase,emf=held",
+        &[],
+    ),
+    ("fcs-mpc.modulated", "fcs-mpc:modulated=on,emf=model", &[]),
+    (
+        "fcs-mpc.fewer-changes",
+        "fcs-mpc:candidates=three_phase,switching_weight=0.5A",
+        &[],
+    ),
+    (
+        "fcs-mpc.weighted",
+        "fcs-mpc:emf=model,switching_weight=0.3A,torque_weight=2",
+        &[],
+    ),
+    ("fcs-mpc.two-steps", "fcs-mpc:horizon=2,emf=model", &[]),
+    ("phcc.held", "phcc:off_leg=nominal,emf=held", &[]),
+    ("pi-pwm.six-step", "pi-pwm:six_step=on", &[]),
+    (
+        "pi-pwm.plain",
+        "pi-pwm:feed_forward=off,bandwidth=700Hz",
+        &[],
+    ),
+];
+
+/// What is generated for a drive.
+pub struct Drive {
+    /// Controller and variant, or controller and motor, or its row in the covering array.
+    pub name: String,
+    texts: [String; 4],
+}
+
+impl Drive {
+    fn new(name: &str, generated: &Generated) -> Self {
+        let Generated { graph, interface } = generated;
+        let rust = emit_rust(graph, interface, &Surface::public(NAME));
+        let Sources { header, source, .. } = emit_c99(graph, interface, NAME);
+        Self {
+            name: name.to_owned(),
+            texts: [
+                readable_rust(&rust),
+                header + "\n" + &source,
+                graph.program().to_string(),
+                emit_datasheet(graph, interface),
+            ],
+        }
+    }
+
+    /// Its text of a kind.
+    ///
+    /// # Panics
+    /// When there is no such kind.
+    pub fn text(&self, kind: &str) -> &str {
+        let place = TEXTS.iter().position(|text| *text == kind);
+        &self.texts[place.expect("a kind of text")]
+    }
+}
+
+/// The paper's motor with each controller as it is by default.
+pub fn defaults() -> Vec<Drive> {
+    let kinds = kinds();
+    kinds
+        .iter()
+        .map(|kind| variant(kind.name, kind.name, &[]))
+        .collect()
+}
+
+/// The paper's motor with options.
+pub fn variants() -> Vec<Drive> {
+    let variants = VARIANTS.par_iter();
+    variants
+        .map(|(name, options, fields)| variant(name, options, fields))
+        .collect()
+}
+
+fn variant(name: &str, options: &str, fields: Fields) -> Drive {
+    let mut ast = parse_toml(&specification(&motor(PAPER_MOTOR).text, fields), name);
+    let generated = ast.as_mut().map_err(|errors| errors.clone());
+    let generated = generated.and_then(|ast| {
+        apply_variant(ast, options)?;
+        let (spec, origins) = check(ast)?;
+        generate(&spec, &origins)
+    });
+    let generated = generated.unwrap_or_else(|errors| panic!("{name}: {errors}"));
+    Drive::new(name, &generated)
+}
+
+/// Every motor with every controller that it takes, and all drives of the covering arrays.
+pub fn others() -> Vec<Drive> {
+    let kinds = kinds();
+    let motors = motors();
+    let mut drives: Vec<(String, String)> = vec![];
+    for kind in &kinds {
+        drives.extend(motors.iter().map(|motor| {
+            let toml = kind.drive_toml(motor, &kind.choice_of(&[]), None);
+            (format!("{} {}", kind.name, motor.name), toml)
+        }));
+    }
+    // A motor that cannot have the controller has none of its texts.
+    drives.retain(|(_, toml)| generate_toml(toml).is_ok());
+    drives.extend(SPECIFICATIONS.iter().map(|(_, what, toml)| {
+        let name: Vec<&str> = what.split(' ').take(2).collect();
+        (name.join(" "), (*toml).to_owned())
+    }));
+    let drives = drives.par_iter().map(|(name, toml)| {
+        let generated = generate_toml(&specification(toml, &[]));
+        let (_, generated) = generated.unwrap_or_else(|errors| panic!("{name}: {errors}"));
+        Drive::new(name, &generated)
+    });
+    drives.collect()
+}
+
+/// A specification under the name that all have here, with further fields.
+fn specification(toml: &str, fields: Fields) -> String {
+    let mut document: DocumentMut = toml.parse().expect("a TOML file");
+    let names = [
+        ("motor", "name", NAME),
+        ("motor", "description", "Hub drive"),
+    ];
+    for (section, field, value) in names.iter().chain(fields) {
+        let number = value.parse::<i64>().map(toml_edit::value);
+        document[section][field] = number.unwrap_or_else(|_| toml_edit::value(*value));
+    }
+    document.to_string()
+}

@@ -1,0 +1,170 @@
+//! What the generator writes, versioned: emitted Rust and C99, IR text and data sheets.
+//!
+//! In full: Rust of the paper's motor with each controller, C of two. Of its variants the units that
+//! are new, and of known units the lines whose shape is new. Of all motors and of the covering arrays
+//! the shapes of lines that none of those has. A digest of every text tells where there is another
+//! change: of numbers, of the order of lines, of function heads, of C's comments.
+//!
+//! In extracts `=` begins a drive, `+` new units, `~` lines of a known unit.
+//! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them anew; a
+//! person reads the difference.
+
+mod drives;
+mod extracts;
+mod prose;
+mod shape;
+mod units;
+
+use drives::{Drive, TEXTS};
+use extracts::{Shown, shapes_of_extracts};
+use shape::Shape;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+use units::{Unit, units};
+
+/// Where the snapshots are, seen from this file.
+const FOLDER: &str = "kept";
+
+/// Controllers whose C is kept in full.
+const IN_FULL_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
+
+/// All drives, generated once.
+static DRIVES: LazyLock<[Vec<Drive>; 3]> =
+    LazyLock::new(|| [drives::defaults(), drives::variants(), drives::others()]);
+
+/// Snapshots by file name without ending, but for that of the digests.
+static SNAPSHOTS: LazyLock<BTreeMap<String, String>> = LazyLock::new(snapshots);
+
+/// File name of the digests.
+const DIGESTS: &str = "digests";
+
+fn snapshots() -> BTreeMap<String, String> {
+    let mut snapshots = BTreeMap::new();
+    for kind in TEXTS {
+        let [defaults, variants, others] = &*DRIVES;
+        let is_full = |drive: &&Drive| match kind {
+            "rust" => true,
+            "c99" => IN_FULL_IN_C.contains(&&*drive.name),
+            _ => false,
+        };
+        let mut shown = Shown::default();
+        for drive in defaults.iter().filter(is_full) {
+            shown.add(&units(kind, drive.text(kind)));
+            let name = format!("{}.{kind}", drive.name);
+            snapshots.insert(name, drive.text(kind).to_owned());
+        }
+        let mut extracts = String::new();
+        for drive in defaults.iter().chain(variants) {
+            let extract = shown.extract(&units(kind, drive.text(kind)));
+            if !extract.is_empty() {
+                write!(extracts, "= {}\n{extract}\n", drive.name).expect("a string takes all");
+            }
+        }
+        snapshots.insert(format!("variants.{kind}"), extracts);
+        let rest = others
+            .iter()
+            .flat_map(|drive| units(kind, drive.text(kind)));
+        snapshots.insert(format!("others.{kind}"), shown.rest(rest));
+    }
+    snapshots
+}
+
+/// A line per drive: 64 bits of each of its texts.
+fn digests() -> String {
+    let mut digests = format!(
+        "{:40} {}\n",
+        "drive",
+        TEXTS.map(|kind| format!("{kind:16}")).join(" ")
+    );
+    for drive in DRIVES.iter().flatten() {
+        let texts = TEXTS.map(|kind| format!("{:016x}", digest(drive.text(kind))));
+        writeln!(digests, "{:40} {}", drive.name, texts.join(" ")).expect("a string takes all");
+    }
+    digests
+}
+
+/// The 64-bit FNV-1a hash of a text.
+fn digest(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+fn assert_kept(snapshots: &BTreeMap<String, String>) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(FOLDER);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| {
+        for (name, text) in snapshots {
+            insta::assert_snapshot!(name.as_str(), text);
+        }
+    });
+}
+
+#[test]
+fn what_is_generated_is_what_was_reviewed() {
+    assert_kept(&SNAPSHOTS);
+}
+
+/// Numbers, orders and repetitions that no extract shows.
+#[test]
+fn nothing_else_has_changed() {
+    assert_kept(&BTreeMap::from([(DIGESTS.to_owned(), digests())]));
+}
+
+#[test]
+fn no_snapshot_is_left_over() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/snapshots")
+        .join(FOLDER);
+    let files = fs::read_dir(folder).expect("the snapshots are there");
+    let kept: BTreeSet<String> = files
+        .filter_map(|entry| {
+            let name = entry.expect("a directory entry").file_name();
+            Some(name.to_str()?.strip_suffix(".snap")?.to_owned())
+        })
+        .collect();
+    let made = SNAPSHOTS.keys().cloned().chain([DIGESTS.to_owned()]);
+    let made: BTreeSet<String> = made.collect();
+    let orphans: Vec<&String> = kept.difference(&made).collect();
+    assert_eq!(orphans, Vec::<&String>::new(), "orphans");
+}
+
+#[test]
+fn every_line_of_every_drive_is_in_a_snapshot() {
+    for kind in TEXTS {
+        let files = SNAPSHOTS.iter().filter(|(name, _)| name.ends_with(kind));
+        let shown: BTreeSet<Shape> = files
+            .flat_map(|(name, text)| {
+                if name.starts_with("variants.") || name.starts_with("others.") {
+                    shapes_of_extracts(kind, text)
+                } else {
+                    units(kind, text).iter().flat_map(Unit::shapes).collect()
+                }
+            })
+            .collect();
+        for drive in DRIVES.iter().flatten() {
+            for unit in units(kind, drive.text(kind)) {
+                let missing = unit.shapes().find(|shape| !shown.contains(shape));
+                assert_eq!(missing, None, "{kind} of {}", drive.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_stage_is_shown_whole() {
+    let [defaults, variants, others] = &*DRIVES;
+    let names = |drives: &[Drive]| {
+        let units = drives
+            .iter()
+            .flat_map(|drive| units("ir", drive.text("ir")));
+        units.map(|unit| unit.name).collect::<BTreeSet<String>>()
+    };
+    let shown = &names(defaults) | &names(variants);
+    assert_eq!(&names(others) - &shown, BTreeSet::new());
+}
