@@ -1,7 +1,6 @@
 //! Tests of the specification as a whole.
 
-mod diagnostics_macro;
-mod diagnostics_toml;
+mod diagnostics;
 mod front_ends;
 mod inverter;
 mod motors;

@@ -1,7 +1,7 @@
 //! What may stand in a value, and the remedies for what may not: none turns a number into another
 //! quantity, and none puts a basis into the mouth of a user who did not name it.
 
-use super::diagnostics_toml::COMPLETE;
+use super::diagnostics::COMPLETE;
 use crate::diagnostics::Location;
 use crate::spec::{check, load_motor_file, parse_macro, parse_toml};
 
