@@ -1,9 +1,9 @@
 //! What the generator writes, versioned: emitted Rust and C99, IR text and data sheets.
 //!
-//! In full: Rust of the paper's motor with each controller, C of two. Of its variants the units that
-//! are new, and of known units the lines whose shape is new. Of all motors and of the covering arrays
-//! the shapes of lines that none of those has. A digest of every text tells where there is another
-//! change: of numbers, of the order of lines, of function heads, of C's comments.
+//! In full: Rust of the paper's motor with each controller, C of two. Of its variants the units
+//! that are new, and of known units the lines whose shape is new. Of all motors and of the covering
+//! arrays the shapes of lines that none of those has. A digest of every text tells where there is
+//! another change: of numbers, of the order of lines, of function heads, of C's comments.
 //!
 //! In extracts `=` begins a drive, `+` new units, `~` lines of a known unit.
 //! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them anew; a

@@ -3,8 +3,8 @@
 /// A unit's name and the shape of one of its lines.
 pub type Shape = (String, String);
 
-/// A line with its numbers masked: of a quantity the prefix of its unit, too, fixed-point types, and
-/// names of vectors. The bus voltage, a constant or a word, is a word.
+/// A line with its numbers masked: of a quantity the prefix of its unit, too, fixed-point types,
+/// and names of vectors. The bus voltage, a constant or a word, is a word.
 pub fn shape(line: &str) -> String {
     let mut shape = String::new();
     let mut rest = line;

@@ -1,5 +1,5 @@
-//! Diagnostics of `hexagen::controller!` as the compiler shows them: one case for each kind of place
-//! that is marked. The wording of all of them is tested in `codegen/src/spec/tests/diagnostics.rs`.
+//! Diagnostics of `hexagen::controller!` as the compiler shows them: one case for each kind of
+//! place that is marked. The wording of all of them is tested in `codegen/src/spec/tests/diagnostics.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
