@@ -74,6 +74,17 @@ pub struct FormatEntry {
     pub meaning: String,
 }
 
+/// An option of the controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptionEntry {
+    /// Its name.
+    pub name: &'static str,
+    /// Its value, as the normalised specification has it.
+    pub value: String,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
 /// Names, documentation and fixed numbers of one controller type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
@@ -85,6 +96,8 @@ pub struct Interface {
     pub header: Vec<String>,
     /// The normalised specification.
     pub spec_toml: String,
+    /// The controller's options, as they are in effect.
+    pub options: Vec<OptionEntry>,
     /// Every format.
     pub formats: Vec<FormatEntry>,
     /// Associated constants.

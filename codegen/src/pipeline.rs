@@ -1,19 +1,17 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
 use crate::at_once::at_once;
-use crate::diagnostics::{
-    Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, significant,
-};
+use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue, engineering, percent};
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::laws::current_loop::{LinearLoop, LoopDesign};
 use crate::laws::{
-    StableRange, accuracy_constants, fcs_mpc, interface, narrow_words, pdcc, phcc, pi_pwm,
+    Cause, Period, StableRange, accuracy_constants, interface, law, narrow_words,
     trust_in_estimate, wide_words,
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{ControllerSpec, EmfSource, LoopOptions, Origins, Spec, SwitchingTable};
+use crate::spec::{Origins, Spec};
 use crate::stopwatch::Part;
 
 /// What emitters take.
@@ -70,50 +68,27 @@ fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let common = spec.controller.common();
     let design = LoopDesign::new(spec, common);
+    let law = law(&spec.controller);
     let scaled = choose_scale(&spec.inverter, common.word, |scale| {
-        match &spec.controller {
-            ControllerSpec::FcsMpc(options) => fcs_mpc::lower(spec, options, &design, scale),
-            ControllerSpec::Pdcc(options) => pdcc::lower(spec, options, &design, scale),
-            ControllerSpec::Phcc(options) => phcc::lower(spec, options, &design, scale),
-            ControllerSpec::PiPwm(options) => pi_pwm::lower(spec, options, &design, scale),
-        }
+        law.lower(spec, &design, scale)
     })
     .map_err(|why| Diagnostics::from(unscalable(&why, common.word, origins)))?;
     let rounded = design.rounded(&scaled);
     let mut errors = Collector::new();
-    let law = || match &spec.controller {
-        ControllerSpec::FcsMpc(options) => {
-            if options.modulated {
-                check_miss(spec, &design, origins, &mut errors);
-            } else {
-                check_stride(spec, &design, origins, &mut errors);
-            }
-            fcs_mpc::law(spec, options, &design)
+    let description = || {
+        match law.period() {
+            Period::Pulses => {}
+            Period::TwoVectors => check_miss(spec, &design, origins, &mut errors),
+            Period::OneVector => check_stride(spec, &design, origins, &mut errors),
         }
-        ControllerSpec::Pdcc(options) => {
-            let linear = pdcc::DeadbeatLoop {
-                options,
-                design: &rounded,
-            };
-            pdcc::law(check_stability(spec, common, &linear, origins, &mut errors))
-        }
-        ControllerSpec::Phcc(options) => {
-            check_stride(spec, &design, origins, &mut errors);
-            phcc::law(spec, options, &design)
-        }
-        ControllerSpec::PiPwm(options) => {
-            let linear = pi_pwm::PiLoop {
-                options,
-                design: &rounded,
-                spec,
-            };
-            let stable = check_stability(spec, common, &linear, origins, &mut errors);
-            pi_pwm::law(spec, options, stable)
-        }
+        let linear = law.linear(spec, &rounded);
+        let stable =
+            linear.map(|linear| check_stability(spec, linear.as_ref(), origins, &mut errors));
+        law.describe(spec, &design, stable)
     };
     let accuracy = || accuracy_constants(scaled.graph.program(), &spec.inverter);
-    let (accuracy, law) = at_once(accuracy, law);
-    let interface = interface(spec, &design, &scaled, &law, accuracy);
+    let (accuracy, description) = at_once(accuracy, description);
+    let interface = interface(spec, &design, &scaled, &description, accuracy);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
 }
@@ -121,9 +96,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 /// What the user should know of a drive that is generated as specified.
 pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     let mut warnings = vec![];
-    if let ControllerSpec::Phcc(phcc) = &spec.controller
-        && phcc.table == SwitchingTable::Printed
-    {
+    if law(&spec.controller).loses_current() {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
     }
     // Round numbers put motors right on the limit.
@@ -178,8 +151,7 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
         ));
     }
     let swing = drive.swing();
-    let loses = matches!(&spec.controller, ControllerSpec::Phcc(phcc) if phcc.table == SwitchingTable::Printed);
-    if swing > trip && !loses {
+    if swing > trip && !law(&spec.controller).loses_current() {
         let given = origins.given(MAX, &engineering(inverter.max_current, "A"));
         warnings.push(catalogue::swing_above_trip(
             origins.at(MAX),
@@ -239,50 +211,30 @@ fn unscalable(why: &Unscalable, word: u32, origins: &Origins) -> Diagnostic {
 
 fn check_stability(
     spec: &Spec,
-    options: &LoopOptions,
-    linear: &impl LinearLoop,
+    linear: &dyn LinearLoop,
     origins: &Origins,
     errors: &mut Collector,
 ) -> StableRange {
     let radius = linear.spectral_radius(spec);
     let stable = linear.stable_range(spec);
+    let law = law(&spec.controller);
     if radius >= 1.0 {
-        let (field, default, remedy) = match &spec.controller {
-            ControllerSpec::PiPwm(pi) if pi_pwm::is_stable_with_winding_time(spec, pi) => (
-                "integral_time",
-                engineering(pi.integral_time, "s"),
-                "choose a longer one, such as the default L/R",
-            ),
-            ControllerSpec::PiPwm(pi) => (
-                "bandwidth",
-                engineering(pi.bandwidth, "Hz"),
-                "choose a lower one or a shorter control period",
-            ),
-            _ => (
-                "emf_filter",
-                significant(options.emf_filter),
-                "choose another value or `emf: model`",
-            ),
-        };
+        let Cause {
+            field,
+            value,
+            remedy,
+        } = law.unstable_by(spec);
         let path = format!("controller.{field}");
         errors.push(catalogue::unstable_loop(
             origins.at(&path),
             field,
-            &origins.given(&path, &default),
+            &origins.given(&path, &value),
             radius,
             remedy,
         ));
         return stable;
     }
-    let remedy = match (&spec.controller, options.emf) {
-        (ControllerSpec::PiPwm(_), _) => "lower `bandwidth`",
-        (_, EmfSource::Estimated) if options.emf_filter >= 1.0 => {
-            "choose `emf: model`, an `emf_filter` below 1,"
-        }
-        (_, EmfSource::Held) => "choose `emf: estimated` or `emf: model`",
-        (_, EmfSource::Estimated) => "choose `emf: model`",
-        (_, EmfSource::Model) => "shorten the control period",
-    };
+    let remedy = law.steadier(spec);
     let leaves = |tolerance: f64, (low, high): (f64, f64)| {
         // The search ends at 0.1 and 10; beyond it nothing is known to be unstable.
         (1.0 - tolerance < low && low > 0.1) || (1.0 + tolerance > high && high < 10.0)
@@ -518,8 +470,7 @@ kind = "pdcc"
         let (spec, origins) = check(&ast).expect("it passes the checks");
         let codes = |pole: f64| {
             let mut errors = Collector::new();
-            let options = spec.controller.common();
-            check_stability(&spec, options, &OnePole(pole), &origins, &mut errors);
+            check_stability(&spec, &OnePole(pole), &origins, &mut errors);
             let errors = errors.into_result(()).err().into_iter().flatten();
             errors.map(|error| error.code).collect::<Vec<_>>()
         };

@@ -7,6 +7,7 @@
 #[path = "src/commands/reproduce/variants.rs"]
 mod variants;
 
+use hexagen_codegen::spec::KINDS;
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -33,9 +34,6 @@ const VARIANTS: [&str; 12] = [
     "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest",
     "pi-pwm:six_step=on,bandwidth=600Hz",
 ];
-
-/// Every motor gets each of these with all options at their defaults, where it can have it.
-const KINDS: [&str; 3] = ["fcs-mpc", "phcc", "pi-pwm"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");
@@ -104,9 +102,10 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
             builder.allow(code)
         })
         .motor(file);
+    // The motor's own controller first, then every kind that it can have with all options at their defaults.
     builder = builder.controller("pdcc");
-    for kind in KINDS {
-        if has_controller(file, kind)? {
+    for kind in KINDS.map(|kind| kind.name) {
+        if kind != "pdcc" && has_controller(file, kind)? {
             builder = builder.controller(kind);
         }
     }

@@ -6,7 +6,7 @@ use super::{Bus, Lowering, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Coefficient, Expr, Interval, Param, named};
-use crate::spec::{BusSource, ControllerSpec, Spec};
+use crate::spec::BusSource;
 use std::f64::consts::TAU;
 
 /// Fraction bits of the ratio of nominal to measured bus.
@@ -18,8 +18,8 @@ pub struct SetPointWords<'b> {
     /// The current set-point times its gain, words of voltage.
     pub j: Param<'b>,
     bus: Option<BusWords<'b>>,
-    /// The set-point's gain, V/A.
-    pub stiffness: f64,
+    /// The set-point's gain.
+    pub gain: Gain,
     /// With a speed loop.
     pub speed: Option<SpeedWords<'b>>,
 }
@@ -41,18 +41,33 @@ struct BusWords<'b> {
     ratio: Option<Param<'b>>,
 }
 
-/// Symbol and formula of the gain that makes a voltage of a current set-point.
-fn gain(spec: &Spec) -> (&'static str, &'static str) {
-    match spec.controller {
-        ControllerSpec::PiPwm(_) => ("k_p", "k_p = 2 pi f L"),
-        _ => ("K", "K = 1/b"),
+/// The gain that makes a voltage of a current set-point.
+#[derive(Clone, Copy, Debug)]
+pub struct Gain {
+    /// Its value, V/A.
+    pub value: f64,
+    /// Its symbol.
+    pub symbol: &'static str,
+    /// What the symbol stands for.
+    pub formula: &'static str,
+}
+
+impl Gain {
+    /// K = 1/b: the voltage that moves the current by so much in a period.
+    pub fn stiffness(value: f64) -> Self {
+        Self {
+            value,
+            symbol: "K",
+            formula: "K = 1/b",
+        }
     }
 }
 
 impl<'b> SetPointWords<'b> {
-    /// Declares the words; `stiffness` is the set-point's gain in V/A.
-    pub fn new(l: &Lowering<'b>, stiffness: f64) -> Self {
+    /// Declares the words.
+    pub fn new(l: &Lowering<'b>, gain: Gain) -> Self {
         let inverter = &l.spec.inverter;
+        let stiffness = gain.value;
         let most = (inverter.max_current * stiffness * l.scale.voltage()).ceil() as i64 + 1;
         let has_speed = l.spec.controller.common().speed.is_some();
         let what = if has_speed {
@@ -60,7 +75,7 @@ impl<'b> SetPointWords<'b> {
         } else {
             "Set-point"
         };
-        let symbol = gain(l.spec).0;
+        let symbol = gain.symbol;
         let doc = format!("{what} as the voltage {symbol} i_ref, words of voltage.");
         let bits = round_down(inverter.max_current * 65536.0) as i64;
         let top = product_bound(stiffness * l.scale.voltage() / 65536.0, 32, bits);
@@ -76,7 +91,7 @@ impl<'b> SetPointWords<'b> {
         Self {
             j,
             bus,
-            stiffness,
+            gain,
             speed,
         }
     }
@@ -104,8 +119,13 @@ impl<'b> SetPointWords<'b> {
 
     /// Adds the functions that set the words: of the current, the torque and, where there are such, speed and bus.
     pub fn add_setters(&self, l: &Lowering<'b>) {
-        let (spec, (symbol, formula)) = (l.spec, gain(l.spec));
-        let (stiffness, k_t) = (self.stiffness, spec.torque_constant());
+        let spec = l.spec;
+        let Gain {
+            value: stiffness,
+            symbol,
+            formula,
+        } = self.gain;
+        let k_t = spec.torque_constant();
         let current = stiffness * l.scale.voltage() / 65536.0;
         let k_set = l.scaled_coefficient(
             "k_set",

@@ -18,6 +18,7 @@ pub fn emit_datasheet(graph: &VerifiedGraph, interface: &Interface) -> String {
     sheet.lines(&interface.doc);
     sheet.heading(2, "Derived values");
     sheet.lines(&interface.header);
+    options(&mut sheet, interface);
     constants_of_the_type(&mut sheet, interface);
     formats(&mut sheet, interface);
     constants_of_the_step(&mut sheet, program);
@@ -71,6 +72,19 @@ impl Sheet {
     fn row<const N: usize>(&mut self, cells: [String; N]) {
         let cells = cells.map(|cell| cell.replace('|', "\\|"));
         self.line(&format!("| {} |", cells.join(" | ")));
+    }
+}
+
+fn options(sheet: &mut Sheet, interface: &Interface) {
+    sheet.heading(2, "Options of the controller");
+    sheet.line("As they are in effect, in SI units; what is not here is off.\n");
+    sheet.table(["option", "value", "meaning"]);
+    for option in &interface.options {
+        sheet.row([
+            format!("`{}`", option.name),
+            option.value.replace('"', ""),
+            format!("{}.", option.meaning),
+        ]);
     }
 }
 

@@ -1,37 +1,25 @@
 //! What users see of an emitted controller: documentation, tables and associated constants.
 
 use super::accuracy::accuracy_notes;
-use super::current_loop::{LoopDesign, StableRange};
+use super::current_loop::LoopDesign;
 use super::operation;
 use super::start::start_rpm;
+use super::{Description, Period};
 use crate::blocks::Scale;
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
-use crate::interface::{Interface, Limits, PublicConstant, PublicValue, Unit, Units};
+use crate::interface::{Interface, Limits, OptionEntry, PublicConstant, PublicValue, Unit, Units};
 use crate::scaling::Scaled;
-use crate::spec::{ControllerSpec, FcsMpcSpec, HallCapture, InverterSpec, Spec};
+use crate::spec::{HallCapture, InverterSpec, Rule, Spec};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
-
-/// What is particular to a controller's law.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Law {
-    /// Name of the method, for titles: "Predictive deadbeat current controller".
-    pub title: &'static str,
-    /// How it is tuned, or what its choice rests on: Markdown lines.
-    pub notes: Vec<String>,
-    /// Range of R and L in which a linear loop is stable.
-    pub stable: Option<StableRange>,
-    /// Tables of the method.
-    pub constants: Vec<PublicConstant>,
-}
 
 /// Builds the interface of a scaled controller.
 pub fn interface(
     spec: &Spec,
     design: &LoopDesign,
     scaled: &Scaled,
-    law: &Law,
+    law: &Description,
     accuracy: Vec<PublicConstant>,
 ) -> Interface {
     let inverter = &spec.inverter;
@@ -40,6 +28,7 @@ pub fn interface(
         doc: documentation(spec, design, law),
         header: header(design, scaled),
         spec_toml: spec.to_toml(),
+        options: options(spec),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),
         delay: spec.controller.common().delay,
@@ -95,7 +84,17 @@ fn ratios((low, high): (f64, f64)) -> String {
     format!("{} to {}", bound(low), bound(high))
 }
 
-fn documentation(spec: &Spec, design: &LoopDesign, law: &Law) -> Vec<String> {
+fn options(spec: &Spec) -> Vec<OptionEntry> {
+    let lines = spec.controller.lines().into_iter();
+    let entry = |(rule, value): (&'static Rule, String)| OptionEntry {
+        name: rule.name,
+        value,
+        meaning: rule.about,
+    };
+    lines.map(entry).collect()
+}
+
+fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<String> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let name = if motor.description.is_empty() {
         "BLDC motor".to_owned()
@@ -243,7 +242,7 @@ fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> Public
 fn constants(
     spec: &Spec,
     design: &LoopDesign,
-    law: &Law,
+    law: &Description,
     accuracy: Vec<PublicConstant>,
 ) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
@@ -293,14 +292,14 @@ fn constants(
             vec![
                 "Coefficients of the paper's (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
                 String::new(),
-                match spec.controller {
-                    ControllerSpec::Pdcc(_) | ControllerSpec::PiPwm(_) => {
+                match super::law(&spec.controller).period() {
+                    Period::Pulses => {
                         "The step reaches the same times by min/max injection, which needs none of them."
                     }
-                    ControllerSpec::FcsMpc(FcsMpcSpec { modulated: true, .. }) => {
+                    Period::TwoVectors => {
                         "The step divides a period between two vectors, not three: these times are for comparison."
                     }
-                    ControllerSpec::FcsMpc(_) | ControllerSpec::Phcc(_) => {
+                    Period::OneVector => {
                         "The step applies whole vectors and modulates none: these times are for comparison."
                     }
                 }

@@ -1,12 +1,13 @@
 //! The laws: one folder each with semantics, design and expressions, around the step that all share.
 //!
-//! Adding a controller adds a folder here, and its options to `spec::controller`; the compiler names the other
-//! places that must know it.
+//! Adding a controller adds a folder here, and its options to `spec::controller`; [`Law`] is what the rest of the
+//! generator asks of it.
 
 mod accuracy;
 pub mod current_loop;
 pub mod fcs_mpc;
 mod interface;
+mod law;
 mod operation;
 pub mod pdcc;
 pub mod phcc;
@@ -18,29 +19,18 @@ mod word_choice;
 
 pub use accuracy::accuracy_constants;
 pub use current_loop::StableRange;
-pub use interface::{Law, interface};
+pub use interface::interface;
+pub use law::{Cause, Description, Law, Period, Start, law};
 pub use trust::{Trust, trust_in_estimate};
 pub use word_choice::{narrow_words, wide_words};
 
-use crate::spec::{ControllerSpec, Spec};
-use current_loop::{LinearLoop, LoopDesign};
+use crate::spec::Spec;
+use current_loop::LoopDesign;
 
 /// The ranges of true over stated R and L within which a linear loop is stable, with exact coefficients;
 /// none for a controller that is no linear loop.
 pub fn stable_range(spec: &Spec) -> Option<StableRange> {
-    let design = &LoopDesign::new(spec, spec.controller.common());
-    match &spec.controller {
-        ControllerSpec::FcsMpc(_) | ControllerSpec::Phcc(_) => None,
-        ControllerSpec::Pdcc(options) => {
-            Some(pdcc::DeadbeatLoop { options, design }.stable_range(spec))
-        }
-        ControllerSpec::PiPwm(options) => Some(
-            pi_pwm::PiLoop {
-                options,
-                design,
-                spec,
-            }
-            .stable_range(spec),
-        ),
-    }
+    let design = LoopDesign::new(spec, spec.controller.common());
+    let linear = law(&spec.controller).linear(spec, &design)?;
+    Some(linear.stable_range(spec))
 }

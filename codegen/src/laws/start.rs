@@ -1,13 +1,10 @@
 //! How fast the rotor may turn when control begins, so that no current trips the drive.
 
-use super::current_loop::{LinearLoop, LoopDesign};
-use super::pdcc::DeadbeatLoop;
-use super::pi_pwm::PiLoop;
+use super::current_loop::LoopDesign;
+use super::law::{Period, law};
 use super::trust::TRAPEZOID_PER_FILTER;
 use crate::design::emf::zero_sum_shape;
-use crate::spec::{
-    ControllerSpec, EmfShape, EmfSource, Modulation, PhccCandidates, Spec, SwitchingTable,
-};
+use crate::spec::{EmfShape, EmfSource, Spec};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Where a turn exceeds so many times the share that the filter lets in, an estimate, which is moved on at the speed that
@@ -25,14 +22,10 @@ fn loses(shape: EmfShape) -> f64 {
 /// integral beside a modelled EMF that the sensors begin to tell swings as well: it still holds what the model lacked.
 const LACK: f64 = 1.17;
 
-/// Part of the bus that the line EMF has where a derived switching table without floating legs was designed: with more,
-/// the vectors that it chooses no longer move the current as they should.
-const TABLE_EMF: f64 = 0.75;
-
 /// Part of the bus that leaves room for an integral that has to stand for the EMF: a PI regulator's behind a filter that
 /// follows more slowly than the EMF turns, or a modelled EMF's until the sensors tell it. It overshoots, and past the bus
 /// the limit keeps the voltage along an EMF that is not there (simulated: trips from 0.88 on).
-const INTEGRATED_EMF: f64 = 0.85;
+pub(super) const INTEGRATED_EMF: f64 = 0.85;
 
 /// Greatest current of a braking speed loop over the greatest that it asks for: commutations overshoot (simulated).
 const BRAKING: f64 = 1.15;
@@ -63,45 +56,26 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let estimates = options.emf == EmfSource::Estimated;
     let loses = estimates && turn > loses(motor.emf_shape) * filter;
     let slow = estimates && turn > filter;
-    let kept = match &spec.controller {
-        // What a table that is given does says no derivation.
-        ControllerSpec::Phcc(phcc) if phcc.table != SwitchingTable::Derived => 0.0,
-        ControllerSpec::Phcc(phcc) if phcc.candidates == PhccCandidates::ThreePhase => TABLE_EMF,
-        ControllerSpec::PiPwm(pi) if pi.feed_forward && slow => INTEGRATED_EMF,
-        ControllerSpec::Pdcc(pdcc) if pdcc.integral => INTEGRATED_EMF,
-        _ => 1.0,
-    };
-    let met = most.min(kept * inverter.lowest_bus() / line);
+    let law = law(&spec.controller);
+    let start = law.start(slow);
+    let met = most.min(start.part_of_bus * inverter.lowest_bus() / line);
     let periods = f64::from(options.delay + 1);
     let vector = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
-    let (per_volt, own) = match &spec.controller {
-        ControllerSpec::Pdcc(options) => {
-            let linear = DeadbeatLoop { options, design };
-            (linear.greatest_response(spec, turn), 0.0)
-        }
-        // A pair shares the period with its own zero alone: a voltage of that length may lie 30 degrees off their line.
-        ControllerSpec::FcsMpc(fcs) if fcs.modulated => {
-            (design.plant.gain * periods, vector * 3_f64.sqrt() / 4.0)
-        }
-        ControllerSpec::FcsMpc(_) => (design.plant.gain * periods, vector),
-        ControllerSpec::Phcc(phcc) => (design.plant.gain * periods, vector + phcc.band),
-        ControllerSpec::PiPwm(options) => {
-            let linear = PiLoop {
-                options,
-                design,
-                spec,
-            };
-            (linear.greatest_response(spec, turn), 0.0)
-        }
-    };
-    let (integrates, pulses_pairs) = match &spec.controller {
-        ControllerSpec::Pdcc(pdcc) => (pdcc.integral, pdcc.modulation == Modulation::Pair),
-        ControllerSpec::PiPwm(pi) => (pi.feed_forward && options.emf == EmfSource::Model, false),
-        _ => (false, false),
-    };
-    let lack = if loses || integrates { LACK } else { 1.0 };
+    let per_volt = law
+        .linear(spec, design)
+        .map_or(design.plant.gain * periods, |linear| {
+            linear.greatest_response(spec, turn)
+        });
+    let own = start.current
+        + match law.period() {
+            Period::Pulses => 0.0,
+            // A pair shares the period with its own zero alone: a voltage of that length may lie 30 degrees off their line.
+            Period::TwoVectors => vector * 3_f64.sqrt() / 4.0,
+            Period::OneVector => vector,
+        };
+    let lack = if loses || start.integrates { LACK } else { 1.0 };
     // A leg that floats hides its EMF for one period more.
-    let hidden = if loses && pulses_pairs {
+    let hidden = if loses && start.hides_leg {
         1.0 + 1.0 / periods
     } else {
         1.0

@@ -1,6 +1,7 @@
 //! How far an EMF may turn in a control period for its estimate to be trusted.
 
-use crate::spec::{ControllerSpec, EmfShape, EmfSource, Spec};
+use super::law;
+use crate::spec::{EmfShape, EmfSource, Spec};
 
 /// Greatest turns, electrical degrees per period, up to which simulated drives of PDCC with the default filter keep rated
 /// torque within 5 %. A sine loses 5 % at 9 degrees, on whatever motor: the estimate is 1 % off there, the rest is a
@@ -34,12 +35,7 @@ pub struct Trust {
 /// Of a controller that estimates the EMF; none of another.
 pub fn trust_in_estimate(spec: &Spec) -> Option<Trust> {
     let (motor, options) = (&spec.motor, spec.controller.common());
-    let uses = match &spec.controller {
-        ControllerSpec::Pdcc(_) | ControllerSpec::FcsMpc(_) => true,
-        ControllerSpec::Phcc(_) => options.delay == 1,
-        ControllerSpec::PiPwm(pi) => pi.feed_forward,
-    };
-    if !uses || options.emf != EmfSource::Estimated {
+    if !law(&spec.controller).uses_emf() || options.emf != EmfSource::Estimated {
         return None;
     }
     let (shaped, per_filter) = match motor.emf_shape {

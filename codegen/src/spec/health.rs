@@ -52,43 +52,15 @@ impl Drive<'_> {
         2.0 / 3.0 * self.v_bus * -(-decay).exp_m1() / self.resistance
     }
 
-    /// What the currents must be able to reach without a trip, ampere: the reference's peak, and
-    /// what whole vectors add. Those of hysteresis carry a current out of its band until the
-    /// command that answers takes effect. Those of FCS-MPC miss by one vector's change, and by the
-    /// error that a change of state may weigh as much as.
+    /// What the currents must be able to reach without a trip, ampere: the reference's peak, and what the controller
+    /// adds.
     pub fn reach(&self) -> f64 {
-        let own = match self.controller {
-            ControllerSpec::FcsMpc(options) if !options.modulated => {
-                self.stride(1.0) + options.switching_weight
-            }
-            ControllerSpec::Phcc(options) => {
-                let answered = 1.0 + f64::from(options.common.delay);
-                phase_band(options.band) + self.stride(answered)
-            }
-            _ => 0.0,
-        };
-        self.peak() + own
+        self.peak() + self.controller.overshoot(self)
     }
 
-    /// What PHCC reaches in the commutations of a rotor that turns slowly, ampere; 0 for the
-    /// others. The reference's corner goes by 2/sqrt(3) I along beta, and until it is reached the
-    /// vector at 60 degrees to it, V/3 on alpha and V/sqrt(3) on beta, takes the one phase current
-    /// up by 2/3 I, less what its resistance takes of V/3. The band comes on top, and most of a
-    /// period's change: with three quarters of it the library's motors, simulated, reach 94 to 111
-    /// % of this.
+    /// What the currents reach in the commutations of a rotor that turns slowly, ampere; 0 where that is no more than
+    /// [`Self::reach`].
     pub fn swing(&self) -> f64 {
-        let ControllerSpec::Phcc(options) = self.controller else {
-            return 0.0;
-        };
-        let left = 1.0 - 3.0 * self.resistance * self.max_current / self.v_bus;
-        self.max_current * (1.0 + 2.0 / 3.0 * left.max(0.0))
-            + phase_band(options.band)
-            + 0.75 * self.stride(1.0)
+        self.controller.swing(self)
     }
-}
-
-/// By how much bands of this half width on alpha and beta let a phase current be off: b = -alpha/2
-/// + sqrt(3)/2 beta.
-fn phase_band(band: f64) -> f64 {
-    f64::midpoint(1.0, 3_f64.sqrt()) * band
 }

@@ -4,6 +4,7 @@
 //! a [`Spec`] in SI units with every default filled in, or into all errors at once.
 //!
 #![doc = include_str!("reference.md")]
+#![doc = include_str!("options.md")]
 
 pub mod ast;
 pub(crate) mod check;
@@ -14,6 +15,9 @@ mod load;
 mod macro_syntax;
 mod model;
 mod normalised;
+mod option_texts;
+mod options;
+mod rule;
 pub(crate) mod schema;
 #[cfg(test)]
 mod tests;
@@ -21,11 +25,12 @@ mod toml_syntax;
 pub mod units;
 mod value;
 mod variant;
+mod words;
 
 pub use ast::SpecAst;
 pub use check::{Origin, Origins, check};
 pub use controller::{
-    Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, LimitRule,
+    Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, Kind, LimitRule,
     LoopOptions, Modulation, OffLegModel, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec, Reference,
     SpeedLoop, SwitchingTable,
 };
@@ -33,5 +38,8 @@ pub(crate) use load::is_absolute;
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
 pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+pub use option_texts::help as option_help;
+pub use rule::Rule;
 pub use toml_syntax::parse_toml;
 pub use variant::{apply_variant, variant_of};
+pub use words::Word;

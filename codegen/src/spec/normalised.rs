@@ -2,10 +2,7 @@
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
 use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
-use crate::spec::{
-    Candidates, ControllerSpec, Discretisation, EmfSource, LimitRule, Modulation, OffLegModel,
-    PhccCandidates, Reference, SwitchingTable,
-};
+use crate::spec::ControllerSpec;
 use std::fmt::{Debug, Display};
 
 impl Spec {
@@ -85,128 +82,11 @@ impl Spec {
 fn write_controller(text: &mut Text, controller: &ControllerSpec) {
     text.section("controller");
     text.word("kind", controller.kind());
-    match controller {
-        ControllerSpec::FcsMpc(options) => {
-            text.word(
-                "candidates",
-                match options.candidates {
-                    Candidates::Table2 => "table2",
-                    Candidates::ThreePhase => "three_phase",
-                    Candidates::All => "all",
-                },
-            );
-            text.word("off_leg", off_leg(options.off_leg));
-            text.word("modulated", flag(options.modulated));
-            if options.horizon > 1 {
-                text.number("horizon", options.horizon);
-            }
-            if options.switching_weight > 0.0 {
-                text.number("switching_weight", options.switching_weight);
-            }
-            if options.torque_weight > 0.0 {
-                text.number("torque_weight", options.torque_weight);
-            }
-        }
-        ControllerSpec::Pdcc(options) => {
-            text.word(
-                "modulation",
-                match options.modulation {
-                    Modulation::ThreePhase => "three_phase",
-                    Modulation::Pair => "pair",
-                },
-            );
-            text.word("saturation", saturation(options.saturation));
-            if options.dead_time_compensation {
-                text.word("dead_time_compensation", "on");
-            }
-            if options.integral {
-                text.word("integral", "on");
-            }
-        }
-        ControllerSpec::Phcc(options) => {
-            match options.table {
-                SwitchingTable::Derived => text.word("table", "derived"),
-                SwitchingTable::Printed => text.word("table", "printed"),
-                SwitchingTable::Given(numbers) => text.number("table", numbers),
-            }
-            text.number("band", options.band);
-            text.word(
-                "candidates",
-                match options.candidates {
-                    PhccCandidates::Table2 => "table2",
-                    PhccCandidates::ThreePhase => "three_phase",
-                },
-            );
-            text.word("off_leg", off_leg(options.off_leg));
-        }
-        ControllerSpec::PiPwm(options) => {
-            text.number("bandwidth", options.bandwidth);
-            text.number("integral_time", options.integral_time);
-            text.word("feed_forward", flag(options.feed_forward));
-            text.word("six_step", flag(options.six_step));
-            text.word("saturation", saturation(options.saturation));
-            if options.dead_time_compensation {
-                text.word("dead_time_compensation", "on");
-            }
-        }
+    for (rule, value) in controller.lines() {
+        text.line(&format!("{} = {value}", rule.name));
     }
-    write_common(text, controller);
-}
-
-fn flag(is_on: bool) -> &'static str {
-    if is_on { "on" } else { "off" }
-}
-
-fn off_leg(model: OffLegModel) -> &'static str {
-    match model {
-        OffLegModel::Physical => "physical",
-        OffLegModel::Nominal => "nominal",
-    }
-}
-
-fn saturation(rule: LimitRule) -> &'static str {
-    match rule {
-        LimitRule::KeepAngle => "keep_angle",
-        LimitRule::Nearest => "nearest",
-        LimitRule::TorquePriority => "torque_priority",
-    }
-}
-
-fn write_common(text: &mut Text, controller: &ControllerSpec) {
-    let common = controller.common();
-    text.word(
-        "emf",
-        match common.emf {
-            EmfSource::Estimated => "estimated",
-            EmfSource::Model => "model",
-            EmfSource::Held => "held",
-        },
-    );
-    text.number("emf_filter", common.emf_filter);
-    text.word(
-        "reference",
-        match common.reference {
-            Reference::QuasiSquare => "quasi_square",
-            Reference::Proportional => "proportional",
-        },
-    );
-    if let Some(speed) = common.speed {
-        text.number("speed_bandwidth", speed.bandwidth);
+    if let Some(speed) = controller.common().speed {
         text.number("inertia", speed.inertia);
-    }
-    text.number("advance", common.advance);
-    text.number("delay", common.delay);
-    text.word(
-        "discretisation",
-        match common.discretisation {
-            Discretisation::Exact => "exact",
-            Discretisation::Euler => "euler",
-        },
-    );
-    text.number("word", common.word);
-    if !matches!(controller, ControllerSpec::PiPwm(_)) {
-        text.number("commutation_threshold", common.commutation_threshold);
-        text.number("commutation_timeout", common.commutation_timeout);
     }
 }
 

@@ -4,92 +4,9 @@
 //! crate is made for. The reference table for users is the documentation of [`crate::spec`].
 
 use super::ast::Basis;
-use super::controller::common::OPTIONS;
+use super::controller;
+use super::rule::{Kind, Rule, integer, quantity, text, word};
 use super::units::Dimension as D;
-
-/// A field: its name, what it takes, and an example for messages.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rule {
-    pub name: &'static str,
-    pub kind: Kind,
-    pub example: &'static str,
-}
-
-/// What a field takes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Kind {
-    /// A number with one of the units; limits in SI units of the first. A `low` of 0 allows 0.
-    Quantity {
-        dimensions: &'static [D],
-        low: f64,
-        high: f64,
-    },
-    /// A number without unit. A `low` of 0 allows 0.
-    Plain { low: f64, high: f64 },
-    /// A whole number without unit.
-    Integer { low: u32, high: u32 },
-    /// One of some words, which the checks know.
-    Word,
-    /// A list of integers.
-    Integers,
-    /// Free text.
-    Text,
-}
-
-pub(crate) const fn quantity(
-    name: &'static str,
-    dimensions: &'static [D],
-    low: f64,
-    high: f64,
-    example: &'static str,
-) -> Rule {
-    Rule {
-        name,
-        kind: Kind::Quantity {
-            dimensions,
-            low,
-            high,
-        },
-        example,
-    }
-}
-
-pub(crate) const fn integer(
-    name: &'static str,
-    low: u32,
-    high: u32,
-    example: &'static str,
-) -> Rule {
-    Rule {
-        name,
-        kind: Kind::Integer { low, high },
-        example,
-    }
-}
-
-pub(crate) const fn plain(name: &'static str, low: f64, high: f64, example: &'static str) -> Rule {
-    Rule {
-        name,
-        kind: Kind::Plain { low, high },
-        example,
-    }
-}
-
-pub(crate) const fn word(name: &'static str, example: &'static str) -> Rule {
-    Rule {
-        name,
-        kind: Kind::Word,
-        example,
-    }
-}
-
-const fn text(name: &'static str, example: &'static str) -> Rule {
-    Rule {
-        name,
-        kind: Kind::Text,
-        example,
-    }
-}
 
 /// 1 rpm in rad/s.
 const RPM: f64 = std::f64::consts::PI / 30.0;
@@ -138,11 +55,7 @@ pub(crate) const MOTOR: &[Rule] = &[
     quantity("inertia", &[D::Inertia], 1e-9, 100.0, "24 g cm2"),
     quantity("inductance_tolerance", &[D::Ratio], 0.0, 0.9, "10 %"),
     quantity("resistance_tolerance", &[D::Ratio], 0.0, 0.9, "30 %"),
-    Rule {
-        name: "hall_codes",
-        kind: Kind::Integers,
-        example: "[1, 5, 4, 6, 2, 3]",
-    },
+    Rule::of("hall_codes", Kind::Integers, "[1, 5, 4, 6, 2, 3]"),
 ];
 
 /// Fields of the inverter.
@@ -186,12 +99,13 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
 ];
 
-/// The sections and their fields.
-pub(crate) const SECTIONS: [(&str, &[Rule]); 3] = [
-    ("motor", MOTOR),
-    ("inverter", INVERTER),
-    ("controller", OPTIONS),
-];
+/// All fields with the names of their sections. An option that two controllers take in different ways stands there twice.
+fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
+    let motor = MOTOR.iter().map(|rule| ("motor", rule));
+    let inverter = INVERTER.iter().map(|rule| ("inverter", rule));
+    let options = controller::rules().map(|rule| ("controller", rule));
+    motor.chain(inverter).chain(options)
+}
 
 /// Fields that state one quantity in two ways.
 const ALTERNATIVES: [[&str; 2]; 3] = [
@@ -210,9 +124,8 @@ pub(crate) fn same_quantity(one: &str, other: &str) -> bool {
 
 /// The rule of a field, in whichever section.
 fn find(name: &str) -> Option<&'static Rule> {
-    SECTIONS
-        .iter()
-        .flat_map(|(_, rules)| rules.iter())
+    fields()
+        .map(|(_, rule)| rule)
         .find(|rule| rule.name == name)
 }
 
@@ -270,24 +183,21 @@ pub(crate) fn references(name: &str) -> &'static [(Basis, &'static str)] {
 
 /// The section that has a field of this name.
 pub(crate) fn section_of(name: &str) -> Option<&'static str> {
-    SECTIONS
-        .iter()
-        .find(|(_, rules)| rules.iter().any(|rule| rule.name == name))
-        .map(|(section, _)| *section)
+    fields()
+        .find(|(_, rule)| rule.name == name)
+        .map(|(section, _)| section)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{SECTIONS, example, same_quantity, section_of};
+    use super::{example, fields, same_quantity, section_of};
 
     #[test]
-    fn field_names_are_unique_over_all_sections() {
-        let names: Vec<&str> = SECTIONS
-            .iter()
-            .flat_map(|(_, rules)| rules.iter().map(|rule| rule.name))
-            .collect();
-        for (index, name) in names.iter().enumerate() {
-            assert!(!names[..index].contains(name), "{name}");
+    fn a_name_belongs_to_one_section() {
+        for (section, rule) in fields() {
+            let sections = fields().filter(|(_, other)| other.name == rule.name);
+            let mut others = sections.map(|(other, _)| other);
+            assert!(others.all(|other| other == section), "{}", rule.name);
         }
     }
 

@@ -15,7 +15,7 @@ pub use held::{Held, LeftOver};
 pub use stability::{LinearLoop, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
-use crate::blocks::set_point::SetPointWords;
+use crate::blocks::set_point::{Gain, SetPointWords};
 use crate::blocks::{
     Applied, Bus, Command, Commutation, Corner, Hall, Lowering, OffLeg, Rotor, Sample, Scale,
     advanced_sector, find_sector, proportional_reference, quasi_square_reference, sample,
@@ -25,16 +25,16 @@ use crate::ir::{Coefficient, Expr, Memory, Phases, ProgramBuilder, named};
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
 
-/// Lowers a controller at a scale: `law` builds its step; `stiffness` is the set-point's weight in V/A.
+/// Lowers a controller at a scale: `law` builds its step; `gain` makes a voltage of a set-point.
 pub fn lower_with(
     spec: &Spec,
     scale: Scale,
-    stiffness: f64,
+    gain: Gain,
     law: impl for<'b> FnOnce(&Lowering<'b>, &SetPointWords<'b>),
 ) -> Lowered {
     let builder = ProgramBuilder::new(&spec.name, &["One control period."]);
     let lowering = Lowering::new(&builder, spec, scale);
-    let set_point = SetPointWords::new(&lowering, stiffness);
+    let set_point = SetPointWords::new(&lowering, gain);
     set_point.add_setters(&lowering);
     law(&lowering, &set_point);
     let notes = lowering.into_notes();

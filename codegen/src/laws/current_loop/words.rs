@@ -104,7 +104,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let direction = (needs.commutation && !needs_rotor).then(|| direction_word(l));
         let speed = options.speed.zip(set_point.speed);
         let speed = speed
-            .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point.stiffness));
+            .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point.gain.value));
         let pair = needs.commutation.then(|| {
             let advances = options.advance > 0.0;
             let (threshold, timeout) = (options.commutation_threshold, options.commutation_timeout);

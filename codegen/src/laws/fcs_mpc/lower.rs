@@ -1,6 +1,7 @@
 //! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
 
 use crate::blocks::Scale;
+use crate::blocks::set_point::Gain;
 use crate::ir::Interval;
 use crate::laws::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, lower_with};
 use crate::laws::whole_vectors::Numbers;
@@ -8,8 +9,13 @@ use crate::scaling::Lowered;
 use crate::spec::{Candidates, FcsMpcSpec, Spec};
 
 /// Lowers the controller at a scale.
-pub fn lower(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    lower_with(spec, scale, design.k_di, |l, set_point| {
+pub(super) fn lower(
+    spec: &Spec,
+    options: &FcsMpcSpec,
+    design: &LoopDesign,
+    scale: Scale,
+) -> Lowered {
+    lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
         let step = CurrentLoop {
             l,
             options: &options.common,

@@ -1,5 +1,6 @@
 //! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
 
+use crate::blocks::set_point::Gain;
 use crate::blocks::{Hexagon, Modulator, Priority, Scale};
 use crate::ir::Phases;
 use crate::laws::current_loop::{
@@ -17,8 +18,8 @@ enum LimitEmf<'b> {
 }
 
 /// Lowers the controller at a scale.
-pub fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    lower_with(spec, scale, design.k_di, |l, set_point| {
+pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
+    lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
         let pair = options.modulation == Modulation::Pair;
         let step = CurrentLoop {
             l,

@@ -3,17 +3,47 @@
 mod lower;
 mod stability;
 
-pub use lower::lower;
-pub use stability::DeadbeatLoop;
+use super::current_loop::{LinearLoop, LoopDesign};
+use super::start::INTEGRATED_EMF;
+use super::{Description, Law, Period, StableRange, Start};
+use crate::blocks::Scale;
+use crate::scaling::Lowered;
+use crate::spec::{Modulation, PdccSpec, Spec};
+use stability::DeadbeatLoop;
 
-use crate::laws::{Law, StableRange};
+impl Law for PdccSpec {
+    fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered {
+        lower::lower(spec, self, design, scale)
+    }
 
-/// What the documentation of the type says of the method.
-pub fn law(stable: StableRange) -> Law {
-    Law {
-        title: "Predictive deadbeat current controller",
-        notes: vec![],
-        stable: Some(stable),
-        constants: vec![],
+    fn describe(&self, _: &Spec, _: &LoopDesign, stable: Option<StableRange>) -> Description {
+        Description {
+            title: "Predictive deadbeat current controller",
+            notes: vec![],
+            stable,
+            constants: vec![],
+        }
+    }
+
+    fn period(&self) -> Period {
+        Period::Pulses
+    }
+
+    fn linear<'a>(
+        &'a self,
+        _: &'a Spec,
+        design: &'a LoopDesign,
+    ) -> Option<Box<dyn LinearLoop + 'a>> {
+        let options = self;
+        Some(Box::new(DeadbeatLoop { options, design }))
+    }
+
+    fn start(&self, _: bool) -> Start {
+        Start {
+            part_of_bus: if self.integral { INTEGRATED_EMF } else { 1.0 },
+            integrates: self.integral,
+            hides_leg: self.modulation == Modulation::Pair,
+            ..Start::default()
+        }
     }
 }

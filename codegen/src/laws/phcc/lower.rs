@@ -4,6 +4,7 @@ use super::table::{
     BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
     switching_table,
 };
+use crate::blocks::set_point::Gain;
 use crate::blocks::{Lowering, Scale};
 use crate::diagnostics::engineering;
 use crate::ir::{Expr, Flag, Interval, Memory, Named, Phases, named};
@@ -13,8 +14,8 @@ use crate::scaling::Lowered;
 use crate::spec::{PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
-pub fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    lower_with(spec, scale, design.k_di, |l, set_point| {
+pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
+    lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
         let bands =
             [1.0, 3.0_f64.sqrt()].map(|share| l.volts_word(share * design.k_di * options.band));
         let common = &options.common;

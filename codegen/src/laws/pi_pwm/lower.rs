@@ -1,5 +1,6 @@
 //! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
 
+use crate::blocks::set_point::Gain;
 use crate::blocks::{
     Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line, pair_signs,
 };
@@ -20,8 +21,17 @@ const INTEGRATION: &[&str] = &[
 const INTEGRAL: &str = "Integral part after one step";
 
 /// Lowers the controller at a scale.
-pub fn lower(spec: &Spec, options: &PiPwmSpec, design: &LoopDesign, scale: Scale) -> Lowered {
-    let gain = options.proportional_gain(&spec.motor);
+pub(super) fn lower(
+    spec: &Spec,
+    options: &PiPwmSpec,
+    design: &LoopDesign,
+    scale: Scale,
+) -> Lowered {
+    let gain = Gain {
+        value: options.proportional_gain(&spec.motor),
+        symbol: "k_p",
+        formula: "k_p = 2 pi f L",
+    };
     lower_with(spec, scale, gain, |l, set_point| {
         let emf = if options.feed_forward {
             EmfUse::FeedForward

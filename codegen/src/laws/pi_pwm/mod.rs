@@ -3,36 +3,95 @@
 mod lower;
 mod stability;
 
-pub use lower::lower;
-pub use stability::{PiLoop, is_stable_with_winding_time};
-
+use super::current_loop::{LinearLoop, LoopDesign};
+use super::start::INTEGRATED_EMF;
+use super::{Cause, Description, Law, Period, StableRange, Start};
+use crate::blocks::Scale;
 use crate::diagnostics::engineering;
-use crate::laws::{Law, StableRange};
-use crate::spec::{PiPwmSpec, Spec};
+use crate::scaling::Lowered;
+use crate::spec::{EmfSource, PiPwmSpec, Spec};
+use stability::{PiLoop, is_stable_with_winding_time};
 
-/// What the documentation of the type says of the method.
-pub fn law(spec: &Spec, options: &PiPwmSpec, stable: StableRange) -> Law {
-    let gain = options.proportional_gain(&spec.motor);
-    Law {
-        title: if options.six_step {
-            "Six-step PI current controller"
+impl Law for PiPwmSpec {
+    fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered {
+        lower::lower(spec, self, design, scale)
+    }
+
+    fn describe(&self, spec: &Spec, _: &LoopDesign, stable: Option<StableRange>) -> Description {
+        let gain = self.proportional_gain(&spec.motor);
+        Description {
+            title: if self.six_step {
+                "Six-step PI current controller"
+            } else {
+                "PI current controller in the stationary plane"
+            },
+            notes: vec![
+                format!(
+                    "Tuning: the proportional gain 2 pi f L = {} puts the crossover of the current loop at {};",
+                    engineering(gain, "V/A"),
+                    engineering(self.bandwidth, "Hz"),
+                ),
+                format!(
+                    "the integral time of {} (L/R = {}) cancels the winding's pole where the two are equal. The anti-windup tracks",
+                    engineering(self.integral_time, "s"),
+                    engineering(spec.motor.inductance / spec.motor.resistance, "s"),
+                ),
+                "with the same time.".to_owned(),
+            ],
+            stable,
+            constants: vec![],
+        }
+    }
+
+    fn period(&self) -> Period {
+        Period::Pulses
+    }
+
+    fn linear<'a>(
+        &'a self,
+        spec: &'a Spec,
+        design: &'a LoopDesign,
+    ) -> Option<Box<dyn LinearLoop + 'a>> {
+        Some(Box::new(PiLoop {
+            options: self,
+            design,
+            spec,
+        }))
+    }
+
+    fn uses_emf(&self) -> bool {
+        self.feed_forward
+    }
+
+    fn start(&self, slow: bool) -> Start {
+        Start {
+            part_of_bus: if self.feed_forward && slow {
+                INTEGRATED_EMF
+            } else {
+                1.0
+            },
+            integrates: self.feed_forward && self.common.emf == EmfSource::Model,
+            ..Start::default()
+        }
+    }
+
+    fn unstable_by(&self, spec: &Spec) -> Cause {
+        if is_stable_with_winding_time(spec, self) {
+            Cause {
+                field: "integral_time",
+                value: engineering(self.integral_time, "s"),
+                remedy: "choose a longer one, such as the default L/R",
+            }
         } else {
-            "PI current controller in the stationary plane"
-        },
-        notes: vec![
-            format!(
-                "Tuning: the proportional gain 2 pi f L = {} puts the crossover of the current loop at {};",
-                engineering(gain, "V/A"),
-                engineering(options.bandwidth, "Hz"),
-            ),
-            format!(
-                "the integral time of {} (L/R = {}) cancels the winding's pole where the two are equal. The anti-windup tracks",
-                engineering(options.integral_time, "s"),
-                engineering(spec.motor.inductance / spec.motor.resistance, "s"),
-            ),
-            "with the same time.".to_owned(),
-        ],
-        stable: Some(stable),
-        constants: vec![],
+            Cause {
+                field: "bandwidth",
+                value: engineering(self.bandwidth, "Hz"),
+                remedy: "choose a lower one or a shorter control period",
+            }
+        }
+    }
+
+    fn steadier(&self, _: &Spec) -> &'static str {
+        "lower `bandwidth`"
     }
 }

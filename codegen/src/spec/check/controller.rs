@@ -5,13 +5,16 @@ use super::motor::Motor;
 use super::reader::Reader;
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::ast::{Field, Section, Value};
-use crate::spec::controller::common::{OPTIONS, Surroundings};
-use crate::spec::controller::{fcs_mpc, pdcc, phcc, pi_pwm};
-use crate::spec::{ControllerSpec, HallCapture, KINDS};
+use crate::spec::controller::common::{HallEdges, Surroundings};
+use crate::spec::controller::{self, KINDS, Kind};
+use crate::spec::{ControllerSpec, HallCapture};
 use std::f64::consts::TAU;
 
 /// Options that are known and that this version does not have.
 const PLANNED_OPTIONS: [&str; 1] = ["zero"];
+
+/// The controller of a drive that states none.
+const DEFAULT_KIND: &str = "pdcc";
 
 /// The controller with its options, and how Hall edges reach it.
 pub(super) fn read(
@@ -21,19 +24,22 @@ pub(super) fn read(
     inverter: &Inverter,
     errors: &mut Collector,
 ) -> (Option<ControllerSpec>, Option<HallCapture>) {
-    let reader = Reader::new("controller", section, OPTIONS, fallback);
+    let any = Reader::new("controller", section, controller::rules(), fallback);
     if section.location.is_some() {
-        reader.require(errors, &["kind"]);
+        any.require(errors, &["kind"]);
     }
-    let kind = match reader.field("kind") {
-        None => "pdcc",
-        Some(field) => match read_kind(field, errors) {
-            Some(kind) => kind,
-            // The options are those of another controller: nothing can be said about them.
-            None => return (None, None),
-        },
+    let kind = match any.field("kind") {
+        None => KINDS.iter().find(|kind| kind.name == DEFAULT_KIND),
+        Some(field) => read_kind(field, errors),
+    };
+    // Without a kind the options are those of another controller: nothing can be said about them.
+    let Some(kind) = kind else {
+        return (None, None);
     };
     check_takers(section, kind, errors);
+    // Its own rules come before those of others, whose names are known as well.
+    let rules = kind.rules().into_iter().chain(controller::rules());
+    let reader = Reader::new("controller", section, rules, fallback);
     reader.check_fields(errors, |field, errors| {
         let planned = PLANNED_OPTIONS.contains(&field.name.as_str());
         if planned {
@@ -59,41 +65,30 @@ pub(super) fn read(
         },
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
-    let controller = match kind {
-        "fcs-mpc" => {
-            fcs_mpc::check_options(&reader, &surroundings, errors).map(ControllerSpec::FcsMpc)
-        }
-        "phcc" => phcc::check_options(&reader, &surroundings, errors).map(ControllerSpec::Phcc),
-        "pi-pwm" => {
-            pi_pwm::check_options(&reader, &surroundings, errors).map(ControllerSpec::PiPwm)
-        }
-        _ => pdcc::check_options(&reader, &surroundings, errors).map(ControllerSpec::Pdcc),
-    };
+    let controller = (kind.read)(&reader, &surroundings, errors);
     (controller, read_capture(&reader, inverter, errors))
 }
 
 /// Options of another kind than the chosen one.
-fn check_takers(section: &Section, kind: &str, errors: &mut Collector) {
+fn check_takers(section: &Section, chosen: &Kind, errors: &mut Collector) {
     for field in &section.fields {
-        let takers: Vec<&str> = KINDS
-            .iter()
-            .filter(|(_, options)| options.contains(&field.name.as_str()))
-            .map(|(kind, _)| *kind)
-            .collect();
-        if !takers.is_empty() && !takers.contains(&kind) {
+        let takes = |kind: &Kind| kind.rules().iter().any(|rule| rule.name == field.name);
+        let takers = KINDS.iter().filter(|kind| takes(kind));
+        let takers: Vec<&str> = takers.map(|kind| kind.name).collect();
+        if !takers.is_empty() && !takers.contains(&chosen.name) {
             let at = &field.name_location;
             errors.push(catalogue::option_of_other_controller(
                 at,
                 &field.name,
-                kind,
+                chosen.name,
                 &takers,
             ));
         }
     }
 }
 
-/// The name of an available controller, in the spelling of `KINDS`.
-fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
+/// An available controller.
+fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static Kind> {
     let given = match &field.value {
         Value::Malformed(error) => {
             errors.push((**error).clone());
@@ -103,12 +98,9 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static str> {
     };
     // In the macro `fcs_mpc` is as natural as `fcs-mpc`.
     let name = given.replace('_', "-");
-    let known = KINDS
-        .iter()
-        .map(|(kind, _)| *kind)
-        .find(|kind| *kind == name);
+    let known = KINDS.iter().find(|kind| kind.name == name);
     if known.is_none() {
-        let available = KINDS.map(|(kind, _)| kind);
+        let available = KINDS.map(|kind| kind.name);
         let at = &field.location;
         errors.push(catalogue::unknown_controller(at, &given, &available));
     }
@@ -122,14 +114,8 @@ fn read_capture(
     inverter: &Inverter,
     errors: &mut Collector,
 ) -> Option<HallCapture> {
-    let timer = reader
-        .word(
-            errors,
-            "hall_capture",
-            &[("sampled", false), ("timer", true)],
-        )
-        .or_else(|| reader.field("hall_capture").is_none().then_some(false))?;
-    if !timer {
+    let edges: HallEdges = reader.choice_or_preset(errors, "hall_capture", &[]);
+    if edges == HallEdges::Sampled {
         return Some(HallCapture::Sampled);
     }
     let Some(clock) = &inverter.hall_timer_clock else {

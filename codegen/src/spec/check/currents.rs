@@ -137,17 +137,12 @@ fn check_health(reader: &Reader, drive: &Drive, rated: f64, trip: f64, errors: &
         errors.push(catalogue::max_current_above_trip(
             &max_part, &trip_part, peak,
         ));
-    } else if let ControllerSpec::Phcc(phcc) = drive.controller
-        && phcc.band.max(drive.stride(1.0)) < rated
+    } else if drive.stride(1.0) < rated
         && reach > trip * (1.0 + 1e-9)
+        && let Some(error) = drive
+            .controller
+            .refuse_trip(drive, rated, [&max_part, &trip_part])
     {
-        let periods = 1 + phcc.common.delay;
-        errors.push(catalogue::hysteresis_reaches_trip(
-            &max_part,
-            &trip_part,
-            reach,
-            [phcc.band, drive.stride(f64::from(periods))],
-            periods,
-        ));
+        errors.push(error);
     }
 }

@@ -5,14 +5,17 @@ use super::other_names;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, engineering, percent, rpm, significant};
 use crate::spec::ast::{Basis, Field, Number, Section, Value};
-use crate::spec::schema::{self, Kind, Rule};
+use crate::spec::rule::{Kind, Preset, Rule};
+use crate::spec::schema;
 use crate::spec::units::Dimension;
+use crate::spec::value::parse_value;
+use crate::spec::words::Words;
 
 /// One section's fields under their rules.
 pub(crate) struct Reader<'a> {
     name: &'static str,
     section: &'a Section,
-    rules: &'static [Rule],
+    rules: Vec<&'static Rule>,
     /// Where to report what is missing.
     at: Location,
 }
@@ -33,18 +36,18 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// `fallback`: where to report a missing section.
+    /// The first of two rules of one name holds. `fallback`: where to report a missing section.
     pub fn new(
         name: &'static str,
         section: &'a Section,
-        rules: &'static [Rule],
+        rules: impl IntoIterator<Item = &'static Rule>,
         fallback: &Location,
     ) -> Self {
         let at = section.location.as_ref().unwrap_or(fallback).clone();
         Self {
             name,
             section,
-            rules,
+            rules: rules.into_iter().collect(),
             at,
         }
     }
@@ -178,7 +181,7 @@ impl<'a> Reader<'a> {
     fn rule(&self, name: &str) -> Option<(&'a Field, &'static Rule)> {
         let field = self.field(name)?;
         let rule = self.rules.iter().find(|rule| rule.name == name)?;
-        Some((field, rule))
+        Some((field, *rule))
     }
 
     /// The number of a field that takes one.
@@ -187,7 +190,7 @@ impl<'a> Reader<'a> {
         let wanted = match rule.kind {
             Kind::Quantity { .. } => "a number with a unit",
             Kind::Plain { .. } => "a number",
-            Kind::Integer { .. } => "a whole number",
+            Kind::Integer { .. } | Kind::OneOf(_) => "a whole number",
             _ => return None,
         };
         match &field.value {
@@ -278,6 +281,12 @@ impl<'a> Reader<'a> {
         refuse_basis(errors, &given, "remove the word").then_some(given)
     }
 
+    /// As [`Self::plain_quantity`], or the default.
+    pub fn plain_quantity_or_preset(&self, errors: &mut Collector, name: &'static str) -> f64 {
+        let given = self.plain_quantity(errors, name);
+        given.map_or_else(|| self.preset_number(name), |given| given.si)
+    }
+
     /// A number without unit, within its limits.
     pub fn plain(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
         let (given, kind) = self.number(errors, name)?;
@@ -297,10 +306,7 @@ impl<'a> Reader<'a> {
     /// A whole number without unit, within its limits.
     pub fn integer(&self, errors: &mut Collector, name: &'static str) -> Option<u32> {
         let (given, kind) = self.number(errors, name)?;
-        let Kind::Integer { low, high } = kind else {
-            return None;
-        };
-        if !refuse_unit(errors, &given) {
+        if !matches!(kind, Kind::Integer { .. } | Kind::OneOf(_)) || !refuse_unit(errors, &given) {
             return None;
         }
         if given.number.digits.contains(['.', 'e', 'E']) {
@@ -318,14 +324,80 @@ impl<'a> Reader<'a> {
             ));
             return None;
         }
-        let limits = [f64::from(low), f64::from(high)];
-        within(errors, &given, limits, [low.to_string(), high.to_string()])
-            .then_some(given.si as u32)
+        let is_taken = match kind {
+            Kind::OneOf(numbers) => is_one_of(errors, &given, numbers),
+            Kind::Integer { low, high } => {
+                let limits = [f64::from(low), f64::from(high)];
+                within(errors, &given, limits, [low.to_string(), high.to_string()])
+            }
+            _ => false,
+        };
+        is_taken.then_some(given.si as u32)
+    }
+
+    /// As [`Self::integer`], or the default.
+    pub fn integer_or_preset(&self, errors: &mut Collector, name: &'static str) -> u32 {
+        self.integer(errors, name)
+            .unwrap_or_else(|| self.preset_number(name) as u32)
     }
 
     /// A word that is `on` or `off`.
     pub fn switch(&self, errors: &mut Collector, name: &'static str) -> Option<bool> {
-        self.word(errors, name, &[("on", true), ("off", false)])
+        self.choice(errors, name, &[])
+    }
+
+    /// A word of the option's table. `planned`: words that are known, and that this version does not have.
+    pub fn choice<T: Words>(
+        &self,
+        errors: &mut Collector,
+        name: &'static str,
+        planned: &[&str],
+    ) -> Option<T> {
+        let words: Vec<&str> = T::WORDS.iter().map(|known| known.word).collect();
+        if let Some(field) = self.field(name)
+            && let Value::Word(given) = &field.value
+            && planned.contains(&given.as_str())
+        {
+            errors.push(catalogue::option_unavailable(
+                &field.location,
+                name,
+                given,
+                &words,
+            ));
+            return None;
+        }
+        let choices: Vec<(&str, T)> = words.into_iter().zip(T::CHOICES.iter().copied()).collect();
+        self.word(errors, name, &choices)
+    }
+
+    /// As [`Self::choice`], or the default.
+    pub fn choice_or_preset<T: Words>(
+        &self,
+        errors: &mut Collector,
+        name: &'static str,
+        planned: &[&str],
+    ) -> T {
+        self.choice(errors, name, planned)
+            .unwrap_or_else(|| match self.preset(name) {
+                Some(Preset::Value(word)) => T::from_word(word).unwrap_or(T::CHOICES[0]),
+                _ => T::CHOICES[0],
+            })
+    }
+
+    fn preset(&self, name: &str) -> Option<Preset> {
+        let rule = self.rules.iter().find(|rule| rule.name == name)?;
+        Some(rule.preset)
+    }
+
+    /// The default of a number, in SI units; NaN where the table has none, which a test rules out.
+    pub fn preset_number(&self, name: &'static str) -> f64 {
+        let Some(Preset::Value(text)) = self.preset(name) else {
+            return f64::NAN;
+        };
+        match parse_value(name, text, &self.at) {
+            Value::Number(number) => number.si(),
+            _ => f64::NAN,
+        }
     }
 
     /// One of some words.
@@ -422,6 +494,23 @@ fn refuse_unit(errors: &mut Collector, given: &Given) -> bool {
     plain
 }
 
+/// Reports a number that is none of these; returns whether it is one.
+fn is_one_of(errors: &mut Collector, given: &Given, numbers: &[u32]) -> bool {
+    let found = numbers.iter().any(|number| f64::from(*number) == given.si);
+    if !found {
+        let numbers: Vec<String> = numbers.iter().map(u32::to_string).collect();
+        let numbers: Vec<&str> = numbers.iter().map(String::as_str).collect();
+        let part = &given.part;
+        errors.push(catalogue::not_one_of(
+            &part.location,
+            part.field,
+            &part.given,
+            &numbers,
+        ));
+    }
+    found
+}
+
 /// Reports a value outside its limits; returns whether it is inside.
 fn within(
     errors: &mut Collector,
@@ -458,7 +547,7 @@ fn within(
 }
 
 /// A limit as it is shown: in the unit that users of the field think in.
-fn quantity_text(si: f64, dimension: Dimension) -> String {
+pub(crate) fn quantity_text(si: f64, dimension: Dimension) -> String {
     match dimension {
         Dimension::Resistance => engineering(si, "ohm"),
         Dimension::Inductance => engineering(si, "H"),
@@ -476,6 +565,7 @@ fn quantity_text(si: f64, dimension: Dimension) -> String {
         Dimension::Angle => format!("{} deg", significant(si)),
         Dimension::Ratio => percent(si),
         Dimension::CurrentPerCount => engineering(si, "A/count"),
+        Dimension::Periods if si == 1.0 => "1 period".to_owned(),
         Dimension::Periods => format!("{} periods", significant(si)),
     }
 }

@@ -3,47 +3,60 @@
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_most, engineering};
 use crate::spec::check::reader::Reader;
-use crate::spec::schema::{self, Rule};
+use crate::spec::options::{Row, number, word};
+use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
+use crate::spec::words::words;
 
-/// Where the EMF comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EmfSource {
-    /// From the last period's voltage and currents.
-    Estimated,
-    /// From the motor's EMF shape at the Hall angle and speed.
-    Model,
-    /// That of the last period, taken as that of the target: no more than the past samples and commands folded.
-    Held,
+words! {
+    /// Where the EMF comes from.
+    pub enum EmfSource {
+        "estimated" = Estimated: "from the last period's voltage and currents",
+        "model" = Model: "from the motor's EMF shape at the Hall angle and speed",
+        "held" = Held: "that of the last period, folded into what past samples and commands add to the voltage: least instructions, more ripple",
+    }
 }
 
-/// What the currents shall follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reference {
-    /// The sector's corner.
-    QuasiSquare,
-    /// Parallel to the EMF: constant torque at least copper loss.
-    Proportional,
+words! {
+    /// What the currents shall follow.
+    pub enum Reference {
+        "quasi_square" = QuasiSquare: "the sector's corner: two phases carry the current",
+        "proportional" = Proportional: "parallel to the EMF, in three phases: constant torque at least copper loss",
+    }
 }
 
-/// How the plant is discretised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Discretisation {
-    /// a = exp(-R Ts/L), b = (1 - a)/R.
-    Exact,
-    /// The paper's (7): a = 1 - R Ts/L, b = Ts/L.
-    Euler,
+words! {
+    /// How the plant is discretised.
+    pub enum Discretisation {
+        "exact" = Exact: "a = exp(-R Ts/L), b = (1 - a)/R",
+        "euler" = Euler: "the paper's (7): a = 1 - R Ts/L, b = Ts/L",
+    }
 }
 
-/// What gives way where the voltage is beyond the hexagon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LimitRule {
-    /// Scale to the edge.
-    KeepAngle,
-    /// Nearest point of the hexagon.
-    Nearest,
-    /// Keep the component along the EMF.
-    TorquePriority,
+words! {
+    /// What gives way where the voltage is beyond the hexagon.
+    pub enum LimitRule {
+        "keep_angle" = KeepAngle: "the voltage is scaled: shortest code; past the speed limit 10 to 30 % less torque of a quasi-square reference than with the others",
+        "nearest" = Nearest: "nearest point of the hexagon",
+        "torque_priority" = TorquePriority: "what makes torque is kept: highest limit",
+    }
+}
+
+words! {
+    /// How Hall edges are timed.
+    pub(crate) enum HallEdges {
+        "sampled" = Sampled: "by the samples, in whole periods",
+        "timer" = Timer: "by a capture timer; needs `hall_timer_clock`",
+    }
+}
+
+words! {
+    /// The core for which the word length is chosen.
+    pub enum Target {
+        "portable" = Portable: "any",
+        "cortex_m4" = CortexM4: "the upper half of a product of two 32-bit words is one instruction, as on RV32IM",
+        "cortex_m0" = CortexM0: "such a product is a call: words of 16 bits where they suffice; the type's documentation says what that costs in accuracy",
+    }
 }
 
 /// A speed loop around the current loop.
@@ -82,45 +95,107 @@ pub struct LoopOptions {
     pub speed: Option<SpeedLoop>,
 }
 
-/// All fields of controllers; [`super::KINDS`] says which kind takes which.
-pub(crate) const OPTIONS: &[Rule] = &[
-    schema::word("kind", "pdcc"),
-    schema::word("emf", "estimated"),
-    schema::plain("emf_filter", 1e-3, 1.0, "0.5"),
-    schema::word("reference", "quasi_square"),
-    schema::plain("advance", 0.0, 2.0, "1.5"),
-    schema::integer("delay", 0, 1, "1"),
-    schema::word("discretisation", "exact"),
-    schema::integer("word", 1, 64, "32"),
-    schema::word("target", "cortex_m0"),
-    schema::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A"),
-    schema::quantity(
-        "commutation_timeout",
-        &[D::Periods, D::Time],
-        1.0,
-        255.0,
-        "8 periods",
+/// The choice of controller.
+pub(crate) const KIND: Rule = rule::word("kind", "pdcc");
+
+/// Options that all controllers take.
+pub(crate) const LOOP: &[Row<LoopOptions>] = &[
+    Row::of(
+        rule::choice::<EmfSource>("emf", "estimated")
+            .preset("estimated")
+            .about("Where the EMF comes from; `held` with `modulation: three_phase` of `pdcc`, and of `fcs-mpc` and `phcc` where no off leg is `physical`"),
+        |options| word(options.emf),
     ),
-    schema::word("speed_loop", "on"),
-    schema::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz"),
-    schema::word("hall_capture", "sampled"),
-    schema::word("modulation", "three_phase"),
-    schema::word("saturation", "torque_priority"),
-    schema::word("candidates", "table2"),
-    schema::word("off_leg", "physical"),
-    schema::word("modulated", "off"),
-    schema::integer("horizon", 1, 2, "2"),
-    schema::quantity("switching_weight", &[D::Current], 1e-4, 1e4, "0.5 A"),
-    schema::plain("torque_weight", 1e-3, 100.0, "2"),
-    schema::word("table", "derived"),
-    schema::quantity("band", &[D::Current], 1e-4, 1e4, "0.5 A"),
-    schema::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz"),
-    schema::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms"),
-    schema::word("feed_forward", "on"),
-    schema::word("integral", "on"),
-    schema::word("dead_time_compensation", "on"),
-    schema::word("six_step", "off"),
+    Row::of(
+        rule::plain("emf_filter", 1e-3, 1.0, "0.5")
+            // Stable from 60 % of the stated inductance up, and quick enough for what the motor's shape does not foresee.
+            .preset("0.25")
+            .about("Share that the EMF estimate takes over of what one period shows (1: all, no filter); only with `emf: estimated`"),
+        |options| number(options.emf_filter),
+    ),
+    Row::of(
+        rule::choice::<Reference>("reference", "quasi_square")
+            .preset("quasi_square")
+            .about("What the currents follow; `proportional` not with `modulation: pair`"),
+        |options| word(options.reference),
+    ),
+    Row::of(
+        rule::choice::<bool>("speed_loop", "on")
+            .preset("off")
+            .about("Whether a PI regulator of the speed from Hall timing asks for the current: `set_speed` sets rpm, `set_current` and `set_torque` the greatest current that it asks for (`max_current` until then); needs `inertia` of rotor and load"),
+        |_| None,
+    ),
+    Row::of(
+        rule::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz")
+            .by_default("a fiftieth of the electrical turns per second at rated speed")
+            .about("Bandwidth of the speed loop, at most an eighth of the electrical turns per second at rated speed: the speed is a mean over a turn; only with `speed_loop: on`"),
+        |options| number(options.speed?.bandwidth),
+    ),
+    Row::of(
+        rule::plain("advance", 0.0, 2.0, "1.5")
+            .preset("0")
+            .about("Phase advance, control periods of electrical angle; not with `proportional` where no pair of phases is switched"),
+        |options| number(options.advance),
+    ),
+    Row::of(
+        rule::integer("delay", 0, 1, "1")
+            .preset("1")
+            .about("Periods between a sample and the effect of the command that answers it"),
+        |options| number(options.delay),
+    ),
+    Row::of(
+        rule::choice::<Discretisation>("discretisation", "exact")
+            .preset("exact")
+            .about("How the plant is discretised"),
+        |options| word(options.discretisation),
+    ),
+    Row::of(
+        rule::choice::<Target>("target", "cortex_m0")
+            .preset("portable")
+            .about("The core for which the word length is chosen"),
+        |_| None,
+    ),
+    Row::of(
+        rule::one_of("word", &[16, 32], "32")
+            .by_default("32; 16 as `target` chooses")
+            .about("Bits of the words of control arithmetic"),
+        |options| number(options.word),
+    ),
+    Row::of(
+        rule::choice::<HallEdges>("hall_capture", "sampled")
+            .preset("sampled")
+            .about("How Hall edges are timed"),
+        |_| None,
+    ),
 ];
+
+/// Options of the controllers that may turn a leg off.
+pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
+    Row::of(
+        rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
+            .by_default("0.5 A, at most a quarter of `rated_current`")
+            .about("Outgoing current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
+        |options| number(options.commutation_threshold),
+    ),
+    Row::of(
+        rule::quantity("commutation_timeout", &[D::Periods, D::Time], 1.0, 255.0, "8 periods")
+            .by_default("4 L I/(v_bus Ts), 4 to 255 periods")
+            .about("Periods, or time, after which a commutation is taken as ended; only where a leg is turned off"),
+        |options| number(options.commutation_timeout),
+    ),
+];
+
+/// The rule of the saturation, by default `preset`.
+pub(crate) const fn saturation(preset: &'static str) -> Rule {
+    rule::choice::<LimitRule>("saturation", "torque_priority")
+        .preset(preset)
+        .about("What gives way where the voltage is beyond the hexagon")
+}
+
+/// The rule of the compensation of the dead time.
+pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>("dead_time_compensation", "on")
+    .preset("off")
+    .about("Whether compare values are shifted by what `dead_time` costs, by the sign of the current; needs `dead_time`");
 
 /// What the defaults and limits of the options need to know of the drive; none where it is itself
 /// in error.
@@ -145,10 +220,6 @@ pub(crate) struct Surroundings {
     /// Electrical frequency at rated speed, hertz.
     pub rated_frequency: Option<f64>,
 }
-
-/// Share that the EMF estimate takes over in a period where none is stated: stable from 60 % of the stated
-/// inductance up, and quick enough for what the motor's shape does not foresee.
-const EMF_FILTER: f64 = 0.25;
 
 /// The default threshold where the motor is not too small for it, ampere.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
@@ -197,65 +268,20 @@ pub(crate) fn read_common(
     advance_idle: bool,
     errors: &mut Collector,
 ) -> Option<LoopOptions> {
-    let emf = reader.word(
-        errors,
-        "emf",
-        &[
-            ("estimated", EmfSource::Estimated),
-            ("model", EmfSource::Model),
-            ("held", EmfSource::Held),
-        ],
-    );
-    let emf_filter = reader.plain(errors, "emf_filter");
-    let reference = reader.word(
-        errors,
-        "reference",
-        &[
-            ("quasi_square", Reference::QuasiSquare),
-            ("proportional", Reference::Proportional),
-        ],
-    );
+    let emf = reader.choice_or_preset(errors, "emf", &[]);
+    let emf_filter = read_filter(reader, emf, errors);
+    let reference = reader.choice_or_preset(errors, "reference", &[]);
     let advance = reader.plain(errors, "advance");
-    let delay = reader.integer(errors, "delay");
-    let discretisation = reader.word(
-        errors,
-        "discretisation",
-        &[
-            ("exact", Discretisation::Exact),
-            ("euler", Discretisation::Euler),
-        ],
-    );
+    let delay = reader.integer_or_preset(errors, "delay");
+    let discretisation = reader.choice_or_preset(errors, "discretisation", &[]);
     let (word, word_by_target) = read_word_length(reader, errors);
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
     let speed = read_speed_loop(reader, surroundings, errors);
 
-    let unfiltered = match emf {
-        Some(EmfSource::Model) => Some((
-            "emf: model",
-            "it smooths the estimate, and the model needs none",
-        )),
-        Some(EmfSource::Held) => Some((
-            "emf: held",
-            "it smooths the estimate, and what the last period showed is held as it is",
-        )),
-        _ => None,
-    };
-    if let (Some(filter), Some((other, reason))) = (&emf_filter, unfiltered) {
-        errors.push(catalogue::option_without_effect(
-            &filter.part.location,
-            "emf_filter",
-            &filter.part.given,
-            reader
-                .field("emf")
-                .map_or(reader.location(), |field| &field.location),
-            other,
-            reason,
-        ));
-    }
     if let Some(advance) = &advance
         && advance.si > 0.0
-        && reference == Some(Reference::Proportional)
+        && reference == Reference::Proportional
         && advance_idle
     {
         errors.push(catalogue::option_without_effect(
@@ -268,22 +294,49 @@ pub(crate) fn read_common(
         ));
     }
     Some(LoopOptions {
-        emf: emf.unwrap_or(EmfSource::Estimated),
-        emf_filter: match (emf_filter, emf) {
-            (Some(given), _) => given.si,
-            (None, Some(EmfSource::Model | EmfSource::Held)) => 1.0,
-            (None, _) => EMF_FILTER,
-        },
-        reference: reference.unwrap_or(Reference::QuasiSquare),
-        advance: advance.map_or(0.0, |given| given.si),
-        delay: delay.unwrap_or(1),
-        discretisation: discretisation.unwrap_or(Discretisation::Exact),
+        emf,
+        emf_filter,
+        reference,
+        advance: advance.map_or_else(|| reader.preset_number("advance"), |given| given.si),
+        delay,
+        discretisation,
         word,
         word_by_target,
         commutation_threshold: commutation_threshold?,
         commutation_timeout: commutation_timeout?,
         speed,
     })
+}
+
+/// The share of an estimate; 1 where none is made, and the option has no effect.
+fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
+    let filter = reader.plain(errors, "emf_filter");
+    let (other, reason) = match emf {
+        EmfSource::Estimated => {
+            return filter.map_or_else(|| reader.preset_number("emf_filter"), |given| given.si);
+        }
+        EmfSource::Model => (
+            "emf: model",
+            "it smooths the estimate, and the model needs none",
+        ),
+        EmfSource::Held => (
+            "emf: held",
+            "it smooths the estimate, and what the last period showed is held as it is",
+        ),
+    };
+    if let Some(filter) = &filter {
+        errors.push(catalogue::option_without_effect(
+            &filter.part.location,
+            "emf_filter",
+            &filter.part.given,
+            reader
+                .field("emf")
+                .map_or(reader.location(), |field| &field.location),
+            other,
+            reason,
+        ));
+    }
+    1.0
 }
 
 /// The speed is a mean over an electrical turn: by default a loop of a fiftieth of the turns per second at
@@ -356,26 +409,12 @@ pub(crate) fn refuse_commutation(reader: &Reader, setting: [&str; 2], errors: &m
 /// The word length as it is given, else as the target prefers it; whether it is the target's choice. A core without long
 /// products takes words of 16 bits.
 fn read_word_length(reader: &Reader, errors: &mut Collector) -> (u32, bool) {
-    let targets = [
-        ("portable", None),
-        ("cortex_m4", None),
-        ("cortex_m0", Some(16)),
-    ];
-    let preferred = reader.word(errors, "target", &targets).flatten();
+    let target: Target = reader.choice_or_preset(errors, "target", &[]);
+    let preferred = (target == Target::CortexM0).then_some(16);
     if reader.field("word").is_none() {
         return (preferred.unwrap_or(32), preferred.is_some());
     }
-    let word = reader.integer(errors, "word").unwrap_or(32);
-    if word != 16 && word != 32 {
-        let part = reader.part("word", String::new);
-        errors.push(catalogue::not_one_of(
-            &part.location,
-            "word",
-            &part.given,
-            &["16", "32"],
-        ));
-    }
-    (word, false)
+    (reader.integer(errors, "word").unwrap_or(32), false)
 }
 
 /// 0.5 A by default; a quarter of the rated current where that is less.
@@ -446,17 +485,4 @@ pub(crate) fn read_dead_time_compensation(
         ));
     }
     is_on
-}
-
-/// Which rule limits the voltage, where the controller has one.
-pub(crate) fn read_saturation(reader: &Reader, errors: &mut Collector) -> Option<LimitRule> {
-    reader.word(
-        errors,
-        "saturation",
-        &[
-            ("keep_angle", LimitRule::KeepAngle),
-            ("nearest", LimitRule::Nearest),
-            ("torque_priority", LimitRule::TorquePriority),
-        ],
-    )
 }

@@ -1,21 +1,25 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
+use super::Options;
 use super::common::{
     EmfSource, LoopOptions, Surroundings, read_common, refuse, refuse_commutation,
 };
-use super::off_leg::{OffLegModel, read_off_leg};
+use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering};
 use crate::spec::check::reader::Reader;
+use crate::spec::health::Drive;
+use crate::spec::options::{Row, if_any, number, word};
+use crate::spec::rule;
+use crate::spec::units::Dimension as D;
+use crate::spec::words::words;
 
-/// The vectors among which the controller chooses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Candidates {
-    /// Table 2's: V0 to V6 in commutation, else V0 and V12 to V61.
-    Table2,
-    /// V0 to V6 always.
-    ThreePhase,
-    /// V0 to V6 and V12 to V61 always.
-    All,
+words! {
+    /// The vectors among which the controller chooses.
+    pub enum Candidates {
+        "table2" = Table2: "Table 2's: V0 to V6 in commutation, else V0 and V12 to V61",
+        "three_phase" = ThreePhase: "V0 to V6 always",
+        "all" = All: "V0 to V6 and V12 to V61 always",
+    }
 }
 
 /// Options of finite-control-set model predictive control.
@@ -54,58 +58,105 @@ impl FcsMpcSpec {
     }
 }
 
-/// Reads and checks the options. None only together with an error.
-pub(crate) fn check_options(
-    reader: &Reader,
-    surroundings: &Surroundings,
-    errors: &mut Collector,
-) -> Option<FcsMpcSpec> {
-    let horizon = reader.integer(errors, "horizon").unwrap_or(1);
-    let candidates = reader
-        .word(
-            errors,
-            "candidates",
-            &[
-                ("table2", Candidates::Table2),
-                ("three_phase", Candidates::ThreePhase),
-                ("all", Candidates::All),
-            ],
-        )
-        .unwrap_or(if horizon == 2 {
-            Candidates::ThreePhase
-        } else {
-            Candidates::Table2
-        });
-    let without_sectors = candidates == Candidates::ThreePhase;
-    if without_sectors {
-        refuse_commutation(reader, ["candidates", "three_phase"], errors);
+impl Options for FcsMpcSpec {
+    const KIND: &'static str = "fcs-mpc";
+    const TITLE: &'static str = "finite-control-set model predictive control";
+    const NOTES: &'static str = "Refused where one vector moves the current by more than the rated current in a period, unless modulated.";
+    const OWN: &'static [Row<Self>] = &[
+        Row::of(
+            rule::choice::<Candidates>("candidates", "table2")
+                .by_default("`table2`; with `horizon: 2` `three_phase`")
+                .about("The vectors among which the controller chooses"),
+            |options| word(options.candidates),
+        ),
+        Row::of(OFF_LEG, |options| word(options.off_leg)),
+        Row::of(
+            rule::choice::<bool>("modulated", "off")
+                .preset("off")
+                .about("Whether the vector shares its period with the best other one, each for the time of the least predicted error. Three compare values and one state per leg allow what differs in one direction: V0 and any of V1 to V6, two neighbours of these, a pair vector and its own zero"),
+            |options| word(options.modulated),
+        ),
+        Row::of(
+            rule::integer("horizon", 1, 2, "2")
+                .preset("1")
+                .about("Periods that the cost looks ahead: of all sequences of two vectors (49 of `three_phase`, 169 of `all` with `off_leg: nominal`) the best one's first vector is applied; with neither `modulated: on` nor weights"),
+            |options| (options.horizon > 1).then(|| number(options.horizon)).flatten(),
+        ),
+        Row::of(
+            rule::quantity("switching_weight", &[D::Current], 1e-4, 1e4, "0.5 A")
+                .by_default("none")
+                .about("Error of current that a leg's change of state weighs as much as in the cost: fewer changes for more ripple; below what one vector moves the current by in a period; not with `modulated: on`"),
+            |options| if_any(options.switching_weight),
+        ),
+        Row::of(
+            rule::plain("torque_weight", 1e-3, 100.0, "2")
+                .by_default("none")
+                .about("Weight of the square of the error's component along the sector's mean EMF, which makes torque: torque comes before the shape of the currents; not with `modulated: on`"),
+            |options| if_any(options.torque_weight),
+        ),
+    ];
+
+    fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
+        let horizon = reader.integer_or_preset(errors, "horizon");
+        let candidates = reader
+            .choice(errors, "candidates", &[])
+            .unwrap_or(if horizon == 2 {
+                Candidates::ThreePhase
+            } else {
+                Candidates::Table2
+            });
+        let without_sectors = candidates == Candidates::ThreePhase;
+        if without_sectors {
+            refuse_commutation(reader, ["candidates", "three_phase"], errors);
+        }
+        let off_leg = read_off_leg(reader, without_sectors, errors);
+        let modulated = reader.choice_or_preset(errors, "modulated", &[]);
+        let switching_weight = read_switching_weight(reader, surroundings, errors);
+        let torque_weight = reader.plain(errors, "torque_weight");
+        if modulated {
+            for name in ["switching_weight", "torque_weight"] {
+                let why = "two vectors share the period by the current's error alone";
+                refuse(reader, name, ["modulated", "on"], why, errors);
+            }
+        }
+        if horizon == 2 {
+            check_two_steps(reader, candidates, off_leg, errors);
+        }
+        let options = Self {
+            candidates,
+            off_leg,
+            modulated,
+            horizon,
+            switching_weight,
+            torque_weight: torque_weight.map_or(0.0, |given| given.si),
+            common: read_common(reader, surroundings, without_sectors, errors)?,
+        };
+        if options.common.emf == EmfSource::Held {
+            check_held(reader, &options, errors);
+        }
+        Some(options)
     }
-    let off_leg = read_off_leg(reader, without_sectors, errors);
-    let modulated = reader.switch(errors, "modulated").unwrap_or(false);
-    let switching_weight = read_switching_weight(reader, surroundings, errors);
-    let torque_weight = reader.plain(errors, "torque_weight");
-    if modulated {
-        for name in ["switching_weight", "torque_weight"] {
-            let why = "two vectors share the period by the current's error alone";
-            refuse(reader, name, ["modulated", "on"], why, errors);
+
+    fn common(&self) -> &LoopOptions {
+        &self.common
+    }
+
+    fn common_mut(&mut self) -> &mut LoopOptions {
+        &mut self.common
+    }
+
+    fn modulates(&self) -> bool {
+        self.modulated
+    }
+
+    /// Whole vectors miss by one vector's change, and by the error that a change of state may weigh as much as.
+    fn overshoot(&self, drive: &Drive) -> f64 {
+        if self.modulated {
+            0.0
+        } else {
+            drive.stride(1.0) + self.switching_weight
         }
     }
-    if horizon == 2 {
-        check_two_steps(reader, candidates, off_leg, errors);
-    }
-    let options = FcsMpcSpec {
-        candidates,
-        off_leg,
-        modulated,
-        horizon,
-        switching_weight,
-        torque_weight: torque_weight.map_or(0.0, |given| given.si),
-        common: read_common(reader, surroundings, without_sectors, errors)?,
-    };
-    if options.common.emf == EmfSource::Held {
-        check_held(reader, &options, errors);
-    }
-    Some(options)
 }
 
 /// A held EMF is known as part of a sum only.

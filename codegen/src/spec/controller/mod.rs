@@ -1,6 +1,6 @@
-//! The choice of controller and its options; a file per kind says what it takes and reads it.
+//! The choice of controller and its options; a file per kind holds its table and its checks.
 //!
-//! Adding a controller adds a file here, a variant to [`ControllerSpec`] and a row to [`KINDS`].
+//! Adding a controller adds a file here, and a line to [`ControllerSpec`], to [`with_options`] and to [`KINDS`].
 
 pub(crate) mod common;
 pub(crate) mod fcs_mpc;
@@ -16,42 +16,55 @@ pub use pdcc::{Modulation, PdccSpec};
 pub use phcc::{PhccCandidates, PhccSpec, SwitchingTable};
 pub use pi_pwm::PiPwmSpec;
 
-/// The kinds of controllers, with the options that not all of them take.
-pub const KINDS: [(&str, &[&str]); 4] = [
-    (
-        "fcs-mpc",
-        &[
-            "candidates",
-            "horizon",
-            "modulated",
-            "off_leg",
-            "switching_weight",
-            "torque_weight",
-        ],
-    ),
-    (
-        "pdcc",
-        &[
-            "dead_time_compensation",
-            "integral",
-            "modulation",
-            "saturation",
-        ],
-    ),
-    ("phcc", &["band", "candidates", "off_leg", "table"]),
-    (
-        "pi-pwm",
-        &[
-            "bandwidth",
-            "dead_time_compensation",
-            "feed_forward",
-            "integral_time",
-            "modulation",
-            "saturation",
-            "six_step",
-        ],
-    ),
-];
+use super::check::reader::Reader;
+use super::health::Drive;
+use super::options::{Row, lines};
+use super::rule::Rule;
+use crate::diagnostics::catalogue::Part;
+use crate::diagnostics::{Collector, Diagnostic};
+use common::Surroundings;
+
+/// The options of one kind of controller: their table, how they are read, and what the checks ask of them.
+pub(crate) trait Options: Into<ControllerSpec> + 'static {
+    /// The name that a specification calls it by.
+    const KIND: &'static str;
+    /// The method.
+    const TITLE: &'static str;
+    /// What else the reference page says; empty for nothing.
+    const NOTES: &'static str = "";
+    /// Options of this kind, in the order of the normalised specification.
+    const OWN: &'static [Row<Self>];
+    /// Options that it shares with others, which follow.
+    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP, common::COMMUTATION];
+
+    /// Reads and checks the options. None only together with an error.
+    fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self>;
+
+    /// The options that all controllers share.
+    fn common(&self) -> &LoopOptions;
+
+    /// The same, to change them.
+    fn common_mut(&mut self) -> &mut LoopOptions;
+
+    /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
+    fn modulates(&self) -> bool;
+
+    /// What phase currents of a drive in health go beyond the reference by, ampere.
+    fn overshoot(&self, _: &Drive) -> f64 {
+        0.0
+    }
+
+    /// What phase currents reach in the commutations of a rotor that turns slowly, ampere; 0 where that is no more than
+    /// what they reach otherwise.
+    fn swing(&self, _: &Drive) -> f64 {
+        0.0
+    }
+
+    /// Why a trip level that the currents reach is refused, if it is; `parts`: largest set-point and trip level.
+    fn refuse_trip(&self, _: &Drive, _rated: f64, _parts: [&Part; 2]) -> Option<Diagnostic> {
+        None
+    }
+}
 
 /// A controller and its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,46 +79,147 @@ pub enum ControllerSpec {
     PiPwm(PiPwmSpec),
 }
 
+/// Names the options of whichever controller it is in an expression: the one place that tells them apart.
+macro_rules! with_options {
+    ($controller:expr, $options:ident => $use:expr) => {
+        match $controller {
+            $crate::spec::ControllerSpec::FcsMpc($options) => $use,
+            $crate::spec::ControllerSpec::Pdcc($options) => $use,
+            $crate::spec::ControllerSpec::Phcc($options) => $use,
+            $crate::spec::ControllerSpec::PiPwm($options) => $use,
+        }
+    };
+}
+pub(crate) use with_options;
+
+/// A kind of controller.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// The name that a specification calls it by.
+    pub name: &'static str,
+    /// The method.
+    pub title: &'static str,
+    pub(crate) notes: &'static str,
+    pub(crate) own: fn() -> Vec<&'static Rule>,
+    pub(crate) shared: fn() -> Vec<&'static Rule>,
+    pub(crate) read: fn(&Reader, &Surroundings, &mut Collector) -> Option<ControllerSpec>,
+}
+
+/// The kinds of controllers.
+pub const KINDS: [Kind; 4] = [
+    Kind::of::<FcsMpcSpec>(),
+    Kind::of::<PdccSpec>(),
+    Kind::of::<PhccSpec>(),
+    Kind::of::<PiPwmSpec>(),
+];
+
+impl Kind {
+    const fn of<S: Options>() -> Self {
+        Self {
+            name: S::KIND,
+            title: S::TITLE,
+            notes: S::NOTES,
+            own: || S::OWN.iter().map(|row| &row.rule).collect(),
+            shared: || {
+                let rows = S::SHARED.iter().flat_map(|rows| rows.iter());
+                rows.map(|row| &row.rule).collect()
+            },
+            read: |reader, surroundings, errors| {
+                S::read(reader, surroundings, errors).map(Into::into)
+            },
+        }
+    }
+
+    /// All its options: its own, then those that it shares with others.
+    pub fn rules(&self) -> Vec<&'static Rule> {
+        [(self.own)(), (self.shared)()].concat()
+    }
+}
+
+/// The rules of the options of all controllers, and of their choice; one that several take may stand there several times.
+pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
+    const KIND: &Rule = &common::KIND;
+    std::iter::once(KIND).chain(KINDS.iter().flat_map(Kind::rules))
+}
+
 impl ControllerSpec {
     /// The options that all controllers share.
     pub fn common(&self) -> &LoopOptions {
-        match self {
-            Self::FcsMpc(options) => &options.common,
-            Self::Pdcc(options) => &options.common,
-            Self::Phcc(options) => &options.common,
-            Self::PiPwm(options) => &options.common,
-        }
+        with_options!(self, options => options.common())
     }
 
     /// The same with words of so many bits.
     #[must_use]
     pub fn with_word(mut self, word: u32) -> Self {
-        let common = match &mut self {
-            Self::FcsMpc(options) => &mut options.common,
-            Self::Pdcc(options) => &mut options.common,
-            Self::Phcc(options) => &mut options.common,
-            Self::PiPwm(options) => &mut options.common,
-        };
-        common.word = word;
+        with_options!(&mut self, options => options.common_mut().word = word);
         self
     }
 
     /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
     pub fn modulates(&self) -> bool {
-        match self {
-            Self::FcsMpc(options) => options.modulated,
-            Self::Pdcc(_) | Self::PiPwm(_) => true,
-            Self::Phcc(_) => false,
-        }
+        with_options!(self, options => options.modulates())
     }
 
     /// The name that the specification calls it by.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Self::FcsMpc(_) => "fcs-mpc",
-            Self::Pdcc(_) => "pdcc",
-            Self::Phcc(_) => "phcc",
-            Self::PiPwm(_) => "pi-pwm",
+        fn of<S: Options>(_: &S) -> &'static str {
+            S::KIND
         }
+        with_options!(self, options => of(options))
+    }
+
+    /// Its options in the order of the normalised specification, with the values that stand there.
+    pub(crate) fn lines(&self) -> Vec<(&'static Rule, String)> {
+        fn of<S: Options>(options: &S) -> Vec<(&'static Rule, String)> {
+            let shared = S::SHARED
+                .iter()
+                .flat_map(|rows| lines(rows, options.common()));
+            lines(S::OWN, options).into_iter().chain(shared).collect()
+        }
+        with_options!(self, options => of(options))
+    }
+
+    /// [`Options::overshoot`].
+    pub(crate) fn overshoot(&self, drive: &Drive) -> f64 {
+        with_options!(self, options => options.overshoot(drive))
+    }
+
+    /// [`Options::swing`].
+    pub(crate) fn swing(&self, drive: &Drive) -> f64 {
+        with_options!(self, options => options.swing(drive))
+    }
+
+    /// [`Options::refuse_trip`].
+    pub(crate) fn refuse_trip(
+        &self,
+        drive: &Drive,
+        rated: f64,
+        parts: [&Part; 2],
+    ) -> Option<Diagnostic> {
+        with_options!(self, options => options.refuse_trip(drive, rated, parts))
+    }
+}
+
+impl From<FcsMpcSpec> for ControllerSpec {
+    fn from(options: FcsMpcSpec) -> Self {
+        Self::FcsMpc(options)
+    }
+}
+
+impl From<PdccSpec> for ControllerSpec {
+    fn from(options: PdccSpec) -> Self {
+        Self::Pdcc(options)
+    }
+}
+
+impl From<PhccSpec> for ControllerSpec {
+    fn from(options: PhccSpec) -> Self {
+        Self::Phcc(options)
+    }
+}
+
+impl From<PiPwmSpec> for ControllerSpec {
+    fn from(options: PiPwmSpec) -> Self {
+        Self::PiPwm(options)
     }
 }

@@ -1,16 +1,23 @@
 //! The option `off_leg`, of controllers that apply whole vectors.
 
 use crate::diagnostics::{Collector, catalogue};
+use crate::spec::ast::Value;
 use crate::spec::check::reader::Reader;
+use crate::spec::rule::{self, Rule};
+use crate::spec::words::words;
 
-/// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OffLegModel {
-    /// Where its diodes or its EMF put it.
-    Physical,
-    /// Midway, as Table 2's vectors have it.
-    Nominal,
+words! {
+    /// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
+    pub enum OffLegModel {
+        "physical" = Physical: "where its diodes or its EMF put it",
+        "nominal" = Nominal: "midway, as Table 2's vectors have it",
+    }
 }
+
+/// The option's rule.
+pub(super) const OFF_LEG: Rule = rule::choice::<OffLegModel>("off_leg", "physical")
+    .preset("physical")
+    .about("Where the prediction takes an off leg to be");
 
 /// Reads the option `off_leg`; physical by default. `three_phase` says that all candidates drive all legs.
 pub(super) fn read_off_leg(
@@ -18,15 +25,11 @@ pub(super) fn read_off_leg(
     three_phase: bool,
     errors: &mut Collector,
 ) -> OffLegModel {
-    let given = reader.word(
-        errors,
-        "off_leg",
-        &[
-            ("physical", OffLegModel::Physical),
-            ("nominal", OffLegModel::Nominal),
-        ],
-    );
-    if three_phase && let (Some(_), Some(field)) = (given, reader.field("off_leg")) {
+    let model = reader.choice_or_preset(errors, "off_leg", &[]);
+    if three_phase
+        && let Some(field) = reader.field("off_leg")
+        && let Value::Word(_) = field.value
+    {
         errors.push(catalogue::option_without_effect(
             &field.location,
             "off_leg",
@@ -38,5 +41,5 @@ pub(super) fn read_off_leg(
             "these vectors turn no leg off",
         ));
     }
-    given.unwrap_or(OffLegModel::Physical)
+    model
 }

@@ -1,20 +1,23 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
+use super::Options;
 use super::common::{
-    EmfSource, LimitRule, LoopOptions, Reference, Surroundings, read_common,
-    read_dead_time_compensation, read_saturation, refuse, refuse_commutation,
+    self, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference, Surroundings,
+    read_common, read_dead_time_compensation, refuse, refuse_commutation,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
+use crate::spec::options::{Row, if_on, word};
+use crate::spec::rule;
+use crate::spec::words::words;
 
-/// How the deadbeat voltage becomes leg commands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Modulation {
-    /// Three duties in every period.
-    ThreePhase,
-    /// Three duties in commutation, else only the conducting pair is pulsed.
-    Pair,
+words! {
+    /// How the deadbeat voltage becomes leg commands.
+    pub enum Modulation {
+        "three_phase" = ThreePhase: "three duties in every period",
+        "pair" = Pair: "three duties in commutation, else only the conducting pair is pulsed",
+    }
 }
 
 /// Options of predictive deadbeat current control.
@@ -32,41 +35,74 @@ pub struct PdccSpec {
     pub common: LoopOptions,
 }
 
-/// Reads and checks the options. None only together with an error.
-pub(crate) fn check_options(
-    reader: &Reader,
-    surroundings: &Surroundings,
-    errors: &mut Collector,
-) -> Option<PdccSpec> {
-    let modulation = read_modulation(reader, errors).unwrap_or(Modulation::ThreePhase);
-    let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::TorquePriority);
-    let without_sectors = modulation == Modulation::ThreePhase;
-    let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
-    if without_sectors {
-        refuse_commutation(reader, ["modulation", "three_phase"], errors);
+impl Options for PdccSpec {
+    const KIND: &'static str = "pdcc";
+    const TITLE: &'static str = "predictive deadbeat current control";
+    const OWN: &'static [Row<Self>] = &[
+        Row::of(
+            rule::choice::<Modulation>("modulation", "three_phase")
+                .preset("three_phase")
+                .about("How the deadbeat voltage becomes leg commands"),
+            |options| word(options.modulation),
+        ),
+        Row::of(common::saturation("torque_priority"), |options| {
+            word(options.saturation)
+        }),
+        Row::of(DEAD_TIME_COMPENSATION, |options| {
+            if_on(options.dead_time_compensation)
+        }),
+        Row::of(
+            rule::choice::<bool>("integral", "on")
+                .preset("off")
+                .about("Whether a slow estimate of what the modelled EMF lacks is added, for a k_b, angle, R or L that is off; only with `emf: model`"),
+            |options| if_on(options.integral),
+        ),
+    ];
+
+    /// `table2` is a modulation of this controller in the literature, but not in this version.
+    fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
+        let modulation = reader.choice_or_preset(errors, "modulation", &["table2"]);
+        let saturation = reader.choice_or_preset(errors, "saturation", &[]);
+        let without_sectors = modulation == Modulation::ThreePhase;
+        let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
+        if without_sectors {
+            refuse_commutation(reader, ["modulation", "three_phase"], errors);
+        }
+        let common = read_common(reader, surroundings, without_sectors, errors)?;
+        if common.emf == EmfSource::Held && modulation == Modulation::Pair {
+            let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`";
+            refuse(reader, "emf", ["modulation", "pair"], why, errors);
+        }
+        if common.reference == Reference::Proportional
+            && modulation == Modulation::Pair
+            && let (Some(reference), Some(cause)) =
+                (reader.field("reference"), reader.field("modulation"))
+        {
+            errors.push(catalogue::proportional_pair(
+                &reference.location,
+                &cause.location,
+            ));
+        }
+        Some(Self {
+            modulation,
+            saturation,
+            integral: read_integral(reader, common.emf, errors),
+            dead_time_compensation,
+            common,
+        })
     }
-    let common = read_common(reader, surroundings, without_sectors, errors)?;
-    if common.emf == EmfSource::Held && modulation == Modulation::Pair {
-        let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`";
-        refuse(reader, "emf", ["modulation", "pair"], why, errors);
+
+    fn common(&self) -> &LoopOptions {
+        &self.common
     }
-    if common.reference == Reference::Proportional
-        && modulation == Modulation::Pair
-        && let (Some(reference), Some(cause)) =
-            (reader.field("reference"), reader.field("modulation"))
-    {
-        errors.push(catalogue::proportional_pair(
-            &reference.location,
-            &cause.location,
-        ));
+
+    fn common_mut(&mut self) -> &mut LoopOptions {
+        &mut self.common
     }
-    Some(PdccSpec {
-        modulation,
-        saturation,
-        integral: read_integral(reader, common.emf, errors),
-        dead_time_compensation,
-        common,
-    })
+
+    fn modulates(&self) -> bool {
+        true
+    }
 }
 
 /// An integral needs the modelled EMF: an estimate finds by itself what it would.
@@ -90,26 +126,4 @@ fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> boo
         ));
     }
     is_on
-}
-
-/// `table2` is a modulation of this controller in the literature, but not in this version.
-fn read_modulation(reader: &Reader, errors: &mut Collector) -> Option<Modulation> {
-    const AVAILABLE: [&str; 2] = ["three_phase", "pair"];
-    let choices = [
-        ("three_phase", Some(Modulation::ThreePhase)),
-        ("pair", Some(Modulation::Pair)),
-        ("table2", None),
-    ];
-    let choice = reader.word(errors, "modulation", &choices)?;
-    if choice.is_none()
-        && let Some(field) = reader.field("modulation")
-    {
-        errors.push(catalogue::option_unavailable(
-            &field.location,
-            "modulation",
-            "table2",
-            &AVAILABLE,
-        ));
-    }
-    choice
 }

@@ -1,17 +1,26 @@
 //! Options of PI control, and how they are read.
 
+use super::Options;
 use super::common::{
-    LimitRule, LoopOptions, Surroundings, read_common, read_dead_time_compensation,
-    read_saturation, refuse, refuse_held,
+    self, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, read_common,
+    read_dead_time_compensation, refuse, refuse_held,
 };
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
+use crate::spec::options::{Row, if_on, number, word};
+use crate::spec::rule;
+use crate::spec::units::Dimension as D;
+use crate::spec::words::words;
 use crate::spec::{MotorSpec, Spec};
 use std::f64::consts::TAU;
 
-/// Bandwidth where none is stated, hertz.
-const BANDWIDTH: f64 = 1000.0;
+words! {
+    /// The modulation that there is.
+    enum PiModulation {
+        "three_phase" = ThreePhase: "three duties in every period",
+    }
+}
 
 /// Options of PI control with pulse-width modulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,70 +53,107 @@ impl PiPwmSpec {
     }
 }
 
-/// Reads and checks the options. None only together with an error.
-pub(crate) fn check_options(
-    reader: &Reader,
-    surroundings: &Surroundings,
-    errors: &mut Collector,
-) -> Option<PiPwmSpec> {
-    let bandwidth = reader.plain_quantity(errors, "bandwidth");
-    let integral_time = reader.plain_quantity(errors, "integral_time");
-    let six_step = reader.switch(errors, "six_step").unwrap_or(false);
-    let feed_forward = reader.switch(errors, "feed_forward").unwrap_or(!six_step);
-    let modulation = reader.word(
-        errors,
-        "modulation",
-        &[("three_phase", true), ("pair", false), ("table2", false)],
-    );
-    if modulation == Some(false)
-        && let Some(field) = reader.field("modulation")
-    {
-        let given = field.value.to_string();
-        errors.push(catalogue::option_unavailable(
-            &field.location,
-            "modulation",
-            &given,
-            &["three_phase"],
-        ));
-    }
-    let saturation = read_saturation(reader, errors).unwrap_or(LimitRule::Nearest);
-    if saturation == LimitRule::TorquePriority && !feed_forward {
-        let why =
-            "it keeps the component along the EMF, which is known with `feed_forward: on` only";
-        refuse(reader, "saturation", ["feed_forward", "off"], why, errors);
-    }
-    if six_step {
-        check_six_step(reader, errors);
-    }
-    if !feed_forward {
-        for name in ["emf", "emf_filter"] {
-            let Some(field) = reader.field(name) else {
-                continue;
-            };
-            errors.push(catalogue::option_without_effect(
-                &field.location,
-                name,
-                &field.value.to_string(),
-                reader
-                    .field("feed_forward")
-                    .map_or(reader.location(), |field| &field.location),
-                "feed_forward: off",
-                "the regulator needs no EMF then",
-            ));
+impl Options for PiPwmSpec {
+    const KIND: &'static str = "pi-pwm";
+    const TITLE: &'static str = "PI control with pulse-width modulation";
+    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP];
+    const OWN: &'static [Row<Self>] = &[
+        Row::of(
+            rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
+                .preset("1 kHz")
+                .about("Crossover of the current loop"),
+            |options| number(options.bandwidth),
+        ),
+        Row::of(
+            rule::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms")
+                .by_default("L/R")
+                .about("Integral time; also that of the anti-windup"),
+            |options| number(options.integral_time),
+        ),
+        Row::of(
+            rule::choice::<bool>("feed_forward", "on")
+                .by_default("`on`; with `six_step: on` `off`")
+                .about("Whether the EMF is added to the voltage"),
+            |options| word(options.feed_forward),
+        ),
+        Row::of(
+            rule::choice::<bool>("six_step", "off")
+                .preset("off")
+                .about("The conventional drive, one regulator on the conducting pair's current; takes no `saturation`, follows `quasi_square` without feed-forward"),
+            |options| word(options.six_step),
+        ),
+        Row::of(
+            rule::choice::<PiModulation>("modulation", "three_phase")
+                .preset("three_phase")
+                .about("How the voltage becomes leg commands"),
+            |_| None,
+        ),
+        Row::of(common::saturation("nearest"), |options| {
+            word(options.saturation)
+        }),
+        Row::of(DEAD_TIME_COMPENSATION, |options| {
+            if_on(options.dead_time_compensation)
+        }),
+    ];
+
+    /// Modulations of other controllers are known, but not in this version.
+    fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
+        let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
+        let integral_time = reader.plain_quantity(errors, "integral_time");
+        let six_step: bool = reader.choice_or_preset(errors, "six_step", &[]);
+        let feed_forward = reader.switch(errors, "feed_forward").unwrap_or(!six_step);
+        let _: Option<PiModulation> = reader.choice(errors, "modulation", &["pair", "table2"]);
+        let saturation = reader.choice_or_preset(errors, "saturation", &[]);
+        if saturation == LimitRule::TorquePriority && !feed_forward {
+            let why =
+                "it keeps the component along the EMF, which is known with `feed_forward: on` only";
+            refuse(reader, "saturation", ["feed_forward", "off"], why, errors);
         }
+        if six_step {
+            check_six_step(reader, errors);
+        }
+        if !feed_forward {
+            for name in ["emf", "emf_filter"] {
+                let Some(field) = reader.field(name) else {
+                    continue;
+                };
+                errors.push(catalogue::option_without_effect(
+                    &field.location,
+                    name,
+                    &field.value.to_string(),
+                    reader
+                        .field("feed_forward")
+                        .map_or(reader.location(), |field| &field.location),
+                    "feed_forward: off",
+                    "the regulator needs no EMF then",
+                ));
+            }
+        }
+        let common = read_common(reader, surroundings, true, errors)?;
+        refuse_held(reader, &common, errors);
+        let time_constant = surroundings.inductance? / surroundings.resistance?;
+        Some(Self {
+            bandwidth,
+            integral_time: integral_time.map_or(time_constant, |given| given.si),
+            feed_forward: feed_forward && !six_step,
+            six_step,
+            saturation,
+            dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
+            common,
+        })
     }
-    let common = read_common(reader, surroundings, true, errors)?;
-    refuse_held(reader, &common, errors);
-    let time_constant = surroundings.inductance? / surroundings.resistance?;
-    Some(PiPwmSpec {
-        bandwidth: bandwidth.map_or(BANDWIDTH, |given| given.si),
-        integral_time: integral_time.map_or(time_constant, |given| given.si),
-        feed_forward: feed_forward && !six_step,
-        six_step,
-        saturation,
-        dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
-        common,
-    })
+
+    fn common(&self) -> &LoopOptions {
+        &self.common
+    }
+
+    fn common_mut(&mut self) -> &mut LoopOptions {
+        &mut self.common
+    }
+
+    fn modulates(&self) -> bool {
+        true
+    }
 }
 
 /// What a six-step drive has no use for.

@@ -10,19 +10,22 @@ use crate::engine::{
 };
 use crate::plant::{Mechanics, PlantError, PlantParams};
 use clap::{Args, Parser, Subcommand};
-use hexagen_codegen::spec::{SpecAst, parse_toml};
+use hexagen_codegen::spec::{KINDS, SpecAst, option_help, parse_toml};
 use std::f64::consts::TAU;
 use std::str::FromStr;
+
+const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
+    A motor is a TOML file or a name of the library (`hexagen motors`).\n\
+    A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
+    those of the motor file's [controller], which `hexagen --help` lists.";
 
 /// From a motor's data sheet to a verified fixed-point current controller
 #[derive(Debug, Parser)]
 #[command(
     name = "hexagen",
     version,
-    after_help = "Without a command: the report on the 660 W motor.\n\
-        A motor is a TOML file or a name of the library (`hexagen motors`).\n\
-        A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
-        those of the motor file's [controller]."
+    after_help = AFTER_HELP,
+    after_long_help = format!("{AFTER_HELP}\n\nControllers and their options:\n{}", option_help())
 )]
 pub struct Arguments {
     /// What to do.
@@ -81,9 +84,6 @@ impl Emit {
     }
 }
 
-/// Kinds of controllers that there are.
-pub const KINDS: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
-
 /// A controller, or all of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Selection {
@@ -108,7 +108,7 @@ impl Selection {
     /// The variants that are selected.
     pub fn variants(&self) -> Vec<String> {
         match self {
-            Self::All => KINDS.map(str::to_owned).to_vec(),
+            Self::All => KINDS.map(|kind| kind.name.to_owned()).to_vec(),
             Self::One(variant) => vec![variant.clone()],
         }
     }

@@ -10,8 +10,7 @@ mod progress;
 mod quantity;
 
 pub use arguments::{
-    Arguments, Command, Emit, KINDS, PlantArguments, RunArguments, SelectedMotor, Selection,
-    parse_rpm,
+    Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
 };
 pub use failure::Failure;
 pub use output::{

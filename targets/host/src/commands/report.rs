@@ -5,9 +5,7 @@ use super::compare::{WORDS, at_speeds, with_word};
 use super::results::{Planned, SPEEDS, held};
 use super::robustness;
 use super::verify::{self, Checked};
-use crate::cli::{
-    Failure, KINDS, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant,
-};
+use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
 use crate::closed_loop::Side;
 use crate::engine::{EngineKind, Prepared};
 use crate::report::{
@@ -15,6 +13,7 @@ use crate::report::{
     design_table, judge_limit, judge_mean, judge_pp, judge_rms,
 };
 use clap::Args;
+use hexagen_codegen::spec::KINDS;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -96,7 +95,7 @@ pub fn collect(
     let variants = variants?;
 
     let errors = errors(&motor, &mut notes)?;
-    let kinds = KINDS.map(str::to_owned);
+    let kinds = KINDS.map(|kind| kind.name.to_owned());
     let as_given = PlantArguments::default();
     let robustness = robustness::collect(given, &kinds, &as_given)
         .map_err(|failure| notes.push(format!("Robustness: {failure}")))
@@ -205,7 +204,7 @@ fn without_place(diagnostic: &str) -> String {
 /// Errors of single steps of every kind of controller at every word length; a word length that is refused is a note.
 fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSeen>, Failure> {
     let mut drives = vec![];
-    for kind in KINDS {
+    for kind in KINDS.map(|kind| kind.name) {
         let made = WORDS.map(|word| (word, motor.prepare(with_word(kind, word).as_deref())));
         // Why a controller is refused altogether, the rows of the table have said.
         if made.iter().all(|(_, drive)| drive.is_err()) {

@@ -1,9 +1,9 @@
 //! What the documentation of the type says of the method, and its switching table.
 
-use super::switching_table;
+use super::table::switching_table;
 use crate::diagnostics::engineering;
 use crate::interface::{PublicConstant, PublicValue};
-use crate::laws::Law;
+use crate::laws::Description;
 use crate::laws::current_loop::LoopDesign;
 use crate::spec::{PhccSpec, Spec, SwitchingTable};
 
@@ -24,7 +24,7 @@ fn name(vector: i32) -> String {
 }
 
 /// Documentation and constants of the method.
-pub fn law(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Law {
+pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Description {
     let stride = design.plant.gain * 2.0 / 3.0 * spec.inverter.v_bus;
     let table = switching_table(options, spec.motor.emf_shape);
     let mut notes = vec![
@@ -57,7 +57,7 @@ pub fn law(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Law {
             notes.push(format!("| S{sector} | {} |", cells.join(" | ")));
         }
     }
-    Law {
+    Description {
         title: "Predictive hysteresis current controller",
         notes,
         stable: None,

@@ -1,0 +1,77 @@
+//! What the documentation of the type says of the method.
+
+use crate::diagnostics::{engineering, significant};
+use crate::laws::Description;
+use crate::laws::current_loop::LoopDesign;
+use crate::spec::{Candidates, FcsMpcSpec, Spec};
+
+const TITLE: &str = "Finite-control-set model predictive current controller";
+
+/// Documentation of the method.
+pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -> Description {
+    let stride = design.plant.gain * 2.0 / 3.0 * spec.inverter.v_bus;
+    let begin = if options.modulated {
+        "The chosen voltage vector is the"
+    } else {
+        "One voltage vector per period: the"
+    };
+    if options.horizon == 2 {
+        let (sequences, first) = match options.candidates {
+            Candidates::ThreePhase => (49, 7),
+            _ => (169, 13),
+        };
+        return Description {
+            title: TITLE,
+            notes: vec![
+                format!("One voltage vector per period: the first of the best of {sequences} sequences of two, by the predicted errors"),
+                "|i_ref - i(k+2)|^2 + |i_ref - i(k+3)|^2. What the second vector leaves is told by geometry, so that the step".to_owned(),
+                format!("compares {first} scores."),
+                format!("One three-phase vector moves the current by at most {} per period.", engineering(stride, "A")),
+            ],
+            stable: None,
+            constants: vec![],
+        };
+    }
+    let mut notes = vec![
+        format!(
+            "{begin} allowed one with the least predicted error |i_ref - i(k+2)|^2. The error of a"
+        ),
+        format!(
+            "vector v is b |u - v| with u the deadbeat voltage, so the step looks for the vector nearest to u and {}.",
+            if options.torque_weight > 0.0 {
+                "tries one after the other"
+            } else {
+                "enumerates nothing"
+            }
+        ),
+        format!(
+            "One three-phase vector moves the current by at most {} per period.",
+            engineering(stride, "A")
+        ),
+    ];
+    if options.switching_weight > 0.0 {
+        notes.push(format!(
+            "A leg that changes its state weighs as much as an error of {}, at the nominal bus and in proportion to it.",
+            engineering(options.switching_weight, "A")
+        ));
+    }
+    if options.torque_weight > 0.0 {
+        notes.push(format!(
+            "The square of the error's component along the sector's mean EMF, which makes torque, weighs {} more.",
+            significant(options.torque_weight)
+        ));
+    }
+    if options.modulated {
+        notes.push("It shares the period with the best other vector with which one pulse per leg can share it, each for the time of the".to_owned());
+        notes.push(
+            "least predicted error: their mean is the point nearest to u on the line between them."
+                .to_owned(),
+        );
+    }
+    Description {
+        title: TITLE,
+        notes,
+        stable: None,
+        constants: vec![],
+    }
+}

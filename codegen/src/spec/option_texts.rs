@@ -1,0 +1,216 @@
+//! What people read of the options: the program's help, and the page `options.md`, which a test writes.
+
+use super::check::reader::quantity_text;
+use super::controller::{self, KINDS};
+use super::rule::{Kind, Preset, Rule};
+use super::words::Word;
+use crate::diagnostics::significant;
+
+/// The options of all controllers, a line each, for a terminal.
+pub fn help() -> String {
+    let line = |rule: &Rule| {
+        format!(
+            "    {}={}  [default: {}]\n",
+            rule.name,
+            spelt(rule),
+            plain(&default(rule))
+        )
+    };
+    let mut text = String::new();
+    for kind in &KINDS {
+        text.push_str(&format!("  {}: {}\n", kind.name, kind.title));
+        text.extend((kind.own)().into_iter().map(line));
+    }
+    text.push_str("  all, the commutation options without pi-pwm:\n");
+    text.extend(shared().map(line));
+    text
+}
+
+fn shared() -> impl Iterator<Item = &'static Rule> {
+    let rows = [controller::common::LOOP, controller::common::COMMUTATION];
+    rows.into_iter().flatten().map(|row| &row.rule)
+}
+
+/// The words with what they say, or the range.
+fn values(rule: &Rule) -> String {
+    let listed = |words: &[Word]| {
+        let words = words.iter().map(|word| match word.meaning {
+            "" => format!("`{}`", word.word),
+            meaning => format!("`{}` ({meaning})", word.word),
+        });
+        words.collect::<Vec<_>>().join(", ")
+    };
+    match rule.kind {
+        Kind::Choice(words) => listed(words),
+        Kind::ChoiceOrList(words) => format!("{}, or a list of whole numbers", listed(words)),
+        Kind::Plain { low, high } => format!("{} to {}", significant(low), significant(high)),
+        Kind::Integer { low, high } if high == low + 1 => format!("{low} or {high}"),
+        Kind::Integer { low, high } => format!("{low} to {high}"),
+        Kind::OneOf(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(u32::to_string).collect();
+            numbers.join(" or ")
+        }
+        Kind::Quantity {
+            dimensions,
+            low,
+            high,
+        } => {
+            let names: Vec<&str> = dimensions
+                .iter()
+                .map(|dimension| dimension.name())
+                .collect();
+            let [low, high] = [low, high].map(|limit| quantity_text(limit, dimensions[0]));
+            format!("{}, {low} to {high}", names.join(" or "))
+        }
+        Kind::Word | Kind::Integers | Kind::Text => format!("`{}`", rule.example),
+    }
+}
+
+/// The values as they are written.
+fn spelt(rule: &Rule) -> String {
+    match rule.kind {
+        Kind::Choice(words) => alternatives(words),
+        Kind::ChoiceOrList(words) => format!("{}|[...]", alternatives(words)),
+        _ => values(rule).replace('`', ""),
+    }
+}
+
+fn alternatives(words: &[Word]) -> String {
+    let words: Vec<&str> = words.iter().map(|word| word.word).collect();
+    words.join("|")
+}
+
+fn default(rule: &Rule) -> String {
+    match rule.preset {
+        Preset::Value(value) => format!("`{value}`"),
+        Preset::Rule(text) => text.to_owned(),
+        Preset::Checked => "needed".to_owned(),
+    }
+}
+
+fn plain(markdown: &str) -> String {
+    markdown.replace('`', "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{KINDS, controller, default, values};
+    use crate::diagnostics::Location;
+    use crate::spec::ast::Value;
+    use crate::spec::rule::{Kind, Preset, Rule};
+    use crate::spec::value::parse_value;
+    use std::path::Path;
+
+    /// The reference page of the options, in Markdown: `options.md`.
+    fn reference() -> String {
+        let common = controller::common::LOOP.iter().map(|row| &row.rule);
+        let mut text = String::from("## controller\n\nOptions that all controllers take:\n\n");
+        text.push_str(&table(common));
+        let commutation = controller::common::COMMUTATION.iter().map(|row| &row.rule);
+        let takers = KINDS.iter().filter(|kind| {
+            let names = kind.rules().into_iter().map(|rule| rule.name);
+            commutation
+                .clone()
+                .all(|rule| names.clone().any(|name| name == rule.name))
+        });
+        let takers: Vec<String> = takers.map(|kind| format!("`{}`", kind.name)).collect();
+        text.push_str(&format!(
+            "\nOptions of commutations, which {} take:\n\n",
+            takers.join(", ")
+        ));
+        text.push_str(&table(commutation));
+        for kind in &KINDS {
+            text.push_str(&format!(
+                "\n### controller: {}\n\n{}.\n",
+                kind.name,
+                sentence(kind.title)
+            ));
+            if !kind.notes.is_empty() {
+                text.push_str(&format!("{}\n", kind.notes));
+            }
+            text.push('\n');
+            text.push_str(&table((kind.own)()));
+        }
+        text
+    }
+
+    fn table<'r>(rules: impl IntoIterator<Item = &'r Rule>) -> String {
+        let mut text = String::from("| option | value | default | meaning |\n|---|---|---|---|\n");
+        for rule in rules {
+            let row = format!(
+                "| `{}` | {} | {} | {} |\n",
+                rule.name,
+                values(rule),
+                default(rule),
+                rule.about
+            );
+            text.push_str(&row);
+        }
+        text
+    }
+
+    fn sentence(phrase: &str) -> String {
+        let mut letters = phrase.chars();
+        let first = letters.next().map(|first| first.to_uppercase().to_string());
+        first.unwrap_or_default() + letters.as_str()
+    }
+
+    /// `INSTA_UPDATE=always` writes the page, as it does snapshots.
+    #[test]
+    fn the_reference_page_is_the_table() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/spec/options.md");
+        if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+            std::fs::write(&path, reference()).expect("the page can be written");
+        }
+        let page = std::fs::read_to_string(&path).expect("there is a page");
+        assert!(
+            page == reference(),
+            "run this test with INSTA_UPDATE=always, and look at the difference"
+        );
+    }
+
+    #[test]
+    fn every_option_has_a_meaning_and_a_default_that_it_takes() {
+        let at = Location::Variant {
+            text: String::new(),
+            column: 1,
+        };
+        for rule in KINDS.iter().flat_map(|kind| kind.rules()) {
+            assert!(!rule.about.is_empty(), "{}", rule.name);
+            let value = match rule.preset {
+                Preset::Value(text) => parse_value(rule.name, text, &at),
+                Preset::Rule(text) => {
+                    assert!(!text.is_empty(), "{}", rule.name);
+                    continue;
+                }
+                Preset::Checked => panic!("{} has no default", rule.name),
+            };
+            let is_taken = match (&value, rule.kind) {
+                (Value::Word(word), Kind::Choice(words) | Kind::ChoiceOrList(words)) => {
+                    words.iter().any(|known| known.word == word)
+                }
+                (Value::Word(_), Kind::Word) => true,
+                (Value::Number(number), Kind::Plain { low, high }) => {
+                    (low..=high).contains(&number.si())
+                }
+                (
+                    Value::Number(number),
+                    Kind::Quantity {
+                        low,
+                        high,
+                        dimensions,
+                    },
+                ) => {
+                    let dimension = number.unit.map(|unit| unit.dimension);
+                    (low..=high).contains(&number.si())
+                        && dimension.is_some_and(|given| dimensions.contains(&given))
+                }
+                (Value::Number(number), Kind::Integer { low, high }) => {
+                    (f64::from(low)..=f64::from(high)).contains(&number.si())
+                }
+                _ => false,
+            };
+            assert!(is_taken, "{}: {value}", rule.name);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What a field of a specification takes: a row of the tables.
+
+use super::units::Dimension as D;
+use super::words::{Word, Words};
+
+/// A field: its name, what it takes, an example for messages, and of an option its default and what it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule {
+    /// Name of the field.
+    pub name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) example: &'static str,
+    pub(crate) preset: Preset,
+    /// What an option is; empty for fields of motor and inverter, of which the reference page tells.
+    pub about: &'static str,
+}
+
+/// What holds where a field is not stated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Preset {
+    /// This value, as it would be written.
+    Value(&'static str),
+    /// What the checks find by this rule.
+    Rule(&'static str),
+    /// What the checks and the reference page of motor and inverter say.
+    Checked,
+}
+
+impl Rule {
+    pub(crate) const fn of(name: &'static str, kind: Kind, example: &'static str) -> Self {
+        Self {
+            name,
+            kind,
+            example,
+            preset: Preset::Checked,
+            about: "",
+        }
+    }
+
+    /// The same with this value by default.
+    pub(crate) const fn preset(self, value: &'static str) -> Self {
+        let preset = Preset::Value(value);
+        Self { preset, ..self }
+    }
+
+    /// The same with a default that follows from others.
+    pub(crate) const fn by_default(self, rule: &'static str) -> Self {
+        let preset = Preset::Rule(rule);
+        Self { preset, ..self }
+    }
+
+    /// The words that it takes; none for a field that takes others, or words that the checks know.
+    pub fn words(&self) -> &'static [Word] {
+        match self.kind {
+            Kind::Choice(words) | Kind::ChoiceOrList(words) => words,
+            _ => &[],
+        }
+    }
+
+    /// The value that holds where none is stated, as it would be written; none where it follows from others.
+    pub fn preset_value(&self) -> Option<&'static str> {
+        match self.preset {
+            Preset::Value(value) => Some(value),
+            Preset::Rule(_) | Preset::Checked => None,
+        }
+    }
+
+    /// The same with what it is, as a sentence without full stop.
+    pub(crate) const fn about(self, about: &'static str) -> Self {
+        Self { about, ..self }
+    }
+}
+
+/// What a field takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// A number with one of the units; limits in SI units of the first. A `low` of 0 allows 0.
+    Quantity {
+        dimensions: &'static [D],
+        low: f64,
+        high: f64,
+    },
+    /// A number without unit. A `low` of 0 allows 0.
+    Plain { low: f64, high: f64 },
+    /// A whole number without unit.
+    Integer { low: u32, high: u32 },
+    /// One of these whole numbers, without unit.
+    OneOf(&'static [u32]),
+    /// One of some words, which the checks know.
+    Word,
+    /// One of these words.
+    Choice(&'static [Word]),
+    /// One of these words, or a list of whole numbers.
+    ChoiceOrList(&'static [Word]),
+    /// A list of integers.
+    Integers,
+    /// Free text.
+    Text,
+}
+
+pub(crate) const fn quantity(
+    name: &'static str,
+    dimensions: &'static [D],
+    low: f64,
+    high: f64,
+    example: &'static str,
+) -> Rule {
+    let kind = Kind::Quantity {
+        dimensions,
+        low,
+        high,
+    };
+    Rule::of(name, kind, example)
+}
+
+pub(crate) const fn integer(
+    name: &'static str,
+    low: u32,
+    high: u32,
+    example: &'static str,
+) -> Rule {
+    Rule::of(name, Kind::Integer { low, high }, example)
+}
+
+pub(crate) const fn one_of(
+    name: &'static str,
+    numbers: &'static [u32],
+    example: &'static str,
+) -> Rule {
+    Rule::of(name, Kind::OneOf(numbers), example)
+}
+
+pub(crate) const fn plain(name: &'static str, low: f64, high: f64, example: &'static str) -> Rule {
+    Rule::of(name, Kind::Plain { low, high }, example)
+}
+
+pub(crate) const fn word(name: &'static str, example: &'static str) -> Rule {
+    Rule::of(name, Kind::Word, example)
+}
+
+/// A choice of which `example` is one word.
+pub(crate) const fn choice<T: Words>(name: &'static str, example: &'static str) -> Rule {
+    Rule::of(name, Kind::Choice(T::WORDS), example)
+}
+
+/// A choice, or a list of whole numbers in its place.
+pub(crate) const fn choice_or_list<T: Words>(name: &'static str, example: &'static str) -> Rule {
+    Rule::of(name, Kind::ChoiceOrList(T::WORDS), example)
+}
+
+pub(crate) const fn text(name: &'static str, example: &'static str) -> Rule {
+    Rule::of(name, Kind::Text, example)
+}
