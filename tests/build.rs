@@ -177,7 +177,7 @@ impl CoveringArray {
             .expect("a string takes all");
         }
         let setting = |(axis, value): (usize, usize)| match kind.axes.get(axis) {
-            Some(axis) => format!("{}={}", axis.name, axis.values[value].0),
+            Some(axis) => format!("{}={}", axis.name, axis.values[value].name),
             None => format!("motor={}", able[value].name),
         };
         for &(one, two) in &covering.open {

@@ -1,24 +1,29 @@
 //! Every option of a drive with the values that are tested, by kind of controller: the axes of the
 //! full products and of the covering arrays.
 //!
-//! Which kinds there are and which options they take says the generator's own table: a new kind has
-//! its axes at once.
+//! Which kinds there are, which options they take and which words these have says the generator's own table: a new kind or
+//! word has its axis at once. Written down here are the numbers that are tried, and what is tried together.
 
 use crate::library::{Motor, motor};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
-use hexagen_codegen::spec::KINDS;
-use hexagen_codegen::spec::{Spec, check, parse_toml};
+use hexagen_codegen::spec::{KINDS, Rule, Spec, check, parse_toml};
 use toml_edit::{DocumentMut, Item, Table};
 
 /// What an option value sets: section, field, TOML value.
 type Setting = (&'static str, &'static str, &'static str);
 
-/// A value of an option: a short name, and the fields that it sets.
-type Value = (&'static str, &'static [Setting]);
+/// An option with values, as it is written down here: each a short name, and the fields that it sets.
+type Row = (&'static str, &'static [(&'static str, &'static [Setting])]);
 
-/// An option with values, as it is written down here.
-type Row = (&'static str, &'static [Value]);
+/// A value of an option.
+#[derive(Clone, Debug)]
+pub struct Value {
+    /// Short name.
+    pub name: &'static str,
+    /// What it sets: section, field, TOML value.
+    settings: Vec<(&'static str, &'static str, String)>,
+}
 
 /// One option and its values.
 #[derive(Clone, Debug)]
@@ -49,71 +54,15 @@ pub type Meeting = (usize, (usize, usize));
 /// Stands for a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
-/// Values that a kind does not have in this version: kind, option, value.
-const UNAVAILABLE: &[(&str, &str, &str)] = &[
-    ("pi-pwm", "modulation", "pair"),
-    ("phcc", "candidates", "all"),
-    ("fcs-mpc", "emf", "integral"),
-    ("phcc", "emf", "integral"),
-    ("pi-pwm", "emf", "integral"),
-    ("pi-pwm", "emf", "held"),
-];
-
-/// Defaults that are left unstated, because another option rules their statement out: kind, option, value.
-const UNSTATED: &[(&str, &str, &str)] = &[
-    ("pi-pwm", "feed_forward", "on"),
-    ("pi-pwm", "saturation", "nearest"),
-];
+/// Values that every drive of a kind refuses: kind, option, value.
+const REFUSED: [(&str, &str, &str); 1] = [("pi-pwm", "emf", "held")];
 
 /// A switching table that no derivation gives: every vector occurs.
 const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
     2, 2, 9, 9, 0, 13, 6, 12, 3, 8, 1, 11, 10, 5, 14, 7, 4, 0, 15, 3, 12, 6, 8, 1, 9, 10, 13, 2, 5, 11, 7, 4]";
 
-/// Options that not all kinds take, the default value first, or the one that has most to compute.
+/// Options that not all kinds take, beside those of the table: the default value first.
 const OWN: &[Row] = &[
-    (
-        "modulation",
-        &[
-            (
-                "three_phase",
-                &[("controller", "modulation", "\"three_phase\"")],
-            ),
-            ("pair", &[("controller", "modulation", "\"pair\"")]),
-        ],
-    ),
-    (
-        "saturation",
-        &[
-            (
-                "torque_priority",
-                &[("controller", "saturation", "\"torque_priority\"")],
-            ),
-            (
-                "keep_angle",
-                &[("controller", "saturation", "\"keep_angle\"")],
-            ),
-            ("nearest", &[("controller", "saturation", "\"nearest\"")]),
-        ],
-    ),
-    (
-        "candidates",
-        &[
-            ("table2", &[("controller", "candidates", "\"table2\"")]),
-            (
-                "three_phase",
-                &[("controller", "candidates", "\"three_phase\"")],
-            ),
-            ("all", &[("controller", "candidates", "\"all\"")]),
-        ],
-    ),
-    (
-        "off_leg",
-        &[
-            // Not stated: without delay PHCC predicts nothing.
-            ("physical", &[]),
-            ("nominal", &[("controller", "off_leg", "\"nominal\"")]),
-        ],
-    ),
     (
         // What is chosen, and by which cost.
         "choice",
@@ -143,23 +92,9 @@ const OWN: &[Row] = &[
             ("given", &[("controller", "table", SWITCHING_TABLE)]),
         ],
     ),
-    (
-        "feed_forward",
-        &[
-            ("on", &[("controller", "feed_forward", "\"on\"")]),
-            ("off", &[("controller", "feed_forward", "\"off\"")]),
-        ],
-    ),
-    (
-        "six_step",
-        &[
-            ("off", &[]),
-            ("on", &[("controller", "six_step", "\"on\"")]),
-        ],
-    ),
 ];
 
-/// Options that all kinds take.
+/// Options that all kinds take, beside those of the table.
 const SHARED: &[Row] = &[
     (
         "emf",
@@ -179,19 +114,6 @@ const SHARED: &[Row] = &[
         ],
     ),
     (
-        "reference",
-        &[
-            (
-                "quasi_square",
-                &[("controller", "reference", "\"quasi_square\"")],
-            ),
-            (
-                "proportional",
-                &[("controller", "reference", "\"proportional\"")],
-            ),
-        ],
-    ),
-    (
         "advance",
         &[
             ("0", &[("controller", "advance", "0")]),
@@ -207,24 +129,10 @@ const SHARED: &[Row] = &[
         ],
     ),
     (
-        "discretisation",
-        &[
-            ("exact", &[("controller", "discretisation", "\"exact\"")]),
-            ("euler", &[("controller", "discretisation", "\"euler\"")]),
-        ],
-    ),
-    (
         "word",
         &[
             ("32", &[("controller", "word", "32")]),
             ("16", &[("controller", "word", "16")]),
-        ],
-    ),
-    (
-        "hall_capture",
-        &[
-            ("sampled", &[("controller", "hall_capture", "\"sampled\"")]),
-            ("timer", &[("controller", "hall_capture", "\"timer\"")]),
         ],
     ),
     (
@@ -363,9 +271,29 @@ impl Drive {
     }
 }
 
+/// Options that no axis sets, with what tries them.
+const TRIED_ELSEWHERE: [(&str, &str); 4] = [
+    (
+        "commutation_threshold",
+        "constants of a drive: the motors of the library differ in it by default",
+    ),
+    (
+        "commutation_timeout",
+        "constants of a drive: the motors of the library differ in it by default",
+    ),
+    (
+        "speed_bandwidth",
+        "a coefficient of the speed loop: the motors of the library differ in it by default",
+    ),
+    (
+        "target",
+        "chooses `word`, which has an axis (`pipeline.rs` tests the choice)",
+    ),
+];
+
 /// All kinds of controllers.
 pub fn kinds() -> Vec<Kind> {
-    KINDS.iter().map(|(name, _)| kind(name)).collect()
+    KINDS.iter().map(|known| kind(known.name)).collect()
 }
 
 /// The kind of this name.
@@ -373,50 +301,102 @@ pub fn kinds() -> Vec<Kind> {
 /// # Panics
 /// When there is none.
 pub fn kind(name: &str) -> Kind {
-    let known = KINDS.iter().find(|(known, _)| *known == name);
-    let (name, own) = known.expect("a kind of controller");
+    let known = KINDS.iter().find(|known| known.name == name);
+    let known = known.expect("a kind of controller");
+    let rules = known.rules();
+    let is_option = |field: &str| rules.iter().any(|rule| rule.name == field);
     let is_taken = |row: &&Row| {
         let mut settings = row.1.iter().flat_map(|(_, settings)| *settings);
-        settings.all(|(section, field, _)| {
-            *section != "controller" || *field == "speed_loop" || own.contains(field)
-        })
+        settings.all(|(section, field, _)| *section != "controller" || is_option(field))
     };
-    let loose = LOOSE.iter().filter(is_taken);
-    let axes = OWN.iter().filter(is_taken).chain(SHARED);
+    let is_written = |option: &str| {
+        let rows = OWN.iter().chain(SHARED).chain(LOOSE);
+        let mut settings = rows
+            .flat_map(|(_, values)| *values)
+            .flat_map(|(_, settings)| *settings);
+        settings.any(|(section, field, _)| *section == "controller" && *field == option)
+    };
+    let elsewhere = |option: &str| TRIED_ELSEWHERE.iter().any(|(name, _)| *name == option);
+    let of_table = rules
+        .iter()
+        .filter(|rule| rule.words().len() > 1 && !is_written(rule.name) && !elsewhere(rule.name));
+    let written = |rows: &'static [Row]| rows.iter().filter(is_taken).map(|row| axis(known, row));
+    let loose: Vec<Axis> = written(LOOSE).collect();
     Kind {
-        name,
-        loose: loose.clone().count(),
-        axes: axes.chain(loose).map(|row| axis(name, row)).collect(),
+        name: known.name,
+        loose: loose.len(),
+        axes: of_table
+            .map(|rule| axis_of_words(rule))
+            .chain(written(OWN))
+            .chain(written(SHARED))
+            .chain(loose)
+            .collect(),
     }
 }
 
-fn axis(kind: &str, (name, values): &Row) -> Axis {
-    let is_available = |value: &&Value| !UNAVAILABLE.contains(&(kind, *name, value.0));
-    let stated = |value: &Value| {
-        let is_unstated = UNSTATED.contains(&(kind, *name, value.0));
-        if is_unstated {
-            (value.0, &[][..])
-        } else {
-            *value
-        }
+/// An option of the table, its default first; that is left unstated, because another option may rule its statement out.
+fn axis_of_words(rule: &'static Rule) -> Axis {
+    let words: Vec<&str> = rule.words().iter().map(|word| word.word).collect();
+    let default = rule.preset_value().unwrap_or(words[0]);
+    let others = words.into_iter().filter(|word| *word != default);
+    let stated = |name| Value {
+        name,
+        settings: vec![("controller", rule.name, format!("\"{name}\""))],
+    };
+    let unstated = Value {
+        name: default,
+        settings: vec![],
+    };
+    Axis {
+        name: rule.name,
+        values: std::iter::once(unstated)
+            .chain(others.map(stated))
+            .collect(),
+    }
+}
+
+/// An option that is written down here, with those of its values that the kind takes.
+fn axis(kind: &hexagen_codegen::spec::Kind, (name, values): &'static Row) -> Axis {
+    let rules = kind.rules();
+    let is_taken = |(value, settings): &&(&str, &[Setting])| {
+        !REFUSED.contains(&(kind.name, name, value))
+            && settings.iter().all(|(section, field, _)| {
+                *section != "controller" || rules.iter().any(|rule| rule.name == *field)
+            })
+    };
+    let value = |(name, settings): &(&'static str, &'static [Setting])| Value {
+        name,
+        settings: settings
+            .iter()
+            .map(|(section, field, text)| (*section, *field, (*text).to_owned()))
+            .collect(),
     };
     Axis {
         name,
-        values: values.iter().filter(is_available).map(stated).collect(),
+        values: values.iter().filter(is_taken).map(value).collect(),
     }
 }
 
 /// Options that no axis sets, but some kind takes.
 pub fn untested_options() -> Vec<&'static str> {
-    let rows = OWN
-        .iter()
-        .chain(SHARED)
-        .chain(LOOSE)
-        .flat_map(|(_, values)| *values);
-    let settings: Vec<&Setting> = rows.flat_map(|(_, settings)| *settings).collect();
-    let is_set = |option: &&str| settings.iter().any(|(_, field, _)| field == option);
-    let options = KINDS.iter().flat_map(|(_, own)| *own).copied();
-    options.filter(|option| !is_set(option)).collect()
+    let mut untested: Vec<&str> = vec![];
+    for known in &KINDS {
+        let axes = kind(known.name).axes;
+        let settings: Vec<_> = axes
+            .iter()
+            .flat_map(|axis| &axis.values)
+            .flat_map(|value| &value.settings)
+            .collect();
+        let is_set = |option: &str| settings.iter().any(|(_, field, _)| *field == option);
+        let elsewhere = |option: &str| TRIED_ELSEWHERE.iter().any(|(name, _)| *name == option);
+        let choices = known
+            .rules()
+            .into_iter()
+            .filter(|rule| rule.words().len() != 1);
+        let options = choices.map(|rule| rule.name);
+        untested.extend(options.filter(|option| !is_set(option) && !elsewhere(option)));
+    }
+    untested
 }
 
 impl Kind {
@@ -482,7 +462,7 @@ impl Kind {
             let axis = found.expect("an axis of this name");
             let mut values = self.axes[axis].values.iter();
             choice[axis] = values
-                .position(|(known, _)| known == value)
+                .position(|known| known.name == *value)
                 .expect("a value of this name");
         }
         choice
@@ -491,7 +471,8 @@ impl Kind {
     /// `pdcc: modulation=pair saturation=nearest …`
     pub fn describe(&self, choice: &[usize]) -> String {
         let axes = self.axes.iter().zip(choice);
-        let values = axes.map(|(axis, &value)| format!("{}={}", axis.name, axis.values[value].0));
+        let values =
+            axes.map(|(axis, &value)| format!("{}={}", axis.name, axis.values[value].name));
         format!("{}: {}", self.name, values.collect::<Vec<_>>().join(" "))
     }
 
@@ -511,8 +492,8 @@ impl Kind {
         document["controller"] = Item::Table(Table::new());
         document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
         for (axis, &value) in self.axes.iter().zip(choice) {
-            for (section, field, setting) in axis.values[value].1 {
-                document[section][field] = if *setting == BUS_RANGE {
+            for (section, field, setting) in &axis.values[value].settings {
+                document[*section][*field] = if *setting == BUS_RANGE {
                     text(&format!("\"{bus_range} V\""))
                 } else {
                     text(setting)

@@ -19,6 +19,11 @@ pub fn help() -> String {
     let mut text = String::new();
     for kind in &KINDS {
         text.push_str(&format!("  {}: {}\n", kind.name, kind.title));
+        text.extend(
+            kind.notes
+                .lines()
+                .map(|note| format!("    {}\n", plain(note))),
+        );
         text.extend((kind.own)().into_iter().map(line));
     }
     text.push_str("  all, the commutation options without pi-pwm:\n");
