@@ -55,7 +55,7 @@ pub type Meeting = (usize, (usize, usize));
 const BUS_RANGE: &str = "\"bus range\"";
 
 /// Values that every drive of a kind refuses: kind, option, value.
-const REFUSED: [(&str, &str, &str); 1] = [("pi-pwm", "emf", "held")];
+const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
 
 /// A switching table that no derivation gives: every vector occurs.
 const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
@@ -304,11 +304,6 @@ pub fn kind(name: &str) -> Kind {
     let known = KINDS.iter().find(|known| known.name == name);
     let known = known.expect("a kind of controller");
     let rules = known.rules();
-    let is_option = |field: &str| rules.iter().any(|rule| rule.name == field);
-    let is_taken = |row: &&Row| {
-        let mut settings = row.1.iter().flat_map(|(_, settings)| *settings);
-        settings.all(|(section, field, _)| *section != "controller" || is_option(field))
-    };
     let is_written = |option: &str| {
         let rows = OWN.iter().chain(SHARED).chain(LOOSE);
         let mut settings = rows
@@ -320,7 +315,10 @@ pub fn kind(name: &str) -> Kind {
     let of_table = rules
         .iter()
         .filter(|rule| rule.words().len() > 1 && !is_written(rule.name) && !elsewhere(rule.name));
-    let written = |rows: &'static [Row]| rows.iter().filter(is_taken).map(|row| axis(known, row));
+    let written = |rows: &'static [Row]| {
+        let axes = rows.iter().map(|row| axis(known, row));
+        axes.filter(|axis| axis.values.len() > 1)
+    };
     let loose: Vec<Axis> = written(LOOSE).collect();
     Kind {
         name: known.name,

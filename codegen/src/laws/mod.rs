@@ -9,6 +9,7 @@ pub mod fcs_mpc;
 mod interface;
 mod law;
 mod operation;
+pub mod p_pwm;
 pub mod pdcc;
 pub mod phcc;
 pub mod pi_pwm;

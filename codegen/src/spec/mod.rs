@@ -31,8 +31,8 @@ pub use ast::SpecAst;
 pub use check::{Origin, Origins, check};
 pub use controller::{
     Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, Kind, LimitRule,
-    LoopOptions, Modulation, OffLegModel, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec, Reference,
-    SpeedLoop, SwitchingTable,
+    LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec,
+    Reference, SpeedLoop, SwitchingTable,
 };
 pub(crate) use load::is_absolute;
 pub use load::{load_motor_file, motor_text};

@@ -40,7 +40,7 @@ pub use model::{BitTrue, Course, Mode, PhysicalState, Reach, Trace};
 pub use model::{Duties, Ideal, Uniform};
 pub use spec::{
     Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
-    FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, Pdcc, Phcc, PiPwm,
+    FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, PPwm, Pdcc, Phcc, PiPwm,
     Reference, Saturation, Spec, Switch, SwitchingTable,
 };
 #[cfg(not(bounded))]

@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 pub use controller::{
     Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, LoopOptions,
-    Modulation, OffLeg, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch, SwitchingTable,
+    Modulation, OffLeg, PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch, SwitchingTable,
 };
 
 /// A whole normalised specification.
@@ -165,6 +165,7 @@ impl Spec {
             Controller::FcsMpc(fcs_mpc) => fcs_mpc.loop_options(),
             Controller::Phcc(phcc) => phcc.loop_options(),
             Controller::PiPwm(pi_pwm) => pi_pwm.loop_options(),
+            Controller::PPwm(p_pwm) => p_pwm.loop_options(),
         }
     }
 
@@ -186,7 +187,7 @@ impl Spec {
                 commutation_timeout,
                 ..
             }) => (*commutation_threshold, *commutation_timeout),
-            Controller::PiPwm(_) => return None,
+            Controller::PiPwm(_) | Controller::PPwm(_) => return None,
         };
         Some(CommutationEnd { threshold, timeout })
     }
@@ -302,6 +303,15 @@ impl Spec {
                     "expected table2, or three_phase with table = derived",
                 ));
             }
+        }
+        if let Controller::PPwm(p_pwm) = &self.controller
+            && !(p_pwm.bandwidth.is_finite() && p_pwm.bandwidth > 0.0)
+        {
+            return Err(Error::field(
+                "controller.bandwidth",
+                p_pwm.bandwidth,
+                "expected a finite number above 0",
+            ));
         }
         if let Controller::PiPwm(pi_pwm) = &self.controller {
             for (field, value) in [

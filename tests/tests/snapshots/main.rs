@@ -1,6 +1,6 @@
 //! What the generator writes, versioned: emitted Rust and C99, IR text and data sheets.
 //!
-//! In full: Rust of the paper's motor with each controller, C of two. Of its variants the units
+//! In full: Rust of the paper's motor with each of the paper's controllers, C of two. Of its variants the units
 //! that are new, and of known units the lines whose shape is new. Of all motors and of the covering
 //! arrays the shapes of lines that none of those has. A digest of every text tells where there is
 //! another change: of numbers, of the order of lines, of function heads, of C's comments.
@@ -28,6 +28,9 @@ use units::{Unit, units};
 /// Where the snapshots are, seen from this file.
 const FOLDER: &str = "kept";
 
+/// Controllers whose Rust is kept in full.
+const IN_FULL_IN_RUST: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+
 /// Controllers whose C is kept in full.
 const IN_FULL_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
 
@@ -46,7 +49,7 @@ fn snapshots() -> BTreeMap<String, String> {
     for kind in TEXTS {
         let [defaults, variants, others] = &*DRIVES;
         let is_full = |drive: &&Drive| match kind {
-            "rust" => true,
+            "rust" => IN_FULL_IN_RUST.contains(&&*drive.name),
             "c99" => IN_FULL_IN_C.contains(&&*drive.name),
             _ => false,
         };

@@ -5,6 +5,7 @@
 pub(crate) mod common;
 pub(crate) mod fcs_mpc;
 mod off_leg;
+pub(crate) mod p_pwm;
 pub(crate) mod pdcc;
 pub(crate) mod phcc;
 pub(crate) mod pi_pwm;
@@ -12,6 +13,7 @@ pub(crate) mod pi_pwm;
 pub use common::{Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop};
 pub use fcs_mpc::{Candidates, FcsMpcSpec};
 pub use off_leg::OffLegModel;
+pub use p_pwm::PPwmSpec;
 pub use pdcc::{Modulation, PdccSpec};
 pub use phcc::{PhccCandidates, PhccSpec, SwitchingTable};
 pub use pi_pwm::PiPwmSpec;
@@ -71,6 +73,8 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
 pub enum ControllerSpec {
     /// Finite-control-set model predictive control.
     FcsMpc(FcsMpcSpec),
+    /// Proportional control with pulse-width modulation.
+    PPwm(PPwmSpec),
     /// Predictive deadbeat current control.
     Pdcc(PdccSpec),
     /// Predictive hysteresis current control.
@@ -84,6 +88,7 @@ macro_rules! with_options {
     ($controller:expr, $options:ident => $use:expr) => {
         match $controller {
             $crate::spec::ControllerSpec::FcsMpc($options) => $use,
+            $crate::spec::ControllerSpec::PPwm($options) => $use,
             $crate::spec::ControllerSpec::Pdcc($options) => $use,
             $crate::spec::ControllerSpec::Phcc($options) => $use,
             $crate::spec::ControllerSpec::PiPwm($options) => $use,
@@ -106,8 +111,9 @@ pub struct Kind {
 }
 
 /// The kinds of controllers.
-pub const KINDS: [Kind; 4] = [
+pub const KINDS: [Kind; 5] = [
     Kind::of::<FcsMpcSpec>(),
+    Kind::of::<PPwmSpec>(),
     Kind::of::<PdccSpec>(),
     Kind::of::<PhccSpec>(),
     Kind::of::<PiPwmSpec>(),
@@ -203,6 +209,12 @@ impl ControllerSpec {
 impl From<FcsMpcSpec> for ControllerSpec {
     fn from(options: FcsMpcSpec) -> Self {
         Self::FcsMpc(options)
+    }
+}
+
+impl From<PPwmSpec> for ControllerSpec {
+    fn from(options: PPwmSpec) -> Self {
+        Self::PPwm(options)
     }
 }
 

@@ -79,6 +79,10 @@ impl Variant {
                 let hexagon = pi_pwm.six_step == Switch::Off;
                 (false, false, hexagon.then_some(pi_pwm.saturation))
             }
+            Controller::PPwm(p_pwm) => {
+                predicts = false;
+                (false, false, Some(p_pwm.saturation))
+            }
         };
         let held = emf == Some(EmfSource::Held);
         if held {
@@ -179,6 +183,7 @@ pub fn reference_gain(spec: &Spec) -> f64 {
         Controller::Pdcc(_) | Controller::FcsMpc(_) | Controller::Phcc(_) => {
             1.0 / crate::DiscretePhase::new(spec).b
         }
+        Controller::PPwm(p_pwm) => std::f64::consts::TAU * p_pwm.bandwidth * spec.motor.inductance,
         Controller::PiPwm(pi_pwm) => {
             std::f64::consts::TAU * pi_pwm.bandwidth * spec.motor.inductance
         }

@@ -14,6 +14,8 @@ pub enum Controller {
     Phcc(Phcc),
     /// PI control with pulse-width modulation.
     PiPwm(PiPwm),
+    /// Proportional control with pulse-width modulation.
+    PPwm(PPwm),
 }
 
 /// Options that every controller has.
@@ -186,6 +188,16 @@ options! {
         /// Whether compare values are shifted against the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
+    }
+}
+
+options! {
+    /// Options of proportional control with pulse-width modulation.
+    PPwm {
+        /// Bandwidth of the loop, hertz: the gain is 2 pi times it times the inductance.
+        bandwidth: f64,
+        /// What gives way outside the hexagon.
+        saturation: Saturation,
     }
 }
 

@@ -272,13 +272,14 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     // Scores of FCS-MPC are sums of up to twelve voltages.
     let f_v = match spec.controller {
         Controller::FcsMpc(_) => f_v - 4,
-        Controller::Pdcc(_) | Controller::Phcc(_) | Controller::PiPwm(_) => f_v,
+        _ => f_v,
     };
     let (gain, integral_share) = match &spec.controller {
         Controller::PiPwm(pi) => (
             TAU * pi.bandwidth * motor.inductance,
             inverter.t_s / pi.integral_time,
         ),
+        Controller::PPwm(p) => (TAU * p.bandwidth * motor.inductance, 1.0),
         _ => (1.0 / b, 1.0),
     };
     let scale = 2f64.powi(f_v);
@@ -357,7 +358,7 @@ pub fn commutates(variant: &Variant) -> bool {
         Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::Pair,
         Controller::FcsMpc(fcs_mpc) => fcs_mpc.candidates != Candidates::ThreePhase,
         Controller::Phcc(_) => true,
-        Controller::PiPwm(_) => false,
+        Controller::PiPwm(_) | Controller::PPwm(_) => false,
     }
 }
 
@@ -375,7 +376,7 @@ pub fn has_rotor(variant: &Variant) -> bool {
     let needs_emf = match &variant.spec.controller {
         Controller::PiPwm(pi_pwm) => pi_pwm.feed_forward == Switch::On,
         Controller::Phcc(_) => options.delay == 1,
-        Controller::Pdcc(_) | Controller::FcsMpc(_) => true,
+        Controller::Pdcc(_) | Controller::FcsMpc(_) | Controller::PPwm(_) => true,
     };
     needs_emf && options.emf == EmfSource::Model
         || options.advance > 0.0

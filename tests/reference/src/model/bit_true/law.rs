@@ -5,6 +5,7 @@ mod deadbeat;
 mod divided;
 mod fcs_mpc;
 mod held;
+mod p_pwm;
 mod pdcc;
 pub mod phcc;
 mod pi_pwm;
@@ -95,6 +96,7 @@ pub enum Law {
     FcsMpc(fcs_mpc::FcsMpc),
     Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
+    PPwm(p_pwm::PPwm),
 }
 
 impl Law {
@@ -106,6 +108,7 @@ impl Law {
                 Self::Phcc(Box::new(phcc::Phcc::new(spec, options, scale)?))
             }
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options, scale)?),
+            Controller::PPwm(options) => Self::PPwm(p_pwm::PPwm::new(spec, options, scale)?),
         })
     }
 
@@ -116,6 +119,7 @@ impl Law {
             Self::FcsMpc(law) => law.decide(now),
             Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),
+            Self::PPwm(law) => law.decide(now),
         }
     }
 }

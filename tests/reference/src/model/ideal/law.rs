@@ -5,6 +5,7 @@ mod deadbeat;
 mod divided;
 mod fcs_mpc;
 mod held;
+mod p_pwm;
 mod pdcc;
 mod phcc;
 mod pi_pwm;
@@ -92,6 +93,7 @@ pub enum Law {
     FcsMpc(fcs_mpc::FcsMpc),
     Phcc(Box<phcc::Phcc>),
     PiPwm(pi_pwm::PiPwm),
+    PPwm(p_pwm::PPwm),
 }
 
 impl Law {
@@ -101,6 +103,7 @@ impl Law {
             Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
+            Controller::PPwm(options) => Self::PPwm(p_pwm::PPwm::new(spec, options)),
         })
     }
 
@@ -110,6 +113,7 @@ impl Law {
             Self::FcsMpc(law) => law.decide(now),
             Self::Phcc(law) => law.decide(now),
             Self::PiPwm(law) => law.decide(now),
+            Self::PPwm(law) => law.decide(now),
         }
     }
 }

@@ -1,0 +1,72 @@
+//! Options of proportional control, and how they are read.
+
+use super::Options;
+use super::common::{self, LimitRule, LoopOptions, Surroundings, read_common, refuse_held};
+use crate::diagnostics::Collector;
+use crate::spec::MotorSpec;
+use crate::spec::check::reader::Reader;
+use crate::spec::options::{Row, number, word};
+use crate::spec::rule;
+use crate::spec::units::Dimension as D;
+use std::f64::consts::TAU;
+
+/// Options of proportional control with pulse-width modulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PPwmSpec {
+    /// Bandwidth of the current loop, hertz.
+    pub bandwidth: f64,
+    /// Saturation rule.
+    pub saturation: LimitRule,
+    /// Options that all controllers share.
+    pub common: LoopOptions,
+}
+
+impl PPwmSpec {
+    /// Proportional gain 2 pi f L, V/A.
+    pub fn proportional_gain(&self, motor: &MotorSpec) -> f64 {
+        TAU * self.bandwidth * motor.inductance
+    }
+}
+
+impl Options for PPwmSpec {
+    const KIND: &'static str = "p-pwm";
+    const TITLE: &'static str = "proportional control with pulse-width modulation";
+    const NOTES: &'static str = "The smallest controller: the EMF and a proportional gain. Without an integral the current stays below its reference,\n\
+         by the part of the gain that the resistance takes.";
+    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP];
+    const OWN: &'static [Row<Self>] = &[
+        Row::of(
+            rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
+                .preset("1 kHz")
+                .about("Crossover of the current loop"),
+            |options| number(options.bandwidth),
+        ),
+        Row::of(common::saturation("nearest"), |options| {
+            word(options.saturation)
+        }),
+    ];
+
+    fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
+        let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
+        let saturation = reader.choice_or_preset(errors, "saturation", &[]);
+        let common = read_common(reader, surroundings, true, errors)?;
+        refuse_held(reader, &common, errors);
+        Some(Self {
+            bandwidth,
+            saturation,
+            common,
+        })
+    }
+
+    fn common(&self) -> &LoopOptions {
+        &self.common
+    }
+
+    fn common_mut(&mut self) -> &mut LoopOptions {
+        &mut self.common
+    }
+
+    fn modulates(&self) -> bool {
+        true
+    }
+}

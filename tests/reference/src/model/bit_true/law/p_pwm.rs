@@ -1,0 +1,42 @@
+//! Proportional control: proportional share and fed-forward EMF, limited and pulsed.
+
+use super::{Decision, Inputs, pulses};
+use crate::exact::{Coefficient, both, word};
+use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::limit::{self, Limited};
+use crate::model::variant::reference_gain;
+use crate::{Error, Saturation, Spec};
+
+#[derive(Clone, Debug)]
+pub struct PPwm {
+    saturation: Saturation,
+    k_drop: Coefficient,
+}
+
+impl PPwm {
+    pub fn new(spec: &Spec, options: &crate::PPwm, scale: &Scale) -> Result<Self, Error> {
+        Ok(Self {
+            saturation: options.saturation,
+            k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
+        })
+    }
+
+    #[inline]
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        // 9
+        let u_unsat = both(|x| now.j[x] + self.k_drop.mul(now.i[x]) + now.e[x]);
+        // 10, 11
+        let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
+        let Limited { u, legs, reach } = limited;
+        Decision {
+            u_unsat,
+            u,
+            reach,
+            vector: 0,
+            command: pulses::three(now, legs, [word(0.0); 3], false),
+            integral: now.integral,
+            hysteresis: now.hysteresis,
+            past: now.past,
+        }
+    }
+}

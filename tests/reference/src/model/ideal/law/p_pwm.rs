@@ -1,0 +1,43 @@
+//! Proportional control: proportional share and fed-forward EMF, limited and pulsed.
+
+use super::{Decision, Inputs, pulses};
+use crate::model::ideal::limit;
+use crate::model::ideal::vector::{clarke, phases, to_ab};
+use crate::model::variant::reference_gain;
+use crate::{Saturation, Spec};
+
+#[derive(Clone, Copy, Debug)]
+pub struct PPwm {
+    saturation: Saturation,
+    /// Proportional gain, V/A.
+    k_p: f64,
+}
+
+impl PPwm {
+    pub fn new(spec: &Spec, options: &crate::PPwm) -> Self {
+        Self {
+            saturation: options.saturation,
+            k_p: reference_gain(spec),
+        }
+    }
+
+    pub fn decide(&self, now: &Inputs) -> Decision {
+        let u_unsat = (now.i_ref - now.i) * self.k_p + now.e;
+        let limited = limit::limit(
+            self.saturation,
+            &phases(&u_unsat),
+            &phases(&now.e),
+            now.v_bus,
+        );
+        Decision {
+            u_unsat,
+            u: clarke(&limited.u),
+            reach: limited.reach,
+            vector: 0,
+            command: pulses::three(now, &limited.u, &[0.0; 3].into()),
+            integral: to_ab(&now.integral),
+            rises: now.rises,
+            past: now.past,
+        }
+    }
+}
