@@ -157,8 +157,9 @@ const LOOSE: &[Row] = &[
         "tuning",
         &[
             ("default", &[]),
+            ("slow", &[("controller", "bandwidth", "\"700 Hz\"")]),
             (
-                "slow",
+                "slow_integral",
                 &[
                     ("controller", "bandwidth", "\"700 Hz\""),
                     ("controller", "integral_time", "\"0.5 ms\""),

@@ -114,7 +114,7 @@ pub const DRIVES: &[Drive] = &[
         settings: &[
             ("saturation", "keep_angle"),
             ("feed_forward", "off"),
-            ("tuning", "slow"),
+            ("tuning", "slow_integral"),
             ("word", "16"),
             ("v_bus", "measured"),
             ("start_up", "short"),
