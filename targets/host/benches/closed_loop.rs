@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 /// Every kind of controller in its default variant, which is compiled in.
-const CONTROLLERS: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+const CONTROLLERS: [&str; 5] = ["fcs-mpc", "p-pwm", "pdcc", "phcc", "pi-pwm"];
 
 const RPM: f64 = 1500.0;
 

@@ -142,7 +142,7 @@ fn all_controllers_are_those_that_there_are() {
         .iter()
         .map(|checked| &checked["controller"])
         .collect();
-    assert_eq!(controllers, ["fcs-mpc", "pdcc", "phcc", "pi-pwm"]);
+    assert_eq!(controllers, ["fcs-mpc", "p-pwm", "pdcc", "phcc", "pi-pwm"]);
 }
 
 #[test]
@@ -204,7 +204,9 @@ fn a_fault_planted_in_the_emitted_text_is_found() {
 /// Controllers that modulate, in rows of `compare`.
 fn modulates(row: &Value) -> bool {
     let controller = row["controller"].as_str().expect("a name");
-    controller.starts_with("pdcc") || controller.starts_with("pi-pwm")
+    ["p-pwm", "pdcc", "pi-pwm"]
+        .iter()
+        .any(|kind| controller.starts_with(kind))
 }
 
 #[test]
@@ -213,7 +215,7 @@ fn compare_tells_accuracy_per_controller_and_word_length() {
     let rows = result["rows"].as_array().expect("a list");
     let named = |row: &Value| row["controller"].as_str().map(str::to_owned);
     let names: Vec<String> = rows.iter().filter_map(named).collect();
-    let kinds = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+    let kinds = ["fcs-mpc", "p-pwm", "pdcc", "phcc", "pi-pwm"];
     let all = kinds.map(|kind| [32, 16].map(|word| format!("{kind}:word={word}")));
     assert_eq!(names, all.as_flattened());
     for row in rows {

@@ -14,7 +14,7 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
         print_text(reason)?;
     }
     print_text(
-        "SNR, largest error and proven bound: of the deadbeat voltage in volt (pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
+        "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
          one step from the same state, phases a and b.\n\
          Decisions: sector, commutation, limit, vector. Where they differ (a tie that rounding broke) no errors are compared.\n\
          Closed loop: the merit that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
