@@ -1,8 +1,11 @@
-//! What a hundred controllers add to `cargo check`.
+//! What `cargo check` takes of a crate that adds hexagen: the first time, and with a hundred controllers.
 //!
-//! Two crates in a folder of their own, as a user would write them: one with 25 motors times 4 controllers, one with
-//! none; both in the dev profile, in which macros run unoptimised. What they depend on is built first. A third program
-//! runs the generator as the macro does, in the same profile, and says which part of it takes how long.
+//! Crates in a folder of their own, as a user would write them: one with a controller, which is checked with nothing built;
+//! one with 25 motors times 4 controllers and one with none, whose dependencies are built first. All are in the dev profile, in
+//! which macros run unoptimised. Another program runs the generator as the macro does, in the same profile, and says which part
+//! of it takes how long.
+
+mod first;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,12 +39,13 @@ const CONTROLLERS: [&str; 4] = ["fcs_mpc", "pdcc", "phcc", "pi_pwm"];
 /// Measured so often; the median counts.
 const RUNS: usize = 5;
 
-/// Prints what a hundred controllers add, and the share of each part.
+/// Prints what the first check takes and what a hundred controllers add, with the share of each part.
 ///
 /// # Errors
 /// What could not be written, run or read.
 pub fn measure(root: &Path) -> Result<(), String> {
     let folder = Folder::new(root)?;
+    folder.check_first()?;
     folder.cargo(&["build", "--package", "shares"])?;
     let shares = folder.shares()?;
     let times = folder.times()?;
@@ -160,14 +164,19 @@ impl Folder {
         };
         write(
             "Cargo.toml",
-            "[workspace]\nresolver = \"3\"\nmembers = [\"hundred\", \"none\", \"shares\"]\n",
+            "[workspace]\nresolver = \"3\"\nmembers = [\"hundred\", \"none\", \"one\", \"shares\"]\n",
         )?;
         fs::copy(root.join("Cargo.lock"), self.0.join("Cargo.lock"))?;
         let runtime = toml_text(&root.join("runtime"));
         let user = format!("hexagen = {{ path = {runtime} }}\n");
         let codegen = toml_text(&root.join("codegen"));
         let inside = format!("hexagen-codegen = {{ path = {codegen} }}\nproc-macro2 = \"1\"\n");
-        for (name, dependencies) in [("none", &user), ("hundred", &user), ("shares", &inside)] {
+        for (name, dependencies) in [
+            ("none", &user),
+            ("one", &user),
+            ("hundred", &user),
+            ("shares", &inside),
+        ] {
             let manifest = format!(
                 "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\n{dependencies}"
             );
@@ -190,18 +199,45 @@ impl Folder {
             .lines()
             .map(|call| format!("hexagen::controller! {{ {call} }}\n"));
         let macros: String = macros.collect();
-        write("hundred/src/lib.rs", &format!("#![no_std]\n{macros}"))?;
+        // The generator's warnings come as deprecations.
+        let allowed = "#![no_std]\n#![allow(deprecated)]\n";
+        write("hundred/src/lib.rs", &format!("{allowed}{macros}"))?;
         write("none/src/lib.rs", "#![no_std]\n")?;
+        let first = calls.lines().next().unwrap_or_default();
+        let first = first.replace("motors/", "../hundred/motors/");
+        write(
+            "one/src/lib.rs",
+            &format!("#![no_std]\nhexagen::controller! {{ {first} }}\n"),
+        )?;
         write("shares/src/calls", &calls)?;
         write("shares/src/main.rs", include_str!("compile_time/shares.rs"))
     }
 
+    /// Checks a crate with one controller where nothing is built yet.
+    fn check_first(&self) -> Result<(), String> {
+        let builds = self.0.join("first");
+        if builds.exists() {
+            fs::remove_dir_all(&builds)
+                .map_err(|error| format!("{}: {error}", builds.display()))?;
+        }
+        let begin = Instant::now();
+        self.cargo_into(&builds, &["check", "--package", "one", "--timings"])?;
+        first::print(
+            &builds.join("cargo-timings/cargo-timing.html"),
+            begin.elapsed(),
+        )
+    }
+
     fn cargo(&self, arguments: &[&str]) -> Result<(), String> {
+        self.cargo_into(&self.0.join("target"), arguments)
+    }
+
+    fn cargo_into(&self, builds: &Path, arguments: &[&str]) -> Result<(), String> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
             .args(arguments)
             .args(["--quiet", "--jobs", "2", "--target-dir"])
-            .arg(self.0.join("target"))
+            .arg(builds)
             .current_dir(&self.0)
             .status()
             .map_err(|error| format!("cannot run cargo: {error}"))?;

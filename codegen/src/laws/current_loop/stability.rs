@@ -39,7 +39,7 @@ pub trait LinearLoop {
         matrix
             .complex_eigenvalues()
             .iter()
-            .map(|pole| pole.norm())
+            .map(|pole| pole.re.hypot(pole.im))
             .fold(0.0, f64::max)
     }
 
