@@ -1,7 +1,7 @@
 //! The functions outside the step that set its words (semantics, "Set-point words").
 
 use super::number::round_half_up;
-use super::speed::speed_word;
+use super::speed::{SpeedWords, speed_word};
 use super::{Bus, Lowering, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
@@ -22,15 +22,6 @@ pub struct SetPointWords<'b> {
     pub gain: Gain,
     /// With a speed loop.
     pub speed: Option<SpeedWords<'b>>,
-}
-
-/// Words of a speed loop.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedWords<'b> {
-    /// The speed that is wanted, in words of `omega`.
-    pub reference: Param<'b>,
-    /// The greatest set-point: its coefficient times `I_MAX_BITS`.
-    pub top: i64,
 }
 
 /// Words of a measured bus.

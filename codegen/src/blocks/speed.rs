@@ -1,10 +1,9 @@
 //! The speed regulator: the current that the speed's error asks for (semantics of predictive deadbeat, "Speed loop").
 
-use super::set_point::SpeedWords;
 use super::{Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Real, named};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Param, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
@@ -17,6 +16,15 @@ const TRACKING_LOG2: u32 = 2;
 pub(super) fn speed_word(spec: &Spec) -> f64 {
     let tick = spec.inverter.t_s / spec.inverter.hall_capture.ticks_per_period();
     TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
+}
+
+/// Words of a speed loop.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedWords<'b> {
+    /// The speed that is wanted, in words of `omega`.
+    pub reference: Param<'b>,
+    /// The greatest set-point: its coefficient times `I_MAX_BITS`.
+    pub top: i64,
 }
 
 /// The regulator: its options, and its integral.

@@ -1,6 +1,6 @@
 //! What the type and the data sheet say of its accuracy: the bounds on the distance from the ideal controller.
 
-use super::interface::fraction_bits;
+use super::constants::fraction_bits;
 use crate::diagnostics::significant;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::ir::{Program, StatedError, stated_errors};

@@ -4,6 +4,7 @@
 //! generator asks of it.
 
 mod accuracy;
+mod constants;
 pub mod current_loop;
 pub mod fcs_mpc;
 mod interface;

@@ -40,33 +40,11 @@ pub(crate) fn is_absolute(path: &str) -> bool {
     Path::new(path).has_root() || path.contains(':')
 }
 
-/// Name of a type for a file without a name of its own: `motors/rear-hub.toml` is `RearHub`.
-pub(super) fn type_name(file_name: &str) -> String {
-    let stem = Path::new(file_name)
-        .file_stem()
-        .and_then(|stem| stem.to_str())
-        .unwrap_or_default();
-    let mut name: String = stem
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .flat_map(|word| {
-            let mut letters = word.chars();
-            letters
-                .next()
-                .map(|first| first.to_ascii_uppercase())
-                .into_iter()
-                .chain(letters)
-        })
-        .collect();
-    if !name.starts_with(|c: char| c.is_ascii_uppercase()) {
-        name.insert_str(0, "Motor");
-    }
-    name
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{load_motor_file, type_name};
+    use super::load_motor_file;
     use crate::diagnostics::Location;
+    use crate::spec::toml_syntax::type_name;
     use std::path::Path;
 
     #[test]

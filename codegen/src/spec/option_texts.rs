@@ -18,7 +18,7 @@ pub fn help() -> String {
     };
     let mut text = String::new();
     for kind in &KINDS {
-        text.push_str(&format!("  {}: {}\n", kind.name, kind.title));
+        text.extend([format!("  {}: {}\n", kind.name, kind.title)]);
         text.extend(
             kind.notes
                 .lines()
@@ -76,7 +76,7 @@ fn spelt(rule: &Rule) -> String {
     match rule.kind {
         Kind::Choice(words) => alternatives(words),
         Kind::ChoiceOrList(words) => format!("{}|[...]", alternatives(words)),
-        _ => values(rule).replace('`', ""),
+        _ => format!("<{}>", plain(&values(rule))),
     }
 }
 
@@ -119,19 +119,19 @@ mod tests {
                 .all(|rule| names.clone().any(|name| name == rule.name))
         });
         let takers: Vec<String> = takers.map(|kind| format!("`{}`", kind.name)).collect();
-        text.push_str(&format!(
+        text.extend([format!(
             "\nOptions of commutations, which {} take:\n\n",
             takers.join(", ")
-        ));
+        )]);
         text.push_str(&table(commutation));
         for kind in &KINDS {
-            text.push_str(&format!(
+            text.extend([format!(
                 "\n### controller: {}\n\n{}.\n",
                 kind.name,
                 sentence(kind.title)
-            ));
+            )]);
             if !kind.notes.is_empty() {
-                text.push_str(&format!("{}\n", kind.notes));
+                text.extend([format!("{}\n", kind.notes)]);
             }
             text.push('\n');
             text.push_str(&table((kind.own)()));
@@ -180,7 +180,7 @@ mod tests {
             text: String::new(),
             column: 1,
         };
-        for rule in KINDS.iter().flat_map(|kind| kind.rules()) {
+        for rule in KINDS.iter().flat_map(controller::Kind::rules) {
             assert!(!rule.about.is_empty(), "{}", rule.name);
             let value = match rule.preset {
                 Preset::Value(text) => parse_value(rule.name, text, &at),

@@ -31,21 +31,21 @@ pub(crate) fn lines<S>(rows: &'static [Row<S>], options: &S) -> Vec<(&'static Ru
 }
 
 /// A number as the normalised specification has it: `Debug` of a float is the shortest text that reads back the same.
-pub(crate) fn number(value: impl Debug) -> Option<String> {
-    Some(format!("{value:?}"))
+pub(crate) fn number(value: impl Debug) -> String {
+    format!("{value:?}")
 }
 
 /// A word as the normalised specification has it.
-pub(crate) fn word(choice: impl Words) -> Option<String> {
-    Some(format!("\"{}\"", choice.word()))
+pub(crate) fn word(choice: impl Words) -> String {
+    format!("\"{}\"", choice.word())
 }
 
 /// A flag whose line is left out where it is off.
 pub(crate) fn if_on(flag: bool) -> Option<String> {
-    flag.then(|| word(flag)).flatten()
+    flag.then(|| word(flag))
 }
 
 /// A number whose line is left out where it is 0.
 pub(crate) fn if_any(value: f64) -> Option<String> {
-    if value > 0.0 { number(value) } else { None }
+    (value > 0.0).then(|| number(value))
 }

@@ -5,10 +5,11 @@
 //! data sheet lacks; `[source]` free text. Every place is kept as file, line and column.
 
 use super::ast::{Field, Name, Section, SpecAst, Value};
+use super::schema;
 use super::value::{free_text, no_text, parse_value, plain_number, unreadable};
-use super::{load, schema};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
 use std::ops::Range;
+use std::path::Path;
 use toml_edit::{Document, Item, Key, TableLike};
 
 const SECTIONS: [&str; 5] = ["motor", "inverter", "controller", "assumed", "source"];
@@ -25,7 +26,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
     };
     let document = Document::parse(text).map_err(|error| file.syntax_error(&error))?;
     let mut ast = SpecAst::new(Name {
-        text: load::type_name(file_name),
+        text: type_name(file_name),
         location: file.at(0),
     });
     for (name, item) in document.iter() {
@@ -268,4 +269,27 @@ impl File<'_> {
             .and_then(|range| self.text.get(range))
             .unwrap_or_default()
     }
+}
+
+/// Name of a type for a file without a name of its own: `motors/rear-hub.toml` is `RearHub`.
+pub(super) fn type_name(file_name: &str) -> String {
+    let stem = Path::new(file_name)
+        .file_stem()
+        .and_then(|stem| stem.to_str())
+        .unwrap_or_default();
+    let mut name: String = stem
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .flat_map(|word| {
+            let mut letters = word.chars();
+            letters
+                .next()
+                .map(|first| first.to_ascii_uppercase())
+                .into_iter()
+                .chain(letters)
+        })
+        .collect();
+    if !name.starts_with(|c: char| c.is_ascii_uppercase()) {
+        name.insert_str(0, "Motor");
+    }
+    name
 }

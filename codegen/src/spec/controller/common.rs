@@ -104,20 +104,20 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         rule::choice::<EmfSource>("emf", "estimated")
             .preset("estimated")
             .about("Where the EMF comes from; `held` with `modulation: three_phase` of `pdcc`, and of `fcs-mpc` and `phcc` where no off leg is `physical`"),
-        |options| word(options.emf),
+        |options| Some(word(options.emf)),
     ),
     Row::of(
         rule::plain("emf_filter", 1e-3, 1.0, "0.5")
             // Stable from 60 % of the stated inductance up, and quick enough for what the motor's shape does not foresee.
             .preset("0.25")
             .about("Share that the EMF estimate takes over of what one period shows (1: all, no filter); only with `emf: estimated`"),
-        |options| number(options.emf_filter),
+        |options| Some(number(options.emf_filter)),
     ),
     Row::of(
         rule::choice::<Reference>("reference", "quasi_square")
             .preset("quasi_square")
             .about("What the currents follow; `proportional` not with `modulation: pair`"),
-        |options| word(options.reference),
+        |options| Some(word(options.reference)),
     ),
     Row::of(
         rule::choice::<bool>("speed_loop", "on")
@@ -129,25 +129,25 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         rule::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz")
             .by_default("a fiftieth of the electrical turns per second at rated speed")
             .about("Bandwidth of the speed loop, at most an eighth of the electrical turns per second at rated speed: the speed is a mean over a turn; only with `speed_loop: on`"),
-        |options| number(options.speed?.bandwidth),
+        |options| Some(number(options.speed?.bandwidth)),
     ),
     Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
             .preset("0")
             .about("Phase advance, control periods of electrical angle; not with `proportional` where no pair of phases is switched"),
-        |options| number(options.advance),
+        |options| Some(number(options.advance)),
     ),
     Row::of(
         rule::integer("delay", 0, 1, "1")
             .preset("1")
             .about("Periods between a sample and the effect of the command that answers it"),
-        |options| number(options.delay),
+        |options| Some(number(options.delay)),
     ),
     Row::of(
         rule::choice::<Discretisation>("discretisation", "exact")
             .preset("exact")
             .about("How the plant is discretised"),
-        |options| word(options.discretisation),
+        |options| Some(word(options.discretisation)),
     ),
     Row::of(
         rule::choice::<Target>("target", "cortex_m0")
@@ -159,7 +159,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         rule::one_of("word", &[16, 32], "32")
             .by_default("32; 16 as `target` chooses")
             .about("Bits of the words of control arithmetic"),
-        |options| number(options.word),
+        |options| Some(number(options.word)),
     ),
     Row::of(
         rule::choice::<HallEdges>("hall_capture", "sampled")
@@ -175,13 +175,13 @@ pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
         rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
             .by_default("0.5 A, at most a quarter of `rated_current`")
             .about("Outgoing current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
-        |options| number(options.commutation_threshold),
+        |options| Some(number(options.commutation_threshold)),
     ),
     Row::of(
         rule::quantity("commutation_timeout", &[D::Periods, D::Time], 1.0, 255.0, "8 periods")
             .by_default("4 L I/(v_bus Ts), 4 to 255 periods")
             .about("Periods, or time, after which a commutation is taken as ended; only where a leg is turned off"),
-        |options| number(options.commutation_timeout),
+        |options| Some(number(options.commutation_timeout)),
     ),
 ];
 

@@ -67,20 +67,20 @@ impl Options for FcsMpcSpec {
             rule::choice::<Candidates>("candidates", "table2")
                 .by_default("`table2`; with `horizon: 2` `three_phase`")
                 .about("The vectors among which the controller chooses"),
-            |options| word(options.candidates),
+            |options| Some(word(options.candidates)),
         ),
-        Row::of(OFF_LEG, |options| word(options.off_leg)),
+        Row::of(OFF_LEG, |options| Some(word(options.off_leg))),
         Row::of(
             rule::choice::<bool>("modulated", "off")
                 .preset("off")
                 .about("Whether the vector shares its period with the best other one, each for the time of the least predicted error. Three compare values and one state per leg allow what differs in one direction: V0 and any of V1 to V6, two neighbours of these, a pair vector and its own zero"),
-            |options| word(options.modulated),
+            |options| Some(word(options.modulated)),
         ),
         Row::of(
             rule::integer("horizon", 1, 2, "2")
                 .preset("1")
                 .about("Periods that the cost looks ahead: of all sequences of two vectors (49 of `three_phase`, 169 of `all` with `off_leg: nominal`) the best one's first vector is applied; with neither `modulated: on` nor weights"),
-            |options| (options.horizon > 1).then(|| number(options.horizon)).flatten(),
+            |options| (options.horizon > 1).then(|| number(options.horizon)),
         ),
         Row::of(
             rule::quantity("switching_weight", &[D::Current], 1e-4, 1e4, "0.5 A")

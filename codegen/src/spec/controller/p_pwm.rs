@@ -39,10 +39,10 @@ impl Options for PPwmSpec {
             rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
                 .preset("1 kHz")
                 .about("Crossover of the current loop"),
-            |options| number(options.bandwidth),
+            |options| Some(number(options.bandwidth)),
         ),
         Row::of(common::saturation("nearest"), |options| {
-            word(options.saturation)
+            Some(word(options.saturation))
         }),
     ];
 

@@ -43,10 +43,10 @@ impl Options for PdccSpec {
             rule::choice::<Modulation>("modulation", "three_phase")
                 .preset("three_phase")
                 .about("How the deadbeat voltage becomes leg commands"),
-            |options| word(options.modulation),
+            |options| Some(word(options.modulation)),
         ),
         Row::of(common::saturation("torque_priority"), |options| {
-            word(options.saturation)
+            Some(word(options.saturation))
         }),
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)

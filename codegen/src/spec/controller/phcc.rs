@@ -86,24 +86,26 @@ impl Options for PhccSpec {
             rule::choice_or_list::<SwitchingTable>("table", "derived")
                 .preset("derived")
                 .about("Where the switching table comes from. A list gives it: 48 vector numbers, S1 to S6, first otherwise, then in commutation, each for the wishes (alpha, beta) = 00, 01, 10, 11"),
-            |options| match options.table {
-                SwitchingTable::Given(numbers) => number(numbers),
-                known => word(known),
+            |options| {
+                Some(match options.table {
+                    SwitchingTable::Given(numbers) => number(numbers),
+                    known => word(known),
+                })
             },
         ),
         Row::of(
             rule::quantity("band", &[D::Current], 1e-4, 1e4, "0.5 A")
                 .by_default("2.5 % of `rated_current`")
                 .about("Half width of both bands, below the rated current"),
-            |options| number(options.band),
+            |options| Some(number(options.band)),
         ),
         Row::of(
             rule::choice::<PhccCandidates>("candidates", "table2")
                 .preset("table2")
                 .about("The vectors among which the derived table chooses"),
-            |options| word(options.candidates),
+            |options| Some(word(options.candidates)),
         ),
-        Row::of(OFF_LEG, |options| word(options.off_leg)),
+        Row::of(OFF_LEG, |options| Some(word(options.off_leg))),
     ];
 
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {

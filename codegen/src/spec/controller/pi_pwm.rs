@@ -62,25 +62,25 @@ impl Options for PiPwmSpec {
             rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
                 .preset("1 kHz")
                 .about("Crossover of the current loop"),
-            |options| number(options.bandwidth),
+            |options| Some(number(options.bandwidth)),
         ),
         Row::of(
             rule::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms")
                 .by_default("L/R")
                 .about("Integral time; also that of the anti-windup"),
-            |options| number(options.integral_time),
+            |options| Some(number(options.integral_time)),
         ),
         Row::of(
             rule::choice::<bool>("feed_forward", "on")
                 .by_default("`on`; with `six_step: on` `off`")
                 .about("Whether the EMF is added to the voltage"),
-            |options| word(options.feed_forward),
+            |options| Some(word(options.feed_forward)),
         ),
         Row::of(
             rule::choice::<bool>("six_step", "off")
                 .preset("off")
                 .about("The conventional drive, one regulator on the conducting pair's current; takes no `saturation`, follows `quasi_square` without feed-forward"),
-            |options| word(options.six_step),
+            |options| Some(word(options.six_step)),
         ),
         Row::of(
             rule::choice::<PiModulation>("modulation", "three_phase")
@@ -89,7 +89,7 @@ impl Options for PiPwmSpec {
             |_| None,
         ),
         Row::of(common::saturation("nearest"), |options| {
-            word(options.saturation)
+            Some(word(options.saturation))
         }),
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)

@@ -1,0 +1,246 @@
+//! Associated constants of the emitted type: what it is for, its vectors, and where its loop is stable.
+
+use super::current_loop::{LoopDesign, StableRange};
+use super::start::start_rpm;
+use super::{Description, Period};
+use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
+use crate::diagnostics::{engineering, percent, significant};
+use crate::interface::{PublicConstant, PublicValue};
+use crate::spec::{HallCapture, InverterSpec, Spec};
+use nalgebra::Vector2;
+
+/// All constants; `accuracy`: the bounds that the proof has found.
+pub(super) fn constants(
+    spec: &Spec,
+    design: &LoopDesign,
+    law: &Description,
+    accuracy: Vec<PublicConstant>,
+) -> Vec<PublicConstant> {
+    let mut list = drive_constants(spec, start_rpm(spec, design));
+    list.extend(plant_constants(design));
+    list.extend(vector_constants(
+        &spec.inverter,
+        super::law(&spec.controller).period(),
+    ));
+    list.extend(law.constants.iter().cloned());
+    list.extend(accuracy);
+    list.extend(law.stable.into_iter().flat_map(stable_constants));
+    if let HallCapture::Timer { ticks } = spec.inverter.hall_capture {
+        list.push(integer(
+            "HALL_TIMER_HZ",
+            "u32",
+            (ticks / spec.inverter.t_s).round() as i64,
+            &format!(
+                "Clock of the Hall capture timer that counts `hall_ticks`, Hz: {} ticks in a control period.",
+                significant(ticks)
+            ),
+        ));
+    }
+    list
+}
+
+fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    vec![
+        integer(
+            "POLE_PAIRS",
+            "u32",
+            i64::from(motor.pole_pairs),
+            "Pole pairs.",
+        ),
+        integer(
+            "T_S_NS",
+            "u32",
+            (inverter.t_s * 1e9).round() as i64,
+            "Control period, rounded to ns.",
+        ),
+        integer(
+            "TIMER_PERIOD",
+            "u16",
+            i64::from(inverter.timer_period),
+            "Compare value of 100 % duty: top of the centre-aligned timer.",
+        ),
+        integer(
+            "ADC_BITS",
+            "u32",
+            i64::from(inverter.adc_bits),
+            "Bits of the phase-current converters.",
+        ),
+        fixed(
+            "ADC_GAIN",
+            inverter.adc_gain,
+            "A",
+            if inverter.adc_gain < 0.0 {
+                "Current into the motor per ADC count, negative because counts fall with it"
+            } else {
+                "Current into the motor per ADC count"
+            },
+        ),
+        integer(
+            "ADC_OFFSET",
+            "u16",
+            i64::from(inverter.adc_offset),
+            "ADC count at zero current, where calibration has not told another.",
+        ),
+        fixed("V_BUS", inverter.v_bus, "V", "Nominal bus voltage"),
+        fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
+        fixed(
+            "I_TRIP",
+            inverter.trip_current,
+            "A",
+            "Trip level of the phase currents",
+        ),
+        fixed(
+            "TORQUE_CONSTANT",
+            spec.torque_constant(),
+            "Nm/A",
+            "Torque per ampere of set-point, k_t",
+        ),
+        integer(
+            "START_SPEED_RPM",
+            "u32",
+            start_rpm,
+            "Greatest speed of the rotor at which control may begin, at set-point 0 and a bus within its limits, rpm: no sampled current reaches the trip level. (Pre-charge shorts the windings.)",
+        ),
+    ]
+}
+
+fn plant_constants(design: &LoopDesign) -> [PublicConstant; 3] {
+    [
+        fixed(
+            "POLE",
+            design.plant.pole,
+            "",
+            "Pole a of the discrete plant i(k+1) = a i(k) + b (v(k) - e(k))",
+        ),
+        fixed(
+            "GAIN",
+            design.plant.gain,
+            "A/V",
+            "Gain b of the discrete plant",
+        ),
+        fixed("STIFFNESS", design.k_di, "V/A", "K = 1/b"),
+    ]
+}
+
+/// The paper's vectors and (16) at the nominal bus.
+fn vector_constants(inverter: &InverterSpec, period: Period) -> [PublicConstant; 3] {
+    let v_bus = inverter.v_bus;
+    let three = THREE_PHASE.map(|legs| leg_vector(legs, v_bus));
+    let two = TWO_PHASE.map(|legs| leg_vector(legs, v_bus));
+    let counts = f64::from(inverter.timer_period);
+    let svm: Vec<Vector2<f64>> = (0..6)
+        .flat_map(|n| svm_coefficients(n, v_bus))
+        .map(|c| c * counts)
+        .collect();
+    [
+        vectors(
+            "THREE_PHASE_VECTORS",
+            &three,
+            vec!["Vectors V1 to V6 at the nominal bus, (alpha, beta) in volt: the commutation vectors of the paper's Table 2; sector S_k takes V_(k+1).".to_owned()],
+        ),
+        vectors(
+            "TWO_PHASE_VECTORS",
+            &two,
+            vec!["Vectors V12 to V61 at the nominal bus, (alpha, beta) in volt: the vectors of Table 2 outside commutation; sector S_k takes V_(k,k+1).".to_owned()],
+        ),
+        vectors(
+            "SVM_COEFFICIENTS",
+            &svm,
+            vec![
+                "Coefficients of the paper's (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
+                String::new(),
+                match period {
+                    Period::Pulses => {
+                        "The step reaches the same times by min/max injection, which needs none of them."
+                    }
+                    Period::TwoVectors => {
+                        "The step divides a period between two vectors, not three: these times are for comparison."
+                    }
+                    Period::OneVector => {
+                        "The step applies whole vectors and modulates none: these times are for comparison."
+                    }
+                }
+                .to_owned(),
+            ],
+        ),
+    ]
+}
+
+fn stable_constants(stable: StableRange) -> [PublicConstant; 2] {
+    let text = |low_high: (f64, f64)| PublicValue::Text(ratios(low_high));
+    [
+        PublicConstant {
+            name: "STABLE_INDUCTANCE".to_owned(),
+            value: text(stable.inductance),
+            doc: vec!["True over stated inductance within which the loop is stable.".to_owned()],
+        },
+        PublicConstant {
+            name: "STABLE_RESISTANCE".to_owned(),
+            value: text(stable.resistance),
+            doc: vec!["True over stated resistance within which the loop is stable.".to_owned()],
+        },
+    ]
+}
+
+fn integer(name: &str, rust_type: &'static str, value: i64, doc: &str) -> PublicConstant {
+    PublicConstant {
+        name: name.to_owned(),
+        value: PublicValue::Integer { rust_type, value },
+        doc: vec![doc.to_owned()],
+    }
+}
+
+fn fixed(name: &str, value: f64, unit: &str, doc: &str) -> PublicConstant {
+    let frac_bits = fraction_bits(value);
+    let bits = (value * f64::from(frac_bits).exp2()).round() as i32;
+    let error = f64::from(bits) / f64::from(frac_bits).exp2() - value;
+    let error = if error == 0.0 {
+        "exact".to_owned()
+    } else {
+        format!("{error:.1e} off")
+    };
+    PublicConstant {
+        name: name.to_owned(),
+        value: PublicValue::Fixed { bits, frac_bits },
+        doc: vec![format!(
+            "{doc}: {}; {frac_bits} fraction bits, {error}.",
+            engineering(value, unit)
+        )],
+    }
+}
+
+fn vectors(name: &str, list: &[Vector2<f64>], doc: Vec<String>) -> PublicConstant {
+    let largest = list.iter().map(Vector2::amax).fold(0.0, f64::max);
+    let frac_bits = fraction_bits(largest);
+    let scale = f64::from(frac_bits).exp2();
+    let bits = list
+        .iter()
+        .map(|v| [(v.x * scale).round() as i32, (v.y * scale).round() as i32])
+        .collect();
+    PublicConstant {
+        name: name.to_owned(),
+        value: PublicValue::Vectors { bits, frac_bits },
+        doc,
+    }
+}
+
+/// Fraction bits at which `largest` fits a 32-bit word.
+pub(super) fn fraction_bits(largest: f64) -> u32 {
+    (30.0 - largest.abs().max(1e-9).log2())
+        .floor()
+        .clamp(0.0, 31.0) as u32
+}
+
+pub(super) fn ratios((low, high): (f64, f64)) -> String {
+    let bound = |ratio: f64| {
+        if ratio <= 0.1 {
+            "10 % or less".to_owned()
+        } else if ratio >= 10.0 {
+            "1000 % or more".to_owned()
+        } else {
+            percent(ratio)
+        }
+    };
+    format!("{} to {}", bound(low), bound(high))
+}
