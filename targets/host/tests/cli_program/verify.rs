@@ -263,7 +263,8 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
             }
         }
     }
-    assert_eq!(compared, 2 * 2 * 14);
+    // Three controllers that modulate, at two speeds.
+    assert_eq!(compared, 3 * 2 * 14);
 }
 
 #[test]
