@@ -1,18 +1,22 @@
 //! The bit-true model over words with intervals: that every sum and product of it is exact.
 //!
-//! The model's own text runs, built over the words of `hexagen-exactness`: state words are any of the intervals
+//! The model itself runs, over [`Bounded`] words in place of f64: state words are any of the intervals
 //! that the verifier has proven, inputs any of their types. An operation of the text gets the union of what it may give
 //! on all ways that have led to it, for all values, and has to fit 53 bits with it. Arbitrary states lead the program
 //! on its ways; a proof ends when as many states again as it took to get there have added nothing to any operation. Every
 //! value has to be what is known of it, and every step that of the plain model.
 
+mod bounded;
+pub mod ledger;
+
+pub use bounded::Bounded;
+
 use crate::states::States;
 use hexagen::Format;
 use hexagen_codegen::pipeline::Generated;
-use hexagen_exactness::ledger::{self, Findings};
-use hexagen_exactness::{BitTrue, FormatTable, Spec};
 use hexagen_lab::formats;
-use hexagen_reference as reference;
+use hexagen_reference::{BitTrue, FormatTable, Spec};
+use ledger::Findings;
 use std::f64::consts::TAU;
 
 /// States that a proof takes at least, and at most.
@@ -37,18 +41,17 @@ pub fn prove_exact_in(generated: &Generated, table: &[Format]) -> Result<Finding
 
 fn prove(generated: &Generated, table: &[Format], compares: bool) -> Result<Findings, String> {
     let toml = &generated.interface.spec_toml;
-    let spec = reference::Spec::from_toml(toml).map_err(|error| error.to_string())?;
-    let plain = reference::BitTrue::new(&spec, &reference::FormatTable::new(table));
+    let spec = Spec::from_toml(toml).map_err(|error| error.to_string())?;
+    let table = FormatTable::new(table);
+    let plain = BitTrue::new(&spec, &table);
     let mut plain = plain.map_err(|error| error.to_string())?;
     ledger::begin();
-    let own = Spec::from_toml(toml).map_err(|error| error.to_string())?;
-    let model = BitTrue::new(&own, &FormatTable::new(table));
+    let model = BitTrue::<Bounded>::over_words(&spec, &table);
     let mut model = model.map_err(|error| error.to_string())?;
     ledger::open();
     let names = model.state_names();
     let mut states = States::new(&spec, generated, &names, 1);
-    let ends = |&(low, high): &(i32, i32)| [low, high].map(f64::from);
-    let intervals: Vec<[f64; 2]> = states.ranges().iter().map(ends).collect();
+    let ranges = states.ranges().to_vec();
     let most_current = spec.inverter.max_current * 65_536.0;
     let most_speed = spec.inverter.omega_max * 60.0 / TAU * 65_536.0;
     let mut words = vec![0; names.len()];
@@ -74,8 +77,7 @@ fn prove(generated: &Generated, table: &[Format], compares: bool) -> Result<Find
             }
         }
         let sample = states.fill(&mut words);
-        model.set_state_words(&words);
-        model.widen_state(&intervals);
+        model.set_state_within(&words, &ranges);
         plain.set_state_words(&words);
         let before = ledger::news();
         let legs = model.step(&sample);

@@ -3,24 +3,92 @@
 //! A word is an f64 with a whole value of at most 32 bits and sign. Sums and products that stay
 //! below 2^53 are exact in f64; longer products are split at 16 bits first (floor(C x/2^s) =
 //! floor((Ch x + floor(Cl x/2^16))/2^(s-16)) with C = Ch 2^16 + Cl), so every intermediate is
-//! exact. That they are, for all words that a drive's formats allow, is what the crate
-//! `hexagen-exactness` proves of this text; the tests compare with 128-bit integers.
+//! exact. That they are, for all words that a drive's formats allow, is what the cross-crate
+//! tests prove of this text, over words with intervals; those here compare with 128-bit integers.
 #![expect(
     clippy::inline_always,
     reason = "the models spend their time in these few instructions"
 )]
 
-use crate::word::{debug_at_most, nearest, product_below};
+use crate::word::{TWO_16, TWO_32};
+pub use crate::word::{WHOLE, Word, pow2};
 
-#[cfg(bounded)]
-pub use crate::word::divide;
-pub use crate::word::{
-    WHOLE, Word, debug_whole, either, floor, greater, here, input, known, lesser, sign, tabulated,
-    to_i32, to_index, to_u16, word,
-};
+/// A constant as a word.
+#[inline(always)]
+pub fn word<W: Word>(x: f64) -> W {
+    x.into()
+}
 
-const TWO_16: f64 = 65_536.0;
-const TWO_32: f64 = 4_294_967_296.0;
+/// A number from outside: any of its type.
+#[inline(always)]
+pub fn input<W: Word>(x: impl Outside) -> W {
+    x.any()
+}
+
+/// A type whose numbers come in from outside.
+pub trait Outside {
+    /// The number, which stands for any of its type.
+    fn any<W: Word>(self) -> W;
+}
+
+impl Outside for u16 {
+    #[inline(always)]
+    fn any<W: Word>(self) -> W {
+        W::whole(self.into(), 0.0, TWO_16 - 1.0)
+    }
+}
+
+impl Outside for i32 {
+    #[inline(always)]
+    fn any<W: Word>(self) -> W {
+        W::whole(self.into(), -TWO_32 / 2.0, TWO_32 / 2.0 - 1.0)
+    }
+}
+
+/// The greatest whole number not above `y` ([`Word::floor`]).
+#[inline(always)]
+#[track_caller]
+pub fn floor<W: Word>(y: W) -> W {
+    y.floor()
+}
+
+/// The greater of two numbers.
+#[inline(always)]
+pub fn greater<W: Word>(a: W, b: impl Into<W>) -> W {
+    a.greater(b.into())
+}
+
+/// The lesser of two numbers.
+#[inline(always)]
+pub fn lesser<W: Word>(a: W, b: impl Into<W>) -> W {
+    a.lesser(b.into())
+}
+
+/// `then` where the condition holds, else `otherwise`.
+#[inline(always)]
+pub fn either<W: Word>(condition: bool, then: W, otherwise: W) -> W {
+    W::either(condition, then, otherwise)
+}
+
+/// `y` within low <= high.
+#[inline(always)]
+pub fn within<W: Word>(y: W, low: impl Into<W>, high: impl Into<W>) -> W {
+    lesser(greater(y, low), high)
+}
+
+/// The 16-bit count of a whole x, 0 <= x < 2^16.
+#[inline(always)]
+#[track_caller]
+pub fn to_u16<W: Word>(x: W) -> u16 {
+    x.known(0.0, TWO_16 - 1.0).to_i32() as u16
+}
+
+/// The index that a small whole x >= 0 is.
+#[inline(always)]
+#[track_caller]
+pub fn to_index<W: Word>(x: W) -> usize {
+    x.to_i32() as usize
+}
 
 /// What `of` says of phases a and b. Unlike `map` of an array it leaves nothing for the optimiser to unwind.
 #[inline(always)]
@@ -34,36 +102,29 @@ pub fn all_three<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// 2^exponent, for |exponent| <= 1022.
-#[inline]
-pub fn pow2(exponent: i32) -> f64 {
-    debug_assert!(exponent.abs() <= 1022);
-    f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
-}
-
 /// floor(x weight) for a whole x and a weight 2^-n, n >= 0: with n fraction bits, subtracting half
 /// less half an ulp turns "downwards" into "to the nearest" without ties.
 #[inline]
-#[cfg_attr(bounded, track_caller)]
-pub fn floor_weighted(x: Word, weight: f64) -> Word {
-    let _site = here();
-    debug_whole(x);
-    nearest(x * weight + (0.5 * weight - 0.5))
+#[track_caller]
+pub fn floor_weighted<W: Word>(x: W, weight: f64) -> W {
+    let _site = W::here();
+    x.debug_whole();
+    W::nearest(x * weight + (0.5 * weight - 0.5))
 }
 
 /// floor(x/2): the arithmetic shift by one, |x| < 2^50.
 #[inline]
-#[cfg_attr(bounded, track_caller)]
-pub fn halve(x: Word) -> Word {
-    let _site = here();
+#[track_caller]
+pub fn halve<W: Word>(x: W) -> W {
+    let _site = W::here();
     floor_weighted(x, 0.5)
 }
 
 /// floor(x/2^n), |x| < 2^50.
 #[inline]
-#[cfg_attr(bounded, track_caller)]
-pub fn floor_shift(x: Word, n: u32) -> Word {
-    let _site = here();
+#[track_caller]
+pub fn floor_shift<W: Word>(x: W, n: u32) -> W {
+    let _site = W::here();
     floor_weighted(x, pow2(-(n as i32)))
 }
 
@@ -83,83 +144,52 @@ pub fn floor_constant(x: f64) -> f64 {
 
 /// x modulo 2^32, from 0 up; |x| < 2^50.
 #[inline]
-#[cfg_attr(bounded, track_caller)]
-pub fn wrap32(x: Word) -> Word {
-    let _site = here();
-    debug_whole(x);
+#[track_caller]
+pub fn wrap32<W: Word>(x: W) -> W {
+    let _site = W::here();
+    x.debug_whole();
     let wrapped = x - floor_weighted(x, 1.0 / TWO_32) * TWO_32;
-    known(wrapped, 0.0, TWO_32 - 1.0)
+    wrapped.known(0.0, TWO_32 - 1.0)
 }
 
 /// floor(y), |y| < 2^51, and the rest.
 #[inline]
-#[cfg_attr(bounded, track_caller)]
-pub fn split(y: Word) -> (Word, Word) {
-    let _site = here();
+#[track_caller]
+pub fn split<W: Word>(y: W) -> (W, W) {
+    let _site = W::here();
     let whole = floor(y);
-    (whole, known(y - whole, 0.0, 1.0))
-}
-
-/// min(floor(n 2^s/den), limit) for words n >= 0, den > 0 and limit >= 0, by one division: the rounded quotient is at
-/// most one off, which the remainder tells.
-#[cfg(not(bounded))]
-#[inline]
-pub fn divide(n: f64, s: u32, den: f64, limit: f64) -> f64 {
-    debug_whole(n);
-    debug_assert!(
-        (0.0..TWO_32).contains(&n)
-            && (1.0..TWO_32).contains(&den)
-            && (0.0..TWO_32).contains(&limit),
-        "{n}/{den}, at most {limit}"
-    );
-    let numerator = n * pow2(s as i32);
-    let quotient = floor(lesser(numerator / den, limit));
-    // Each difference is exact: the upper half of the quotient leaves less than 2^49.
-    let high = floor_weighted(quotient, 1.0 / TWO_16) * TWO_16;
-    let remainder = (numerator - high * den) - (quotient - high) * den;
-    let one = |off: bool| either(off, 1.0, 0.0);
-    lesser(
-        quotient + one(remainder >= den) - one(remainder < 0.0),
-        limit,
-    )
-}
-
-/// `y` within low <= high, none of which is NaN.
-#[inline(always)]
-#[cfg_attr(bounded, track_caller)]
-pub fn within(y: impl Into<Word>, low: impl Into<Word>, high: impl Into<Word>) -> Word {
-    lesser(greater(y, low), high)
+    (whole, (y - whole).known(0.0, 1.0))
 }
 
 /// A coefficient word with its shift, split for [`Coefficient::mul`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Coefficient {
+pub struct Coefficient<W> {
     /// The upper part over 2^(s-16).
-    high: Word,
+    high: W,
     /// The lower 16 bits over 2^16.
-    low: Word,
+    low: W,
     /// 2^(16-s).
     low_weight: f64,
     /// Half an ulp of the sum that is rounded: breaks ties upwards.
     nudge: f64,
 }
 
-impl Coefficient {
+impl<W: Word> Coefficient<W> {
     /// Splits the word `raw` with shift `s` <= 62.
     #[inline]
-    #[cfg_attr(bounded, track_caller)]
-    pub fn new(raw: impl Into<Word>, s: u32) -> Self {
-        let _site = here();
-        let raw = raw.into();
-        debug_whole(raw);
-        debug_at_most(raw, TWO_32);
+    #[track_caller]
+    pub fn new(raw: impl Into<W>, s: u32) -> Self {
+        let _site = W::here();
+        let raw: W = raw.into();
+        raw.debug_whole();
+        raw.debug_at_most(TWO_32);
         debug_assert!(s <= 62, "shift {s}");
         if s > 16 {
             let high = floor_weighted(raw, 1.0 / TWO_16);
             let low_weight = pow2(16 - s as i32);
             Self {
                 high: high * low_weight,
-                low: known(raw - high * TWO_16, 0.0, TWO_16 - 1.0) * (1.0 / TWO_16),
+                low: (raw - high * TWO_16).known(0.0, TWO_16 - 1.0) * (1.0 / TWO_16),
                 low_weight,
                 nudge: 0.5 * low_weight,
             }
@@ -178,15 +208,14 @@ impl Coefficient {
 
     /// mul(c, x) = floor((c x + 2^(s-1))/2^s) for a word x; the bare product for s = 0.
     #[inline]
-    #[cfg_attr(bounded, track_caller)]
-    pub fn mul(&self, x: impl Into<Word>) -> Word {
-        let _site = here();
-        let x = x.into();
-        debug_whole(x);
-        debug_at_most(x, 2.0 * TWO_32);
+    #[track_caller]
+    pub fn mul(&self, x: W) -> W {
+        let _site = W::here();
+        x.debug_whole();
+        x.debug_at_most(2.0 * TWO_32);
         // floor(Cl x/2^16), a sum with 16 fraction bits.
-        let tail = nearest(self.low * x + (0.5 / TWO_16 - 0.5));
-        nearest(self.high * x + (tail * self.low_weight + self.nudge))
+        let tail = W::nearest(self.low * x + (0.5 / TWO_16 - 0.5));
+        W::nearest(self.high * x + (tail * self.low_weight + self.nudge))
     }
 }
 
@@ -230,43 +259,43 @@ impl Shift {
     /// x y/2^s rounded to the nearest with `nudge` of the weight of its last bit added. A product too long for f64
     /// loses 16 bits, which the shift cuts off in any case: its upper and lower half are multiplied apart.
     #[inline]
-    fn product(&self, x: Word, y: Word, nudge: impl Fn(f64) -> f64) -> Word {
-        debug_whole(x);
-        debug_whole(y);
-        debug_at_most(x, TWO_32);
-        debug_at_most(y, 2.0 * TWO_32);
-        if let Some(whole) = product_below(x, y, self.whole) {
-            debug_whole(whole);
-            nearest(whole * self.weight + nudge(self.weight))
+    fn product<W: Word>(&self, x: W, y: W, nudge: impl Fn(f64) -> f64) -> W {
+        x.debug_whole();
+        y.debug_whole();
+        x.debug_at_most(TWO_32);
+        y.debug_at_most(2.0 * TWO_32);
+        if let Some(whole) = x.product_below(y, self.whole) {
+            whole.debug_whole();
+            W::nearest(whole * self.weight + nudge(self.weight))
         } else {
             let high = floor_weighted(x, 1.0 / TWO_16);
-            let low = known(x - high * TWO_16, 0.0, TWO_16 - 1.0);
+            let low = (x - high * TWO_16).known(0.0, TWO_16 - 1.0);
             let cut = high * y + floor_weighted(low * y, 1.0 / TWO_16);
-            nearest(cut * self.cut_weight + nudge(self.cut_weight))
+            W::nearest(cut * self.cut_weight + nudge(self.cut_weight))
         }
     }
 
     /// floor(x y/2^s) for words x, y.
     #[inline]
-    #[cfg_attr(bounded, track_caller)]
-    pub fn floor_product(&self, x: impl Into<Word>, y: impl Into<Word>) -> Word {
-        let _site = here();
-        self.product(x.into(), y.into(), |weight| 0.5 * weight - 0.5)
+    #[track_caller]
+    pub fn floor_product<W: Word>(&self, x: W, y: W) -> W {
+        let _site = W::here();
+        self.product(x, y, |weight| 0.5 * weight - 0.5)
     }
 
     /// floor((x1 y1 + x2 y2)/2^s) for words whose products' sum fits 64 bits. For shifts beyond 16 the upper and lower
     /// halves of the first factors are multiplied apart, and the lower products lose the 16 bits together.
     #[inline]
-    #[cfg_attr(bounded, track_caller)]
-    pub fn floor_sum_of_products(&self, [x1, y1]: [Word; 2], [x2, y2]: [Word; 2]) -> Word {
-        let _site = here();
+    #[track_caller]
+    pub fn floor_sum_of_products<W: Word>(&self, [x1, y1]: [W; 2], [x2, y2]: [W; 2]) -> W {
+        let _site = W::here();
         if self.bits <= 16 {
             // As short as its shifted result plus 16 bits.
             return floor_weighted(x1 * y1 + x2 * y2, self.weight);
         }
-        let halves = |x: Word| {
+        let halves = |x: W| {
             let high = floor_weighted(x, 1.0 / TWO_16);
-            (high, known(x - high * TWO_16, 0.0, TWO_16 - 1.0))
+            (high, (x - high * TWO_16).known(0.0, TWO_16 - 1.0))
         };
         let ((high1, low1), (high2, low2)) = (halves(x1), halves(x2));
         let lost = floor_weighted(low1 * y1 + low2 * y2, 1.0 / TWO_16);
@@ -275,18 +304,16 @@ impl Shift {
 
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.
     #[inline]
-    #[cfg_attr(bounded, track_caller)]
-    pub fn round_product(&self, x: impl Into<Word>, y: impl Into<Word>) -> Word {
-        let _site = here();
+    #[track_caller]
+    pub fn round_product<W: Word>(&self, x: W, y: W) -> W {
+        let _site = W::here();
         // Half an ulp breaks ties upwards; without fraction bits there are none.
         let is_whole = self.bits == 0;
-        self.product(x.into(), y.into(), |weight| {
-            if is_whole { 0.0 } else { 0.5 * weight }
-        })
+        self.product(x, y, |weight| if is_whole { 0.0 } else { 0.5 * weight })
     }
 }
 
-#[cfg(all(test, not(bounded)))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -324,7 +351,7 @@ mod tests {
             assert_eq!(floor_shift(x as f64, n) as i64, x >> n, "{x} >> {n}");
             assert_eq!(wrap32(x as f64) as i64, x.rem_euclid(1 << 32), "{x}");
             let x = word(&mut random);
-            assert_eq!(i64::from(to_i32(x as f64)), x);
+            assert_eq!(i64::from((x as f64).to_i32()), x);
             assert_eq!(halve(x as f64) as i64, x >> 1);
         }
         for x in 0..=u16::MAX {
@@ -429,7 +456,7 @@ mod tests {
             let exact = (i128::from(n) << s) / i128::from(den);
             let limit = word(&mut random).abs();
             assert_eq!(
-                divide(n as f64, s, den as f64, limit as f64) as i128,
+                (n as f64).divide(s, den as f64, limit as f64) as i128,
                 exact.min(i128::from(limit)),
                 "({n} << {s}) / {den}, at most {limit}"
             );

@@ -4,17 +4,6 @@
 //! (`BitTrue`) computes every bit of the emitted code in f64 with an explicit quantiser at every
 //! rounding point. Both are built from a drive's normalised specification; only the format table
 //! crosses over from the generator, as data.
-#![cfg_attr(
-    bounded,
-    expect(
-        dead_code,
-        reason = "what a step was like in physical units is not told of intervals"
-    ),
-    expect(
-        clippy::large_enum_variant,
-        reason = "words with intervals are longer, and few"
-    )
-)]
 
 mod discrete_phase;
 mod emf_motion;
@@ -22,26 +11,19 @@ mod emf_shape;
 mod error;
 pub mod exact;
 mod formats;
-#[cfg(bounded)]
-pub mod ledger;
 mod model;
 mod spec;
-#[cfg(not(bounded))]
 pub mod verify;
-#[cfg_attr(bounded, path = "bounded.rs")]
 mod word;
 
 pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;
 pub use error::Error;
 pub use formats::FormatTable;
-pub use model::{BitTrue, Course, Mode, PhysicalState, Reach, Trace};
-#[cfg(not(bounded))]
-pub use model::{Duties, Ideal, Uniform};
+pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Trace, Uniform};
 pub use spec::{
     Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
     FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, PPwm, Pdcc, Phcc, PiPwm,
     Reference, Saturation, Spec, Switch, SwitchingTable,
 };
-#[cfg(not(bounded))]
 pub use verify::assert_bit_true;

@@ -8,21 +8,17 @@
 
 mod bit_true;
 mod hall;
-#[cfg(not(bounded))]
 mod ideal;
 mod sector;
 mod supervision;
 mod switching;
 mod trace;
-#[cfg(not(bounded))]
 mod uniform;
 mod variant;
 mod vectors;
 
 pub use bit_true::{BitTrue, Course};
-#[cfg(not(bounded))]
 pub use ideal::{Duties, Ideal};
 pub use supervision::Mode;
 pub use trace::{PhysicalState, Reach, Trace};
-#[cfg(not(bounded))]
 pub use uniform::Uniform;

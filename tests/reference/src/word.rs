@@ -1,144 +1,222 @@
 //! The numbers that model B computes with, and what only a number itself can do.
 //!
-//! They are f64. The crate `hexagen-exactness` is this crate built once more with `bounded` set: there a
-//! word carries an interval beside its value, and every operation proves itself exact (module `bounded`).
+//! They are f64. The cross-crate tests build the same model over words that carry an interval beside
+//! their value, with which every operation proves itself exact.
 #![expect(
     clippy::inline_always,
     reason = "the models spend their time in these few instructions"
 )]
 
-/// A word, or a number on the way to one.
-pub type Word = f64;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to a whole number.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
+pub(crate) const TWO_16: f64 = 65_536.0;
+pub(crate) const TWO_32: f64 = 4_294_967_296.0;
 /// 2^51. Products below it can be taken whole: with half of their last bit added they still fit 53 bits.
 pub const WHOLE: f64 = 2_251_799_813_685_248.0;
 
-/// A constant as a word.
-#[inline(always)]
-pub fn word(x: f64) -> Word {
-    x
-}
-
-/// A number from outside: any of its type.
-#[inline(always)]
-pub fn input(x: impl Into<f64>) -> Word {
-    x.into()
-}
-
-/// Where an operation of several steps is called; nobody asks.
-pub struct Site;
-
-/// Marks the place from where the present function is called.
-#[inline(always)]
-pub fn here() -> Site {
-    Site
-}
-
-/// `x`, which is known to lie from `low` to `high`.
-#[inline(always)]
-pub fn known(x: Word, low: f64, high: f64) -> Word {
-    debug_assert!((low..=high).contains(&x), "{x} not in {low}..{high}");
-    x
-}
-
-/// Asserts in debug builds that `x` is whole.
+/// 2^exponent, for |exponent| <= 1022.
 #[inline]
-pub fn debug_whole(x: Word) {
-    debug_assert!(
-        x.trunc() == x && x.abs() < 9_007_199_254_740_992.0,
-        "{x} is not exact"
-    );
+pub fn pow2(exponent: i32) -> f64 {
+    debug_assert!(exponent.abs() <= 1022);
+    f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
 }
 
-/// Asserts in debug builds that |x| <= most.
-#[inline]
-pub fn debug_at_most(x: Word, most: f64) {
-    debug_assert!(x.abs() <= most, "{x} is above {most}");
+/// A word, or a number on the way to one. Sums, differences and products are exact; of a quotient nothing
+/// but [`Self::floor`] is.
+pub trait Word:
+    Copy
+    + Debug
+    + Default
+    + From<f64>
+    + PartialOrd
+    + PartialOrd<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Add<f64, Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The time for which an operation of several steps is under way.
+    type Site;
+
+    /// Marks the place from where the present function is called: what it does counts as steps of that place.
+    #[track_caller]
+    fn here() -> Self::Site;
+
+    /// The whole number `value`, which stands for any from `low` to `high`.
+    fn whole(value: f64, low: f64, high: f64) -> Self;
+
+    /// The same number, which is known to lie from `low` to `high`.
+    #[track_caller]
+    #[must_use]
+    fn known(self, low: f64, high: f64) -> Self;
+
+    /// Asserts in debug builds that the number is whole.
+    #[track_caller]
+    fn debug_whole(self);
+
+    /// Asserts in debug builds that the magnitude is at most `most`.
+    #[track_caller]
+    fn debug_at_most(self, most: f64);
+
+    /// The nearest whole number, for a magnitude below 2^51, not half way between two.
+    #[track_caller]
+    #[must_use]
+    fn nearest(self) -> Self;
+
+    /// The greatest whole number not above this one, for a magnitude below 2^51. Of a quotient too: one of whole
+    /// numbers, the upper one below 2^52, does not round up to a whole number.
+    #[track_caller]
+    #[must_use]
+    fn floor(self) -> Self;
+
+    /// The product where its magnitude is below `limit`: 2^51 or less, or any number for a product that is known to
+    /// be exact. A product that is rounded is not below.
+    #[track_caller]
+    #[must_use]
+    fn product_below(self, other: Self, limit: f64) -> Option<Self>;
+
+    /// min(floor(n 2^s/den), limit) of a word n >= 0, for words den > 0 and limit >= 0.
+    #[track_caller]
+    #[must_use]
+    fn divide(self, s: u32, den: Self, limit: Self) -> Self;
+
+    /// 1 with the sign of the number.
+    #[must_use]
+    fn sign(self) -> Self;
+
+    /// The magnitude.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// The greater of two numbers, neither of which is NaN.
+    #[must_use]
+    fn greater(self, other: Self) -> Self;
+
+    /// The lesser of two numbers, neither of which is NaN.
+    #[must_use]
+    fn lesser(self, other: Self) -> Self;
+
+    /// `then` where the condition holds, else `otherwise`.
+    fn either(condition: bool, then: Self, otherwise: Self) -> Self;
+
+    /// The two's complement word of a whole number, its magnitude below 2^31.
+    #[track_caller]
+    fn to_i32(self) -> i32;
 }
 
-/// Rows of a table, of which any may be taken.
-pub fn tabulated(rows: &[[f64; 3]]) -> Vec<[Word; 3]> {
-    rows.to_vec()
-}
+impl Word for f64 {
+    /// Nobody asks.
+    type Site = ();
 
-/// The whole number nearest to `y`, |y| < 2^51, not half way between two.
-#[inline]
-pub fn nearest(y: Word) -> Word {
-    debug_assert!(y.abs() < WHOLE, "{y} is too large to round");
-    (y + MAGIC) - MAGIC
-}
+    #[inline(always)]
+    fn here() {}
 
-/// The greatest whole number not above `y`, |y| < 2^51. Of a quotient too: one of whole numbers, the upper
-/// one below 2^52, does not round up to a whole number.
-#[inline]
-pub fn floor(y: Word) -> Word {
-    debug_assert!(y.abs() < WHOLE, "{y} is too large for floor");
-    let nearest = (y + MAGIC) - MAGIC;
-    // A mask, because a branch would be mispredicted every other time.
-    let above = u64::from(nearest > y).wrapping_neg();
-    nearest - f64::from_bits(1f64.to_bits() & above)
-}
+    #[inline(always)]
+    fn whole(value: f64, low: f64, high: f64) -> Self {
+        value.known(low, high)
+    }
 
-/// x y where its magnitude is below `limit`: 2^51 or less, or any number for a product that is known to be exact.
-/// A product that is rounded is not below.
-#[inline(always)]
-pub fn product_below(x: Word, y: Word, limit: f64) -> Option<Word> {
-    let product = x * y;
-    (product.abs() < limit).then_some(product)
-}
+    #[inline(always)]
+    fn known(self, low: f64, high: f64) -> Self {
+        debug_assert!((low..=high).contains(&self), "{self} not in {low}..{high}");
+        self
+    }
 
-/// 1 with the sign of `x`.
-#[inline(always)]
-pub fn sign(x: Word) -> Word {
-    1f64.copysign(x)
-}
+    #[inline(always)]
+    fn debug_whole(self) {
+        debug_assert!(
+            self.trunc() == self && self.abs() < 4.0 * WHOLE,
+            "{self} is not exact"
+        );
+    }
 
-/// The two's complement word of a whole x, |x| < 2^31.
-#[inline]
-pub fn to_i32(x: Word) -> i32 {
-    debug_assert!(
-        x.trunc() == x && (-2_147_483_648.0..2_147_483_648.0).contains(&x),
-        "{x} is no 32-bit word"
-    );
-    (x + MAGIC).to_bits() as i32
-}
+    #[inline(always)]
+    fn debug_at_most(self, most: f64) {
+        debug_assert!(self.abs() <= most, "{self} is above {most}");
+    }
 
-/// The 16-bit count of a whole x, 0 <= x < 2^16.
-#[inline]
-pub fn to_u16(x: Word) -> u16 {
-    debug_assert!(
-        x.trunc() == x && (0.0..65_536.0).contains(&x),
-        "{x} is no 16-bit count"
-    );
-    (x + MAGIC).to_bits() as u16
-}
+    #[inline(always)]
+    fn nearest(self) -> Self {
+        debug_assert!(self.abs() < WHOLE, "{self} is too large to round");
+        (self + MAGIC) - MAGIC
+    }
 
-/// The index that a small whole x >= 0 is.
-#[inline(always)]
-pub fn to_index(x: Word) -> usize {
-    x as usize
-}
+    #[inline(always)]
+    fn floor(self) -> Self {
+        let nearest = self.nearest();
+        // A mask, because a branch would be mispredicted every other time.
+        let above = u64::from(nearest > self).wrapping_neg();
+        nearest - f64::from_bits(1f64.to_bits() & above)
+    }
 
-/// The greater of two numbers, neither of which is NaN: one instruction, where `f64::max` takes five.
-#[inline(always)]
-pub fn greater(a: impl Into<Word>, b: impl Into<Word>) -> Word {
-    let (a, b) = (a.into(), b.into());
-    if a > b { a } else { b }
-}
+    #[inline(always)]
+    fn product_below(self, other: Self, limit: f64) -> Option<Self> {
+        let product = self * other;
+        (product.abs() < limit).then_some(product)
+    }
 
-/// The lesser of two numbers, neither of which is NaN.
-#[inline(always)]
-pub fn lesser(a: impl Into<Word>, b: impl Into<Word>) -> Word {
-    let (a, b) = (a.into(), b.into());
-    if a < b { a } else { b }
-}
+    /// By one division: the rounded quotient is at most one off, which the remainder tells.
+    #[inline]
+    fn divide(self, s: u32, den: Self, limit: Self) -> Self {
+        self.debug_whole();
+        debug_assert!(
+            (0.0..TWO_32).contains(&self)
+                && (1.0..TWO_32).contains(&den)
+                && (0.0..TWO_32).contains(&limit),
+            "{self}/{den}, at most {limit}"
+        );
+        let numerator = self * pow2(s as i32);
+        let quotient = Word::floor((numerator / den).lesser(limit));
+        // Each difference is exact: the upper half of the quotient leaves less than 2^49.
+        let high = Word::floor(quotient * (1.0 / TWO_16)) * TWO_16;
+        let remainder = (numerator - high * den) - (quotient - high) * den;
+        let one = |off: bool| Self::either(off, 1.0, 0.0);
+        (quotient + one(remainder >= den) - one(remainder < 0.0)).lesser(limit)
+    }
 
-/// `then` where the condition holds, else `otherwise`: a mask, because a branch would be mispredicted every other time.
-#[inline]
-pub fn either(condition: bool, then: impl Into<Word>, otherwise: impl Into<Word>) -> Word {
-    let (then, otherwise) = (then.into(), otherwise.into());
-    let mask = u64::from(condition).wrapping_neg();
-    f64::from_bits(then.to_bits() & mask | otherwise.to_bits() & !mask)
+    #[inline(always)]
+    fn sign(self) -> Self {
+        1f64.copysign(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    /// One instruction, where `f64::max` takes five.
+    #[inline(always)]
+    fn greater(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// A mask, because a branch would be mispredicted every other time.
+    #[inline(always)]
+    fn either(condition: bool, then: Self, otherwise: Self) -> Self {
+        let mask = u64::from(condition).wrapping_neg();
+        f64::from_bits(then.to_bits() & mask | otherwise.to_bits() & !mask)
+    }
+
+    #[inline(always)]
+    fn to_i32(self) -> i32 {
+        debug_assert!(
+            self.trunc() == self && (-2_147_483_648.0..2_147_483_648.0).contains(&self),
+            "{self} is no 32-bit word"
+        );
+        (self + MAGIC).to_bits() as i32
+    }
 }

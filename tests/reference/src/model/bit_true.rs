@@ -11,7 +11,6 @@ mod emf;
 mod law;
 mod limit;
 mod motion;
-#[cfg(not(bounded))]
 mod physical;
 mod rotor;
 mod speed;
@@ -24,7 +23,7 @@ use super::supervision::{BusWatch, Limits, Mode, Observation, Period};
 use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
 use crate::exact::{
-    Coefficient, Word, both, divide, floor, floor_weighted, input, lesser, pow2, within, word,
+    Coefficient, Word, both, floor, floor_weighted, input, lesser, pow2, within, word,
 };
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
@@ -33,51 +32,51 @@ use law::{Command, Inputs, Law};
 use speed::Regulator;
 use state::{Part, State};
 
-/// The bit-true controller of one drive.
+/// The bit-true controller of one drive, over any words.
 #[derive(Clone, Debug)]
-pub struct BitTrue {
+pub struct BitTrue<W: Word = f64> {
     variant: Variant,
     hall_sectors: [usize; 8],
     clock: HallClock,
     limits: Limits,
-    k: Constants,
-    law: Law,
-    speed: Option<Regulator>,
+    k: Constants<W>,
+    law: Law<W>,
+    speed: Option<Regulator<W>>,
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
-    j: Word,
-    speed_ref: Word,
-    v_bus: Word,
-    ratio: Word,
+    j: W,
+    speed_ref: W,
+    v_bus: W,
+    ratio: W,
     /// `ratio`, split.
-    to_duty: Coefficient,
+    to_duty: Coefficient<W>,
     bus_watch: Option<BusWatch>,
-    state: State,
-    last: Signals,
+    state: State<W>,
+    last: Signals<W>,
 }
 
 /// Which way a step went, for coverage counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
+pub struct Course<W = f64> {
     /// Where the deadbeat voltage lay.
     pub reach: Reach,
     /// A commutation is under way (where it is followed).
     pub commutating: bool,
     /// Angle per period, angle words (2^32 per turn), signed; 0 while the angle is not timed.
-    pub step_angle: Word,
+    pub step_angle: W,
 }
 
 /// Words of the last step, for [`BitTrue::trace`].
 #[derive(Clone, Copy, Debug, Default)]
-struct Signals {
-    i: [Word; 2],
-    e: [Word; 2],
-    v_now: [Word; 2],
-    u_unsat: [Word; 2],
-    u: [Word; 2],
-    theta: Word,
-    step_angle: Word,
+struct Signals<W> {
+    i: [W; 2],
+    e: [W; 2],
+    v_now: [W; 2],
+    u_unsat: [W; 2],
+    u: [W; 2],
+    theta: W,
+    step_angle: W,
     sector_eff: usize,
     commutating: bool,
     reach: Reach,
@@ -92,6 +91,16 @@ impl BitTrue {
     /// When the specification is inconsistent, a format is missing, or a coefficient does not fit
     /// its format.
     pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
+        Self::over_words(spec, formats)
+    }
+}
+
+impl<W: Word> BitTrue<W> {
+    /// As [`BitTrue::new`], for words of another type than f64.
+    ///
+    /// # Errors
+    /// As [`BitTrue::new`].
+    pub fn over_words(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
         let scale = Scale::new(spec, formats)?;
         let k = Constants::new(spec, &scale)?;
         let speed = Regulator::new(spec, &scale, &k)?;
@@ -122,7 +131,7 @@ impl BitTrue {
         self.j = self
             .k
             .k_set
-            .mul(input(bits).clamp(-self.k.i_max_bits, self.k.i_max_bits));
+            .mul(within(input(bits), -self.k.i_max_bits, self.k.i_max_bits));
     }
 
     /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
@@ -130,7 +139,7 @@ impl BitTrue {
         self.j = self
             .k
             .k_torque
-            .mul(input(bits).clamp(-self.k.t_max_bits, self.k.t_max_bits));
+            .mul(within(input(bits), -self.k.t_max_bits, self.k.t_max_bits));
     }
 
     /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
@@ -143,14 +152,11 @@ impl BitTrue {
     /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = &self.k.bus {
-            let measured = bus.k_bus.mul(input(counts).min(bus.count_max));
-            self.v_bus = measured.clamp(bus.v_min, bus.v_max);
-            self.ratio = divide(
-                word(self.k.v_bus_nominal),
-                self.k.ratio_bits,
-                self.v_bus,
-                word(f64::from(i32::MAX)),
-            );
+            let measured = bus.k_bus.mul(lesser(input(counts), bus.count_max));
+            self.v_bus = within(measured, bus.v_min, bus.v_max);
+            let nominal: W = word(self.k.v_bus_nominal);
+            let most = word(f64::from(i32::MAX));
+            self.ratio = nominal.divide(self.k.ratio_bits, self.v_bus, most);
             self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
         }
         if let Some(watch) = &mut self.bus_watch {
@@ -159,7 +165,7 @@ impl BitTrue {
     }
 
     /// The set-point words `j`, `v_bus`, `ratio`, `speed_ref`.
-    pub fn set_point_words(&self) -> [Word; 4] {
+    pub fn set_point_words(&self) -> [W; 4] {
         [self.j, self.v_bus, self.ratio, self.speed_ref]
     }
 
@@ -212,7 +218,7 @@ impl BitTrue {
 
     /// Which way the last step went.
     #[inline]
-    pub fn course(&self) -> Course {
+    pub fn course(&self) -> Course<W> {
         Course {
             reach: self.last.reach,
             commutating: self.last.commutating,
@@ -233,13 +239,15 @@ impl BitTrue {
 
     /// Overwrites the state with words of [`Self::state_words`].
     pub fn set_state_words(&mut self, words: &[i32]) {
-        self.state.read(self.k.parts, words);
+        let any = |&word: &i32| (word, (i32::MIN, i32::MAX));
+        self.state.read(self.k.parts, words.iter().map(any));
     }
 
-    /// Makes the state words any of these intervals, in the order of [`Self::state_words`].
-    #[cfg(bounded)]
-    pub fn widen_state(&mut self, intervals: &[[f64; 2]]) {
-        self.state.widen(self.k.parts, intervals);
+    /// As [`Self::set_state_words`], where each word stands for any from its range's least to its
+    /// greatest.
+    pub fn set_state_within(&mut self, words: &[i32], ranges: &[(i32, i32)]) {
+        let words = words.iter().copied().zip(ranges.iter().copied());
+        self.state.read(self.k.parts, words);
     }
 
     /// One control period: reads the sample, returns the command for the inverter.
@@ -251,7 +259,7 @@ impl BitTrue {
         let k = &self.k;
         // 1 measure
         let [adc_a, adc_b, _] = sample.adc();
-        let adc = [input(adc_a), input(adc_b)];
+        let adc: [W; 2] = [input(adc_a), input(adc_b)];
         let counted = |x: usize| {
             (lesser(adc[x], self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
         };
@@ -312,12 +320,12 @@ impl BitTrue {
         let delayed = self.variant.delayed();
         let j_ref = match self.variant.options.reference {
             Reference::QuasiSquare => [
-                sector::CORNER_A[sector_eff] * j,
-                sector::CORNER_B[sector_eff] * j,
+                j * sector::CORNER_A[sector_eff],
+                j * sector::CORNER_B[sector_eff],
             ],
             Reference::Proportional => {
                 let theta_ref = if delayed {
-                    angle.theta + 2.0 * angle.step
+                    angle.theta + angle.step * 2.0
                 } else {
                     angle.theta + angle.step
                 };
@@ -347,8 +355,8 @@ impl BitTrue {
                     now
                 };
                 let ahead = if delayed { 2.0 } else { 1.0 };
-                let end = k.flux.both(angle.theta + ahead * angle.step);
-                let mean = |from: [Word; 2], to: [Word; 2]| {
+                let end = k.flux.both(angle.theta + angle.step * ahead);
+                let mean = |from: [W; 2], to: [W; 2]| {
                     both(|x| {
                         within(
                             floor_weighted(to[x] - from[x], k.flux_to_voltage),

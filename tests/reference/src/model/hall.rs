@@ -3,7 +3,7 @@
 //! are counted, and a turn is made up for the rest.
 
 use super::sector::HallEvent;
-use crate::exact::{Word, word};
+use crate::exact::{Word, greater, lesser, within, word};
 use crate::spec::{HallCapture, Inverter, Spec};
 
 /// Constants of the timing, in ticks.
@@ -42,20 +42,20 @@ impl HallClock {
 
 /// State of the edge timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HallTiming {
+pub struct HallTiming<W = f64> {
     /// 1 forward, -1 backward.
-    pub direction: Word,
+    pub direction: W,
     /// Ticks from the last edge to the last sample.
-    pub age_prev: Word,
+    pub age_prev: W,
     /// 0: nothing known; 1: one edge seen; 2: `turn` is valid.
     pub edges: u8,
     /// The last six edge-to-edge intervals, newest first.
-    pub intervals: [Word; 6],
+    pub intervals: [W; 6],
     /// Their sum: ticks of one electrical turn.
-    pub rev: Word,
+    pub rev: W,
 }
 
-impl Default for HallTiming {
+impl<W: Word> Default for HallTiming<W> {
     fn default() -> Self {
         Self {
             direction: word(0.0),
@@ -67,7 +67,7 @@ impl Default for HallTiming {
     }
 }
 
-impl HallTiming {
+impl<W: Word> HallTiming<W> {
     /// Follows the direction only.
     #[inline]
     pub fn turn_direction(&mut self, event: &HallEvent) {
@@ -87,20 +87,20 @@ impl HallTiming {
         &mut self,
         clock: &HallClock,
         event: &HallEvent,
-        direction_before: Word,
-        hall_ticks: Word,
+        direction_before: W,
+        hall_ticks: W,
     ) {
         let age_before = self.age_prev + clock.ticks;
         let since = match (clock.timer, event.edge) {
             (true, true) if hall_ticks > (2.0 * clock.period).floor() => word(0.0),
             (true, true) => hall_ticks,
-            (true, false) => hall_ticks.max(age_before),
+            (true, false) => greater(hall_ticks, age_before),
             (false, true) => word(1.0),
             (false, false) => age_before,
         };
-        let age = since.min(clock.age_max + 1.0);
+        let age = lesser(since, clock.age_max + 1.0);
         if event.edge {
-            let interval = (age_before - age).clamp(1.0, clock.age_max);
+            let interval = within(age_before - age, 1.0, clock.age_max);
             let step_ok = event.forward || event.backward;
             let again = step_ok && self.direction == direction_before && self.edges >= 1;
             if again && self.edges == 1 {
@@ -116,9 +116,10 @@ impl HallTiming {
             } else {
                 1
             };
-            self.rev = self.intervals.iter().sum::<Word>() + clock.turn_rest;
+            let intervals = self.intervals.into_iter();
+            self.rev = intervals.fold(word(clock.turn_rest), |turn, interval| turn + interval);
         }
-        if age > clock.age_max || (self.edges == 2 && 3.0 * age > self.rev) {
+        if age > clock.age_max || (self.edges == 2 && age * 3.0 > self.rev) {
             self.edges = 0;
         }
         self.age_prev = age;

@@ -3,7 +3,7 @@
 //! are compared in whatever unit the model uses.
 
 use crate::Error;
-use crate::exact::{Word, word};
+use crate::exact::{Word, greater, lesser, word};
 use crate::spec::{Bus, Inverter};
 use hexagen::Fault;
 
@@ -46,6 +46,7 @@ pub fn fault_from_word(word: i32) -> Option<Fault> {
 }
 
 /// The state word of a fault.
+#[inline]
 pub fn fault_to_word(fault: Option<Fault>) -> i32 {
     match fault {
         None => 0,
@@ -125,6 +126,7 @@ impl BusWatch {
     }
 
     /// A period begins.
+    #[inline]
     pub fn age(&mut self) {
         self.age = if self.told {
             0
@@ -142,11 +144,11 @@ impl BusWatch {
 
 /// What the supervision sees of one sample.
 #[derive(Clone, Copy, Debug)]
-pub struct Observation {
+pub struct Observation<W> {
     /// ADC counts as read.
-    pub adc: [Word; 2],
+    pub adc: [W; 2],
     /// Phase currents.
-    pub i: [Word; 3],
+    pub i: [W; 3],
     /// Hall code as read.
     pub hall: u8,
     /// The set-point is not zero.
@@ -174,13 +176,13 @@ pub struct Verdict {
 
 /// State of the supervision.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Supervisor {
+pub struct Supervisor<W = f64> {
     pub mode: Mode,
     pub fault: Option<Fault>,
-    pub countdown: Word,
-    pub sum: [Word; 2],
+    pub countdown: W,
+    pub sum: [W; 2],
     /// Periods without an edge under demand; 0 where no stall is watched for.
-    pub stall_count: Word,
+    pub stall_count: W,
     /// The last Hall code that was one, where a stall is watched for; 0 before the first.
     pub hall_prev: HallCode,
 }
@@ -196,7 +198,7 @@ impl HallCode {
     }
 }
 
-impl Supervisor {
+impl<W: Word> Supervisor<W> {
     /// Starts the calibration of the current offsets; ignored when tripped.
     pub fn calibrate(&mut self, limits: &Limits) {
         if self.mode != Mode::Tripped {
@@ -222,12 +224,12 @@ impl Supervisor {
 
     /// One period.
     #[inline]
-    pub fn step(&mut self, limits: &Limits, seen: &Observation) -> Verdict {
+    pub fn step(&mut self, limits: &Limits, seen: &Observation<W>) -> Verdict {
         let code = HallCode::of(seen.hall);
         if limits.stall_periods > 0.0 {
             self.count_stall(limits, code.unwrap_or(self.hall_prev), seen.demand);
         }
-        let i_max = seen.i[0].abs().max(seen.i[1].abs()).max(seen.i[2].abs());
+        let i_max = greater(greater(seen.i[0].abs(), seen.i[1].abs()), seen.i[2].abs());
         let found = if seen
             .adc
             .iter()
@@ -264,11 +266,11 @@ impl Supervisor {
             Mode::Run | Mode::Tripped => {}
             Mode::Calibrate => {
                 for (sum, adc) in self.sum.iter_mut().zip(seen.adc) {
-                    *sum += adc.min(limits.adc_max);
+                    *sum += lesser(adc, limits.adc_max);
                 }
-                self.countdown = (self.countdown - 1.0).max(0.0);
+                self.countdown = greater(self.countdown - 1.0, 0.0);
                 let samples = limits.calibration_samples;
-                let is_far = |sum: &Word| {
+                let is_far = |sum: &W| {
                     (*sum - limits.adc_offset * samples).abs() > limits.offset_tolerance * samples
                 };
                 if self.countdown == 0.0 && self.sum.iter().any(is_far) {
@@ -285,7 +287,7 @@ impl Supervisor {
                 }
             }
             Mode::Precharge => {
-                self.countdown = (self.countdown - 1.0).max(0.0);
+                self.countdown = greater(self.countdown - 1.0, 0.0);
                 if self.countdown == 0.0 {
                     self.mode = Mode::Run;
                 }
@@ -302,7 +304,7 @@ impl Supervisor {
         self.stall_count = if is_edge || !demand || self.mode != Mode::Run {
             word(0.0)
         } else {
-            (self.stall_count + 1.0).min(limits.stall_periods)
+            lesser(self.stall_count + 1.0, limits.stall_periods)
         };
     }
 }

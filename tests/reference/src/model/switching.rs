@@ -29,7 +29,7 @@ pub enum Set {
 impl Set {
     /// That of a sense of rotation (1, -1, or 0 while it is unknown) and a set-point.
     #[inline]
-    pub fn of(direction: Word, set_point: Word) -> Self {
+    pub fn of<W: Word>(direction: W, set_point: W) -> Self {
         if direction > 0.0 && set_point >= 0.0 {
             Self::Forward
         } else if direction < 0.0 && set_point < 0.0 {

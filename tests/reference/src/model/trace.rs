@@ -3,7 +3,6 @@
 
 use super::hall::HallTiming;
 use super::supervision::Supervisor;
-use crate::exact::Word;
 
 /// Signals of the last step. Pairs are phases a, b; phase c is minus their sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,11 +47,11 @@ pub enum Reach {
 
 /// What past samples and commands add to the voltages of the next two steps, phases a, b (deadbeat with a held EMF).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Past {
+pub struct Past<W = f64> {
     /// To this step's.
-    pub due: [Word; 2],
+    pub due: [W; 2],
     /// To the next one's.
-    pub later: [Word; 2],
+    pub later: [W; 2],
 }
 
 /// A controller's whole state in physical units.

@@ -33,11 +33,13 @@ pub const LEGS: [[i8; 3]; COUNT] = [
 ];
 
 /// The leg that a vector turns off.
+#[inline]
 pub fn off_leg(vector: usize) -> Option<usize> {
     LEGS[vector].iter().position(|leg| *leg == 0)
 }
 
 /// A vector's legs as states of the inverter; high legs are pulsed over the whole period.
+#[inline]
 pub fn states(vector: usize) -> [LegState; 3] {
     LEGS[vector].map(|leg| match leg {
         1 => LegState::Pulsed,
@@ -48,6 +50,7 @@ pub fn states(vector: usize) -> [LegState; 3] {
 
 /// Zero-sum leg voltages in sixths of the bus; a leg that is off counts as the middle of the two
 /// others.
+#[inline]
 pub fn sixths(vector: usize) -> [f64; 3] {
     let legs = LEGS[vector].map(f64::from);
     let sum: f64 = legs.iter().sum();
@@ -68,6 +71,7 @@ pub fn weighted_order(place: usize) -> usize {
 }
 
 /// Number of legs whose state differs.
+#[inline]
 pub fn changes(from: usize, to: usize) -> f64 {
     let legs = LEGS[from].iter().zip(LEGS[to]);
     legs.filter(|(from, to)| **from != *to).count() as f64
@@ -80,6 +84,7 @@ pub fn pair_of(sector_eff: usize) -> (usize, usize) {
 }
 
 /// The candidates in their order: a zero vector, then a run of others.
+#[inline]
 pub fn candidates(
     set: Candidates,
     commutating: bool,

@@ -6,14 +6,14 @@ use crate::exact::{Word, halve, within, word};
 /// Phase voltages a, b of the terminal voltages `terminal` with leg `off` (0: none, 1 to 3) off,
 /// at currents `i` and EMF `e`.
 #[inline]
-pub fn voltage(
-    k: &Constants,
-    v_bus: Word,
-    terminal: &[Word; 3],
+pub fn voltage<W: Word>(
+    k: &Constants<W>,
+    v_bus: W,
+    terminal: &[W; 3],
     off: usize,
-    i: &[Word; 3],
-    e: [Word; 2],
-) -> [Word; 2] {
+    i: &[W; 3],
+    e: [W; 2],
+) -> [W; 2] {
     let mut t = *terminal;
     if let Some(leg) = off.checked_sub(1).filter(|leg| *leg < 3) {
         let e = [e[0], e[1], -(e[0] + e[1])];

@@ -3,7 +3,7 @@
 use super::state::{Part, Parts};
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
-use crate::exact::{Coefficient, Shift, floor_constant, pow2, round_half_up};
+use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
 use crate::model::variant::{Variant, reference_gain};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation,
@@ -16,7 +16,7 @@ const WORD_MAX: f64 = 2_147_483_647.0;
 /// Everything that a step needs besides state and set-point. Coefficients that the variant does
 /// not use are zero.
 #[derive(Clone, Debug)]
-pub struct Constants {
+pub struct Constants<W> {
     pub parts: Parts,
     /// Ampere per current word.
     pub ampere: f64,
@@ -59,25 +59,25 @@ pub struct Constants {
     pub emf_turns: bool,
     pub filtered: bool,
     pub advanced: bool,
-    pub k_di: Coefficient,
-    pub k_r: Coefficient,
-    pub k_filter: Coefficient,
-    pub k_slope: Coefficient,
-    pub k_integral: Coefficient,
-    pub k_third: Coefficient,
-    pub k_set: Coefficient,
-    pub k_torque: Coefficient,
-    pub k_advance: Coefficient,
+    pub k_di: Coefficient<W>,
+    pub k_r: Coefficient<W>,
+    pub k_filter: Coefficient<W>,
+    pub k_slope: Coefficient<W>,
+    pub k_integral: Coefficient<W>,
+    pub k_third: Coefficient<W>,
+    pub k_set: Coefficient<W>,
+    pub k_torque: Coefficient<W>,
+    pub k_advance: Coefficient<W>,
     /// Ticks per period, where they are not whole.
-    pub k_ticks: Option<Coefficient>,
+    pub k_ticks: Option<Coefficient<W>>,
     pub ratio_bits: u32,
     pub scale_bits: u32,
     pub emf_product: Shift,
-    pub bus: Option<BusWords>,
-    pub flux: Table,
+    pub bus: Option<BusWords<W>>,
+    pub flux: Table<W>,
     /// 2^(f_v - flux).
     pub flux_to_voltage: f64,
-    pub shape: Table,
+    pub shape: Table<W>,
     pub shape_product: Shift,
 }
 
@@ -131,7 +131,11 @@ impl<'a> Scale<'a> {
     }
 
     /// The coefficient of this name, rounded to its format.
-    pub fn coefficient(&self, name: &'static str, value: f64) -> Result<Coefficient, Error> {
+    pub fn coefficient<W: Word>(
+        &self,
+        name: &'static str,
+        value: f64,
+    ) -> Result<Coefficient<W>, Error> {
         let bits = self.formats.frac_bits(name)?;
         let raw = round_half_up(value * pow2(bits as i32));
         if raw.abs() <= WORD_MAX {
@@ -142,12 +146,12 @@ impl<'a> Scale<'a> {
     }
 
     /// As [`Self::coefficient`]; zero, without a format, where the variant does not use it.
-    pub fn only_if(
+    pub fn only_if<W: Word>(
         &self,
         used: bool,
         name: &'static str,
         value: f64,
-    ) -> Result<Coefficient, Error> {
+    ) -> Result<Coefficient<W>, Error> {
         if used {
             self.coefficient(name, value)
         } else {
@@ -182,14 +186,14 @@ impl<'a> Scale<'a> {
 
 /// Words of the bus voltage's measurement.
 #[derive(Clone, Copy, Debug)]
-pub struct BusWords {
-    pub k_bus: Coefficient,
+pub struct BusWords<W> {
+    pub k_bus: Coefficient<W>,
     pub count_max: f64,
     pub v_min: f64,
     pub v_max: f64,
 }
 
-impl Constants {
+impl<W: Word> Constants<W> {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
         let Scale {

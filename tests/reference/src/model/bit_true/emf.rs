@@ -7,7 +7,7 @@ use crate::model::sector::OUT_PHASE;
 
 /// What the period that ends with the currents `i` shows of the EMF of phases a, b.
 #[inline]
-fn seen(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
+fn seen<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
     let State { i_prev, v_prev, .. } = state;
     both(|x| {
         let d = within(i[x] - i_prev[x], -k.di_limit, k.di_limit - 1.0);
@@ -17,7 +17,7 @@ fn seen(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
 
 /// EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
-pub fn estimate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
+pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
     let (seen, e_prev) = (seen(k, state, i), &state.e_prev);
     both(|x| {
         let e = if k.filtered {
@@ -31,9 +31,9 @@ pub fn estimate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
 
 /// What the modelled EMF of phases a, b lacks, with what the period that ends with the currents `i` adds to it.
 #[inline]
-pub fn integrate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
+pub fn integrate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
     let seen = seen(k, state, i);
-    let believed = |e: Word| within(e, -k.v_largest, k.v_largest);
+    let believed = |e: W| within(e, -k.v_largest, k.v_largest);
     both(|x| {
         let lack = believed(seen[x] - state.e_prev[x]);
         let sum = state.integral[x];
@@ -43,8 +43,13 @@ pub fn integrate(k: &Constants, state: &State, i: [Word; 2]) -> [Word; 2] {
 
 /// The estimate `seen` with the EMF of a leg that floated replaced by what the sector says of it.
 #[inline]
-pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [Word; 2]) -> [Word; 2] {
-    let believed = |e: Word| within(e, -k.v_largest, k.v_largest);
+pub fn with_floated<W: Word>(
+    k: &Constants<W>,
+    state: &State<W>,
+    sector_eff: usize,
+    seen: [W; 2],
+) -> [W; 2] {
+    let believed = |e: W| within(e, -k.v_largest, k.v_largest);
     let Some(off) = state.off_prev.checked_sub(1).filter(|leg| *leg < 3) else {
         return seen;
     };
@@ -62,7 +67,7 @@ pub fn with_floated(k: &Constants, state: &State, sector_eff: usize, seen: [Word
     };
     both(|x| {
         if x == off {
-            e[x] + 2.0 * half
+            e[x] + half * 2.0
         } else {
             e[x] - half
         }

@@ -23,62 +23,62 @@ use hexagen::Legs;
 
 /// What the shared sections have found out. Pairs are phases a, b.
 #[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    pub k: &'a Constants,
-    pub v_bus: Word,
+pub struct Inputs<'a, W> {
+    pub k: &'a Constants<W>,
+    pub v_bus: W,
     /// From volts of the measured bus to those of the nominal one.
-    pub to_duty: &'a Coefficient,
-    pub j: [Word; 2],
-    pub i: [Word; 2],
-    pub v_now: [Word; 2],
+    pub to_duty: &'a Coefficient<W>,
+    pub j: [W; 2],
+    pub i: [W; 2],
+    pub v_now: [W; 2],
     /// EMF in the target period.
-    pub e: [Word; 2],
+    pub e: [W; 2],
     /// EMF in the period that starts now.
-    pub e_now: [Word; 2],
+    pub e_now: [W; 2],
     pub sector_eff: usize,
     pub commutating: bool,
-    pub integral: [Word; 2],
+    pub integral: [W; 2],
     /// The set-point word itself.
-    pub set_point: Word,
+    pub set_point: W,
     /// Sense of rotation, 1 or -1.
-    pub direction: Word,
+    pub direction: W,
     /// `h_a`, `h_b` (PHCC).
-    pub hysteresis: [Word; 2],
+    pub hysteresis: [W; 2],
     /// `vector_prev` (FCS-MPC).
     pub vector_prev: usize,
     /// What the past adds to the voltage (deadbeat with a held EMF).
-    pub past: Past,
+    pub past: Past<W>,
 }
 
 /// What a controller decides.
 #[derive(Clone, Copy, Debug)]
-pub struct Decision {
-    pub u_unsat: [Word; 2],
+pub struct Decision<W> {
+    pub u_unsat: [W; 2],
     /// Limited to what the inverter can do; becomes `v_x_cmd`.
-    pub u: [Word; 2],
+    pub u: [W; 2],
     pub reach: Reach,
     /// Number of the chosen vector (controllers of whole vectors).
     pub vector: usize,
-    pub command: Command,
+    pub command: Command<W>,
     /// `integral_x` (PI).
-    pub integral: [Word; 2],
+    pub integral: [W; 2],
     /// `h_a`, `h_b` (PHCC).
-    pub hysteresis: [Word; 2],
+    pub hysteresis: [W; 2],
     /// What the past adds to the voltage (deadbeat with a held EMF).
-    pub past: Past,
+    pub past: Past<W>,
 }
 
 /// A command to the inverter and the terminal voltages that it stands for.
 #[derive(Clone, Copy, Debug)]
-pub struct Command {
+pub struct Command<W> {
     pub legs: Legs,
     /// `t_a_cmd` to `t_c_cmd`, where a leg may be off.
-    pub terminal: [Word; 3],
+    pub terminal: [W; 3],
     /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
     pub off: usize,
 }
 
-impl Command {
+impl<W: Word> Command<W> {
     /// All legs alike, without any voltage.
     pub fn idle(legs: Legs) -> Self {
         Self {
@@ -91,15 +91,15 @@ impl Command {
 
 /// A controller's own part of the step.
 #[derive(Clone, Debug)]
-pub enum Law {
-    Pdcc(pdcc::Pdcc),
-    FcsMpc(fcs_mpc::FcsMpc),
-    Phcc(Box<phcc::Phcc>),
-    PiPwm(pi_pwm::PiPwm),
-    PPwm(p_pwm::PPwm),
+pub enum Law<W> {
+    Pdcc(pdcc::Pdcc<W>),
+    FcsMpc(fcs_mpc::FcsMpc<W>),
+    Phcc(Box<phcc::Phcc<W>>),
+    PiPwm(pi_pwm::PiPwm<W>),
+    PPwm(p_pwm::PPwm<W>),
 }
 
-impl Law {
+impl<W: Word> Law<W> {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options, scale)?),
@@ -113,7 +113,7 @@ impl Law {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         match self {
             Self::Pdcc(law) => law.decide(now),
             Self::FcsMpc(law) => law.decide(now),

@@ -3,8 +3,8 @@
 use super::constants::Constants;
 use crate::Saturation;
 use crate::exact::{
-    Coefficient, Shift, WHOLE, Word, all_three, both, divide, either, floor, floor_shift, greater,
-    halve, known, lesser, pow2, sign as sign_of, within, word,
+    Coefficient, Shift, WHOLE, Word, all_three, both, either, floor, floor_shift, greater, halve,
+    lesser, pow2, within, word,
 };
 use crate::model::Reach;
 
@@ -21,21 +21,21 @@ const BLEND_ONE: f64 = 32_768.0;
 const NEXT: [usize; 3] = [1, 2, 0];
 
 /// A voltage within reach.
-pub struct Limited {
+pub struct Limited<W> {
     /// Of phases a, b.
-    pub u: [Word; 2],
+    pub u: [W; 2],
     /// Of the legs, against any common point.
-    pub legs: [Word; 3],
+    pub legs: [W; 3],
     pub reach: Reach,
 }
 
-impl Limited {
-    fn of_phases(u: [Word; 2], reach: Reach) -> Self {
+impl<W: Word> Limited<W> {
+    fn of_phases(u: [W; 2], reach: Reach) -> Self {
         let legs = [u[0], u[1], -(u[0] + u[1])];
         Self { u, legs, reach }
     }
 
-    fn of_legs(k: &Constants, legs: [Word; 3], reach: Reach) -> Self {
+    fn of_legs(k: &Constants<W>, legs: [W; 3], reach: Reach) -> Self {
         let mean = k.k_third.mul(legs[0] + legs[1] + legs[2]);
         let u = [legs[0] - mean, legs[1] - mean];
         Self { u, legs, reach }
@@ -44,7 +44,13 @@ impl Limited {
 
 /// Limits phase voltages a, b; `e` is the EMF of phases a, b.
 #[inline]
-pub fn limit(rule: Saturation, k: &Constants, v_bus: Word, u: [Word; 2], e: [Word; 2]) -> Limited {
+pub fn limit<W: Word>(
+    rule: Saturation,
+    k: &Constants<W>,
+    v_bus: W,
+    u: [W; 2],
+    e: [W; 2],
+) -> Limited<W> {
     let u_c = -(u[0] + u[1]);
     let max = greater(greater(u[0], u[1]), u_c);
     let min = lesser(lesser(u[0], u[1]), u_c);
@@ -55,9 +61,9 @@ pub fn limit(rule: Saturation, k: &Constants, v_bus: Word, u: [Word; 2], e: [Wor
     match rule {
         Saturation::KeepAngle => {
             // More than the bus.
-            let spread = known(spread, 1.0, WHOLE);
+            let spread = spread.known(1.0, WHOLE);
             let scale = Coefficient::new(
-                divide(v_bus, k.scale_bits, spread, pow2(k.scale_bits as i32)),
+                v_bus.divide(k.scale_bits, spread, word(pow2(k.scale_bits as i32))),
                 k.scale_bits,
             );
             Limited::of_phases(both(|x| scale.mul(u[x])), Reach::Outside)
@@ -77,7 +83,7 @@ pub fn limit(rule: Saturation, k: &Constants, v_bus: Word, u: [Word; 2], e: [Wor
 
 /// The terminal voltages of the nearest point of the hexagon.
 #[inline]
-fn nearest(v_bus: Word, u: [Word; 3], max: Word, min: Word) -> [Word; 3] {
+fn nearest<W: Word>(v_bus: W, u: [W; 3], max: W, min: W) -> [W; 3] {
     let middle = halve(max + min);
     let half_bus = halve(v_bus);
     all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus))
@@ -85,13 +91,13 @@ fn nearest(v_bus: Word, u: [Word; 3], max: Word, min: Word) -> [Word; 3] {
 
 /// The legs of the point of the hexagon that keeps the component of `u` along the EMF `f`; `near` are the
 /// terminals of the nearest point.
-fn torque_priority(
-    k: &Constants,
-    v_bus: Word,
-    u: [Word; 3],
-    f: [Word; 3],
-    near: [Word; 3],
-) -> ([Word; 3], Reach) {
+fn torque_priority<W: Word>(
+    k: &Constants<W>,
+    v_bus: W,
+    u: [W; 3],
+    f: [W; 3],
+    near: [W; 3],
+) -> ([W; 3], Reach) {
     let product = |x, y| k.emf_product.floor_product(x, y);
     let strong = [f[0].abs(), f[1].abs(), f[2].abs()];
     let mut d = usize::from(strong[1] > strong[0]);
@@ -103,11 +109,11 @@ fn torque_priority(
     if f_max < floor_shift(v_bus, LEAST_EMF) {
         return (near, Reach::Outside);
     }
-    let s1 = sign_of(f[d]);
+    let s1 = f[d].sign();
     let (f_x, f_y) = (greater(-s1 * f[x], 0.0), greater(-s1 * f[y], 0.0));
     let (along_x, along_y) = (s1 * (u[d] - u[x]), s1 * (u[d] - u[y]));
     let along = product(f_x, along_x) + product(f_y, along_y);
-    let flip = sign_of(along);
+    let flip = along.sign();
     let (along_x, along_y, p, sign) = (flip * along_x, flip * along_y, along.abs(), flip * s1);
     let p_max = product(f_max, v_bus);
     let p_in = lesser(p, p_max);
@@ -120,7 +126,7 @@ fn torque_priority(
     let is_more = n >= 0.0;
     let least = floor_shift(f_max, LIGHT_SHARE);
     let den = greater(either(is_more, greater(f_light, least), f_max), 1.0);
-    let quotient = divide(n.abs(), k.emf_product.bits(), den, v_bus);
+    let quotient = n.abs().divide(k.emf_product.bits(), den, v_bus);
     let light = either(is_more, greater(quotient, light_near), -quotient);
     let heavy = lesser(light + v_bus, v_bus);
     let (mut to_x, mut to_y) = (
@@ -133,7 +139,7 @@ fn torque_priority(
         reach = Reach::PastReach;
         let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
         // As the condition says.
-        let past = known(p - p_max, 0.0, WHOLE);
+        let past = (p - p_max).known(0.0, WHOLE);
         let blend = lesser(floor(past * BLEND_ONE / share), BLEND_ONE);
         let mul15 = Shift::new(BLEND_BITS);
         to_x += mul15.round_product(blend, near_x - to_x);

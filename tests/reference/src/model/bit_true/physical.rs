@@ -59,9 +59,9 @@ impl BitTrue {
     }
 }
 
-impl State {
+impl State<f64> {
     /// The state in physical units.
-    pub fn to_physical(self, k: &Constants, integral_ampere: f64) -> PhysicalState {
+    pub fn to_physical(self, k: &Constants<f64>, integral_ampere: f64) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
         let mut due = self.past.due;
         if !k.parts.has(Part::Hysteresis) {

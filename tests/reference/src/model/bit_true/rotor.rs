@@ -25,26 +25,31 @@ const SECTOR_START: [f64; 7] = [
 
 /// The rotor at this sample.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Angle {
+pub struct Angle<W> {
     /// Angle word, 0 to 2^32 - 1.
-    pub theta: Word,
+    pub theta: W,
     /// Angle per period, signed.
-    pub step: Word,
+    pub step: W,
     /// Angle per tick.
-    pub omega: Word,
+    pub omega: W,
     /// Sector with its advance.
     pub sector_eff: usize,
 }
 
 /// The angle after `state.timing` has followed the sample.
 #[inline]
-pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent) -> Angle {
+pub fn angle<W: Word>(
+    clock: &HallClock,
+    k: &Constants<W>,
+    state: &State<W>,
+    event: &HallEvent,
+) -> Angle<W> {
     let timing = &state.timing;
     let turning = timing.edges == 2;
     let omega = if !turning {
         word(0.0)
     } else if event.edge {
-        floor((pow2(32) - 1.0) / greater(timing.rev, clock.rev_min))
+        floor(word::<W>(pow2(32) - 1.0) / greater(timing.rev, clock.rev_min))
     } else {
         state.omega
     };
@@ -60,9 +65,9 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     } else if timing.direction > 0.0 {
         progress
     } else {
-        SIXTH - 1.0 - progress
+        -progress + (SIXTH - 1.0)
     };
-    let theta = wrap32(SECTOR_START[event.sector] + in_sector);
+    let theta = wrap32(in_sector + SECTOR_START[event.sector]);
     let sector_eff = if k.advanced && turning {
         let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
         to_index(floor(ahead * 6.0 * pow2(-32))) + 1
@@ -77,7 +82,7 @@ pub fn angle(clock: &HallClock, k: &Constants, state: &State, event: &HallEvent)
     }
 }
 
-#[cfg(all(test, not(bounded)))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -1,7 +1,7 @@
 //! The state of the bit-true model, and its words in the order of `semantics.md`.
 
 use super::constants::Constants;
-use crate::exact::{Word, input, to_i32, word};
+use crate::exact::{Word, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
 use crate::model::supervision::{HallCode, Mode, Supervisor, fault_from_word, fault_to_word};
@@ -11,27 +11,27 @@ use hexagen::Fault;
 /// State words in f64; small enums as such. Words that the variant does not have are kept as well
 /// and never read.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
-    pub supervisor: Supervisor,
-    pub offset: [Word; 2],
+pub struct State<W: Word> {
+    pub supervisor: Supervisor<W>,
+    pub offset: [W; 2],
     pub sector_prev: usize,
-    pub timing: HallTiming,
-    pub omega: Word,
-    pub speed_integral: Word,
+    pub timing: HallTiming<W>,
+    pub omega: W,
+    pub speed_integral: W,
     pub sector_eff_prev: usize,
-    pub commutation_left: Word,
-    pub i_prev: [Word; 2],
-    pub v_cmd: [Word; 2],
-    pub t_cmd: [Word; 3],
+    pub commutation_left: W,
+    pub i_prev: [W; 2],
+    pub v_cmd: [W; 2],
+    pub t_cmd: [W; 3],
     pub off_cmd: usize,
-    pub v_prev: [Word; 2],
+    pub v_prev: [W; 2],
     pub off_prev: usize,
-    pub e_prev: [Word; 2],
-    pub integral: [Word; 2],
+    pub e_prev: [W; 2],
+    pub integral: [W; 2],
     /// `h_a`, `h_b`; where they are no words of their own, what is due holds them.
-    pub hysteresis: [Word; 2],
+    pub hysteresis: [W; 2],
     pub vector_prev: Vector,
-    pub past: Past,
+    pub past: Past<W>,
 }
 
 /// Number of a vector, 0 to 15.
@@ -85,25 +85,18 @@ impl Parts {
 /// A value that is kept as a state word.
 trait WordValue {
     fn to_word(&self) -> i32;
-    fn set_word(&mut self, word: i32);
-    /// Makes a number any of an interval.
-    #[cfg(bounded)]
-    fn widen(&mut self, _interval: [f64; 2]) {}
+    /// Sets a word, which stands for any of a range where it is a number.
+    fn set_word(&mut self, word: i32, range: (i32, i32));
 }
 
-impl WordValue for Word {
+impl<W: Word> WordValue for W {
     #[inline]
     fn to_word(&self) -> i32 {
-        to_i32(*self)
+        Word::to_i32(*self)
     }
 
-    fn set_word(&mut self, word: i32) {
-        *self = input(word);
-    }
-
-    #[cfg(bounded)]
-    fn widen(&mut self, interval: [f64; 2]) {
-        *self = self.within(interval);
+    fn set_word(&mut self, word: i32, (low, high): (i32, i32)) {
+        *self = W::whole(word.into(), low.into(), high.into());
     }
 }
 
@@ -114,7 +107,7 @@ impl WordValue for usize {
         *self as i32
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         *self = usize::try_from(word).unwrap_or(0).min(6);
     }
 }
@@ -125,7 +118,7 @@ impl WordValue for Vector {
         self.0 as i32
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         self.0 = usize::try_from(word).unwrap_or(0).min(15);
     }
 }
@@ -137,7 +130,7 @@ impl WordValue for u8 {
         i32::from(*self)
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         *self = word.clamp(0, 2) as u8;
     }
 }
@@ -148,7 +141,7 @@ impl WordValue for bool {
         i32::from(*self)
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         *self = word != 0;
     }
 }
@@ -159,7 +152,7 @@ impl WordValue for Mode {
         *self as i32
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         *self = Self::from_word(word);
     }
 }
@@ -170,7 +163,7 @@ impl WordValue for Option<Fault> {
         fault_to_word(*self)
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         *self = fault_from_word(word);
     }
 }
@@ -181,7 +174,7 @@ impl WordValue for HallCode {
         self.0.into()
     }
 
-    fn set_word(&mut self, word: i32) {
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
         self.0 = word.clamp(0, 6) as u8;
     }
 }
@@ -288,13 +281,13 @@ pub fn names(parts: Parts) -> Vec<&'static str> {
     names
 }
 
-impl State {
+impl<W: Word> State<W> {
     /// Follows the commutation (section 5); whether it goes on.
     #[inline]
-    pub fn commutate(&mut self, k: &Constants, sector_eff: usize, j: Word, i: &[Word; 3]) -> bool {
+    pub fn commutate(&mut self, k: &Constants<W>, sector_eff: usize, j: W, i: &[W; 3]) -> bool {
         let changed = sector_eff != self.sector_eff_prev && self.sector_eff_prev != 0;
         let torque = if j < 0.0 { -1.0 } else { 1.0 };
-        let sign = sector::OUT_SIGN[sector_eff] * torque * self.timing.direction;
+        let sign = self.timing.direction * (sector::OUT_SIGN[sector_eff] * torque);
         let flows = sign * i[sector::OUT_PHASE[sector_eff]] > k.i_comm;
         let kept = if changed {
             word(k.comm_samples)
@@ -336,39 +329,19 @@ impl State {
         for_each_word!(self, parts, put);
     }
 
-    /// Reads the words in order; words that are missing leave their part of the state as it is.
-    pub fn read(&mut self, parts: Parts, words: &[i32]) {
-        let mut words = words.iter();
+    /// Reads the words in order, each with the range that it stands for; words that are missing leave their part of the state as it is.
+    pub fn read(&mut self, parts: Parts, mut words: impl Iterator<Item = (i32, (i32, i32))>) {
         macro_rules! take {
             ($name:literal, $place:expr) => {
-                if let Some(word) = words.next() {
-                    $place.set_word(*word);
+                if let Some((word, range)) = words.next() {
+                    $place.set_word(word, range);
                 }
             };
         }
         for_each_word!(self, parts, take);
-        self.settle_sector(parts);
-    }
-
-    /// Without an advance the sector in force is that of the sample, and has no word of its own.
-    fn settle_sector(&mut self, parts: Parts) {
+        // Without an advance the sector in force is that of the sample, and has no word of its own.
         if !parts.has(Part::SectorInForce) {
             self.sector_eff_prev = self.sector_prev;
         }
-    }
-
-    /// Makes the words any of these intervals, in order.
-    #[cfg(bounded)]
-    pub fn widen(&mut self, parts: Parts, intervals: &[[f64; 2]]) {
-        let mut intervals = intervals.iter();
-        macro_rules! widen {
-            ($name:literal, $place:expr) => {
-                if let Some(interval) = intervals.next() {
-                    $place.widen(*interval);
-                }
-            };
-        }
-        for_each_word!(self, parts, widen);
-        self.settle_sector(parts);
     }
 }

@@ -1,6 +1,6 @@
 //! Tables of periodic functions of the electrical angle, quadratic in every segment.
 
-use crate::exact::{Shift, Word, floor, pow2, round_half_up, split, tabulated, to_index, wrap32};
+use crate::exact::{Shift, Word, floor, pow2, round_half_up, split, to_index, wrap32};
 use std::f64::consts::TAU;
 
 /// A third of a turn as an angle word.
@@ -8,14 +8,14 @@ const THIRD: f64 = 1_431_655_765.0;
 
 /// A table of one function.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct Table<W> {
     /// Segments per turn over 2^32.
     scale: f64,
     mul31: Shift,
-    segments: Vec<[Word; 3]>,
+    segments: Vec<[W; 3]>,
 }
 
-impl Table {
+impl<W: Word> Table<W> {
     /// Tabulates `y(theta)` (radians) in `segments` segments with `frac_bits` fraction bits.
     pub fn new(segments: u32, frac_bits: u32, y: impl Fn(f64) -> f64) -> Self {
         let width = TAU / f64::from(segments);
@@ -30,22 +30,31 @@ impl Table {
             ]
         };
         let rows: Vec<[f64; 3]> = (0..segments).map(coefficients).collect();
+        // Any row may be taken.
+        let any = |row: &[f64; 3]| {
+            [0, 1, 2].map(|place| {
+                let column = || rows.iter().map(|row| row[place]);
+                let least = column().fold(f64::INFINITY, f64::min);
+                let greatest = column().fold(f64::NEG_INFINITY, f64::max);
+                W::whole(row[place], least, greatest)
+            })
+        };
         Self {
             scale: f64::from(segments) * pow2(-32),
             mul31: Shift::new(31),
-            segments: tabulated(&rows),
+            segments: rows.iter().map(any).collect(),
         }
     }
 
     /// The function of phases a and b at an angle word of phase a (not yet wrapped).
     #[inline]
-    pub fn both(&self, theta: Word) -> [Word; 2] {
+    pub fn both(&self, theta: W) -> [W; 2] {
         [self.at(wrap32(theta)), self.at(wrap32(theta - THIRD))]
     }
 
     /// The function at an angle word from 0 to 2^32 - 1.
     #[inline]
-    fn at(&self, theta: Word) -> Word {
+    fn at(&self, theta: W) -> W {
         let (index, position) = split(theta * self.scale);
         let t = floor(position * pow2(31));
         let [c0, c1, c2] = self.segments[to_index(index)];
@@ -55,7 +64,7 @@ impl Table {
     }
 }
 
-#[cfg(all(test, not(bounded)))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -11,12 +11,12 @@ const SOFT_BAND: f64 = 0.1;
 
 /// Coefficient and limit; zero where nothing is compensated.
 #[derive(Clone, Debug)]
-pub struct DeadTime {
-    k_dead: Coefficient,
+pub struct DeadTime<W> {
+    k_dead: Coefficient<W>,
     limit: f64,
 }
 
-impl DeadTime {
+impl<W: Word> DeadTime<W> {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         let inverter = &spec.inverter;
         let lost = inverter.dead_time / inverter.t_s;
@@ -32,7 +32,7 @@ impl DeadTime {
 
     /// Shifts of legs a, b, c; `held` is the measured current as a voltage, phases a, b.
     #[inline]
-    pub fn shifts(&self, now: &Inputs, held: [Word; 2]) -> [Word; 3] {
+    pub fn shifts(&self, now: &Inputs<W>, held: [W; 2]) -> [W; 3] {
         let [a, b] = [now.j[0] + held[0], now.j[1] + held[1]];
         [a, b, -(a + b)].map(|flow| within(self.k_dead.mul(flow), -self.limit, self.limit))
     }

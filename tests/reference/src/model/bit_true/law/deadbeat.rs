@@ -9,14 +9,14 @@ use crate::model::trace::Past;
 
 /// How the voltage is put together.
 #[derive(Clone, Debug)]
-pub enum Form {
+pub enum Form<W> {
     /// From prediction and EMF.
-    TwoStep(Deadbeat),
+    TwoStep(Deadbeat<W>),
     /// From what the past left.
-    Held(Held),
+    Held(Held<W>),
 }
 
-impl Form {
+impl<W: Word> Form<W> {
     /// `asked`: the law asks for the EMF besides.
     pub fn new(asked: bool, scale: &Scale) -> Result<Self, Error> {
         Ok(if scale.variant.holds() {
@@ -28,7 +28,7 @@ impl Form {
 
     /// Phases a, b, not limited.
     #[inline]
-    pub fn voltage(&self, now: &Inputs) -> [Word; 2] {
+    pub fn voltage(&self, now: &Inputs<W>) -> [W; 2] {
         match self {
             Self::TwoStep(form) => form.voltage(now),
             Self::Held(form) => form.voltage(now),
@@ -37,7 +37,7 @@ impl Form {
 
     /// EMF of phases a, b.
     #[inline]
-    pub fn emf(&self, now: &Inputs) -> [Word; 2] {
+    pub fn emf(&self, now: &Inputs<W>) -> [W; 2] {
         match self {
             Self::TwoStep(_) => now.e,
             Self::Held(form) => form.emf(now),
@@ -46,7 +46,7 @@ impl Form {
 
     /// What is left of the measured current when the voltage takes effect, as a voltage.
     #[inline]
-    pub fn kept(&self, now: &Inputs) -> [Word; 2] {
+    pub fn kept(&self, now: &Inputs<W>) -> [W; 2] {
         match self {
             Self::TwoStep(form) => form.held(now),
             Self::Held(form) => form.kept(now),
@@ -55,7 +55,7 @@ impl Form {
 
     /// What the currents and the voltage `u` leave to later steps.
     #[inline]
-    pub fn past(&self, now: &Inputs, u: [Word; 2]) -> Past {
+    pub fn past(&self, now: &Inputs<W>, u: [W; 2]) -> Past<W> {
         match self {
             Self::TwoStep(_) => now.past,
             Self::Held(form) => form.past(now, u),
@@ -65,13 +65,13 @@ impl Form {
 
 /// Coefficients of the deadbeat voltage.
 #[derive(Clone, Debug)]
-pub struct Deadbeat {
+pub struct Deadbeat<W> {
     delayed: bool,
-    k_hold: Coefficient,
-    k_decay: Coefficient,
+    k_hold: Coefficient<W>,
+    k_decay: Coefficient<W>,
 }
 
-impl Deadbeat {
+impl<W: Word> Deadbeat<W> {
     fn new(scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
         let delayed = scale.variant.delayed();
@@ -85,13 +85,13 @@ impl Deadbeat {
 
     /// The measured current as a voltage, phases a, b.
     #[inline]
-    fn held(&self, now: &Inputs) -> [Word; 2] {
+    fn held(&self, now: &Inputs<W>) -> [W; 2] {
         both(|x| self.k_hold.mul(now.i[x]))
     }
 
     /// Phases a, b, not limited.
     #[inline]
-    fn voltage(&self, now: &Inputs) -> [Word; 2] {
+    fn voltage(&self, now: &Inputs<W>) -> [W; 2] {
         let held = self.held(now);
         both(|x| {
             let held = now.j[x] - held[x];

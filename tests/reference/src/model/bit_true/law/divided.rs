@@ -22,11 +22,11 @@ pub fn high_and_low(vector: usize) -> (usize, usize) {
 }
 
 /// Terminals between two vectors of three driven legs with those exact scores.
-pub fn between(v_bus: Word, pair: [usize; 2], scores: [Word; 2]) -> [Word; 3] {
+pub fn between<W: Word>(v_bus: W, pair: [usize; 2], scores: [W; 2]) -> [W; 3] {
     let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
     let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
     let t = within(
-        floor_shift(4.0 * v_bus + scores[lower] - scores[upper], 3),
+        floor_shift(v_bus * 4.0 + scores[lower] - scores[upper], 3),
         0.0,
         v_bus,
     );
@@ -43,7 +43,7 @@ pub fn between(v_bus: Word, pair: [usize; 2], scores: [Word; 2]) -> [Word; 3] {
 }
 
 /// The command for these terminals.
-pub fn command(now: &Inputs, terminal: [Word; 3], off: Option<usize>) -> Command {
+pub fn command<W: Word>(now: &Inputs<W>, terminal: [W; 3], off: Option<usize>) -> Command<W> {
     Command {
         legs: Legs::new(
             terminal.map(|t| pulses::compare_of(now, t, word(0.0))),
@@ -63,7 +63,7 @@ pub fn command(now: &Inputs, terminal: [Word; 3], off: Option<usize>) -> Command
 }
 
 /// Phase voltages a, b of the command, a leg that is off midway between the two others.
-pub fn mean(now: &Inputs, command: &Command) -> [Word; 2] {
+pub fn mean<W: Word>(now: &Inputs<W>, command: &Command<W>) -> [W; 2] {
     let mut t = command.terminal;
     if let Some(off) = command.off.checked_sub(1) {
         t[off] = halve(t[0] + t[1] + t[2]);

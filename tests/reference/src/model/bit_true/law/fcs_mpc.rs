@@ -4,7 +4,7 @@
 use super::deadbeat::Form;
 use super::divided;
 use super::two_steps::TwoSteps;
-use super::weighted::Weights;
+use super::weighted::{Weights, first_least};
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
 use crate::exact::{Shift, Word, both, floor, halve, round_half_up, within, word};
@@ -14,21 +14,21 @@ use crate::model::vectors;
 use crate::{Candidates, Error, Switch};
 
 #[derive(Clone, Debug)]
-pub struct FcsMpc {
+pub struct FcsMpc<W> {
     pub candidates: Candidates,
     /// Pairs are allowed and their off leg sits where current or EMF put it.
     pub floating: bool,
     /// A second vector shares the period.
     modulated: bool,
-    form: Form,
-    sixth: Sixth,
+    form: Form<W>,
+    sixth: Sixth<W>,
     pub score: Shift,
     i_comm_volts: f64,
-    weights: Option<Weights>,
-    two_steps: Option<TwoSteps>,
+    weights: Option<Weights<W>>,
+    two_steps: Option<TwoSteps<W>>,
 }
 
-impl FcsMpc {
+impl<W: Word> FcsMpc<W> {
     pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
         let floating = scale.variant.floating;
         let held = scale.phase.a / scale.phase.b;
@@ -47,7 +47,7 @@ impl FcsMpc {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         // 9
         let u_unsat = self.form.voltage(now);
         // 10
@@ -84,18 +84,18 @@ impl FcsMpc {
 }
 
 /// What the scores are made of.
-pub struct Choice<'a> {
-    pub law: &'a FcsMpc,
-    pub v_bus: Word,
-    pub u: [Word; 3],
-    e: [Word; 3],
+pub struct Choice<'a, W> {
+    pub law: &'a FcsMpc<W>,
+    pub v_bus: W,
+    pub u: [W; 3],
+    e: [W; 3],
     /// K a i(k+1).
-    held: [Word; 3],
+    held: [W; 3],
 }
 
-impl<'a> Choice<'a> {
-    fn new(law: &'a FcsMpc, now: &Inputs, u: [Word; 2]) -> Self {
-        let abc = |x: [Word; 2]| [x[0], x[1], -(x[0] + x[1])];
+impl<'a, W: Word> Choice<'a, W> {
+    fn new(law: &'a FcsMpc<W>, now: &Inputs<W>, u: [W; 2]) -> Self {
+        let abc = |x: [W; 2]| [x[0], x[1], -(x[0] + x[1])];
         Self {
             law,
             v_bus: now.v_bus,
@@ -106,7 +106,7 @@ impl<'a> Choice<'a> {
     }
 
     /// The decision for a vector.
-    fn apply(&self, now: &Inputs, vector: usize) -> Decision {
+    fn apply(&self, now: &Inputs<W>, vector: usize) -> Decision<W> {
         // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
         let u = if self.law.floating {
             self.voltage(vector)
@@ -127,7 +127,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Terminal voltage of the off leg, the two others' mean being `driven`.
-    pub fn off_terminal(&self, leg: usize, driven: Word) -> Word {
+    pub fn off_terminal(&self, leg: usize, driven: W) -> W {
         if self.held[leg] > self.law.i_comm_volts {
             word(0.0)
         } else if self.held[leg] < -self.law.i_comm_volts {
@@ -138,7 +138,7 @@ impl<'a> Choice<'a> {
     }
 
     /// The vector's score; `exact` without the product that all scores of an exact list share.
-    fn score(&self, vector: usize, exact: bool) -> Word {
+    fn score(&self, vector: usize, exact: bool) -> W {
         let along = self.by_bus(vector);
         if exact {
             along
@@ -149,7 +149,7 @@ impl<'a> Choice<'a> {
 
     /// The score whose multiple of the bus is `along`, one floor of both its products: vectors of the same voltage have
     /// the same score, whatever products it is made of.
-    pub fn rounded(&self, vector: usize, along: Word) -> Word {
+    pub fn rounded(&self, vector: usize, along: W) -> W {
         let score = &self.law.score;
         match self.aside(vector) {
             None => score.floor_product(self.v_bus, along),
@@ -158,24 +158,24 @@ impl<'a> Choice<'a> {
     }
 
     /// The part of the score that is a multiple of the bus, over the bus.
-    pub fn by_bus(&self, vector: usize) -> Word {
+    pub fn by_bus(&self, vector: usize) -> W {
         score_by_bus(self.v_bus, &self.u, vector)
     }
 
     /// Factors of what an off leg that does not lie midway adds.
-    fn aside(&self, vector: usize) -> Option<[Word; 2]> {
+    fn aside(&self, vector: usize) -> Option<[W; 2]> {
         let off = vectors::off_leg(vector).filter(|_| self.law.floating)?;
         Some(if vector < vectors::FIRST_PAIR_ZERO {
-            let d = 2.0 * self.off_terminal(off, halve(self.v_bus)) - self.v_bus;
-            [d, d - 6.0 * self.u[off]]
+            let d = self.off_terminal(off, halve(self.v_bus)) * 2.0 - self.v_bus;
+            [d, d - self.u[off] * 6.0]
         } else {
             let tau = self.off_terminal(off, word(0.0));
-            [tau, 4.0 * tau - 12.0 * self.u[off]]
+            [tau, tau * 4.0 - self.u[off] * 12.0]
         })
     }
 
     /// The decision with a second vector (10a).
-    fn divide(&self, now: &Inputs, vector: usize) -> Decision {
+    fn divide(&self, now: &Inputs<W>, vector: usize) -> Decision<W> {
         let command = if now.sector_eff == 0 {
             divided::command(now, [word(0.0); 3], None)
         } else if let Some(off) = vectors::off_leg(vector) {
@@ -207,10 +207,8 @@ impl<'a> Choice<'a> {
             terminal[p] = within(t, 0.0, self.v_bus);
             divided::command(now, terminal, Some(off))
         } else {
-            let partner = (0..vectors::FIRST_PAIR)
-                .filter(|other| *other != vector)
-                .min_by(|one, two| self.score(*one, true).total_cmp(&self.score(*two, true)))
-                .unwrap_or(0);
+            let others = (0..vectors::FIRST_PAIR).filter(|other| *other != vector);
+            let partner = first_least(others, |other| self.score(other, true));
             let scores = [vector, partner].map(|vector| self.score(vector, true));
             divided::command(
                 now,
@@ -236,7 +234,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Voltages of phases a, b with the off leg where it is predicted, for the trace.
-    fn judged(&self, command: &super::Command) -> [Word; 2] {
+    fn judged(&self, command: &super::Command<W>) -> [W; 2] {
         let mut terminal = command.terminal;
         if let Some(off) = command.off.checked_sub(1) {
             let driven = halve(terminal[0] + terminal[1] + terminal[2]);
@@ -247,7 +245,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Voltages of phases a, b as the score takes them, for the trace.
-    fn voltage(&self, vector: usize) -> [Word; 2] {
+    fn voltage(&self, vector: usize) -> [W; 2] {
         let legs = vectors::LEGS[vector];
         let mut terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { word(0.0) });
         if let Some(off) = vectors::off_leg(vector) {
@@ -260,16 +258,16 @@ impl<'a> Choice<'a> {
 }
 
 /// 6 (|v|^2 - 2 u v) over the bus, a leg that is off midway.
-pub fn score_by_bus(v_bus: Word, u: &[Word; 3], vector: usize) -> Word {
+pub fn score_by_bus<W: Word>(v_bus: W, u: &[W; 3], vector: usize) -> W {
     let legs = vectors::LEGS[vector];
     let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
     let high = legs.iter().filter(|leg| **leg > 0).count();
     match (vectors::off_leg(vector), find(1), find(-1)) {
         // One leg high.
-        (None, Some(x), Some(_)) if high == 1 => 4.0 * v_bus - 12.0 * u[x],
+        (None, Some(x), Some(_)) if high == 1 => v_bus * 4.0 - u[x] * 12.0,
         // One leg low.
-        (None, Some(_), Some(x)) => 4.0 * v_bus + 12.0 * u[x],
-        (Some(_), Some(p), Some(q)) => 3.0 * v_bus - 6.0 * (u[p] - u[q]),
+        (None, Some(_), Some(x)) => v_bus * 4.0 + u[x] * 12.0,
+        (Some(_), Some(p), Some(q)) => v_bus * 3.0 - (u[p] - u[q]) * 6.0,
         _ => word(0.0),
     }
 }

@@ -7,21 +7,21 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::trace::Past;
 
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct Held<W> {
     delayed: bool,
-    now: Coefficient,
-    past: Coefficient,
-    fade: Coefficient,
+    now: Coefficient<W>,
+    past: Coefficient<W>,
+    fade: Coefficient<W>,
     /// Whether the law asks for the EMF.
     asked: bool,
-    due: Coefficient,
-    later: Coefficient,
-    di: Coefficient,
+    due: Coefficient<W>,
+    later: Coefficient<W>,
+    di: Coefficient<W>,
     /// Only the compensation of dead time asks for what is left of the current.
-    hold: Coefficient,
+    hold: Coefficient<W>,
 }
 
-impl Held {
+impl<W: Word> Held<W> {
     /// `asked`: the law asks for the EMF.
     pub fn new(asked: bool, scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
@@ -48,13 +48,13 @@ impl Held {
 
     /// Phases a, b, not limited.
     #[inline]
-    pub fn voltage(&self, now: &Inputs) -> [Word; 2] {
+    pub fn voltage(&self, now: &Inputs<W>) -> [W; 2] {
         both(|x| now.j[x] + now.past.due[x] + self.now.mul(now.i[x]))
     }
 
     /// The EMF that the last period showed, phases a, b.
     #[inline]
-    pub fn emf(&self, now: &Inputs) -> [Word; 2] {
+    pub fn emf(&self, now: &Inputs<W>) -> [W; 2] {
         if !self.asked {
             return [word(0.0); 2];
         }
@@ -72,13 +72,13 @@ impl Held {
 
     /// What is left of the measured current when the voltage takes effect, as a voltage.
     #[inline]
-    pub fn kept(&self, now: &Inputs) -> [Word; 2] {
+    pub fn kept(&self, now: &Inputs<W>) -> [W; 2] {
         both(|x| self.hold.mul(now.i[x]))
     }
 
     /// What this step's current and voltage `u` leave to the next two.
     #[inline]
-    pub fn past(&self, now: &Inputs, u: [Word; 2]) -> Past {
+    pub fn past(&self, now: &Inputs<W>, u: [W; 2]) -> Past<W> {
         let sampled = both(|x| self.past.mul(now.i[x]));
         if self.delayed {
             let left = both(|x| u[x] + self.fade.mul(u[x]));

@@ -1,19 +1,19 @@
 //! Proportional control: proportional share and fed-forward EMF, limited and pulsed.
 
 use super::{Decision, Inputs, pulses};
-use crate::exact::{Coefficient, both, word};
+use crate::exact::{Coefficient, Word, both, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::model::variant::reference_gain;
 use crate::{Error, Saturation, Spec};
 
 #[derive(Clone, Debug)]
-pub struct PPwm {
+pub struct PPwm<W> {
     saturation: Saturation,
-    k_drop: Coefficient,
+    k_drop: Coefficient<W>,
 }
 
-impl PPwm {
+impl<W: Word> PPwm<W> {
     pub fn new(spec: &Spec, options: &crate::PPwm, scale: &Scale) -> Result<Self, Error> {
         Ok(Self {
             saturation: options.saturation,
@@ -22,7 +22,7 @@ impl PPwm {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         // 9
         let u_unsat = both(|x| now.j[x] + self.k_drop.mul(now.i[x]) + now.e[x]);
         // 10, 11

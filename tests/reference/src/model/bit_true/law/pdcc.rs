@@ -3,19 +3,20 @@
 use super::dead_time::DeadTime;
 use super::deadbeat::Form;
 use super::{Decision, Inputs, pulses};
+use crate::exact::Word;
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::{Error, Modulation, Saturation, Spec};
 
 #[derive(Clone, Debug)]
-pub struct Pdcc {
+pub struct Pdcc<W> {
     pair: bool,
     saturation: Saturation,
-    form: Form,
-    dead_time: DeadTime,
+    form: Form<W>,
+    dead_time: DeadTime<W>,
 }
 
-impl Pdcc {
+impl<W: Word> Pdcc<W> {
     pub fn new(spec: &Spec, options: &crate::Pdcc, scale: &Scale) -> Result<Self, Error> {
         Ok(Self {
             pair: options.modulation == Modulation::Pair,
@@ -26,7 +27,7 @@ impl Pdcc {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         let u_unsat = self.form.voltage(now);
         let e = self.form.emf(now);
         let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, e);

@@ -20,23 +20,23 @@ enum Memory {
 }
 
 #[derive(Clone, Debug)]
-pub struct Phcc {
+pub struct Phcc<W> {
     delayed: bool,
     holds: bool,
     memory: Memory,
     /// Vectors of pairs are allowed, which turn legs off.
     pairs: bool,
-    k_hold: Coefficient,
+    k_hold: Coefficient<W>,
     /// Of the present current in this prediction and in the next, the EMF held.
-    k_now: Coefficient,
-    k_past: Coefficient,
-    sixth: Sixth,
+    k_now: Coefficient<W>,
+    k_past: Coefficient<W>,
+    sixth: Sixth<W>,
     /// BAND_A, BAND_B.
     bands: [f64; 2],
     switching: Switching,
 }
 
-impl Phcc {
+impl<W: Word> Phcc<W> {
     pub fn new(spec: &Spec, options: &crate::Phcc, scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
         let delayed = scale.variant.delayed();
@@ -62,7 +62,7 @@ impl Phcc {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         // 9
         let q = both(|x| {
             if self.holds {
@@ -81,7 +81,7 @@ impl Phcc {
             Memory::Words => now.hysteresis,
             Memory::Due => [word(0.0); 2],
         };
-        let lifted = [q[0] + h_a, 2.0 * q[1] + q[0] + h_b];
+        let lifted = [q[0] + h_a, q[1] * 2.0 + q[0] + h_b];
         let rises = lifted.map(|error| error >= 0.0);
         let memory = |rises, band: f64| word(if rises { band } else { -band - 1.0 });
         let hysteresis = [memory(rises[0], band_a), memory(rises[1], band_b)];
@@ -120,7 +120,7 @@ impl Phcc {
 
 /// What the memory of the axes adds to the words that are due, phases a and b (section 12).
 #[inline]
-pub fn in_due([h_a, h_b]: [Word; 2]) -> [Word; 2] {
-    let falls = word(if h_b < 0.0 { 1.0 } else { 0.0 });
+pub fn in_due<W: Word>([h_a, h_b]: [W; 2]) -> [W; 2] {
+    let falls: W = word(if h_b < 0.0 { 1.0 } else { 0.0 });
     [h_a, floor_shift(h_b - h_a + falls, 1)]
 }

@@ -10,17 +10,17 @@ use crate::model::{Reach, sector};
 use crate::{Error, Saturation, Spec, Switch};
 
 #[derive(Clone, Debug)]
-pub struct PiPwm {
+pub struct PiPwm<W> {
     /// One regulator, for the pair.
     six_step: bool,
     saturation: Saturation,
-    k_drop: Coefficient,
-    k_i: Coefficient,
+    k_drop: Coefficient<W>,
+    k_i: Coefficient<W>,
     integral_range: [f64; 2],
-    dead_time: DeadTime,
+    dead_time: DeadTime<W>,
 }
 
-impl PiPwm {
+impl<W: Word> PiPwm<W> {
     pub fn new(spec: &Spec, options: &crate::PiPwm, scale: &Scale) -> Result<Self, Error> {
         let bus = round_half_up(spec.inverter.v_bus_max()? / scale.w * scale.two_v);
         let integral_range = if options.feed_forward == Switch::On {
@@ -40,7 +40,7 @@ impl PiPwm {
     }
 
     #[inline]
-    pub fn decide(&self, now: &Inputs) -> Decision {
+    pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         if self.six_step {
             return self.decide_pair(now);
         }
@@ -75,7 +75,7 @@ impl PiPwm {
         }
     }
     /// One regulator on the current of the conducting pair.
-    fn decide_pair(&self, now: &Inputs) -> Decision {
+    fn decide_pair(&self, now: &Inputs<W>) -> Decision<W> {
         // 9
         let i = [now.i[0], now.i[1], -(now.i[0] + now.i[1])];
         let ends = (now.sector_eff != 0)
@@ -85,13 +85,13 @@ impl PiPwm {
         let part = now.set_point + self.k_drop.mul(pair_current);
         let u = part + now.integral[0];
         // 10
-        let line = within(2.0 * u, -now.v_bus, now.v_bus);
+        let line = within(u * 2.0, -now.v_bus, now.v_bus);
         // 12
         let limited = halve(line);
         let [low, high] = self.integral_range;
         let moved = now.integral[0] + self.k_i.mul(limited - now.integral[0]);
         let integral = within(moved, low, high);
-        let phases = |u: Word| {
+        let phases = |u: W| {
             let mut phases = [word(0.0); 3];
             if let Some((plus, minus)) = ends {
                 (phases[plus], phases[minus]) = (u, -u);
@@ -101,7 +101,7 @@ impl PiPwm {
         Decision {
             u_unsat: phases(u),
             u: phases(limited),
-            reach: if line == 2.0 * u {
+            reach: if line == u * 2.0 {
                 Reach::Inside
             } else {
                 Reach::Outside

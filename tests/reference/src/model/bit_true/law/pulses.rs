@@ -7,7 +7,7 @@ use hexagen::{LegState, Legs};
 
 /// A timer compare value from a word of whole and half counts.
 #[inline]
-fn compare(now: &Inputs, counts: Word) -> u16 {
+fn compare<W: Word>(now: &Inputs<W>, counts: W) -> u16 {
     let k = now.k;
     to_u16(within(
         floor((counts + k.half_count) * k.to_counts),
@@ -18,7 +18,7 @@ fn compare(now: &Inputs, counts: Word) -> u16 {
 
 /// The voltage that gives the same duty on the nominal bus.
 #[inline]
-fn nominal(now: &Inputs, t: Word) -> Word {
+fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
     if now.k.bus.is_some() {
         now.to_duty.mul(t)
     } else {
@@ -29,14 +29,14 @@ fn nominal(now: &Inputs, t: Word) -> Word {
 /// The compare value of a leg that is high for the share of the period that `t` is of the bus; `shift` is against the
 /// dead time.
 #[inline]
-pub fn compare_of(now: &Inputs, t: Word, shift: Word) -> u16 {
+pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
     compare(now, nominal(now, t) + shift)
 }
 
 /// Three pulsed legs of voltages `u` against any common point, their common mode in the middle of the bus; with
 /// terminal voltages where the variant keeps them. `shifts` are against the dead time.
 #[inline]
-pub fn three(now: &Inputs, u: [Word; 3], shifts: [Word; 3], terminals: bool) -> Command {
+pub fn three<W: Word>(now: &Inputs<W>, u: [W; 3], shifts: [W; 3], terminals: bool) -> Command<W> {
     let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
     let half = halve(now.v_bus + 1.0);
     let centred = all_three(|x| within(u[x] - middle, -half, half));
@@ -58,7 +58,7 @@ pub fn three(now: &Inputs, u: [Word; 3], shifts: [Word; 3], terminals: bool) -> 
 
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are against the dead time.
 #[inline]
-pub fn pair(now: &Inputs, u: [Word; 2], shifts: [Word; 3]) -> Command {
+pub fn pair<W: Word>(now: &Inputs<W>, u: [W; 2], shifts: [W; 3]) -> Command<W> {
     if now.sector_eff == 0 {
         return Command::idle(Legs::OFF);
     }
@@ -69,7 +69,7 @@ pub fn pair(now: &Inputs, u: [Word; 2], shifts: [Word; 3]) -> Command {
 
 /// The line voltage `v` of the conducting pair, within the bus.
 #[inline]
-pub fn line(now: &Inputs, v: Word, shifts: [Word; 3]) -> Command {
+pub fn line<W: Word>(now: &Inputs<W>, v: W, shifts: [W; 3]) -> Command<W> {
     let mut command = Command::idle(Legs::OFF);
     let sector_eff = now.sector_eff;
     if sector_eff == 0 {

@@ -8,13 +8,13 @@ use crate::model::vectors;
 use crate::{Candidates, Error};
 
 #[derive(Clone, Debug)]
-pub struct TwoSteps {
-    pole: Coefficient,
-    first: Coefficient,
-    pole_sixth: Coefficient,
+pub struct TwoSteps<W> {
+    pole: Coefficient<W>,
+    first: Coefficient<W>,
+    pole_sixth: Coefficient<W>,
 }
 
-impl TwoSteps {
+impl<W: Word> TwoSteps<W> {
     /// None where the cost looks one period ahead.
     pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
         if options.horizon != 2 {
@@ -29,8 +29,8 @@ impl TwoSteps {
     }
 
     /// The first vector of the best sequence.
-    pub fn choose(&self, candidates: Candidates, now: &Inputs, u: [Word; 2]) -> usize {
-        let abc = |x: [Word; 2]| [x[0], x[1], -(x[0] + x[1])];
+    pub fn choose(&self, candidates: Candidates, now: &Inputs<W>, u: [W; 2]) -> usize {
+        let abc = |x: [W; 2]| [x[0], x[1], -(x[0] + x[1])];
         let y = [0, 1].map(|x| now.j[x] + now.e[x] + self.pole.mul(u[x] - now.j[x]));
         let z = abc([0, 1].map(|x| u[x] + self.pole.mul(y[x])));
         let y = abc(y);
@@ -43,7 +43,7 @@ impl TwoSteps {
         let (mut chosen, mut least) = (0, word(f64::INFINITY));
         for one in list() {
             let moved = vectors::sixths(one);
-            let left = [0, 1, 2].map(|x| y[x] - moved[x] * sixth);
+            let left = [0, 1, 2].map(|x| y[x] - sixth * moved[x]);
             let own = score_by_bus(first, &z, one);
             for two in list() {
                 let score = own + score_by_bus(now.v_bus, &left, two);

@@ -8,13 +8,13 @@ use crate::model::vectors;
 use crate::{Error, Switch};
 
 #[derive(Clone, Debug)]
-pub struct Weights {
+pub struct Weights<W> {
     /// S.
     change: f64,
-    k_torque_weight: Option<Coefficient>,
+    k_torque_weight: Option<Coefficient<W>>,
 }
 
-impl Weights {
+impl<W: Word> Weights<W> {
     /// None where nothing weighs but the current's error.
     pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
         let weighs = options.switching_weight + options.torque_weight > 0.0;
@@ -33,7 +33,7 @@ impl Weights {
     }
 
     /// The vector of the least cost; `exact`: no score of the list is rounded for its off legs.
-    pub fn choose(&self, choice: &Choice, now: &Inputs, exact: bool) -> usize {
+    pub fn choose(&self, choice: &Choice<W>, now: &Inputs<W>, exact: bool) -> usize {
         let (zero, others) =
             vectors::candidates(choice.law.candidates, now.commutating, now.sector_eff);
         if now.sector_eff == 0 {
@@ -68,17 +68,17 @@ impl Weights {
     }
 
     /// S n.
-    fn changed(&self, now: &Inputs, vector: usize) -> Word {
-        word(self.change) * vectors::changes(now.vector_prev, vector)
+    fn changed(&self, now: &Inputs<W>, vector: usize) -> W {
+        word::<W>(self.change) * vectors::changes(now.vector_prev, vector)
     }
 
     /// The score over the bus, without what an off leg adds.
-    fn by_bus(&self, choice: &Choice, now: &Inputs, vector: usize) -> Word {
+    fn by_bus(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
         choice.by_bus(vector) + self.changed(now, vector)
     }
 
     /// The score with rounded products.
-    fn rounded(&self, choice: &Choice, now: &Inputs, vector: usize) -> Word {
+    fn rounded(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
         let along = self.by_bus(choice, now, vector);
         choice.rounded(vector, along)
     }
@@ -94,8 +94,11 @@ fn kind(vector: usize) -> usize {
 }
 
 /// The first of the least score.
-fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> Word) -> usize {
-    let mut least: Option<(usize, Word)> = None;
+pub fn first_least<W: Word>(
+    list: impl Iterator<Item = usize>,
+    score: impl Fn(usize) -> W,
+) -> usize {
+    let mut least: Option<(usize, W)> = None;
     for vector in list {
         let found = score(vector);
         if least.is_none_or(|(_, known)| found < known) {
@@ -106,7 +109,12 @@ fn first_least(list: impl Iterator<Item = usize>, score: impl Fn(usize) -> Word)
 }
 
 /// What the torque's error weighs.
-fn torque(weight: &Coefficient, choice: &Choice, now: &Inputs, vector: usize) -> Word {
+fn torque<W: Word>(
+    weight: &Coefficient<W>,
+    choice: &Choice<W>,
+    now: &Inputs<W>,
+    vector: usize,
+) -> W {
     let v = choice.v_bus;
     let terminal = |x: usize| match vectors::LEGS[vector][x] {
         1 => v,
@@ -123,6 +131,6 @@ fn torque(weight: &Coefficient, choice: &Choice, now: &Inputs, vector: usize) ->
     };
     let (x, y) = vectors::pair_of(now.sector_eff);
     let line = terminal(x) - terminal(y);
-    let beside = weight.mul(line - 2.0 * (choice.u[x] - choice.u[y]));
+    let beside = weight.mul(line - (choice.u[x] - choice.u[y]) * 2.0);
     choice.law.score.floor_product(line, beside)
 }

@@ -9,7 +9,7 @@ use hexagen::{LegState, Legs};
 
 /// The command of a vector; where none turns a leg off, low legs are pulsed with 0.
 #[inline]
-pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
+pub fn command<W: Word>(now: &Inputs<W>, vector: usize, turns_off: bool) -> Command<W> {
     let legs = vectors::LEGS[vector];
     let on = now.k.timer_period as u16;
     Command {
@@ -28,12 +28,12 @@ pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
 
 /// A sixth of the bus, the unit of the vectors' phase voltages where no leg floats.
 #[derive(Clone, Debug)]
-pub struct Sixth {
+pub struct Sixth<W> {
     /// None without a use for the voltage: only the trace shows it then.
-    k_sixth: Option<Coefficient>,
+    k_sixth: Option<Coefficient<W>>,
 }
 
-impl Sixth {
+impl<W: Word> Sixth<W> {
     pub fn new(scale: &Scale) -> Result<Self, Error> {
         let variant = &scale.variant;
         let is_kept = !variant.floating && !variant.pulsed() && variant.applied();
@@ -45,12 +45,12 @@ impl Sixth {
 
     /// Phase voltages a, b of a vector.
     #[inline]
-    pub fn voltage(&self, now: &Inputs, vector: usize) -> [Word; 2] {
+    pub fn voltage(&self, now: &Inputs<W>, vector: usize) -> [W; 2] {
         let sixth = match &self.k_sixth {
             Some(k_sixth) => k_sixth.mul(now.v_bus),
             None => floor(now.v_bus / 6.0),
         };
         let [a, b, _] = vectors::sixths(vector);
-        [a * sixth, b * sixth]
+        [sixth * a, sixth * b]
     }
 }

@@ -1,6 +1,6 @@
 //! What words have been at every place of the program, and where an operation may not be exact.
 
-use crate::word::{Made, Word};
+use super::bounded::{Bounded, Made};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt;
@@ -84,7 +84,7 @@ impl Hasher for Mixer {
 struct Ledger {
     /// Places are told from one another. They are not while coefficients are made, all in one place.
     is_open: bool,
-    known: HashMap<Place, Word, BuildHasherDefault<Mixer>>,
+    known: HashMap<Place, Bounded, BuildHasherDefault<Mixer>>,
     /// Entries that told something new, and the last of them.
     news: u64,
     newest: Option<Place>,
@@ -136,7 +136,7 @@ pub(crate) fn go_another_way() {
 /// The union of what is known of the place and of `x`, which it gives now from `first` and another operand; `x` itself
 /// while the ledger is closed.
 #[track_caller]
-pub(crate) fn enter(x: Word, what: &'static str, first: Word) -> Word {
+pub(crate) fn enter(x: Bounded, what: &'static str, first: Bounded) -> Bounded {
     let location = Location::caller();
     let before = match first.made {
         Some(made) if made.location == location => made.before + 1,
@@ -181,7 +181,7 @@ pub(crate) fn fault(text: &str) {
 }
 
 impl Ledger {
-    fn judge(&mut self, place: Place, x: Word) {
+    fn judge(&mut self, place: Place, x: Bounded) {
         if x.bits() > 53 {
             self.tell(format!("{place} takes {} bits: {x:?}", x.bits()));
         }

@@ -1,0 +1,343 @@
+//! Words that prove their operations exact.
+//!
+//! Beside its value a word carries what all its values are multiples of (2^last) and an interval that holds them.
+//! An operation is exact for all of them if their magnitude is below 2^(53+last), which every sum, difference and
+//! product checks. The value only decides which way the program goes: a place of the program gives the union
+//! of all intervals that it has ever given (module `ledger`), so that what is proven does not depend on the way.
+
+use super::ledger::{self, Site};
+use hexagen_reference::exact::{WHOLE, Word};
+use std::cmp::Ordering;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use std::panic::Location;
+
+/// Numerators of quotients that are rounded down directly lie below.
+const QUOTIENT: f64 = 2.0 * WHOLE;
+const TWO_32: f64 = 4_294_967_296.0;
+
+/// Stands for the last place of what has none, such as a quotient: no sum or product of it is exact.
+const NO_LAST: i32 = -100_000;
+/// The last place of zero.
+const LAST_OF_ZERO: i32 = 1_023;
+
+/// A word that knows what else it may be, or a number on the way to one.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded {
+    value: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// All values are multiples of 2^last.
+    pub(crate) last: i32,
+    /// What has made it last.
+    pub(crate) made: Option<Made>,
+}
+
+/// The operation that made a word. Those of `a + b + c` stand in one place: they differ in how many of them have
+/// come before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Made {
+    pub(crate) location: &'static Location<'static>,
+    pub(crate) before: u32,
+}
+
+impl Bounded {
+    fn of(value: f64, low: f64, high: f64, last: i32) -> Self {
+        Self {
+            value,
+            low,
+            high,
+            last,
+            made: None,
+        }
+    }
+
+    /// Bits from the last place of all values to the first of the largest.
+    pub(crate) fn bits(self) -> i32 {
+        let magnitude = self.low.abs().max(self.high.abs());
+        if magnitude == 0.0 {
+            return 0;
+        }
+        exponent(magnitude) + 1 - self.last
+    }
+
+    /// Whether the value is what is known of it.
+    pub(crate) fn holds(self) -> bool {
+        let last = f64::from(self.last.clamp(-1_000, 1_000)).exp2();
+        (self.low..=self.high).contains(&self.value) && (self.value / last).fract() == 0.0
+    }
+
+    /// Both intervals.
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self::of(
+            self.value,
+            self.low.min(other.low),
+            self.high.max(other.high),
+            self.last.min(other.last),
+        )
+    }
+
+    /// With the bounds and the last place moved by a monotonic function that yields whole numbers.
+    #[track_caller]
+    fn rounded(self, what: &'static str, round: impl Fn(f64) -> f64) -> Self {
+        if self.bits() > 53 {
+            ledger::fault(&format!("{what} of a number of {} bits", self.bits()));
+        }
+        if self.low.abs().max(self.high.abs()) >= WHOLE {
+            ledger::fault(&format!("{what} of a number of 2^51 or more"));
+        }
+        Self::whole(round(self.value), round(self.low), round(self.high))
+    }
+}
+
+/// Exponent of the first bit of a number above zero.
+fn exponent(x: f64) -> i32 {
+    if x.is_finite() {
+        (x.to_bits() >> 52) as i32 - 1023
+    } else {
+        1 << 20
+    }
+}
+
+impl Default for Bounded {
+    fn default() -> Self {
+        Self::from(0.0)
+    }
+}
+
+/// A constant, which is nothing else.
+impl From<f64> for Bounded {
+    fn from(x: f64) -> Self {
+        let last = if x == 0.0 {
+            LAST_OF_ZERO
+        } else {
+            let zeros = (x.to_bits() & ((1 << 52) - 1) | 1 << 52).trailing_zeros();
+            exponent(x.abs()) - 52 + zeros as i32
+        };
+        Self::of(x, x, x, last)
+    }
+}
+
+impl Word for Bounded {
+    type Site = Site;
+
+    fn here() -> Site {
+        ledger::here()
+    }
+
+    fn whole(value: f64, low: f64, high: f64) -> Self {
+        Self::of(value, low, high, 0)
+    }
+
+    fn known(self, low: f64, high: f64) -> Self {
+        if self.value < low || self.value > high {
+            ledger::fault(&format!("{} is not from {low} to {high}", self.value));
+        }
+        Self::of(
+            self.value,
+            self.low.max(low),
+            self.high.min(high),
+            self.last,
+        )
+    }
+
+    fn debug_whole(self) {
+        if self.last < 0 || self.bits() > 53 {
+            ledger::fault(&format!("not whole: {self:?}"));
+        }
+    }
+
+    /// Nothing: the bits of what is computed of a number tell whether it is too large.
+    fn debug_at_most(self, _most: f64) {}
+
+    fn nearest(self) -> Self {
+        // A tie comes with a last place of a half and goes to the even one: no bound may lie on one.
+        self.rounded("rounding", f64::round_ties_even)
+    }
+
+    fn floor(self) -> Self {
+        if self.last == NO_LAST {
+            return Self::whole(self.value.floor(), self.low.floor(), self.high.floor());
+        }
+        self.rounded("floor", f64::floor)
+    }
+
+    fn product_below(self, other: Self, limit: f64) -> Option<Self> {
+        if limit.is_infinite() {
+            return Some(self * other);
+        }
+        let product = product(self, other);
+        let is_below = product.value.abs() < limit;
+        if !is_below {
+            ledger::go_another_way();
+        }
+        is_below.then(|| ledger::enter(product.known(-limit, limit), "product", self))
+    }
+
+    /// That the steps of f64's division are exact for all words is the argument that stands beside them, and what the
+    /// test with 128-bit integers is about; here it is seen to that they are such words.
+    fn divide(self, s: u32, den: Self, limit: Self) -> Self {
+        for (what, x, least) in [
+            ("numerator", self, 0.0),
+            ("denominator", den, 1.0),
+            ("limit", limit, 0.0),
+        ] {
+            x.debug_whole();
+            if x.low < least || x.high >= TWO_32 {
+                ledger::fault(&format!("{what} from {} to {}", x.low, x.high));
+            }
+        }
+        let quotient = |n: f64, den: f64, limit: f64| {
+            let exact = ((n as i128) << s) / (den as i128).max(1);
+            exact.min(limit as i128) as f64
+        };
+        Self::whole(
+            quotient(self.value, den.value, limit.value),
+            quotient(self.low, den.high, limit.low),
+            quotient(self.high, den.low, limit.high),
+        )
+    }
+
+    fn sign(self) -> Self {
+        Self::whole(1f64.copysign(self.value), -1.0, 1.0)
+    }
+
+    fn abs(self) -> Self {
+        let (low, high) = (self.low.abs(), self.high.abs());
+        let least = if self.low <= 0.0 && self.high >= 0.0 {
+            0.0
+        } else {
+            low.min(high)
+        };
+        Self::of(self.value.abs(), least, low.max(high), self.last)
+    }
+
+    fn greater(self, other: Self) -> Self {
+        Self::of(
+            self.value.max(other.value),
+            self.low.max(other.low),
+            self.high.max(other.high),
+            self.last.min(other.last),
+        )
+    }
+
+    fn lesser(self, other: Self) -> Self {
+        Self::of(
+            self.value.min(other.value),
+            self.low.min(other.low),
+            self.high.min(other.high),
+            self.last.min(other.last),
+        )
+    }
+
+    fn either(condition: bool, then: Self, otherwise: Self) -> Self {
+        if condition {
+            then.union(otherwise)
+        } else {
+            otherwise.union(then)
+        }
+    }
+
+    fn to_i32(self) -> i32 {
+        self.debug_whole();
+        self.known(-TWO_32 / 2.0, TWO_32 / 2.0 - 1.0).value as i32
+    }
+}
+
+fn sum(a: Bounded, b: Bounded) -> Bounded {
+    Bounded::of(
+        a.value + b.value,
+        a.low + b.low,
+        a.high + b.high,
+        a.last.min(b.last),
+    )
+}
+
+fn product(a: Bounded, b: Bounded) -> Bounded {
+    let corners = [
+        a.low * b.low,
+        a.low * b.high,
+        a.high * b.low,
+        a.high * b.high,
+    ];
+    Bounded::of(
+        a.value * b.value,
+        corners.into_iter().fold(f64::INFINITY, f64::min),
+        corners.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        a.last + b.last,
+    )
+}
+
+/// A quotient of whole numbers, the lower one above zero: good for [`floor`] alone.
+#[track_caller]
+fn quotient(a: Bounded, b: Bounded) -> Bounded {
+    if a.last < 0 || b.last < 0 || b.low < 1.0 || a.low.abs().max(a.high.abs()) >= QUOTIENT {
+        ledger::fault(&format!("quotient of {a:?} and {b:?}"));
+    }
+    let corners = [
+        a.low / b.low,
+        a.low / b.high,
+        a.high / b.low,
+        a.high / b.high,
+    ];
+    Bounded::of(
+        a.value / b.value,
+        corners.into_iter().fold(f64::INFINITY, f64::min),
+        corners.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        NO_LAST,
+    )
+}
+
+impl Neg for Bounded {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::of(-self.value, -self.high, -self.low, self.last)
+    }
+}
+
+macro_rules! operator {
+    ($($operator:ident $method:ident $what:literal $compute:expr;)*) => {$(
+        impl<T: Into<Bounded>> $operator<T> for Bounded {
+            type Output = Self;
+
+            #[track_caller]
+            fn $method(self, other: T) -> Self {
+                ledger::enter($compute(self, other.into()), $what, self)
+            }
+        }
+    )*};
+}
+
+operator! {
+    Add add "sum" sum;
+    Sub sub "difference" |a, b: Self| sum(a, -b);
+    Mul mul "product" product;
+}
+
+impl<T: Into<Self>> Div<T> for Bounded {
+    type Output = Self;
+
+    #[track_caller]
+    fn div(self, other: T) -> Self {
+        quotient(self, other.into())
+    }
+}
+
+impl AddAssign for Bounded {
+    #[track_caller]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Copy + Into<Self>> PartialEq<T> for Bounded {
+    fn eq(&self, other: &T) -> bool {
+        self.value == (*other).into().value
+    }
+}
+
+impl<T: Copy + Into<Self>> PartialOrd<T> for Bounded {
+    fn partial_cmp(&self, other: &T) -> Option<Ordering> {
+        self.value.partial_cmp(&(*other).into().value)
+    }
+}
