@@ -5,7 +5,7 @@
 
 use crate::cases::Set;
 use hexagen::{Limits, Sample, Supervisor};
-use hexagen_codegen::ir::{Machine, Op, Program, Value};
+use hexagen_codegen::ir::{Machine, Op, Output, Program, Setter, Value};
 use hexagen_lab::Inputs;
 
 /// Values of an operand pair that are met often enough by chance.
@@ -48,7 +48,7 @@ impl Comparisons {
                 unguarded.push(guard.is_none());
             }
         }
-        let named = results.into_iter().map(|value| (String::new(), value));
+        let named = results.into_iter().map(|value| (Output::probe(""), value));
         probe.step.outputs = named.collect();
         Self { probe, unguarded }
     }
@@ -72,16 +72,16 @@ impl Comparisons {
         let mut machine = Machine::of_program(&self.probe);
         if let Some(counts) = set.bus {
             // A value that leaves its interval shows in the comparison with the model.
-            let _ = machine.set("set_bus", &[counts.into()]);
+            let _ = machine.set(Setter::Bus, &[counts.into()]);
         }
         if let Some(bits) = set.speed {
-            let _ = machine.set("set_speed", &[bits]);
+            let _ = machine.set(Setter::Speed, &[bits]);
         }
         Probe {
             setter: if set.is_torque {
-                "set_torque"
+                Setter::Torque
             } else {
-                "set_current"
+                Setter::Current
             },
             inputs: Inputs::of(&self.probe).expect("the program of a drive"),
             limits,
@@ -96,7 +96,7 @@ impl Comparisons {
 #[derive(Debug)]
 pub struct Probe<'p> {
     machine: Machine<'p>,
-    setter: &'static str,
+    setter: Setter,
     inputs: Inputs,
     limits: Limits,
     sample: Sample,

@@ -2,7 +2,7 @@
 
 use crate::cases::{self, Case, Record};
 use hexagen_codegen::interface::Interface;
-use hexagen_codegen::ir::{Escape, Machine, Program};
+use hexagen_codegen::ir::{Demand, Escape, Machine, Program, Setter};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::{Interpreted, formats, state_names};
 use hexagen_reference::verify::{Report, VerifyError, verify_subject};
@@ -72,13 +72,13 @@ pub fn compare_all_set_points(generated: &Generated, program: &Program) -> Resul
     let mut machine = Machine::of_program(program);
     let most = spec.inverter.max_current * 65_536.0;
     let set_points = [
-        ("set_current", most),
-        ("set_torque", most * spec.motor.torque_constant),
+        (Setter::Current, most),
+        (Setter::Torque, most * spec.motor.torque_constant),
     ];
     for (setter, most) in set_points {
         let most = most as i32 + 2;
         for bits in (-most..=most).chain([i32::MIN, i32::MAX]) {
-            if setter == "set_current" {
+            if setter == Setter::Current {
                 model.set_current(bits);
             } else {
                 model.set_torque(bits);
@@ -89,7 +89,7 @@ pub fn compare_all_set_points(generated: &Generated, program: &Program) -> Resul
     if spec.inverter.bus == Bus::Measured {
         for counts in 0..=u16::MAX {
             model.set_bus(counts);
-            compare_setter(&mut machine, "set_bus", counts.into(), &model)?;
+            compare_setter(&mut machine, Setter::Bus, counts.into(), &model)?;
         }
     }
     Ok(())
@@ -98,7 +98,7 @@ pub fn compare_all_set_points(generated: &Generated, program: &Program) -> Resul
 /// Calls a setter and compares all set-point words with the model's.
 fn compare_setter(
     machine: &mut Machine<'_>,
-    setter: &str,
+    setter: Setter,
     word: i32,
     model: &BitTrue,
 ) -> Result<(), String> {
@@ -110,7 +110,10 @@ fn compare_setter(
         return Ok(());
     }
     let found = &machine.params;
-    Err(format!("{setter}({word}): {found:?}, {expected:?} (model)"))
+    Err(format!(
+        "{}({word}): {found:?}, {expected:?} (model)",
+        setter.name()
+    ))
 }
 
 /// The words that the setters make, which steps show only through their effects.
@@ -122,28 +125,27 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
         ..
     } in cases
     {
-        let mut call = |name, word| {
+        let mut call = |setter, word| {
             let escape = |escape: Escape| format!("left its interval: {}", escape.place);
-            machine.set(name, &[word]).map_err(escape)
+            machine.set(setter, &[word]).map_err(escape)
         };
         if let Some(counts) = set.bus {
-            call("set_bus", counts.into())?;
+            call(Setter::Bus, counts.into())?;
         }
         if let Some(bits) = set.speed {
-            call("set_speed", bits)?;
+            call(Setter::Speed, bits)?;
         }
         if set.is_torque {
-            call("set_torque", set.bits)?;
+            call(Setter::Torque, set.bits)?;
         } else {
-            call("set_current", set.bits)?;
+            call(Setter::Current, set.bits)?;
         }
-        for (word, found) in program.params.iter().zip(&machine.params) {
-            let expected = match word.name.as_str() {
-                "j" => current,
-                "v_bus" => bus,
-                "ratio" => reciprocal,
-                "speed_ref" => speed,
-                _ => continue,
+        for ((demand, word), found) in program.params.iter().zip(&machine.params) {
+            let expected = match demand {
+                Demand::Current => current,
+                Demand::Bus => bus,
+                Demand::BusRatio => reciprocal,
+                Demand::Speed => speed,
             };
             if found != expected {
                 let name = &word.name;

@@ -11,7 +11,8 @@ use hexagen::arith::{
     select, turn_over,
 };
 use hexagen_codegen::ir::{
-    Expr, Interval, Lut, Machine, Named, ProgramBuilder, mul_add_floor as sum_of_products, verify,
+    Expr, Interval, Lut, Machine, Named, Output, ProgramBuilder, mul_add_floor as sum_of_products,
+    verify,
 };
 use proptest::prelude::*;
 
@@ -31,7 +32,10 @@ fn interpreted(
         .zip(intervals)
         .map(|(name, &interval)| b.input(name, interval, ""))
         .collect();
-    b.output("result", build(&inputs, table).named("result"));
+    b.output(
+        Output::probe("result"),
+        build(&inputs, table).named("result"),
+    );
     let graph = verify(b.finish()).expect("the program is right");
     let outputs = Machine::new(&graph).step(operands);
     outputs.expect("no value leaves its interval")[0]

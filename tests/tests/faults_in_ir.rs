@@ -16,7 +16,7 @@ const STEPS: u64 = 40_000;
 
 /// Names of the constants that the setters use.
 fn constants_of_setters(program: &Program) -> BTreeSet<String> {
-    let nodes = program.setters.iter().flat_map(|setter| &setter.nodes);
+    let nodes = program.setters.iter().flat_map(|(_, setter)| &setter.nodes);
     let used = nodes.filter_map(|node| match node.op {
         Op::Constant(id) => Some(program.constants[id.index()].name.clone()),
         _ => None,

@@ -1,6 +1,6 @@
 //! The interpreted IR computes what the bit-true model computes, on every output and state bit.
 
-use hexagen_codegen::ir::{Machine, Program};
+use hexagen_codegen::ir::{Machine, Output, Program};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, Meeting, generate_toml, kind, kinds};
@@ -208,7 +208,7 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     let mut values = probe.step.values();
     let angle = values.find(|&value| probe.step.node(value).name == "step_angle");
     probe.step.outputs = vec![(
-        "step_angle".to_owned(),
+        Output::probe("step_angle"),
         angle.expect("the rotor is followed"),
     )];
     let mut machine = Machine::of_program(&probe);

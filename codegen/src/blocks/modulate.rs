@@ -2,7 +2,9 @@
 
 use super::{Bus, Limited, Lowering};
 use crate::design::vectors::SECTOR_CURRENT;
-use crate::ir::{Coefficient, Expr, Flag, Interval, Memory, Named, Phases, named, pick};
+use crate::ir::{
+    Coefficient, Expr, Flag, Interval, Memory, Named, Output, Phase, Phases, named, pick,
+};
 
 /// A leg is pulsed, as a word.
 pub const PULSED: i32 = 0;
@@ -43,10 +45,11 @@ pub struct OffLeg<'b> {
 impl<'b> Command<'b> {
     /// Ends the step with the command, and with the words that the next step needs.
     pub fn close_step(&self, l: &Lowering<'b>, remembered: &[(Memory<'b>, Expr<'b>)]) {
-        for (kind, values) in [("compare", self.compares), ("leg", self.legs)] {
-            for (letter, value) in ["a", "b", "c"].into_iter().zip(values.0) {
-                l.b.output(&format!("{kind}_{letter}"), value);
-            }
+        for (phase, compare) in Phase::ALL.into_iter().zip(self.compares.0) {
+            l.b.output(Output::Compare(phase), compare);
+        }
+        for (phase, leg) in Phase::ALL.into_iter().zip(self.legs.0) {
+            l.b.output(Output::Leg(phase), leg);
         }
         for &(memory, value) in remembered {
             memory.set(value);

@@ -5,7 +5,7 @@ use super::speed::{SpeedWords, speed_word};
 use super::{Bus, Lowering, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Coefficient, Expr, Interval, Param, named};
+use crate::ir::{Coefficient, Demand, Expr, Interval, Param, Setter, named};
 use crate::spec::BusSource;
 use std::f64::consts::TAU;
 
@@ -71,12 +71,19 @@ impl<'b> SetPointWords<'b> {
         let bits = round_down(inverter.max_current * 65536.0) as i64;
         let top = product_bound(stiffness * l.scale.voltage() / 65536.0, 32, bits);
         let initial = if has_speed { top as i32 } else { 0 };
-        let j = l.b.param("j", initial, Interval::symmetric(most), &doc);
+        let j = l.b.param(
+            Demand::Current,
+            "j",
+            initial,
+            Interval::symmetric(most),
+            &doc,
+        );
         let bus = BusWords::new(l);
         let speed = has_speed.then(|| {
             let most = (inverter.maximum_speed / speed_word(l.spec)).ceil() as i64 + 1;
             let doc = "Speed that is wanted, electrical angle per tick, 2^32 a turn.";
-            let reference = l.b.param("speed_ref", 0, Interval::symmetric(most), doc);
+            let range = Interval::symmetric(most);
+            let reference = l.b.param(Demand::Speed, "speed_ref", 0, range, doc);
             SpeedWords { reference, top }
         });
         Self {
@@ -152,7 +159,7 @@ impl<'b> SetPointWords<'b> {
         );
         let most = spec.inverter.max_current;
         let of_current = SetPoint {
-            name: "set_current",
+            setter: Setter::Current,
             quantity: "current in amperes",
             unit: "ampere",
             input: "Current set-point",
@@ -161,7 +168,7 @@ impl<'b> SetPointWords<'b> {
             coefficient: k_set,
         };
         let of_torque = SetPoint {
-            name: "set_torque",
+            setter: Setter::Torque,
             quantity: "torque in newton metres",
             unit: "Nm",
             input: "Torque set-point",
@@ -182,7 +189,7 @@ impl<'b> SetPointWords<'b> {
 
 /// A set-point of the current, in amperes or newton metres.
 struct SetPoint {
-    name: &'static str,
+    setter: Setter,
     quantity: &'static str,
     unit: &'static str,
     input: &'static str,
@@ -203,9 +210,9 @@ impl SetPoint {
             "Set-point word of the {greatest}{quantity}; saturates at {physical} to both sides."
         );
         let (limit, most, meaning) = self.limit;
-        l.b.setter(self.name, &[&doc], |b| {
+        l.b.setter(self.setter, &[&doc], |b| {
             let doc = "Clamps the set-point and turns it into a voltage.";
-            b.stage(self.name, &[doc]);
+            b.stage(self.setter.name(), &[doc]);
             let (input, unit) = (self.input, self.unit);
             let doc = format!("{input}, bits of a number with 16 fraction bits, {unit}.");
             let bits = b.input("bits", Interval::WORD, &doc);
@@ -247,9 +254,9 @@ impl<'b> SpeedWords<'b> {
         let doc = format!(
             "Set-point word of the speed in rpm; saturates at {physical} rpm to both sides."
         );
-        l.b.setter("set_speed", &[&doc], |b| {
+        l.b.setter(Setter::Speed, &[&doc], |b| {
             let doc = "Clamps the speed and turns it into angle per tick.";
-            b.stage("set_speed", &[doc]);
+            b.stage(Setter::Speed.name(), &[doc]);
             let doc = "Speed, bits of a number with 16 fraction bits, rpm.";
             let bits = b.input("bits", Interval::WORD, doc);
             let doc = format!("Greatest speed, {physical} rpm, 16 fraction bits.");
@@ -271,14 +278,14 @@ impl<'b> BusWords<'b> {
         let (low, high) = (word(min), word(max));
         let range = Interval::new(low, high);
         let doc = "Bus voltage, words of voltage.";
-        let volts = l.b.param("v_bus", nominal as i32, range, doc);
+        let volts = l.b.param(Demand::Bus, "v_bus", nominal as i32, range, doc);
         let ratio = l.spec.controller.modulates().then(|| {
             let ratio = |volts: i64| {
                 ((i128::from(nominal) << RATIO_BITS) / i128::from(volts.max(1))) as i64
             };
             let range = Interval::new(ratio(high), ratio(low));
             let doc = "Nominal over measured bus voltage.";
-            l.b.param("ratio", 1 << RATIO_BITS, range, doc)
+            l.b.param(Demand::BusRatio, "ratio", 1 << RATIO_BITS, range, doc)
         });
         Some(Self { volts, ratio })
     }
@@ -318,8 +325,8 @@ impl<'b> BusWords<'b> {
             engineering(min, "V"),
             engineering(max, "V"),
         );
-        l.b.setter("set_bus", &[doc, &limits], |b| {
-            b.stage("set_bus", &[stage_doc]);
+        l.b.setter(Setter::Bus, &[doc, &limits], |b| {
+            b.stage(Setter::Bus.name(), &[stage_doc]);
             let range = Interval::new(0, i64::from(u16::MAX));
             let counts = b.input("counts", range, "Bus voltage, ADC count.");
             let top = ((1_u32 << adc_bits) - 1) as i32;

@@ -241,7 +241,7 @@ fn memory(sheet: &mut Sheet, program: &Program) {
         live_words(&program.step)
     ));
     sheet.table(["word", "stored as", "initially", "range", "meaning"]);
-    for word in program.states.iter().chain(&program.params) {
+    for word in program.words() {
         sheet.row([
             format!("`{}`", word.name),
             storage(word.storage_bits).to_owned(),
@@ -275,7 +275,7 @@ fn operations(sheet: &mut Sheet, program: &Program) {
     let cost = PathCost::of_function(step);
     row_of_costs(sheet, "step, normal path", "", cost.normal);
     row_of_costs(sheet, "step, worst case", "", cost.worst);
-    for setter in &program.setters {
+    for (_, setter) in &program.setters {
         row_of_costs(
             sheet,
             &format!("`{}`", setter.name),

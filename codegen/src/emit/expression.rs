@@ -5,7 +5,7 @@
 
 use super::plan::Context;
 use super::signal::{Leg, Shape};
-use crate::ir::{Comparison, ConstantId, Interval, Node, Op, StateId, TableId, Value};
+use crate::ir::{Comparison, ConstantId, Node, Op, StateId, TableId, Value};
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub(super) enum Expression {
     ShiftedRight(Box<Self>, u32),
     /// A primitive of its operands; the number is a shift or a count of segments.
     Call(Primitive, Vec<Self>, Option<u32>),
-    /// table[index mod length]; whether the index is known to lie within the table.
+    /// table[index mod length]; whether the index is masked, rather than known to lie within the table.
     Lookup(TableId, Box<Self>, bool),
     /// 1 where the flag holds, else 0.
     FlagWord(Box<Self>),
@@ -135,10 +135,6 @@ pub(super) struct Scope<'a> {
 impl<'a> Scope<'a> {
     fn node(&self, value: Value) -> &'a Node {
         self.context.function.node(value)
-    }
-
-    fn interval(&self, value: Value) -> Interval {
-        self.node(value).interval
     }
 
     /// The small number that a value is, if it is one.
@@ -253,11 +249,11 @@ impl<'a> Scope<'a> {
             Op::AngleFraction { angle, segments } => {
                 call(P::AngleFraction, &[angle], Some(segments))
             }
-            Op::Lookup { table, index } => {
-                let length = self.context.program.tables[table.index()].values.len();
-                let inside = Interval::new(0, length as i64 - 1);
-                E::Lookup(table, boxed(index), inside.contains(self.interval(index)))
-            }
+            Op::Lookup {
+                table,
+                index,
+                is_masked,
+            } => E::Lookup(table, boxed(index), is_masked),
             Op::Compare(how, a, b) => self.comparison(how, a, b),
             Op::Exceeds(a, limit) => call(P::Exceeds, &[a, limit], None),
             Op::And(a, b) => E::binary(O::And, of(a), of(b)),

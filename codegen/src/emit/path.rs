@@ -20,20 +20,6 @@ impl Part {
     }
 }
 
-/// The value of an output by name.
-pub(super) fn output(function: &Function, name: &str) -> Option<Value> {
-    let mut outputs = function.outputs.iter();
-    let found = outputs.find(|(known, _)| known == name);
-    found.map(|&(_, value)| value)
-}
-
-/// A value that people are told, by name.
-pub(super) fn told(function: &Function, name: &str) -> Option<Value> {
-    let mut told = function.told.iter();
-    let found = told.find(|(known, _)| known == name);
-    found.map(|&(_, value)| value)
-}
-
 /// What goes out of a function besides its words.
 pub(super) fn results(function: &Function) -> impl Iterator<Item = Value> {
     let outputs = function.outputs.iter().map(|&(_, value)| value);

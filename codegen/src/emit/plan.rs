@@ -6,7 +6,7 @@
 
 use super::rows::WholeCommand;
 use super::signal::{Shape, Signal};
-use crate::ir::{Function, Kind, Op, Program, Stage, StateId, Value};
+use crate::ir::{Function, Kind, Op, Output, Program, Stage, StateId, Value};
 use std::collections::BTreeSet;
 
 /// Who uses a value.
@@ -256,9 +256,12 @@ fn users(function: &Function) -> Vec<Vec<User>> {
             users[guard.condition.index()].push(User::Guard(stage.first));
         }
     }
-    for (name, value) in &function.outputs {
-        let leg = name.starts_with("leg_");
-        users[value.index()].push(if leg { User::Leg } else { User::Other });
+    for (output, value) in &function.outputs {
+        let user = match output {
+            Output::Leg(_) => User::Leg,
+            Output::Compare(_) | Output::Probe(_) => User::Other,
+        };
+        users[value.index()].push(user);
     }
     let params = function.next_params.iter().map(|&(_, value)| value);
     let told = function.told.iter().map(|&(_, value)| value);

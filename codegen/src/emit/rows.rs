@@ -1,7 +1,6 @@
 //! How tables lie in memory: alone, or side by side as the columns of rows that one index reads.
 
-use super::path::output;
-use crate::ir::{Function, Op, Program, Table, TableId, Value};
+use crate::ir::{Function, Op, Output, Phase, Program, Table, TableId, Value};
 
 /// The row that a table is a column of, where it has company there or its entries have a type of their own.
 pub(super) fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
@@ -40,19 +39,12 @@ impl<'a> WholeCommand<'a> {
     /// states, and the command is put together.
     pub(super) fn of(program: &'a Program) -> Option<Self> {
         let path = &program.step;
-        let outputs = [
-            "compare_a",
-            "compare_b",
-            "compare_c",
-            "leg_a",
-            "leg_b",
-            "leg_c",
-        ];
+        let [compares, legs] = [Output::Compare, Output::Leg].map(|of| Phase::ALL.map(of));
         let mut place = None;
         let (mut columns, mut entries, mut tables) = (vec![], vec![], vec![]);
-        for name in outputs {
-            let value = output(path, name)?;
-            let Op::Lookup { table, index } = path.node(value).op else {
+        for sought in compares.iter().chain(&legs) {
+            let value = path.output(sought)?;
+            let Op::Lookup { table, index, .. } = path.node(value).op else {
                 return None;
             };
             let column = &program.tables[table.index()];
@@ -70,7 +62,7 @@ impl<'a> WholeCommand<'a> {
         let mut kept = path.next_state.iter();
         let is_used =
             operands.any(|value| is_entry(&value)) || kept.any(|(_, value)| is_entry(value));
-        let mut elsewhere = program.setters.iter();
+        let mut elsewhere = program.setters.iter().map(|(_, setter)| setter);
         let is_alone = tables.iter().all(|&table| reads(path, table) == 1)
             && elsewhere.all(|path| tables.iter().all(|&table| reads(path, table) == 0));
         let count = columns.first()?.values.len();

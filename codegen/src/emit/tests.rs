@@ -47,7 +47,7 @@ fn kind(name: &str) -> Option<&'static str> {
 
 /// Coefficients, tables and the kinds of signals, each with the range of its words.
 fn ranges(program: &Program) -> Vec<(&str, Interval)> {
-    let words = program.states.iter().chain(&program.params);
+    let words = program.words();
     let kinds = words.filter_map(|word| Some((kind(&word.name)?, word.interval)));
     let raw = |raw: i32| Interval::point(i64::from(raw));
     let constants = program.constants.iter();

@@ -450,7 +450,7 @@ impl<'p> Bounds<'p> {
             }
             // Half a unit is dropped; what the angle's error does to a function of it counts at its lookup.
             Op::AngleFraction { .. } => ErrorInterval::new(-0.5, 0.0),
-            Op::Lookup { table, index } => {
+            Op::Lookup { table, index, .. } => {
                 let table = &self.program.tables[table.index()];
                 let entry = match table.exact {
                     Exact::Itself | Exact::Number(_) => ErrorInterval::ZERO,

@@ -11,6 +11,7 @@ use super::graph::{
 };
 use super::interval::Interval;
 use super::op::{ConstantId, Op, ParamId, StateId, TableId, Value};
+use super::role::{Demand, Output, Setter, Told};
 use std::cell::RefCell;
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
@@ -105,12 +106,13 @@ impl ProgramBuilder {
 
     /// Adds a function that sets words of the set-point: `build` opens its stages. The step is the
     /// open function again behind it.
-    pub fn setter<'b>(&'b self, name: &str, doc: &[&str], build: impl FnOnce(&'b Self)) {
-        let step = self.draft.borrow_mut().open(Function::new(name, doc));
+    pub fn setter<'b>(&'b self, setter: Setter, doc: &[&str], build: impl FnOnce(&'b Self)) {
+        let function = Function::new(setter.name(), doc);
+        let step = self.draft.borrow_mut().open(function);
         build(self);
         let mut draft = self.draft.borrow_mut();
-        let setter = draft.open(step);
-        draft.program.setters.push(setter);
+        let function = draft.open(step);
+        draft.program.setters.push((setter, function));
     }
 
     /// Adds a named constant that stands for the number `exact` says, or finds the one of the same
@@ -200,12 +202,20 @@ impl ProgramBuilder {
     }
 
     /// Adds a set-point word.
-    pub fn param(&self, name: &str, initial: i32, interval: Interval, doc: &str) -> Param<'_> {
+    pub fn param(
+        &self,
+        demand: Demand,
+        name: &str,
+        initial: i32,
+        interval: Interval,
+        doc: &str,
+    ) -> Param<'_> {
         let params = &mut self.draft.borrow_mut().program.params;
-        params.push(Word {
+        let word = Word {
             storage_bits: 32,
             ..word(name, initial, interval, doc)
-        });
+        };
+        params.push((demand, word));
         Param {
             b: self,
             id: ParamId(params.len() as u32 - 1),
@@ -213,7 +223,7 @@ impl ProgramBuilder {
     }
 
     pub(super) fn param_interval(&self, id: ParamId) -> Interval {
-        self.draft.borrow().program.params[id.index()].interval
+        self.draft.borrow().program.params[id.index()].1.interval
     }
 }
 
@@ -266,16 +276,16 @@ impl ProgramBuilder {
     }
 
     /// Tells people a value.
-    pub fn tell(&self, name: &str, value: Expr<'_>) {
+    pub fn tell(&self, told: Told, value: Expr<'_>) {
         let mut draft = self.draft.borrow_mut();
-        draft.function.told.push((name.to_owned(), value.value));
+        draft.function.told.push((told, value.value));
     }
 
-    /// Names a result of the function.
-    pub fn output(&self, name: &str, value: Expr<'_>) {
+    /// Says what a value is a result as.
+    pub fn output(&self, output: Output, value: Expr<'_>) {
         let function = &mut self.draft.borrow_mut().function;
         function.close();
-        function.outputs.push((name.to_owned(), value.value));
+        function.outputs.push((output, value.value));
     }
 
     pub(super) fn set_state(&self, state: StateId, value: Value) {
@@ -401,7 +411,7 @@ impl Draft {
     /// The name of the word that is read.
     fn name_of(&self, op: Op) -> String {
         let word = match op {
-            Op::Param(id) => self.program.params.get(id.index()),
+            Op::Param(id) => self.program.params.get(id.index()).map(|(_, word)| word),
             Op::State(id) => self.program.states.get(id.index()),
             _ => None,
         };
@@ -429,7 +439,7 @@ impl Draft {
         let of = |value: Value| function.node(value).interval;
         match op {
             Op::Input(n) => function.inputs[n as usize].interval,
-            Op::Param(id) => program.params[id.index()].interval,
+            Op::Param(id) => program.params[id.index()].1.interval,
             Op::State(id) => program.states[id.index()].interval,
             Op::Constant(id) => Interval::point(i64::from(program.constants[id.index()].raw)),
             Op::Join { taken, otherwise } => {

@@ -177,7 +177,7 @@ pub fn live_words(function: &Function) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{Cost, PathCost, live_words};
-    use crate::ir::{Interval, ProgramBuilder, named};
+    use crate::ir::{Interval, Output, ProgramBuilder, named};
 
     #[test]
     fn rare_stages_count_in_the_worst_case_only() {
@@ -194,7 +194,7 @@ mod tests {
             let product = y.mul_round(x, 4);
         }
         let [result] = b.join([("result", product, sum)]);
-        b.output("result", result);
+        b.output(Output::probe("result"), result);
         let function = b.finish().step;
         let normal = Cost {
             additions: 1,

@@ -436,6 +436,7 @@ impl<'b> Lut<'b> {
         index.op(Op::Lookup {
             table: self.id,
             index: index.value,
+            is_masked: true,
         })
     }
 

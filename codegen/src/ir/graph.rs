@@ -3,6 +3,7 @@
 use super::error::{ErrorInterval, Exact, Real};
 use super::interval::Interval;
 use super::op::{Comparison, Kind, Op, ParamId, StateId, Value};
+use super::role::{Demand, Output, Setter, Told};
 
 /// A node: operator, interval and name of one value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,6 +75,11 @@ impl Periodic {
 }
 
 impl Table {
+    /// Whether every word of an interval is the place of an entry.
+    pub fn has(&self, index: Interval) -> bool {
+        Interval::new(0, self.values.len() as i64 - 1).contains(index)
+    }
+
     /// The interval of its entries.
     pub fn interval(&self) -> Interval {
         let words = || self.values.iter().map(|&value| i64::from(value));
@@ -147,10 +153,10 @@ pub struct Function {
     pub nodes: Vec<Node>,
     /// Stages, in order; they and their joins cover all nodes.
     pub stages: Vec<Stage>,
-    /// Named results, in order.
-    pub outputs: Vec<(String, Value)>,
-    /// What it tells people besides: `e_a` and `e_b`, `speed`, each where it knows one.
-    pub told: Vec<(String, Value)>,
+    /// Results, in order.
+    pub outputs: Vec<(Output, Value)>,
+    /// What it tells people besides, each where it knows one.
+    pub told: Vec<(Told, Value)>,
     /// New state words.
     pub next_state: Vec<(StateId, Value)>,
     /// New set-point words.
@@ -187,6 +193,20 @@ pub enum AtRest {
 }
 
 impl Function {
+    /// The value of an output, where there is one.
+    pub fn output(&self, sought: &Output) -> Option<Value> {
+        let mut outputs = self.outputs.iter();
+        let found = outputs.find(|(output, _)| output == sought);
+        found.map(|&(_, value)| value)
+    }
+
+    /// A value that people are told, where they are.
+    pub fn told(&self, sought: Told) -> Option<Value> {
+        let mut told = self.told.iter();
+        let found = told.find(|(told, _)| *told == sought);
+        found.map(|&(_, value)| value)
+    }
+
     /// Whether a value belongs to the tracking.
     pub fn is_tracking(&self, value: Value) -> bool {
         value.index() < self.tracking
@@ -326,18 +346,43 @@ pub struct Program {
     /// Tables.
     pub tables: Vec<Table>,
     /// Set-point words.
-    pub params: Vec<Word>,
+    pub params: Vec<(Demand, Word)>,
     /// State words.
     pub states: Vec<Word>,
     /// The control step: reads params, reads and writes state.
     pub step: Function,
     /// Functions outside the step: each reads inputs and writes some params.
-    pub setters: Vec<Function>,
+    pub setters: Vec<(Setter, Function)>,
 }
 
 impl Program {
+    /// The function that sets something, where there is one.
+    pub fn setter(&self, sought: Setter) -> Option<&Function> {
+        let mut setters = self.setters.iter();
+        let found = setters.find(|(setter, _)| *setter == sought);
+        found.map(|(_, function)| function)
+    }
+
+    /// The place of a set-point word, where there is such a word.
+    pub fn place_of(&self, sought: Demand) -> Option<usize> {
+        let mut params = self.params.iter();
+        params.position(|(demand, _)| *demand == sought)
+    }
+
+    /// A set-point word, where there is such a word.
+    pub fn param(&self, sought: Demand) -> Option<&Word> {
+        self.place_of(sought).map(|place| &self.params[place].1)
+    }
+
+    /// All words that outlive a call: of the state, then of the set-point.
+    pub fn words(&self) -> impl Iterator<Item = &Word> {
+        let params = self.params.iter().map(|(_, word)| word);
+        self.states.iter().chain(params)
+    }
+
     /// The step and the setters.
     pub fn functions(&self) -> impl Iterator<Item = &Function> {
-        std::iter::once(&self.step).chain(&self.setters)
+        let setters = self.setters.iter().map(|(_, function)| function);
+        std::iter::once(&self.step).chain(setters)
     }
 }

@@ -6,6 +6,7 @@
 
 use super::graph::{AtRest, Function, Program};
 use super::op::{Op, Value};
+use super::role::Setter;
 use super::verify::VerifiedGraph;
 
 /// A value left its proven interval, or an operand its operator's domain: a bug of the generator.
@@ -54,7 +55,11 @@ impl<'g> Machine<'g> {
         Self {
             program,
             state: program.states.iter().map(|word| word.initial).collect(),
-            params: program.params.iter().map(|word| word.initial).collect(),
+            params: program
+                .params
+                .iter()
+                .map(|(_, word)| word.initial)
+                .collect(),
             values: vec![],
             operands: program.functions().map(operand_places).collect(),
         }
@@ -85,15 +90,15 @@ impl<'g> Machine<'g> {
         Ok(())
     }
 
-    /// Runs the setter `name`; unknown names do nothing.
+    /// Runs a setter; one that the program does not have does nothing.
     ///
     /// # Errors
     /// [`Escape`] when a value leaves its proven interval.
-    pub fn set(&mut self, name: &str, inputs: &[i32]) -> Result<(), Escape> {
+    pub fn set(&mut self, sought: Setter, inputs: &[i32]) -> Result<(), Escape> {
         let program = self.program;
         let mut setters = program.setters.iter().zip(1..);
-        match setters.find(|(setter, _)| setter.name == name) {
-            Some((setter, number)) => self.run(number, setter, inputs).map(drop),
+        match setters.find(|((setter, _), _)| *setter == sought) {
+            Some(((_, function), number)) => self.run(number, function, inputs).map(drop),
             None => Ok(()),
         }
     }

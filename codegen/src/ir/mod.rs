@@ -19,6 +19,7 @@ mod interval_tests;
 pub mod op;
 mod prune;
 mod rewrite;
+pub mod role;
 pub mod text;
 pub mod verify;
 #[cfg(test)]
@@ -39,4 +40,5 @@ pub use graph::{
 pub use interpret::{Escape, Machine};
 pub use interval::Interval;
 pub use op::{Comparison, ConstantId, Kind, Op, ParamId, StateId, TableId, Value};
+pub use role::{Demand, Output, Phase, Setter, Told};
 pub use verify::{VerifiedGraph, Violation, derived_interval, verify};

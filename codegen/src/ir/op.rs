@@ -216,8 +216,10 @@ pub enum Op {
     Lookup {
         /// Table; its length is a power of two.
         table: TableId,
-        /// Any word.
+        /// Any word where it is masked; else one that lies within the table.
         index: Value,
+        /// Whether the index is taken modulo the length.
+        is_masked: bool,
     },
     /// Flag: a compared with b
     Compare(Comparison, Value, Value),

@@ -11,7 +11,9 @@ impl Program {
     #[must_use]
     pub fn pruned(mut self) -> Self {
         self.step.prune();
-        self.setters.iter_mut().for_each(Function::prune);
+        for (_, setter) in &mut self.setters {
+            setter.prune();
+        }
         let mut constants = vec![false; self.constants.len()];
         let mut tables = vec![false; self.tables.len()];
         for node in self.functions().flat_map(|function| &function.nodes) {
@@ -23,7 +25,8 @@ impl Program {
         }
         let new_constants = renumbered(&constants);
         let new_tables = renumbered(&tables);
-        for function in std::iter::once(&mut self.step).chain(&mut self.setters) {
+        let setters = self.setters.iter_mut().map(|(_, setter)| setter);
+        for function in std::iter::once(&mut self.step).chain(setters) {
             for node in &mut function.nodes {
                 match &mut node.op {
                     Op::Constant(id) => *id = ConstantId(new_constants[id.index()]),

@@ -21,7 +21,7 @@ struct Rule {
 }
 
 /// In the order in which they are tried; behind one that applies, from the first one again.
-const RULES: [Rule; 12] = [
+const RULES: [Rule; 13] = [
     Rule {
         name: "numbers stand right",
         replacement: number_right,
@@ -70,6 +70,10 @@ const RULES: [Rule; 12] = [
         name: "a choice of 1 and 0 is the flag as a word",
         replacement: flag_word,
     },
+    Rule {
+        name: "an index that lies within its table is not masked",
+        replacement: unmasked_index,
+    },
 ];
 
 impl Program {
@@ -77,7 +81,8 @@ impl Program {
     #[must_use]
     pub fn rewritten(mut self) -> Self {
         let step = self.step.rewritten(&self);
-        let setters = self.setters.iter().map(|setter| setter.rewritten(&self));
+        let setters = self.setters.iter();
+        let setters = setters.map(|(setter, function)| (*setter, function.rewritten(&self)));
         self.setters = setters.collect();
         self.step = step;
         self
@@ -372,14 +377,33 @@ fn flag_word(r: &mut Rewriter<'_>, op: Op) -> Option<Op> {
     (arms == [Some(1), Some(0)]).then_some(Op::FlagWord(condition))
 }
 
+fn unmasked_index(r: &mut Rewriter<'_>, op: Op) -> Option<Op> {
+    let Op::Lookup {
+        table,
+        index,
+        is_masked: true,
+    } = op
+    else {
+        return None;
+    };
+    let is_inside = r.tables[table.index()].has(r.of(index));
+    is_inside.then_some(Op::Lookup {
+        table,
+        index,
+        is_masked: false,
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::{Expr, Machine, Named, Program, ProgramBuilder, mul_add_floor, verify};
+    use super::super::{
+        Expr, Lut, Machine, Named, Output, Program, ProgramBuilder, mul_add_floor, verify,
+    };
     use super::{Interval, Op, RULES, Rewriter};
     use fastrand::Rng;
 
     /// Shapes that rules are about, of three words.
-    const SHAPES: [fn([Expr<'_>; 3]) -> Expr<'_>; 19] = [
+    const SHAPES: [fn([Expr<'_>; 3]) -> Expr<'_>; 21] = [
         |[x, ..]| 5 + x,
         |[x, ..]| x + -5,
         |[x, ..]| 3 * x,
@@ -402,7 +426,13 @@ mod tests {
             let limit = y.abs().named("limit");
             (x.is_above(limit) | x.is_below(-limit)).choose(x, 1)
         },
+        |[x, ..]| squares(x).at(x),
+        |[x, ..]| squares(x).at(x.abs().min(3)),
     ];
+
+    fn squares(x: Expr<'_>) -> Lut<'_> {
+        x.builder().table("squares", vec![0, 1, 4, 9], &[])
+    }
 
     fn program(shape: fn([Expr<'_>; 3]) -> Expr<'_>, bits: u32) -> Program {
         let range = Interval::symmetric((1 << (bits - 1)) - 1);
@@ -411,9 +441,10 @@ mod tests {
         let x = ["x", "y", "z"].map(|name| b.input(name, range, ""));
         // Inputs that a shape leaves out are results, too.
         for (name, x) in ["x_too", "y_too", "z_too"].into_iter().zip(x) {
-            b.output(name, x);
+            b.output(Output::probe(name), x);
         }
-        b.output("result", shape(x).named("result"));
+        let result = shape(x).named("result");
+        b.output(Output::probe("result"), result);
         b.finish()
     }
 
@@ -463,7 +494,7 @@ mod tests {
         let all = [x.min(y), x.max(y), y.min(x), y.max(x)];
         let names = ["min", "max", "min_turned", "max_turned"];
         for (name, value) in names.into_iter().zip(all) {
-            b.output(name, value.named(name));
+            b.output(Output::probe(name), value.named(name));
         }
         let step = b.finish().rewritten().step;
         names.map(|name| {
@@ -497,7 +528,7 @@ mod tests {
                 [2, 9, 16, 30].into_iter().any(|bits| {
                     let program = program(shape, bits);
                     let mut rewriter = Rewriter {
-                        tables: &[],
+                        tables: &program.tables,
                         nodes: program.step.nodes.clone(),
                     };
                     let ops: Vec<Op> = program.step.nodes.iter().map(|node| node.op).collect();

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
-use super::graph::{AtRest, Function, Program};
+use super::graph::{AtRest, Function, Program, Table};
 use super::op::{Comparison, Kind, Op, Value};
 
 impl fmt::Display for Program {
@@ -20,7 +20,7 @@ impl fmt::Display for Program {
                 table.values
             )?;
         }
-        for word in &self.params {
+        for (_, word) in &self.params {
             writeln!(
                 f,
                 "param {}: i32 in {} = {}",
@@ -92,7 +92,7 @@ impl Program {
             writeln!(
                 f,
                 "  param {} = {}",
-                self.params[param.index()].name,
+                self.params[param.index()].1.name,
                 name(function, *value)
             )?;
         }
@@ -129,7 +129,7 @@ impl Program {
         };
         match op {
             Op::Input(n) => format!("input {}", function.inputs[n as usize].name),
-            Op::Param(id) => format!("param {}", self.params[id.index()].name),
+            Op::Param(id) => format!("param {}", self.params[id.index()].1.name),
             Op::State(id) => format!("state {}", self.states[id.index()].name),
             Op::Constant(id) => self.constants[id.index()].name.clone(),
             Op::Literal(number) => number.to_string(),
@@ -190,8 +190,17 @@ impl Program {
             Op::AngleSub(a, b) => format!("angle {} - {}", of(a), of(b)),
             Op::AngleIndex { angle, segments } => format!("segment({}, {segments})", of(angle)),
             Op::AngleFraction { angle, segments } => format!("fraction({}, {segments})", of(angle)),
-            Op::Lookup { table, index } => {
-                format!("{}[{}]", self.tables[table.index()].name, of(index))
+            Op::Lookup {
+                table,
+                index,
+                is_masked,
+            } => {
+                let Table { name, values, .. } = &self.tables[table.index()];
+                if is_masked {
+                    format!("{name}[{} mod {}]", of(index), values.len())
+                } else {
+                    format!("{name}[{}]", of(index))
+                }
             }
             Op::Compare(how, a, b) => {
                 let sign = match how {

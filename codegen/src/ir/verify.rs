@@ -22,6 +22,8 @@
 
 use std::collections::HashSet;
 use std::fmt;
+use std::fmt::Display;
+use std::hash::Hash;
 
 use super::graph::{AtRest, Function, Program, Word};
 use super::interval::Interval;
@@ -72,15 +74,14 @@ pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
     let mut violations = Violations(vec![]);
     let constants = program.constants.iter().map(|constant| &constant.name);
     violations.repeated(constants.chain(program.tables.iter().map(|table| &table.name)));
-    let words = program.states.iter().chain(&program.params);
-    violations.repeated(words.map(|word| &word.name));
+    violations.repeated(program.words().map(|word| &word.name));
     violations.repeated(program.functions().map(|function| &function.name));
     for table in &program.tables {
         if !table.values.len().is_power_of_two() {
             violations.add(&table.name, "table length is not a power of two");
         }
     }
-    for word in program.states.iter().chain(&program.params) {
+    for word in program.words() {
         check_word(word, &mut violations);
     }
     for function in program.functions() {
@@ -105,7 +106,7 @@ pub fn verify(program: Program) -> Result<VerifiedGraph, Vec<Violation>> {
     if !program.step.next_params.is_empty() {
         violations.add(&program.step.name, "the step sets a set-point word");
     }
-    for setter in &program.setters {
+    for (_, setter) in &program.setters {
         if !setter.next_state.is_empty() {
             violations.add(&setter.name, "a setter sets a state word");
         }
@@ -155,11 +156,11 @@ impl Violations {
     }
 
     /// Adds names that come twice.
-    fn repeated<'n>(&mut self, names: impl Iterator<Item = &'n String>) {
+    fn repeated<N: Eq + Hash + Copy + Display>(&mut self, names: impl Iterator<Item = N>) {
         let mut known = HashSet::new();
         for name in names {
             if !known.insert(name) {
-                self.add(name, "named twice");
+                self.add(&name.to_string(), "named twice");
             }
         }
     }
@@ -249,6 +250,17 @@ impl FunctionCheck<'_> {
                 Op::Lookup { table, .. } => table.index() < self.program.tables.len(),
                 _ => true,
             };
+            if let Op::Lookup {
+                table,
+                index: place,
+                is_masked: false,
+            } = node.op
+                && known
+                && place.index() < index
+                && !self.program.tables[table.index()].has(function.node(place).interval)
+            {
+                self.fail(index, "the index may leave the table");
+            }
             if !known {
                 self.fail(index, "names a word, constant or table that does not exist");
             }
@@ -415,9 +427,9 @@ impl FunctionCheck<'_> {
         self.violations
             .repeated(function.inputs.iter().map(|input| &input.name));
         self.violations
-            .repeated(function.outputs.iter().map(|(name, _)| name));
+            .repeated(function.outputs.iter().map(|(output, _)| output));
         self.violations
-            .repeated(function.told.iter().map(|(name, _)| name));
+            .repeated(function.told.iter().map(|(told, _)| told));
         self.violations
             .repeated(function.stages.iter().map(|stage| &stage.name));
         let stage_of = self.stage_of_nodes();
@@ -476,7 +488,7 @@ impl FunctionCheck<'_> {
         let params = function
             .next_params
             .iter()
-            .map(|&(id, value)| (&self.program.params[id.index()], value));
+            .map(|&(id, value)| (&self.program.params[id.index()].1, value));
         let wrong: Vec<String> = states
             .chain(params)
             .filter(|(word, value)| !word.interval.contains(function.node(*value).interval))
@@ -507,7 +519,7 @@ pub fn derived_interval(program: &Program, function: &Function, index: usize) ->
         .filter_map(|stage| stage.guard.as_ref());
     match op {
         Op::Input(n) => Some(function.inputs[n as usize].interval),
-        Op::Param(id) => Some(program.params[id.index()].interval),
+        Op::Param(id) => Some(program.params[id.index()].1.interval),
         Op::State(id) => Some(program.states[id.index()].interval),
         Op::Constant(id) => {
             let raw = program.constants[id.index()].raw;

@@ -3,7 +3,7 @@
 use super::graph::{Function, Program};
 use super::interval::Interval;
 use super::op::{Op, ParamId, StateId, Value};
-use super::{ProgramBuilder, named, verify};
+use super::{Demand, Output, ProgramBuilder, Setter, Told, named, verify};
 
 /// A program with all that the invariants speak of, that keeps them.
 fn right() -> Program {
@@ -11,7 +11,7 @@ fn right() -> Program {
     let word = Interval::symmetric(1000);
     let table = b.table("shape", vec![1, 2, 3, 4], &[]);
     let memory = b.memory("memory", 0, word, "");
-    let param = b.param("wanted", 0, word, "");
+    let param = b.param(Demand::Current, "wanted", 0, word, "");
     b.stage("read", &[]);
     let x = b.input("x", word, "");
     let index = b.input("index", Interval::new(0, 3), "");
@@ -31,8 +31,8 @@ fn right() -> Program {
         let limited = scaled.clamp(-5, 5);
     }
     memory.set(limited);
-    b.output("result", result);
-    b.setter("set_wanted", &[], |b| {
+    b.output(Output::probe("result"), result);
+    b.setter(Setter::Current, &[], |b| {
         b.stage("round", &[]);
         param.set(b.input("given", word, ""));
     });
@@ -176,10 +176,10 @@ fn names_are_unique() {
         program.tables[0].name = "gain".to_owned();
     });
     refused("memory: named twice", |program| {
-        program.params[0].name = "memory".to_owned();
+        program.params[0].1.name = "memory".to_owned();
     });
     refused("step: named twice", |program| {
-        program.setters[0].name = "step".to_owned();
+        program.setters[0].1.name = "step".to_owned();
     });
     refused("read: named twice", |program| {
         program.step.stages[2].name = "read".to_owned();
@@ -195,6 +195,25 @@ fn names_are_unique() {
         let scaled = at(&program.step, "scaled");
         program.step.nodes[scaled].name.clear();
     });
+}
+
+#[test]
+fn an_index_that_is_not_masked_lies_within_its_table() {
+    let spoil = |program: &mut Program, high| {
+        let entry = at(&program.step, "entry");
+        let Op::Lookup { is_masked, .. } = &mut program.step.nodes[entry].op else {
+            panic!("a lookup");
+        };
+        *is_masked = false;
+        let index = at(&program.step, "index");
+        let range = Interval::new(0, high);
+        program.step.nodes[index].interval = range;
+        program.step.inputs[1].interval = range;
+    };
+    refused("the index may leave the table", |program| spoil(program, 4));
+    let mut inside = right();
+    spoil(&mut inside, 3);
+    assert_eq!(verify(inside).err(), None);
 }
 
 #[test]
@@ -214,12 +233,12 @@ fn words_are_set_once_to_what_they_hold() {
         program.step.next_params.push((ParamId(0), scaled));
     });
     refused("a setter sets a state word", |program| {
-        let given = value(&program.setters[0], "given");
-        program.setters[0].next_state.push((StateId(0), given));
+        let given = value(&program.setters[0].1, "given");
+        program.setters[0].1.next_state.push((StateId(0), given));
     });
     refused("set-point word is set twice", |program| {
-        let again = program.setters[0].next_params[0];
-        program.setters[0].next_params.push(again);
+        let again = program.setters[0].1.next_params[0];
+        program.setters[0].1.next_params.push(again);
     });
     refused("set to", |program| {
         program.states[0].interval = Interval::symmetric(4);
@@ -227,7 +246,7 @@ fn words_are_set_once_to_what_they_hold() {
         program.step.nodes[kept].interval = Interval::symmetric(4);
     });
     refused("initial value 2000 outside", |program| {
-        program.params[0].initial = 2000;
+        program.params[0].1.initial = 2000;
     });
     refused("the word has 8", |program| {
         program.states[0].storage_bits = 8;
@@ -243,7 +262,7 @@ fn there_are_no_dead_nodes() {
 fn nothing_is_computed_for_people_alone() {
     refused("is told to people and used for nothing else", |program| {
         let (_, value) = program.step.outputs.remove(0);
-        program.step.told.push(("speed".to_owned(), value));
+        program.step.told.push((Told::Speed, value));
     });
 }
 

@@ -3,7 +3,7 @@
 use crate::{Inputs, limits};
 use hexagen::{Fault, LegState, Legs, Limits, Sample, Supervisor};
 use hexagen_codegen::interface::Interface;
-use hexagen_codegen::ir::{Escape, Machine, Program};
+use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
 use hexagen_reference::verify::Subject;
 use std::sync::{Arc, OnceLock};
 
@@ -44,7 +44,7 @@ impl BusWatch {
     }
 }
 
-/// Places of the words that a drive knows by name.
+/// Places of the words that a drive gives and takes.
 #[derive(Clone, Debug)]
 struct Places {
     inputs: Inputs,
@@ -56,17 +56,20 @@ struct Places {
 
 impl Places {
     fn of(program: &Program) -> Option<Self> {
-        let output = |name: &str| {
-            let mut outputs = program.step.outputs.iter();
-            outputs.position(|(known, _)| known == name)
+        let three = |of: fn(Phase) -> Output| {
+            let place = |phase| {
+                let (sought, mut outputs) = (of(phase), program.step.outputs.iter());
+                outputs.position(|(output, _)| *output == sought)
+            };
+            let [a, b, c] = Phase::ALL.map(place);
+            Some([a?, b?, c?])
         };
-        let three = |[a, b, c]: [&str; 3]| Some([output(a)?, output(b)?, output(c)?]);
-        let word = |name: &str| program.params.iter().position(|word| word.name == name);
+        let demand = |demand| program.place_of(demand);
         Some(Self {
             inputs: Inputs::of(program)?,
-            compare: three(["compare_a", "compare_b", "compare_c"])?,
-            legs: three(["leg_a", "leg_b", "leg_c"])?,
-            set_point: word("speed_ref").or_else(|| word("j"))?,
+            compare: three(Output::Compare)?,
+            legs: three(Output::Leg)?,
+            set_point: demand(Demand::Speed).or_else(|| demand(Demand::Current))?,
         })
     }
 }
@@ -139,7 +142,7 @@ impl<'g> Interpreted<'g> {
         ))
     }
 
-    fn set(&mut self, setter: &str, word: i32) {
+    fn set(&mut self, setter: Setter, word: i32) {
         if let Err(escape) = self.machine.set(setter, &[word]) {
             self.escape.get_or_init(|| escape);
         }
@@ -158,19 +161,19 @@ impl Subject for Interpreted<'_> {
     }
 
     fn set_current(&mut self, bits: i32) {
-        self.set("set_current", bits);
+        self.set(Setter::Current, bits);
     }
 
     fn set_torque(&mut self, bits: i32) {
-        self.set("set_torque", bits);
+        self.set(Setter::Torque, bits);
     }
 
     fn set_speed(&mut self, bits: i32) {
-        self.set("set_speed", bits);
+        self.set(Setter::Speed, bits);
     }
 
     fn set_bus(&mut self, counts: u16) {
-        self.set("set_bus", counts.into());
+        self.set(Setter::Bus, counts.into());
         if let Some(bus) = &mut self.bus {
             bus.told = true;
         }

@@ -58,7 +58,7 @@ impl Fault {
 fn function_mut(program: &mut Program, number: usize) -> &mut Function {
     match number {
         0 => &mut program.step,
-        setter => &mut program.setters[setter - 1],
+        setter => &mut program.setters[setter - 1].1,
     }
 }
 
@@ -68,7 +68,11 @@ pub fn faults(program: &Program) -> impl Iterator<Item = Fault> + '_ {
     for node in &mut open.step.nodes {
         node.interval = Interval::WORD;
     }
-    for node in open.setters.iter_mut().flat_map(|setter| &mut setter.nodes) {
+    for node in open
+        .setters
+        .iter_mut()
+        .flat_map(|(_, setter)| &mut setter.nodes)
+    {
         node.interval = Interval::WORD;
     }
     let changes = constants(program)
@@ -193,7 +197,9 @@ fn tables(program: &Program) -> impl Iterator<Item = Found> + '_ {
 fn is_read(program: &Program, table: usize, entry: usize) -> bool {
     program.functions().any(|function| {
         function.nodes.iter().any(|node| match node.op {
-            Op::Lookup { table: id, index } if id.index() == table => {
+            Op::Lookup {
+                table: id, index, ..
+            } if id.index() == table => {
                 let Interval { low, high } = function.node(index).interval;
                 let length = program.tables[table].values.len() as i64;
                 (entry as i64 - low).rem_euclid(length) <= high - low

@@ -196,7 +196,7 @@ impl<'p> Slice<'p> {
                 let high = self.word(high, path)?;
                 bounded([raised, high], false, path)?
             }
-            Op::Lookup { table, index } => {
+            Op::Lookup { table, index, .. } => {
                 let values = &self.program.tables[table.index()].values;
                 let index = self.word(index, path)?.as_number();
                 let index = index.expect("an index that the path decides");

@@ -1,10 +1,10 @@
 //! The public functions: start, step, setters and commands, around the law and the runtime.
 
-use super::function::{BUS, Step, emit_setter};
+use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
 use super::names::{Names, number, typed_number};
 use crate::interface::{Interface, Limits, Unit};
-use crate::ir::{Function, Program};
+use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
 /// What the header and the public functions are emitted from.
@@ -54,8 +54,7 @@ fn doc(lines: &[&str]) -> Vec<String> {
 
 impl Drive<'_> {
     pub(super) fn has_speed(&self) -> bool {
-        let mut setters = self.program.setters.iter();
-        setters.any(|setter| setter.name == "set_speed")
+        self.program.param(Demand::Speed).is_some()
     }
 
     pub(super) fn has_bus(&self) -> bool {
@@ -67,9 +66,9 @@ impl Drive<'_> {
         if self.has_speed() { "speed" } else { "current" }
     }
 
-    /// First values of the named set-point words; 0 of one that there is not.
-    fn initial(&self, name: &str) -> String {
-        let word = self.program.params.iter().find(|word| word.name == name);
+    /// First value of a set-point word; 0 of one that there is not.
+    fn initial(&self, demand: Demand) -> String {
+        let word = self.program.param(demand);
         number(word.map_or(0, |word| word.initial))
     }
 
@@ -118,7 +117,9 @@ impl Drive<'_> {
     pub(super) fn functions(&self) -> String {
         let mut text = self.step_at_rest();
         let setters = self.program.setters.iter();
-        text.extend(setters.map(|setter| emit_setter(self.program, setter, self.names).stages));
+        text.extend(
+            setters.map(|(_, setter)| emit_setter(self.program, setter, self.names).stages),
+        );
         let methods = self.methods();
         text.extend(methods.iter().map(Method::definition));
         text.push_str(&where_defined(SIGNALS, &self.signals().definition()));
@@ -130,9 +131,9 @@ impl Drive<'_> {
     /// The public functions, in the order of the header.
     pub(super) fn methods(&self) -> Vec<Method> {
         let mut methods = vec![self.init(), self.period()];
-        for setter in &self.program.setters {
-            methods.push(self.setter(setter));
-            methods.extend(self.other_unit(&setter.name));
+        for (set, function) in &self.program.setters {
+            methods.push(self.setter(*set, function));
+            methods.extend(self.other_unit(*set));
         }
         methods.extend(self.commands());
         methods
@@ -204,13 +205,16 @@ impl Drive<'_> {
     }
 
     fn init(&self) -> Method {
-        let mut body = lines(&[&format!("drive->current = {};", self.initial("j"))]);
+        let mut body = lines(&[&format!(
+            "drive->current = {};",
+            self.initial(Demand::Current)
+        )]);
         if self.has_speed() {
-            let speed = self.initial("speed_ref");
+            let speed = self.initial(Demand::Speed);
             body.push_str(&lines(&[&format!("drive->speed = {speed};")]));
         }
         if self.has_bus() {
-            let [volts, ratio] = BUS.map(|name| self.initial(name));
+            let [volts, ratio] = Demand::OF_BUS.map(|demand| self.initial(demand));
             let line = format!("hexagen_start_bus(&drive->bus, {volts}, {ratio});");
             body.push_str(&lines(&[&line]));
         }
@@ -295,27 +299,16 @@ impl Drive<'_> {
         }
     }
 
-    fn setter(&self, setter: &Function) -> Method {
-        let quantity = setter.name.strip_prefix("set_").unwrap_or_default();
+    fn setter(&self, set: Setter, setter: &Function) -> Method {
         let mut text = setter.doc.clone();
         let code = emit_setter(self.program, setter, self.names);
         let mut body = code.body;
-        if quantity == "bus" {
-            text.extend(doc(&[
-                "",
-                "A call that interrupts another one has no effect; one that was interrupted for good keeps later calls from having an effect for 65536 control periods.",
-                "From an interrupt that can interrupt the control loop: at most once per control period.",
-            ]));
-            let mut words = code.words;
-            words.resize(BUS.len(), "0".to_owned());
-            let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
-            body.push_str(&lines(&[&line]));
-        } else {
-            let field = if quantity == "speed" {
-                "speed"
-            } else {
-                "current"
-            };
+        let field = match set {
+            Setter::Current | Setter::Torque => Some("current"),
+            Setter::Speed => Some("speed"),
+            Setter::Bus => None,
+        };
+        if let Some(field) = field {
             text.extend(doc(&[
                 "",
                 "`bits` are those of a number with 16 fraction bits: 65536 is one.",
@@ -323,6 +316,16 @@ impl Drive<'_> {
             for word in code.words {
                 body.push_str(&lines(&[&format!("drive->{field} = {word};")]));
             }
+        } else {
+            text.extend(doc(&[
+                "",
+                "A call that interrupts another one has no effect; one that was interrupted for good keeps later calls from having an effect for 65536 control periods.",
+                "From an interrupt that can interrupt the control loop: at most once per control period.",
+            ]));
+            let mut words = code.words;
+            words.resize(Demand::OF_BUS.len(), "0".to_owned());
+            let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
+            body.push_str(&lines(&[&line]));
         }
         let inputs = setter.inputs.iter().map(|input| {
             let is_narrow = input.interval.low >= 0 && input.interval.high <= i64::from(u16::MAX);
@@ -342,18 +345,19 @@ impl Drive<'_> {
     }
 
     /// The same setter in a unit of whole numbers.
-    fn other_unit(&self, setter: &str) -> Option<Method> {
+    fn other_unit(&self, setter: Setter) -> Option<Method> {
         let (suffix, parameter, unit, make) = match setter {
-            "set_current" => ("ma", "milliamperes", "milliamperes", "thousandths"),
-            "set_torque" => (
+            Setter::Current => ("ma", "milliamperes", "milliamperes", "thousandths"),
+            Setter::Torque => (
                 "mnm",
                 "millinewtonmetres",
                 "millinewton metres",
                 "thousandths",
             ),
-            "set_speed" => ("rpm", "rpm", "whole rpm", "whole"),
-            _ => return None,
+            Setter::Speed => ("rpm", "rpm", "whole rpm", "whole"),
+            Setter::Bus => return None,
         };
+        let setter = setter.name();
         let call = self.names.public(setter);
         Some(Method {
             doc: vec![format!("`{setter}()` in {unit}.")],

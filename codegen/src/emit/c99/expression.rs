@@ -98,15 +98,15 @@ impl Printer<'_> {
                 let arguments: Vec<String> = operands.chain(parameter).collect();
                 Written::atom(format!("{}({})", called(*primitive), arguments.join(", ")))
             }
-            Expression::Lookup(table, index, is_inside) => {
+            Expression::Lookup(table, index, is_masked) => {
                 let table = &self.program().tables[table.index()];
                 let name = self.names.constant(&table.name);
                 let index = of(index);
-                let text = if *is_inside {
-                    format!("{name}[{}]", index.text)
-                } else {
+                let text = if *is_masked {
                     let index = index.within(Binding::Unary);
                     format!("{name}[(uint32_t){index} & {}U]", table.values.len() - 1)
+                } else {
+                    format!("{name}[{}]", index.text)
                 };
                 if table.holds_legs {
                     return Written::atom(format!("hexagen_leg_of({text})"));

@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, results, told, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, params_read, results, writes,
 };
 use super::super::plan::Context;
 use super::super::signal::Shape;
@@ -11,7 +11,7 @@ use super::layout::{INDENT, words, wrapped};
 use super::names::Names;
 use super::stage::{StageFunction, kind};
 use crate::emit::signal::Leg;
-use crate::ir::{AtRest, Function, Op, Program, Value};
+use crate::ir::{AtRest, Demand, Function, Op, Output, Phase, Program, Told, Value};
 use std::fmt::Write as _;
 
 /// The static functions of a step, and how they are called.
@@ -294,26 +294,28 @@ impl<'a> StepFunctions<'a> {
     /// What people are told.
     fn observation(&self) -> String {
         let printer = self.printer(false);
-        let tell = |name: &&str| {
-            let value = printer.whole(told(self.function(), name)?);
-            Some(wrapped(INDENT, &format!("observation->{name} = {value};")))
+        let tell = |told: Told| {
+            let value = printer.whole(self.function().told(told)?);
+            Some(wrapped(INDENT, &format!("observation->{told} = {value};")))
         };
-        ["e_a", "e_b", "speed"].iter().filter_map(tell).collect()
+        let all = [Told::Emf(Phase::A), Told::Emf(Phase::B), Told::Speed];
+        all.into_iter().filter_map(tell).collect()
     }
 
     /// The command. Old state words that go out of the step are read under their names before any is written.
     fn legs(&self) -> String {
         let printer = self.printer(false);
-        let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
-            let value = output(self.function(), name);
+        let compare = Phase::ALL.map(|phase| {
+            let value = self.function().output(&Output::Compare(phase));
             match value.map(|value| (value, printer.scope.literal(value))) {
                 None => "0".to_owned(),
                 Some((_, Some(literal))) => literal.to_string(),
                 Some((value, None)) => printer.cast("uint16_t", value),
             }
         });
-        let state = ["leg_a", "leg_b", "leg_c"].map(|name| {
-            output(self.function(), name).map_or_else(
+        let state = Phase::ALL.map(|phase| {
+            let state = self.function().output(&Output::Leg(phase));
+            state.map_or_else(
                 || leg_state(Leg::Off).to_owned(),
                 |value| printer.shaped(value, Shape::Leg),
             )
@@ -329,39 +331,35 @@ impl<'a> StepFunctions<'a> {
     }
 }
 
-/// Words of the bus voltage, in their places.
-pub(super) const BUS: [&str; 2] = ["v_bus", "ratio"];
-
 /// Reads the set-point words that a function uses, under their names.
 fn read_words(program: &Program, function: &Function, names: &Names) -> String {
     let read = params_read(function);
-    let is_read = |name: &str| {
-        let place = program.params.iter().position(|word| word.name == name);
-        place.is_some_and(|place| read.contains(&place))
+    let name_where_read = |demand: Demand| {
+        let place = program.place_of(demand)?;
+        let name = || names.local(&program.params[place].1.name);
+        read.contains(&place).then(name)
     };
-    let single = [("j", "current"), ("speed_ref", "speed")].into_iter();
-    let single = single
-        .filter(|(name, _)| is_read(name))
-        .map(|(name, field)| {
-            let name = names.local(name);
-            format!("{INDENT}const int32_t {name} = drive->{field};\n")
-        });
+    let single = [(Demand::Current, "current"), (Demand::Speed, "speed")];
+    let single = single.into_iter().filter_map(|(demand, field)| {
+        let name = name_where_read(demand)?;
+        Some(format!("{INDENT}const int32_t {name} = drive->{field};\n"))
+    });
     let mut text: String = single.collect();
-    if BUS.into_iter().any(is_read) {
+    let bus = Demand::OF_BUS.map(name_where_read);
+    if bus.iter().any(Option::is_some) {
         text.push_str(INDENT);
         text.push_str("const volatile int32_t *const bus = hexagen_bus_words(&drive->bus);\n");
     }
-    let told = BUS.into_iter().enumerate();
-    let told = told.filter(|(_, name)| is_read(name)).map(|(place, name)| {
-        let name = names.local(name);
-        format!("{INDENT}const int32_t {name} = bus[{place}];\n")
+    let told = bus.into_iter().enumerate().filter_map(|(place, name)| {
+        let name = name?;
+        Some(format!("{INDENT}const int32_t {name} = bus[{place}];\n"))
     });
     text.extend(told);
     text
 }
 
 /// A setter: what it computes, and the words that it makes.
-pub(super) struct Setter {
+pub(super) struct SetterCode {
     /// Its stages, where they are functions of their own.
     pub stages: String,
     /// Statements.
@@ -370,7 +368,7 @@ pub(super) struct Setter {
     pub words: Vec<String>,
 }
 
-pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names) -> Setter {
+pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names) -> SetterCode {
     let context = Context::new(program, function);
     let plans = context.plan();
     let single = matches!(plans.as_slice(), [only] if only.stage.guard.is_none());
@@ -401,7 +399,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
             statements.pop();
             *word = printer.bound(*only);
         }
-        return Setter {
+        return SetterCode {
             stages: String::new(),
             body: statements
                 .iter()
@@ -410,7 +408,7 @@ pub(super) fn emit_setter(program: &Program, function: &Function, names: &Names)
             words,
         };
     }
-    Setter {
+    SetterCode {
         stages: stages.iter().map(StageFunction::definition).collect(),
         body: stages.iter().map(StageFunction::call).collect(),
         words,

@@ -5,7 +5,7 @@ use super::drive::{Drive, Method, SIGNALS, VERIFICATION, where_defined};
 use super::layout::INDENT;
 use super::names::{number, typed_number};
 use crate::interface::{PublicConstant, PublicValue};
-use crate::ir::Word;
+use crate::ir::{Demand, Word};
 use std::fmt::Write as _;
 
 impl Drive<'_> {
@@ -111,13 +111,11 @@ impl Drive<'_> {
         let doc = "A drive; all of it is the functions' own. Which of them may be called from where says hexagen.h.";
         text.push_str(&names.comment("", &[doc]));
         text.push_str("typedef struct {\n");
-        let set_point = [("j", "current"), ("speed_ref", "speed")];
-        let is_there = |name: &str| name == "j" || name == "speed_ref" && self.has_speed();
-        for (name, field) in set_point.into_iter().filter(|(name, _)| is_there(name)) {
-            let mut words = self.program.params.iter();
-            let word = words.find(|word| word.name == name).map(meaning);
-            text.push_str(&names.comment(INDENT, word.as_slice()));
-            let _ = writeln!(text, "{INDENT}volatile int32_t {field};");
+        for (demand, field) in [(Demand::Current, "current"), (Demand::Speed, "speed")] {
+            if let Some(word) = self.program.param(demand) {
+                text.push_str(&names.comment(INDENT, &[meaning(word)]));
+                let _ = writeln!(text, "{INDENT}volatile int32_t {field};");
+            }
         }
         if self.has_bus() {
             let doc = "The bus voltage as `set_bus()` tells it.";

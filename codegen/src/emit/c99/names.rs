@@ -145,7 +145,7 @@ impl Names {
         Self {
             upper: prefix.to_uppercase(),
             prefix,
-            setters: setters.map(|setter| setter.name.clone()).collect(),
+            setters: setters.map(|(_, setter)| setter.name.clone()).collect(),
             constants: constants.map(|constant| constant.name.clone()).collect(),
         }
     }

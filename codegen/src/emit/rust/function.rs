@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, output, params_read, results, told, writes,
+    Kept, Part, inputs_used, kept, kept_at_rest, params_read, results, writes,
 };
 use super::super::plan::Context;
 use super::super::rows::WholeCommand;
@@ -13,7 +13,7 @@ use super::names::{docs, number, snake};
 use super::source::{Source, quote};
 use super::stage::StageFunction;
 use super::tables::look_up_command;
-use crate::ir::{AtRest, Function, Op, Program, Value};
+use crate::ir::{AtRest, Demand, Function, Op, Output, Phase, Program, Setter, Told, Value};
 
 /// The step of a program as entries of a law.
 pub(super) struct StepCode {
@@ -281,10 +281,10 @@ impl<'a> StepFunctions<'a> {
             context: self.context,
             reads_state: false,
         };
-        let word = |name| told(self.function(), name).map(|value| scope.whole(value));
-        let emf = word("e_a").zip(word("e_b"));
+        let word = |told| self.function().told(told).map(|value| scope.whole(value));
+        let emf = word(Told::Emf(Phase::A)).zip(word(Told::Emf(Phase::B)));
         let emf = emf.map(|(e_a, e_b)| quote!(observation.emf = Some([#e_a, #e_b]);));
-        let speed = word("speed").map(|speed| quote!(observation.speed = Some(#speed);));
+        let speed = word(Told::Speed).map(|speed| quote!(observation.speed = Some(#speed);));
         quote!(#emf #speed)
     }
 
@@ -298,8 +298,8 @@ impl<'a> StepFunctions<'a> {
             return look_up_command(whole, &scope.whole(whole.index));
         }
         let function = self.function();
-        let compare = ["compare_a", "compare_b", "compare_c"].map(|name| {
-            let Some(value) = output(function, name) else {
+        let compare = Phase::ALL.map(|phase| {
+            let Some(value) = function.output(&Output::Compare(phase)) else {
                 return quote!(0);
             };
             scope.literal(value).map_or_else(
@@ -310,9 +310,12 @@ impl<'a> StepFunctions<'a> {
                 |literal| number(i64::from(literal)),
             )
         });
-        let states = ["leg_a", "leg_b", "leg_c"].map(|name| match output(function, name) {
-            None => quote!(LegState::Off),
-            Some(value) => scope.shaped(value, Shape::Leg),
+        let states = Phase::ALL.map(|phase| {
+            let state = function.output(&Output::Leg(phase));
+            state.map_or_else(
+                || quote!(LegState::Off),
+                |value| scope.shaped(value, Shape::Leg),
+            )
         });
         let states = array(&states);
         quote!(Legs::new([#(#compare),*], #states))
@@ -330,23 +333,25 @@ fn named(name: &str, is_used: bool) -> Source {
 
 /// The statements that read these words of the set-point; an underscore stands for one that comes along.
 fn read_words(program: &Program, read: &[usize]) -> Source {
-    let place = |name: &str| program.params.iter().position(|word| word.name == name);
-    let is_read = |name: &str| place(name).is_some_and(|place| read.contains(&place));
-    let single = [("j", "current"), ("speed_ref", "speed")];
-    let single = single.into_iter().filter(|(name, _)| is_read(name));
-    let single = single.map(|(name, method)| {
-        let (name, method) = (snake(name), Source::of(method));
-        quote!(let #name = set_point.#method();)
+    let is_read = |demand: Demand| {
+        let place = program.place_of(demand);
+        place.is_some_and(|place| read.contains(&place))
+    };
+    let single = [(Demand::Current, "current"), (Demand::Speed, "speed")];
+    let single = single.into_iter().filter(|&(demand, _)| is_read(demand));
+    let single = single.filter_map(|(demand, method)| {
+        let (name, method) = (snake(&program.param(demand)?.name), Source::of(method));
+        Some(quote!(let #name = set_point.#method();))
     });
-    let bus = ["v_bus", "ratio"];
+    let bus = Demand::OF_BUS;
     let reads_bus = bus.into_iter().any(is_read).then(|| {
-        let known = bus.into_iter().filter(|name| place(name).is_some());
-        let names = known.map(|name| {
-            if is_read(name) {
-                snake(name)
+        let names = bus.into_iter().filter_map(|demand| {
+            let word = program.param(demand)?;
+            Some(if is_read(demand) {
+                snake(&word.name)
             } else {
                 quote!(_)
-            }
+            })
         });
         quote!(let [#(#names),*] = set_point.bus();)
     });
@@ -354,7 +359,7 @@ fn read_words(program: &Program, read: &[usize]) -> Source {
 }
 
 /// A setter: a function of a word that makes those of the set-point.
-pub(super) struct Setter {
+pub(super) struct SetterCode {
     /// The function.
     pub function: Source,
     /// Its stages, where they are functions of their own.
@@ -362,7 +367,7 @@ pub(super) struct Setter {
 }
 
 /// The setter as `fn name(word) -> words`.
-pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
+pub(super) fn emit_setter(program: &Program, set: Setter, function: &Function) -> SetterCode {
     let context = Context::new(program, function);
     let plans = context.plan();
     let single = matches!(plans.as_slice(), [only] if only.stage.guard.is_none());
@@ -377,7 +382,6 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         context: &context,
         reads_state: true,
     };
-    let name = function.name.trim_start_matches("set_");
     let written = writes(function);
     let mut values: Vec<Source> = written.iter().map(|&value| scope.whole(value)).collect();
     let body: Source = if single {
@@ -395,8 +399,8 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
     } else {
         stages.iter().map(StageFunction::call).collect()
     };
-    let (kind, result) = match (name, values.as_slice()) {
-        (name, [only]) if name != "bus" => (quote!(Word), only.clone()),
+    let (kind, result) = match (set, values.as_slice()) {
+        (Setter::Current | Setter::Torque | Setter::Speed, [only]) => (quote!(Word), only.clone()),
         (_, words) => {
             let count = words.len();
             (quote!([Word; #count]), quote!([#(#words),*]))
@@ -406,8 +410,8 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         let is_used = params_used(function, &input.name);
         named(&snake(&input.name).to_string(), is_used)
     });
-    let (name, doc) = (snake(name), docs(&function.doc));
-    Setter {
+    let (name, doc) = (snake(word_function(set)), docs(&function.doc));
+    SetterCode {
         function: quote! {
             #doc
             fn #name(#(#inputs: Word),*) -> #kind {
@@ -420,6 +424,16 @@ pub(super) fn emit_setter(program: &Program, function: &Function) -> Setter {
         } else {
             stages.iter().map(StageFunction::definition).collect()
         },
+    }
+}
+
+/// The runtime's name of the function that makes the words of what is set.
+fn word_function(set: Setter) -> &'static str {
+    match set {
+        Setter::Current => "current",
+        Setter::Torque => "torque",
+        Setter::Speed => "speed",
+        Setter::Bus => "bus",
     }
 }
 

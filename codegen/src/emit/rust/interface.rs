@@ -1,13 +1,13 @@
 //! The emitted type: its constants, its state, and what it gives to the runtime.
 
-use super::function::{Setter, StepCode};
+use super::function::{SetterCode, StepCode};
 use super::imports::unsettled;
 use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
 use crate::interface::{
     FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, Unit,
 };
-use crate::ir::{Program, Word};
+use crate::ir::{Demand, Program, Setter};
 
 /// What the type is emitted from.
 pub(super) struct Types<'a> {
@@ -54,7 +54,7 @@ impl Types<'_> {
     }
 
     /// What the runtime runs.
-    pub(super) fn control(&self, step: &StepCode, setters: &[(&str, Setter)]) -> Source {
+    pub(super) fn control(&self, step: &StepCode, setters: &[(Setter, SetterCode)]) -> Source {
         let name = unsettled(self.name);
         let text = self.name;
         let Interface {
@@ -74,28 +74,32 @@ impl Types<'_> {
             .iter()
             .map(|&sector| number(i64::from(sector)));
         let (bus_type, bus) = self.bus();
-        let demand = self.word("j").map_or(0, |word| word.initial);
+        let demand = self
+            .program
+            .param(Demand::Current)
+            .map_or(0, |word| word.initial);
         let demand = number(i64::from(demand));
-        let of = |wanted: &str| {
+        let of = |wanted: Setter| {
             let mut setters = setters.iter();
             setters
-                .find(|(name, _)| *name == wanted)
+                .find(|(set, _)| *set == wanted)
                 .map(|(_, setter)| &setter.function)
         };
-        let (current, torque) = (of("set_current"), of("set_torque"));
-        let speed_word = of("set_speed").map(|_| {
+        let (current, torque) = (of(Setter::Current), of(Setter::Torque));
+        let speed_word = of(Setter::Speed).map(|_| {
             quote!(
                 const SPEED: Option<fn(Word) -> Word> = Some(<Self as SpeedLoop>::speed);
             )
         });
-        let told_words = of("set_bus").map(|_| {
+        let told_words = of(Setter::Bus).map(|_| {
             let count = self.bus_words().len();
             quote! {
                 const TOLD_BUS: Option<fn(Word) -> [Word; #count]> = Some(<Self as MeasuredBus>::bus);
             }
         });
-        let speed = of("set_speed").map(|function| quote!(impl SpeedLoop for #name { #function }));
-        let told = of("set_bus").map(|function| quote!(impl MeasuredBus for #name { #function }));
+        let speed =
+            of(Setter::Speed).map(|function| quote!(impl SpeedLoop for #name { #function }));
+        let told = of(Setter::Bus).map(|function| quote!(impl MeasuredBus for #name { #function }));
         let StepCode { entries, rotor, .. } = step;
         quote! {
             impl Control for #name {
@@ -130,14 +134,10 @@ impl Types<'_> {
         }
     }
 
-    fn word(&self, name: &str) -> Option<&Word> {
-        self.program.params.iter().find(|word| word.name == name)
-    }
-
     /// Initial words of a bus voltage that is told.
     fn bus_words(&self) -> Vec<Source> {
-        let words = ["v_bus", "ratio"].map(|name| self.word(name));
-        let words = words.into_iter().flatten();
+        let words = Demand::OF_BUS.into_iter();
+        let words = words.filter_map(|demand| self.program.param(demand));
         words.map(|word| number(i64::from(word.initial))).collect()
     }
 

@@ -23,8 +23,8 @@ use super::rows::WholeCommand;
 use super::texts;
 use crate::at_once::at_once;
 use crate::interface::Interface;
-use crate::ir::{Program, VerifiedGraph};
-use function::{Setter, emit_setter, emit_step};
+use crate::ir::{Program, Setter, VerifiedGraph};
+use function::{SetterCode, emit_setter, emit_step};
 use imports::{imports, settle};
 use interface::Types;
 use names::{docs, item_names, number, screaming};
@@ -78,10 +78,10 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
         name: type_name,
     };
     let whole = WholeCommand::of(program);
-    let setters = || -> Vec<(&str, Setter)> {
+    let setters = || -> Vec<(Setter, SetterCode)> {
         let setters = program.setters.iter();
         setters
-            .map(|setter| (setter.name.as_str(), emit_setter(program, setter)))
+            .map(|(set, function)| (*set, emit_setter(program, *set, function)))
             .collect()
     };
     let step = || emit_step(program, whole.as_ref());

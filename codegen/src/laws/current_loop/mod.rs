@@ -21,7 +21,7 @@ use crate::blocks::{
     advanced_sector, find_sector, proportional_reference, quasi_square_reference, sample,
     sector_of, sense_direction, third_current,
 };
-use crate::ir::{Coefficient, Expr, Memory, Phases, ProgramBuilder, named};
+use crate::ir::{Coefficient, Expr, Memory, Phase, Phases, ProgramBuilder, Told, named};
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
 
@@ -276,11 +276,11 @@ impl<'b> CurrentLoop<'_, 'b> {
     fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
         let predicts = self.needs.emf == EmfUse::Prediction;
         if let Some(e) = if predicts { present } else { target } {
-            self.l.b.tell("e_a", e.a());
-            self.l.b.tell("e_b", e.b());
+            self.l.b.tell(Told::Emf(Phase::A), e.a());
+            self.l.b.tell(Told::Emf(Phase::B), e.b());
         }
         if let Some(speed) = speed {
-            self.l.b.tell("speed", speed);
+            self.l.b.tell(Told::Speed, speed);
         }
     }
 

@@ -4,6 +4,7 @@ use super::external::{Binding, BuildError, External, Terms, compile, compile_c99
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
 use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
+use hexagen_codegen::ir::Demand;
 use hexagen_lab::standalone::derived;
 use hexagen_reference::verify::{Report, verify_subject};
 
@@ -42,11 +43,10 @@ impl<'p> Verifier<'p> {
         let generated = &drive.generated;
         let (interface, program) = (&generated.interface, generated.graph.program());
         let sources = emit_c99(&generated.graph, interface, &interface.type_name);
-        let mut setters = program.setters.iter();
         let binding = Binding {
             state_words: drive.state_names().len(),
             has_bus: interface.bus_periods.is_some(),
-            has_speed: setters.any(|setter| setter.name == "set_speed"),
+            has_speed: program.param(Demand::Speed).is_some(),
         };
         let external = compile_c99(&sources, &binding, flags)?;
         Ok(Self {

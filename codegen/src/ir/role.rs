@@ -1,0 +1,118 @@
+//! What goes in and out of a program, by what it is for: emitters and engines ask for these, never for a name.
+
+use std::fmt;
+
+/// A phase of the machine, or the leg of the inverter that feeds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Phase {
+    /// Phase a.
+    A,
+    /// Phase b.
+    B,
+    /// Phase c.
+    C,
+}
+
+impl Phase {
+    /// All three, in order.
+    pub const ALL: [Self; 3] = [Self::A, Self::B, Self::C];
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::A => "a",
+            Self::B => "b",
+            Self::C => "c",
+        })
+    }
+}
+
+/// What a result of a function is.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Output {
+    /// The compare value of a leg.
+    Compare(Phase),
+    /// The state of a leg.
+    Leg(Phase),
+    /// A value of a program that is looked into, by its name.
+    Probe(String),
+}
+
+impl Output {
+    /// A value that is looked into.
+    pub fn probe(name: &str) -> Self {
+        Self::Probe(name.to_owned())
+    }
+}
+
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Compare(phase) => write!(f, "compare_{phase}"),
+            Self::Leg(phase) => write!(f, "leg_{phase}"),
+            Self::Probe(name) => f.write_str(name),
+        }
+    }
+}
+
+/// What a step tells people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Told {
+    /// The EMF of a phase, words of voltage.
+    Emf(Phase),
+    /// The speed, electrical angle per tick.
+    Speed,
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Emf(phase) => write!(f, "e_{phase}"),
+            Self::Speed => f.write_str("speed"),
+        }
+    }
+}
+
+/// What a word of the set-point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Demand {
+    /// The current, as a voltage; the greatest one, where a speed is demanded.
+    Current,
+    /// The speed.
+    Speed,
+    /// The bus voltage that is told.
+    Bus,
+    /// The ratio of nominal to told bus voltage.
+    BusRatio,
+}
+
+impl Demand {
+    /// The words of a bus voltage, in their order.
+    pub const OF_BUS: [Self; 2] = [Self::Bus, Self::BusRatio];
+}
+
+/// What a function outside of the step sets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Setter {
+    /// The current, in amperes.
+    Current,
+    /// The current, by its torque in newton metres.
+    Torque,
+    /// The speed, in rpm.
+    Speed,
+    /// The bus voltage, as an ADC count.
+    Bus,
+}
+
+impl Setter {
+    /// The name of the function.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Current => "set_current",
+            Self::Torque => "set_torque",
+            Self::Speed => "set_speed",
+            Self::Bus => "set_bus",
+        }
+    }
+}
