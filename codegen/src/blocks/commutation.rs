@@ -81,9 +81,7 @@ impl<'b> CommutationRule<'b> {
         [sector, kept, direction, set_point]: [Expr<'b>; 4],
         currents: Phases<'b, 3>,
     ) -> Commutation<'b> {
-        let doc = "Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.";
-        let phases = std::iter::once(0).chain(OFF_PHASE).collect();
-        let phases = l.b.column("sector", "off_phase", phases, doc);
+        let phases = off_phases(l);
         let shares = outgoing_shares(l);
         l.b.stage(
             "detect_commutation",
@@ -136,6 +134,12 @@ impl<'b> CommutationRule<'b> {
             outgoing: outgoing_phase,
         }
     }
+}
+
+fn off_phases<'b>(l: &Lowering<'b>) -> Lut<'b> {
+    let doc = "Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.";
+    let phases = std::iter::once(0).chain(OFF_PHASE).collect();
+    l.b.column("sector", "off_phase", phases, doc)
 }
 
 /// The outgoing current as a sum of those of phases a and b, c being their sum's negative.

@@ -159,6 +159,35 @@ pub fn sense_direction<'b>(
     (direction_next, kept)
 }
 
+/// The last six intervals with the new one in front; the first one in a direction fills all of them.
+fn passed_on<'b>(
+    old: [Expr<'b>; 6],
+    interval: Expr<'b>,
+    [again, fill]: [Flag<'b>; 2],
+) -> [Expr<'b>; 6] {
+    std::array::from_fn(|k| {
+        let seen = match k {
+            0 => again.choose(interval, old[0]),
+            _ => fill.choose(interval, again.choose(old[k - 1], old[k])),
+        };
+        seen.named(&format!("{}_seen", INTERVALS[k]))
+    })
+}
+
+/// Ticks of an electrical turn: the sum of its six intervals, and what their whole ticks lack.
+fn turn<'b>(l: &Lowering<'b>, [first, others @ ..]: [Expr<'b>; 6]) -> Expr<'b> {
+    let sum = others
+        .into_iter()
+        .fold(first, |sum, interval| sum + interval);
+    match PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest {
+        0 => sum,
+        rest => {
+            let doc = "Ticks that six intervals lack in a turn, each counted with whole ticks per control period.";
+            sum + l.number("turn_rest", rest, doc)
+        }
+    }
+}
+
 impl<'b> RotorWords<'b> {
     /// Declares the rotor tracker's state words.
     pub fn new(l: &Lowering<'b>) -> Self {
@@ -214,17 +243,18 @@ impl<'b> RotorWords<'b> {
     ) -> Rotor<'b> {
         let meaning = "electrical angle, base one turn; speed per tick";
         l.format("omega", 32, 32, Rounding::Floor, meaning);
-        let edges = self.measure_speed(l, hall, hall_ticks);
+        let ages = self.time_since_edge(l, hall, hall_ticks);
+        let edges = self.measure_speed(l, hall, ages);
         self.interpolate(l, hall, &edges)
     }
 
-    /// Time since the last edge, and at an edge the speed.
-    fn measure_speed(
+    /// Time since the last edge: counted on, and as the sample has it.
+    fn time_since_edge(
         &self,
         l: &Lowering<'b>,
         hall: &Hall<'b>,
         hall_ticks: Option<Expr<'b>>,
-    ) -> Edges<'b> {
+    ) -> [Expr<'b>; 2] {
         let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
         let doc = match l.spec.inverter.hall_capture {
             HallCapture::Sampled => "Time since the last Hall edge, in half periods.",
@@ -233,13 +263,23 @@ impl<'b> RotorWords<'b> {
             }
         };
         l.b.stage("age_edge", &[doc]);
-        let old = self.direction.read();
-        let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
-        let intervals = self.intervals.map(Memory::read);
         named! {
             let age_before = self.age_prev.read() + ticks.number(l);
             let age = age(l, hall, age_before, hall_ticks);
         }
+        [age_before, age]
+    }
+
+    /// The speed, measured at an edge; `age_before` and `age` are of [`Self::time_since_edge`].
+    fn measure_speed(
+        &self,
+        l: &Lowering<'b>,
+        hall: &Hall<'b>,
+        [age_before, age]: [Expr<'b>; 2],
+    ) -> Edges<'b> {
+        let old = self.direction.read();
+        let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
+        let intervals = self.intervals.map(Memory::read);
         l.b.guarded_stage(
             "measure_speed",
             hall.edge,
@@ -261,24 +301,11 @@ impl<'b> RotorWords<'b> {
             let edges_counted = step_ok.choose(again.choose(2, 1), 0);
             let fill = again & edges.is(1);
         }
-        let seen: [Expr<'b>; 6] = std::array::from_fn(|k| {
-            let before = if k == 0 { interval } else { intervals[k - 1] };
-            let moved = again.choose(before, intervals[k]);
-            let seen = if k == 0 {
-                moved
-            } else {
-                fill.choose(interval, moved)
-            };
-            seen.named(&format!("{}_seen", INTERVALS[k]))
-        });
-        let sum = seen.into_iter().reduce(|sum, interval| sum + interval);
-        let sum = sum.unwrap_or(interval);
-        let doc = "Ticks that six intervals lack in a turn, each counted with whole ticks per control period.";
-        let rest = (ticks.turn_rest > 0).then(|| l.number("turn_rest", ticks.turn_rest, doc));
-        let doc = "Ticks of an electrical turn at the greatest speed.";
+        let seen = passed_on(intervals, interval, [again, fill]);
         named! {
-            let rev_seen = rest.map_or(sum, |rest| sum + rest);
+            let rev_seen = turn(l, seen);
         }
+        let doc = "Ticks of an electrical turn at the greatest speed.";
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over();
         named! {
@@ -293,17 +320,22 @@ impl<'b> RotorWords<'b> {
         self.direction.set(direction);
         self.age_prev.set(age);
         self.rev.set(rev);
-        for (k, word) in self.intervals.into_iter().enumerate() {
-            let name = format!("{}_next", INTERVALS[k]);
-            let [next] = l.b.join([(&*name, seen[k], intervals[k])]);
-            word.set(next);
-        }
+        self.keep_intervals(l, seen, intervals);
         Edges {
             direction,
             counted,
             rev,
             omega,
             age,
+        }
+    }
+
+    /// Joins the intervals behind the open guarded stage, and keeps them.
+    fn keep_intervals(&self, l: &Lowering<'b>, seen: [Expr<'b>; 6], old: [Expr<'b>; 6]) {
+        for (k, word) in self.intervals.into_iter().enumerate() {
+            let name = format!("{}_next", INTERVALS[k]);
+            let [next] = l.b.join([(&*name, seen[k], old[k])]);
+            word.set(next);
         }
     }
 

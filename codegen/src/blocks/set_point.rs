@@ -52,6 +52,54 @@ impl Gain {
             formula: "K = 1/b",
         }
     }
+
+    /// Words of voltage per bit of a current.
+    fn of_current(self, l: &Lowering<'_>) -> Coefficient {
+        let Self {
+            value: stiffness,
+            symbol,
+            formula,
+        } = self;
+        let current = stiffness * l.scale.voltage() / 65536.0;
+        l.scaled_coefficient(
+            "k_set",
+            current,
+            32,
+            [
+                &format!("Set-point in amperes (16 fraction bits) to words of voltage: {formula}."),
+                &format!("{symbol} = {}", engineering(stiffness, "V/A")),
+            ],
+            [
+                &format!("{symbol}/w 2^(f_v - 16)"),
+                "words of voltage per bit of the set-point, 2^-16 A",
+            ],
+        )
+    }
+
+    /// Words of voltage per bit of a torque.
+    fn of_torque(self, l: &Lowering<'_>) -> Coefficient {
+        let (symbol, k_t) = (self.symbol, l.spec.torque_constant());
+        let torque = self.value / k_t;
+        l.scaled_coefficient(
+            "k_torque",
+            torque * l.scale.voltage() / 65536.0,
+            32,
+            [
+                &format!(
+                    "Set-point in newton metres (16 fraction bits) to words of voltage: {symbol}/k_t."
+                ),
+                &format!(
+                    "{symbol}/k_t = {} with k_t = {}",
+                    engineering(torque, "V/Nm"),
+                    engineering(k_t, "Nm/A")
+                ),
+            ],
+            [
+                &format!("{symbol}/k_t/w 2^(f_v - 16)"),
+                "words of voltage per bit of the set-point, 2^-16 Nm",
+            ],
+        )
+    }
 }
 
 impl<'b> SetPointWords<'b> {
@@ -118,45 +166,7 @@ impl<'b> SetPointWords<'b> {
     /// Adds the functions that set the words: of the current, the torque and, where there are such, speed and bus.
     pub fn add_setters(&self, l: &Lowering<'b>) {
         let spec = l.spec;
-        let Gain {
-            value: stiffness,
-            symbol,
-            formula,
-        } = self.gain;
         let k_t = spec.torque_constant();
-        let current = stiffness * l.scale.voltage() / 65536.0;
-        let k_set = l.scaled_coefficient(
-            "k_set",
-            current,
-            32,
-            [
-                &format!("Set-point in amperes (16 fraction bits) to words of voltage: {formula}."),
-                &format!("{symbol} = {}", engineering(stiffness, "V/A")),
-            ],
-            [
-                &format!("{symbol}/w 2^(f_v - 16)"),
-                "words of voltage per bit of the set-point, 2^-16 A",
-            ],
-        );
-        let k_torque = l.scaled_coefficient(
-            "k_torque",
-            current / k_t,
-            32,
-            [
-                &format!(
-                    "Set-point in newton metres (16 fraction bits) to words of voltage: {symbol}/k_t."
-                ),
-                &format!(
-                    "{symbol}/k_t = {} with k_t = {}",
-                    engineering(stiffness / k_t, "V/Nm"),
-                    engineering(k_t, "Nm/A")
-                ),
-            ],
-            [
-                &format!("{symbol}/k_t/w 2^(f_v - 16)"),
-                "words of voltage per bit of the set-point, 2^-16 Nm",
-            ],
-        );
         let most = spec.inverter.max_current;
         let of_current = SetPoint {
             setter: Setter::Current,
@@ -165,7 +175,7 @@ impl<'b> SetPointWords<'b> {
             input: "Current set-point",
             limit: ("i_max_bits", most, "Largest set-point"),
             physical: engineering(most, "A"),
-            coefficient: k_set,
+            coefficient: self.gain.of_current(l),
         };
         let of_torque = SetPoint {
             setter: Setter::Torque,
@@ -174,7 +184,7 @@ impl<'b> SetPointWords<'b> {
             input: "Torque set-point",
             limit: ("t_max_bits", most * k_t, "Largest torque set-point"),
             physical: engineering(most * k_t, "Nm"),
-            coefficient: k_torque,
+            coefficient: self.gain.of_torque(l),
         };
         of_current.add(l, self.j);
         of_torque.add(l, self.j);

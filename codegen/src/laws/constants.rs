@@ -41,7 +41,7 @@ pub(super) fn constants(
 
 fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    vec![
+    let mut list = vec![
         integer(
             "POLE_PAIRS",
             "u32",
@@ -60,6 +60,35 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             i64::from(inverter.timer_period),
             "Compare value of 100 % duty: top of the centre-aligned timer.",
         ),
+    ];
+    list.extend(adc_constants(inverter));
+    list.extend([
+        fixed("V_BUS", inverter.v_bus, "V", "Nominal bus voltage"),
+        fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
+        fixed(
+            "I_TRIP",
+            inverter.trip_current,
+            "A",
+            "Trip level of the phase currents",
+        ),
+        fixed(
+            "TORQUE_CONSTANT",
+            spec.torque_constant(),
+            "Nm/A",
+            "Torque per ampere of set-point, k_t",
+        ),
+        integer(
+            "START_SPEED_RPM",
+            "u32",
+            start_rpm,
+            "Greatest speed of the rotor at which control may begin, at set-point 0 and a bus within its limits, rpm: no sampled current reaches the trip level. (Pre-charge shorts the windings.)",
+        ),
+    ]);
+    list
+}
+
+fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {
+    [
         integer(
             "ADC_BITS",
             "u32",
@@ -81,26 +110,6 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "u16",
             i64::from(inverter.adc_offset),
             "ADC count at zero current, where calibration has not told another.",
-        ),
-        fixed("V_BUS", inverter.v_bus, "V", "Nominal bus voltage"),
-        fixed("I_MAX", inverter.max_current, "A", "Largest set-point"),
-        fixed(
-            "I_TRIP",
-            inverter.trip_current,
-            "A",
-            "Trip level of the phase currents",
-        ),
-        fixed(
-            "TORQUE_CONSTANT",
-            spec.torque_constant(),
-            "Nm/A",
-            "Torque per ampere of set-point, k_t",
-        ),
-        integer(
-            "START_SPEED_RPM",
-            "u32",
-            start_rpm,
-            "Greatest speed of the rotor at which control may begin, at set-point 0 and a bus within its limits, rpm: no sampled current reaches the trip level. (Pre-charge shorts the windings.)",
         ),
     ]
 }

@@ -9,7 +9,7 @@ use crate::blocks::Scale;
 use crate::diagnostics::{engineering, frequency, rpm};
 use crate::interface::{Interface, Limits, OptionEntry, PublicConstant, Unit, Units};
 use crate::scaling::Scaled;
-use crate::spec::{HallCapture, InverterSpec, Rule, Spec};
+use crate::spec::{HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -80,15 +80,40 @@ fn options(spec: &Spec) -> Vec<OptionEntry> {
 }
 
 fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<String> {
-    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let motor = &spec.motor;
     let name = if motor.description.is_empty() {
         "BLDC motor".to_owned()
     } else {
         motor.description.clone()
     };
-    let mut doc = vec![
-        format!("{}: {name}.", law.title),
-        String::new(),
+    let mut doc = vec![format!("{}: {name}.", law.title), String::new()];
+    doc.extend(motor_and_inverter(spec));
+    if !law.notes.is_empty() {
+        doc.extend([String::new(), "# Method".to_owned(), String::new()]);
+        doc.extend(law.notes.iter().cloned());
+    }
+    if let Some(stable) = law.stable {
+        doc.extend([
+            format!(
+                "The loop is stable while the true inductance is {} of the stated one, and while the true resistance",
+                ratios(stable.inductance)
+            ),
+            format!("is {} (one off at a time).", ratios(stable.resistance)),
+        ]);
+    }
+    if let Some(speed) = spec.controller.common().speed {
+        doc.extend(speed_loop(speed, motor.pole_pairs));
+    }
+    doc.extend(accuracy_notes());
+    doc.extend(operation::wiring(spec));
+    doc.extend(operation::supervision(spec, design));
+    doc
+}
+
+/// The machine and its inverter.
+fn motor_and_inverter(spec: &Spec) -> [String; 2] {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    [
         format!(
             "Motor: {} pole pair{}, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
             motor.pole_pairs,
@@ -109,22 +134,12 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<Str
             engineering(inverter.adc_gain, "A"),
             engineering(inverter.trip_current, "A"),
         ),
-    ];
-    if !law.notes.is_empty() {
-        doc.extend([String::new(), "# Method".to_owned(), String::new()]);
-        doc.extend(law.notes.iter().cloned());
-    }
-    if let Some(stable) = law.stable {
-        doc.extend([
-            format!(
-                "The loop is stable while the true inductance is {} of the stated one, and while the true resistance",
-                ratios(stable.inductance)
-            ),
-            format!("is {} (one off at a time).", ratios(stable.resistance)),
-        ]);
-    }
-    if let Some(speed) = spec.controller.common().speed {
-        doc.extend([
+    ]
+}
+
+/// The regulator of the speed.
+fn speed_loop(speed: SpeedLoop, pole_pairs: u32) -> [String; 8] {
+    [
             String::new(),
             "# Speed loop".to_owned(),
             String::new(),
@@ -138,14 +153,9 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<Str
             "reach it overshoots by 13.5 %, unless the set-point is a ramp. The speed is the mean of the last electrical turn: below".to_owned(),
             format!(
                 "{}, four turns in the time 1/f, the mean comes too late for the loop, and the speed swings around the set-point.",
-                rpm(4.0 * speed.bandwidth / f64::from(motor.pole_pairs) * TAU)
+                rpm(4.0 * speed.bandwidth / f64::from(pole_pairs) * TAU)
             ),
-        ]);
-    }
-    doc.extend(accuracy_notes());
-    doc.extend(operation::wiring(spec));
-    doc.extend(operation::supervision(spec, design));
-    doc
+        ]
 }
 
 /// What a controller was made of.

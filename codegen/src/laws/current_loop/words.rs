@@ -41,6 +41,9 @@ pub enum EmfUse {
     Deadbeat,
 }
 
+/// Numbers of a leg: 1 a, 2 b, 3 c, 0 none.
+const LEGS: Interval = Interval { low: 0, high: 3 };
+
 /// State words of the shared step.
 pub struct Words<'b> {
     /// Sector of the last sample, where anything follows the edges.
@@ -95,68 +98,62 @@ impl<'b> CurrentLoop<'_, 'b> {
         } else {
             0
         };
-        let bus = l.bus_interval().high;
-        let volts = Interval::symmetric(bus);
-        let legs = Interval::new(0, 3);
+        let volts = Interval::symmetric(l.bus_interval().high);
         let is_delayed = options.delay == 1;
-        let sector_prev = (needs_rotor || needs.commutation).then(|| sector_word(l));
-        let rotor = needs_rotor.then(|| RotorWords::new(l));
-        let direction = (needs.commutation && !needs_rotor).then(|| direction_word(l));
-        let speed = options.speed.zip(set_point.speed);
-        let speed = speed
-            .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point.gain.value));
-        let pair = needs.commutation.then(|| {
-            let advances = options.advance > 0.0;
-            let (threshold, timeout) = (options.commutation_threshold, options.commutation_timeout);
-            CommutationRule::new(l, threshold, timeout, advances)
-        });
-        let i_prev = sees.then(|| {
-            let range = Interval::symmetric(l.current_span());
-            let doc = "Current of the last sample, words of current.";
-            l.memories(["i_a_prev", "i_b_prev"], range, doc)
-        });
         let needs_command = is_delayed && !needs.off_leg && !self.holds_emf();
-        let v_cmd = (needs_command && (needs.predicts() || sees)).then(|| {
-            let doc = "Limited voltage of the last step, applied during this period.";
-            l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
-        });
-        let t_cmd = (is_delayed && needs.off_leg).then(|| {
-            let doc = "Terminal voltage of the last step's command; of an off leg 0.";
-            let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"];
-            let terminals = terminals.map(|name| l.b.memory(name, 0, Interval::new(0, bus), doc));
-            let doc = "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.";
-            (terminals, l.b.memory("off_cmd", 0, legs, doc))
-        });
-        let v_prev = sees.then(|| {
-            let doc = "Voltage applied during the period that just ended.";
-            l.memories(["v_a_prev", "v_b_prev"], volts, doc)
-        });
-        let off_prev = (estimated && needs.off_leg).then(|| {
-            let doc = "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.";
-            l.b.memory("off_prev", 0, legs, doc)
-        });
-        let e_prev = (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
-            let range = Interval::symmetric(e_bound + e_moves);
-            let doc = "EMF that the last step expects of the period that it began.";
-            l.memories(["e_a_prev", "e_b_prev"], range, doc)
-        });
-        let integral = needs.integral.then(|| {
-            let doc = "What the modelled EMF lacks, words of voltage.";
-            l.memories(["integral_a", "integral_b"], volts, doc)
-        });
         Words {
-            sector_prev,
-            direction,
-            rotor,
-            speed,
-            pair,
-            i_prev,
-            v_cmd,
-            t_cmd,
-            v_prev,
-            off_prev,
-            e_prev,
-            integral,
+            sector_prev: (needs_rotor || needs.commutation).then(|| sector_word(l)),
+            rotor: needs_rotor.then(|| RotorWords::new(l)),
+            direction: (needs.commutation && !needs_rotor).then(|| direction_word(l)),
+            speed: options.speed.zip(set_point.speed).map(|(options, words)| {
+                SpeedRegulator::new(l, options, words, set_point.gain.value)
+            }),
+            pair: needs.commutation.then(|| self.commutation_rule()),
+            i_prev: sees.then(|| {
+                let range = Interval::symmetric(l.current_span());
+                let doc = "Current of the last sample, words of current.";
+                l.memories(["i_a_prev", "i_b_prev"], range, doc)
+            }),
+            v_cmd: (needs_command && (needs.predicts() || sees)).then(|| {
+                let doc = "Limited voltage of the last step, applied during this period.";
+                l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
+            }),
+            t_cmd: (is_delayed && needs.off_leg).then(|| self.terminal_words()),
+            v_prev: sees.then(|| {
+                let doc = "Voltage applied during the period that just ended.";
+                l.memories(["v_a_prev", "v_b_prev"], volts, doc)
+            }),
+            off_prev: (estimated && needs.off_leg).then(|| {
+                let doc =
+                    "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.";
+                l.b.memory("off_prev", 0, LEGS, doc)
+            }),
+            e_prev: (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
+                let range = Interval::symmetric(e_bound + e_moves);
+                let doc = "EMF that the last step expects of the period that it began.";
+                l.memories(["e_a_prev", "e_b_prev"], range, doc)
+            }),
+            integral: needs.integral.then(|| {
+                let doc = "What the modelled EMF lacks, words of voltage.";
+                l.memories(["integral_a", "integral_b"], volts, doc)
+            }),
         }
+    }
+
+    fn commutation_rule(&self) -> CommutationRule<'b> {
+        let options = self.options;
+        let (threshold, timeout) = (options.commutation_threshold, options.commutation_timeout);
+        CommutationRule::new(self.l, threshold, timeout, options.advance > 0.0)
+    }
+
+    /// Terminals of the last command, and the leg that it turns off.
+    fn terminal_words(&self) -> ([Memory<'b>; 3], Memory<'b>) {
+        let l = self.l;
+        let range = Interval::new(0, l.bus_interval().high);
+        let doc = "Terminal voltage of the last step's command; of an off leg 0.";
+        let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"];
+        let terminals = terminals.map(|name| l.b.memory(name, 0, range, doc));
+        let doc = "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.";
+        (terminals, l.b.memory("off_cmd", 0, LEGS, doc))
     }
 }

@@ -141,7 +141,7 @@ pub(super) fn nearest_physical<'b>(
     changes: Option<&Changes<'b>>,
     three_phase: Option<Candidate<'b>>,
 ) -> Expr<'b> {
-    let (bus, offsets) = (front.bus.volts, off_legs.offsets);
+    let bus = front.bus.volts;
     let rival = match three_phase {
         Some(_) => "the three-phase vector",
         None => "the zero vector",
@@ -160,37 +160,20 @@ pub(super) fn nearest_physical<'b>(
             Some(changes) => changes.better(pair, bus, u),
             None => along_better(pair, bus, u),
         };
-        let offset = offsets.0[pair.0];
+        let offset = off_legs.offsets.0[pair.0];
         let aside = offset - 6 * u.0[pair.0];
         let aside = aside.named(&format!("aside_{}", pair.letter()));
         let products = Products(vec![[offset, aside], [bus, better.score]]);
         (better.vector, products)
     });
     let (rival, mut rival_products) = match three_phase {
-        Some(three) if changes.is_some() => (three.vector, Products(vec![[bus, three.score]])),
-        Some(three) => {
-            named! {
-                let along_three = (bus << 2) - 12 * three.score;
-            }
-            (three.vector, Products(vec![[bus, along_three]]))
-        }
-        None => {
-            let (vector, is_off) = zero_of_pair(l, front.sector);
-            let aside = off_legs.zero(u, is_off);
-            let change = changes.map(|changes| [bus, changes.to_zero(is_off)]);
-            (
-                vector,
-                Products(std::iter::once(aside).chain(change).collect()),
-            )
-        }
+        Some(three) => three_phase_products(bus, three, changes.is_some()),
+        None => zero_products(l, off_legs, front, u, changes),
     };
-    let widths = pairs.iter().map(|(_, products)| products.bits());
-    let widest = widths.chain([rival_products.bits()]).max().unwrap_or(62);
-    // A product of n + m bits fits n + m - 1; the sum of two and one bit to spare make 31 at most.
-    let shift = widest.saturating_sub(31);
+    let of_pairs = pairs.iter_mut().map(|(_, products)| products);
+    let mut all: Vec<&mut Products<'b>> = of_pairs.chain([&mut rival_products]).collect();
+    let shift = shift_of_scores(&all);
     l.product_format("score", shift, "products of two voltages in scores");
-    let mut all: Vec<&mut Products<'b>> = pairs.iter_mut().map(|(_, products)| products).collect();
-    all.push(&mut rival_products);
     let left = as_upper_words(&mut all, shift);
     let scored = |vector, score: Option<Expr<'b>>, name: &str| {
         let score = score.unwrap_or(bus).named(name);
@@ -203,13 +186,48 @@ pub(super) fn nearest_physical<'b>(
         (scored(*vector, products.sum(left), &name), letter)
     });
     let best = candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
-    let mut score = rival_products.sum(left);
-    if three_phase.is_some() && changes.is_none() {
-        // V0 scores 0, the best three-phase vector less than that or V0 was taken.
-        score = score.map(|score| score.min(0));
-    }
+    // V0 scores 0, the best three-phase vector less than that or V0 was taken.
+    let is_negative = three_phase.is_some() && changes.is_none();
+    let score = rival_products.sum(left);
+    let score = score.map(|score| if is_negative { score.min(0) } else { score });
     let rival = scored(rival, score, "score_to_beat");
     best.map_or(rival.vector, |(best, _)| best.against(rival))
+}
+
+/// The shift with which the sum of two products fits a word, one bit to spare: a product of n + m bits fits n + m - 1.
+fn shift_of_scores(all: &[&mut Products<'_>]) -> u32 {
+    let widest = all.iter().map(|products| products.bits()).max();
+    widest.map_or(31, |bits| bits.saturating_sub(31))
+}
+
+/// The three-phase vector and the products of its score, which is one over the bus or the greatest phase voltage.
+fn three_phase_products<'b>(
+    bus: Expr<'b>,
+    three: Candidate<'b>,
+    is_over_bus: bool,
+) -> (Expr<'b>, Products<'b>) {
+    if is_over_bus {
+        return (three.vector, Products(vec![[bus, three.score]]));
+    }
+    named! {
+        let along_three = (bus << 2) - 12 * three.score;
+    }
+    (three.vector, Products(vec![[bus, along_three]]))
+}
+
+/// The zero vector of the sector's pair and the products of its score.
+fn zero_products<'b>(
+    l: &Lowering<'b>,
+    off_legs: &OffLegs<'b>,
+    front: &Front<'b>,
+    u: Phases<'b, 3>,
+    changes: Option<&Changes<'b>>,
+) -> (Expr<'b>, Products<'b>) {
+    let (vector, is_off) = zero_of_pair(l, front.sector);
+    let aside = off_legs.zero(u, is_off);
+    let change = changes.map(|changes| [front.bus.volts, changes.to_zero(is_off)]);
+    let products = std::iter::once(aside).chain(change);
+    (vector, Products(products.collect()))
 }
 
 /// The index of three flags: the sum of 1, 2 and 4.

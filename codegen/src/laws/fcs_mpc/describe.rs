@@ -16,21 +16,7 @@ pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -
         "One voltage vector per period: the"
     };
     if options.horizon == 2 {
-        let (sequences, first) = match options.candidates {
-            Candidates::ThreePhase => (49, 7),
-            _ => (169, 13),
-        };
-        return Description {
-            title: TITLE,
-            notes: vec![
-                format!("One voltage vector per period: the first of the best of {sequences} sequences of two, by the predicted errors"),
-                "|i_ref - i(k+2)|^2 + |i_ref - i(k+3)|^2. What the second vector leaves is told by geometry, so that the step".to_owned(),
-                format!("compares {first} scores."),
-                format!("One three-phase vector moves the current by at most {} per period.", engineering(stride, "A")),
-            ],
-            stable: None,
-            constants: vec![],
-        };
+        return two_steps(options, stride);
     }
     let mut notes = vec![
         format!(
@@ -74,4 +60,23 @@ pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -
         stable: None,
         constants: vec![],
     }
+}
+
+/// Of two periods ahead.
+fn two_steps(options: &FcsMpcSpec, stride: f64) -> Description {
+    let (sequences, first) = match options.candidates {
+        Candidates::ThreePhase => (49, 7),
+        _ => (169, 13),
+    };
+    Description {
+            title: TITLE,
+            notes: vec![
+                format!("One voltage vector per period: the first of the best of {sequences} sequences of two, by the predicted errors"),
+                "|i_ref - i(k+2)|^2 + |i_ref - i(k+3)|^2. What the second vector leaves is told by geometry, so that the step".to_owned(),
+                format!("compares {first} scores."),
+                format!("One three-phase vector moves the current by at most {} per period.", engineering(stride, "A")),
+            ],
+            stable: None,
+            constants: vec![],
+        }
 }

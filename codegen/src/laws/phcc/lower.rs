@@ -11,7 +11,7 @@ use crate::ir::{Expr, Flag, Interval, Memory, Named, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
 use crate::laws::whole_vectors::{Choices, Numbers, WISHES};
 use crate::scaling::Lowered;
-use crate::spec::{PhccCandidates, PhccSpec, Spec};
+use crate::spec::{EmfShape, PhccCandidates, PhccSpec, Spec};
 
 /// Lowers the controller at a scale.
 pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
@@ -214,17 +214,11 @@ impl<'b> Axis<'b> {
     }
 }
 
-/// The vector that the switching table holds for sector, commutation and wishes, as a number.
-fn look_up<'b>(
-    l: &Lowering<'b>,
-    options: &PhccSpec,
-    front: &Front<'b>,
-    [alpha, beta]: [Flag<'b>; 2],
-    numbers: Numbers,
-) -> Expr<'b> {
-    let sets = switching_table(options, l.spec.motor.emf_shape);
+/// Entries of the switching table, as the numbers that the law works with.
+fn entries(options: &PhccSpec, shape: EmfShape, numbers: Numbers) -> Vec<i32> {
+    let sets = switching_table(options, shape);
     // Direction unknown, forward, none, backward (the index wraps); then a set-point of 0 and more, and one below.
-    let table = [
+    [
         [BRAKING_FORWARD; 2],
         [MOTORING_FORWARD, BRAKING_FORWARD],
         [BRAKING_FORWARD; 2],
@@ -243,7 +237,18 @@ fn look_up<'b>(
             _ => vectors,
         }
     })
-    .collect();
+    .collect()
+}
+
+/// The vector that the switching table holds for sector, commutation and wishes, as a number.
+fn look_up<'b>(
+    l: &Lowering<'b>,
+    options: &PhccSpec,
+    front: &Front<'b>,
+    [alpha, beta]: [Flag<'b>; 2],
+    numbers: Numbers,
+) -> Expr<'b> {
+    let entries = entries(options, l.spec.motor.emf_shape, numbers);
     let (what, name) = match numbers {
         Numbers::Choices(_) => (
             "4 vector + 2 if beta shall fall + 1 if alpha shall",
@@ -253,7 +258,7 @@ fn look_up<'b>(
     };
     let table = l.b.table(
         "switching",
-        table,
+        entries,
         &[
             format!("{what}, by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,"),
             "4 if it commutates, 2 if beta shall fall, 1 if alpha shall.".to_owned(),
