@@ -1,6 +1,7 @@
 //! The bit-for-bit test from arbitrary states: states with the model's answers, recorded once and
 //! compared with any number of subjects.
 
+use crate::set::Set;
 use crate::states::States;
 use hexagen::{Fault, Legs, Sample};
 use hexagen_codegen::pipeline::Generated;
@@ -23,49 +24,6 @@ pub struct Case {
     words: Vec<i32>,
     sample: Sample,
     answers: [Answer; STEPS_PER_STATE],
-}
-
-/// What firmware tells a drive from outside the step.
-#[derive(Clone, Copy, Debug)]
-pub struct Set {
-    /// Set-point, bits of an `I16F16`.
-    pub bits: i32,
-    /// It is a torque, else a current.
-    pub is_torque: bool,
-    /// Bus voltage, ADC counts, where it is measured.
-    pub bus: Option<u16>,
-    /// Speed, bits of an `I16F16` in rpm, where it is regulated.
-    pub speed: Option<i32>,
-}
-
-impl Set {
-    fn tell(self, model: &mut BitTrue) {
-        if let Some(counts) = self.bus {
-            model.set_bus(counts);
-        }
-        if let Some(bits) = self.speed {
-            model.set_speed(bits);
-        }
-        if self.is_torque {
-            model.set_torque(self.bits);
-        } else {
-            model.set_current(self.bits);
-        }
-    }
-
-    fn apply<S: Subject>(self, subject: &mut S) {
-        if let Some(counts) = self.bus {
-            subject.set_bus(counts);
-        }
-        if let Some(bits) = self.speed {
-            subject.set_speed(bits);
-        }
-        if self.is_torque {
-            subject.set_torque(self.bits);
-        } else {
-            subject.set_current(self.bits);
-        }
-    }
 }
 
 /// What a step leaves behind.

@@ -3,7 +3,7 @@
 //!
 //! The program says where its comparisons are; what it computes there is told by the model.
 
-use crate::cases::Set;
+use crate::set::Set;
 use hexagen::{Limits, Sample, Supervisor};
 use hexagen_codegen::ir::{Machine, Op, Output, Program, Setter, Value};
 use hexagen_lab::Inputs;

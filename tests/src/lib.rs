@@ -17,6 +17,7 @@ pub mod mutation;
 pub mod options;
 pub mod pairwise;
 pub mod proof;
+pub mod set;
 pub mod states;
 
 /// The README's examples, which the documentation tests of this crate run.

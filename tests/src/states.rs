@@ -5,9 +5,9 @@
 //! own constants and their neighbours, so that comparisons are met at equality. Half of the states
 //! is moved to an edge: to one side of where the step's result jumps.
 
-use crate::cases::Set;
 use crate::edges::{self, Watched};
 use crate::equality::{Comparisons, seek_zero};
+use crate::set::Set;
 use fastrand::Rng;
 use hexagen::{Limits, Sample, Supervisor};
 use hexagen_codegen::pipeline::Generated;

@@ -6,6 +6,7 @@
 
 mod compile_time;
 mod packages;
+mod step;
 mod steps;
 
 use clap::{Parser, Subcommand};
@@ -78,7 +79,7 @@ fn main() -> ExitCode {
         Command::Commands(forwarded) => steps::run(&[steps::bench("commands", &forwarded.options)]),
         Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
-        Command::CompileTime => compile_time::measure(steps::root()),
+        Command::CompileTime => compile_time::measure(step::root()),
         Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),
     };
     match outcome {

@@ -1,6 +1,6 @@
 //! What users take from a registry: every crate of the workspace that does not say `publish = false`.
 
-use crate::steps::{Step, root, step};
+use crate::step::{Step, root, step};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};

@@ -1,32 +1,10 @@
 //! The steps of each task: cargo commands with what they need.
 
 use crate::packages;
+use crate::step::{Step, root, step};
 use std::env;
-use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
-
-/// One cargo command.
-pub struct Step {
-    name: &'static str,
-    pub arguments: Vec<String>,
-    pub environment: Vec<(&'static str, &'static str)>,
-    /// A cargo subcommand that must be installed, and how to get it.
-    needs: Option<(&'static str, &'static str)>,
-}
-
-pub fn step(name: &'static str, arguments: &[&str]) -> Step {
-    let arguments = arguments
-        .iter()
-        .map(|&argument| argument.to_owned())
-        .collect();
-    Step {
-        name,
-        arguments,
-        environment: vec![],
-        needs: None,
-    }
-}
 
 /// All checks of a push.
 ///
@@ -282,14 +260,6 @@ pub fn refresh() -> Vec<Step> {
         },
         on_target("cost", &["--accept"]),
     ]
-}
-
-/// The repository.
-pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .unwrap_or(Path::new("."))
 }
 
 /// Runs the steps in order; stops at the first that fails.

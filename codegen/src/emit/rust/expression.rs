@@ -1,20 +1,11 @@
 //! Expressions as Rust, with the parentheses that grammar and readers need.
 
 use super::super::expression::{Expression, Operator, Primitive, Scope};
-use super::super::signal::{Leg, Shape};
-use super::names::{loaded, number, screaming, snake, stored};
+use super::super::signal::Shape;
+use super::names::{leg_state, loaded, number, screaming, snake, stored};
 use super::source::{Source, quote};
 use super::tables::look_up;
 use crate::ir::{Program, Value, Word};
-
-/// The state of a leg by its name.
-pub(super) fn leg_state(leg: Leg) -> Source {
-    match leg {
-        Leg::Pulsed => quote!(LegState::Pulsed),
-        Leg::Low => quote!(LegState::Low),
-        Leg::Off => quote!(LegState::Off),
-    }
-}
 
 /// Values as Rust, seen from a place.
 pub(super) trait RustScope {

@@ -4,8 +4,7 @@
 //! Emitted code uses short names: `Word`, `Legs`, `Drive`. A motor may be called like that, too;
 //! then its type has the name, and the other item is `HexagenWord` in this one place.
 
-use super::interface::fixed_type;
-use super::names::HELPERS;
+use super::names::{HELPERS, fixed_type};
 use super::source::{Source, quote};
 use proc_macro2::{Group, Ident, Spacing, TokenStream, TokenTree};
 use std::collections::HashSet;

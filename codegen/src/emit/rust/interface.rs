@@ -2,7 +2,7 @@
 
 use super::function::{SetterCode, StepCode};
 use super::imports::unsettled;
-use super::names::{doc, docs, number, raw_text, screaming, snake, storage_type};
+use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
 use crate::interface::{
     FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, Unit,
@@ -247,10 +247,4 @@ fn public_constant(constant: &PublicConstant) -> Source {
         PublicValue::Text(text) => (quote!(&'static str), quote!(#text)),
     };
     quote!(#doc pub const #name: #kind = #value;)
-}
-
-/// The `fixed` type of 32 bits with so many fraction bits.
-pub(super) fn fixed_type(frac_bits: u32) -> Source {
-    let integer_bits = 32_u32.saturating_sub(frac_bits);
-    Source::of(format!("I{integer_bits}F{frac_bits}"))
 }

@@ -2,6 +2,7 @@
 
 use super::super::comment::comments;
 use super::source::{Source, quote};
+use crate::emit::signal::Leg;
 use crate::ir::Word;
 use std::collections::HashSet;
 
@@ -197,6 +198,21 @@ fn raw_text_length(code: &str) -> usize {
     let end = format!("\"{hashes}");
     let length = inside[1..].find(&end).unwrap_or(0);
     hashes.len() + 1 + length + end.len()
+}
+
+/// The state of a leg by its name.
+pub(super) fn leg_state(leg: Leg) -> Source {
+    match leg {
+        Leg::Pulsed => quote!(LegState::Pulsed),
+        Leg::Low => quote!(LegState::Low),
+        Leg::Off => quote!(LegState::Off),
+    }
+}
+
+/// The `fixed` type of 32 bits with so many fraction bits.
+pub(super) fn fixed_type(frac_bits: u32) -> Source {
+    let integer_bits = 32_u32.saturating_sub(frac_bits);
+    Source::of(format!("I{integer_bits}F{frac_bits}"))
 }
 
 #[cfg(test)]

@@ -2,9 +2,8 @@
 //!
 //! One address then leads to all entries of a row, where tables of their own would each need theirs.
 
-use super::expression::leg_state;
 use super::groups::array;
-use super::names::{camel, docs, number, screaming, snake};
+use super::names::{camel, docs, leg_state, number, screaming, snake};
 use super::source::{Source, quote};
 use crate::emit::rows::{WholeCommand, columns, padding, row_of, size};
 use crate::emit::signal::Leg;

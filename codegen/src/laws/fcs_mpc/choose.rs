@@ -4,12 +4,12 @@
 //! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
 //! the sign of a line voltage, so three scores remain.
 
+use super::changes::Changes;
 use super::off_legs::OffLegs;
 use super::score::{
     Candidate, PAIRS, Pair, Products, as_upper_words, state_exact_scores, state_score,
     zero_of_pair, zero_vector,
 };
-use super::weighted::Changes;
 use crate::blocks::Lowering;
 use crate::ir::{Expr, Flag, Named, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, Front};

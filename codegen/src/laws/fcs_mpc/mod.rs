@@ -1,5 +1,6 @@
 #![doc = include_str!("semantics.md")]
 
+mod changes;
 mod choose;
 mod describe;
 mod divide;

@@ -1,8 +1,8 @@
 //! The weight of the torque's error: it couples the legs, so that the list of vectors is enumerated (semantics, step 10w).
 
+use super::changes::Changes;
 use super::off_legs::OffLegs;
 use super::score::{Candidate, Products, state_score, zero_of_pair};
-use super::weighted::Changes;
 use crate::blocks::Lowering;
 use crate::ir::{Coefficient, Expr, Flag, Named, Phases, named, pick};
 use crate::laws::current_loop::Front;

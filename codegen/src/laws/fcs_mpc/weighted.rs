@@ -4,19 +4,15 @@
 //! hysteresis, and of two pair vectors with the same leg off the better one is told exactly. The weight of the torque
 //! couples the legs: its list is enumerated ([`super::torque`]).
 
+use super::changes::Changes;
 use super::choose::nearest_physical;
 use super::off_legs::OffLegs;
-use super::score::{Candidate, PAIRS, Pair, state_score_over_bus, zero_of_pair};
+use super::score::{Candidate, PAIRS, state_score_over_bus, zero_of_pair};
 use super::torque::Weighing;
 use crate::blocks::Lowering;
-use crate::diagnostics::engineering;
-use crate::ir::{Expr, Flag, Memory, Named, Phases, named, pick};
+use crate::ir::{Expr, Memory, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, Front};
-use crate::laws::whole_vectors::vector_legs;
 use crate::spec::{Candidates, FcsMpcSpec};
-
-/// What the change of each leg to high, low and off costs, in multiples of the bus.
-pub(super) struct Changes<'b>([[Expr<'b>; 3]; 3]);
 
 impl<'b> CurrentLoop<'_, 'b> {
     /// The allowed vector of least weighted cost.
@@ -59,52 +55,6 @@ impl<'b> CurrentLoop<'_, 'b> {
 }
 
 impl<'b> Changes<'b> {
-    /// Looks up what the changes cost: `volts` each, in multiples of the bus.
-    fn new(l: &Lowering<'b>, memory: Memory<'b>, volts: f64, weight: f64) -> Self {
-        let doc =
-            "What it costs to turn each leg high, low and off, by the vector of the last step.";
-        l.b.stage("cost_of_changes", &[doc]);
-        let cost = l.volts_word(volts);
-        if i32::try_from(cost).is_err() {
-            l.misfit("switching_weight");
-        }
-        let doc = format!(
-            "by the vector of the last step: 0, or 9 (K {})^2/v_bus = {} in scores over the bus, words of voltage.",
-            engineering(weight, "A"),
-            engineering(volts, "V")
-        );
-        let last = memory.read();
-        Self([0, 1, 2].map(|x| {
-            let phase = ["a", "b", "c"][x];
-            [("high", 1), ("low", -1), ("off", 0)].map(|(state, sign)| {
-                let name = format!("change_to_{state}_{phase}");
-                let costs = vector_legs().map(|legs| if legs[x] == sign { 0 } else { cost as i32 });
-                let doc = format!("What turning leg {phase} {state} costs {doc}");
-                let found = l.b.table(&name, costs.to_vec(), &[doc]).at(last);
-                found.named(&format!("to_{state}_{phase}"))
-            })
-        }))
-    }
-
-    /// What it costs to go to a vector.
-    pub(super) fn to(&self, number: usize) -> Expr<'b> {
-        let legs = vector_legs()[number];
-        let own = |x: usize| match legs[x] {
-            1 => self.0[x][0],
-            -1 => self.0[x][1],
-            _ => self.0[x][2],
-        };
-        own(0) + own(1) + own(2)
-    }
-
-    /// What it costs to go to the zero vector of the sector's pair; flags: leg a, leg b is off in it.
-    pub(super) fn to_zero(&self, is_off: [Flag<'b>; 2]) -> Expr<'b> {
-        named! {
-            let change_to_zero = pick(is_off, [13, 14, 15].map(|number| self.to(number)));
-        }
-        change_to_zero
-    }
-
     /// The folded choice, with a weight of switching alone.
     fn fewest(
         &self,
@@ -170,22 +120,6 @@ impl<'b> Changes<'b> {
         Candidate {
             vector: vector_three,
             score: along_three,
-        }
-    }
-
-    /// Of the two vectors that leave one leg off, the one of the lesser score over the bus, and that score.
-    pub(super) fn better(&self, pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b> {
-        let letter = pair.letter();
-        let six = (6 * pair.line(u)).named(&format!("line_{letter}"));
-        let [first, second] = pair.numbers();
-        let forward = 3 * bus - six + self.to(first);
-        let forward = forward.named(&format!("forward_{letter}"));
-        let back = 3 * bus + six + self.to(second);
-        let back = back.named(&format!("back_{letter}"));
-        let vector = back.is_below(forward).choose(second as i32, first as i32);
-        Candidate {
-            vector: vector.named(&format!("pair_{letter}")),
-            score: forward.min(back).named(&format!("along_{letter}")),
         }
     }
 

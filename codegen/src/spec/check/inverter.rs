@@ -1,13 +1,11 @@
 //! The inverter's data: bus, timer, converters, currents and speeds.
 
-use super::motor::Motor;
 use super::reader::{Given, Reader};
-use super::{currents, relations};
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_least, at_most, engineering, rpm};
-use crate::spec::model::{period_within, periods};
+use crate::diagnostics::{Collector, at_least, at_most, engineering};
+use crate::spec::BusSource;
+use crate::spec::model::period_within;
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, ControllerSpec, HallCapture, InverterSpec};
 
 /// The inverter as far as it could be read.
 pub(super) struct Inverter<'a> {
@@ -56,9 +54,6 @@ const OFFSET_TOLERANCE: f64 = 0.05;
 /// of the bus that is measured: half a count off is then less than the 1 % of a voltage divider's
 /// resistors.
 const COARSEST_BUS: f64 = 0.01;
-
-/// Pre-charge time where none is given, second.
-const PRECHARGE: f64 = 1e-3;
 
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<'a> {
     reader.require(errors, &["bus_voltage", "adc_bits"]);
@@ -307,92 +302,4 @@ impl Inverter<'_> {
             _ => limit,
         }
     }
-}
-
-/// Fills in the defaults that depend on motor and controller and checks what follows from them.
-/// None if something is missing or in error.
-pub(super) fn finish(
-    reader: &Reader,
-    inverter: &Inverter,
-    motor: &Motor,
-    capture: Option<HallCapture>,
-    controller: Option<&ControllerSpec>,
-    errors: &mut Collector,
-) -> Option<InverterSpec> {
-    let adc = inverter.adc.as_ref();
-    let rated = motor.rated_current.as_ref();
-    let currents =
-        adc.and_then(|adc| currents::finish(reader, inverter, adc, motor, controller, errors));
-    let speeds = motor.rated_speed.as_ref().map(|rated| {
-        let minimum = inverter
-            .minimum_speed
-            .as_ref()
-            .map_or(0.02 * rated.si, |given| given.si);
-        let maximum = inverter
-            .maximum_speed
-            .as_ref()
-            .map_or(1.5 * rated.si, |given| given.si);
-        let minimum_part = reader.part("minimum_speed", || rpm(minimum));
-        let maximum_part = reader.part("maximum_speed", || rpm(maximum));
-        relations::check_speeds(
-            inverter,
-            motor,
-            capture,
-            (minimum, &minimum_part),
-            (maximum, &maximum_part),
-            errors,
-        );
-        (minimum, maximum)
-    });
-    let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
-        (inverter.t_s?, adc?, currents?, speeds?);
-    rated?;
-    let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
-    if let Some(given) = &inverter.dead_time
-        && dead_time > 0.1 * t_s * (1.0 + 1e-9)
-    {
-        errors.push(catalogue::dead_time(&given.part, t_s));
-    }
-    Some(InverterSpec {
-        v_bus: inverter.v_bus.as_ref()?.si,
-        bus: inverter.bus?,
-        t_s,
-        timer_period: inverter.timer_period?,
-        dead_time,
-        adc_bits: adc.bits,
-        adc_gain: if adc.inverted { -adc.gain } else { adc.gain },
-        adc_offset: adc.offset,
-        offset_tolerance: adc.offset_tolerance,
-        trip_current,
-        max_current,
-        hall_capture: capture?,
-        minimum_speed,
-        maximum_speed,
-        stall_periods: inverter
-            .stall_timeout
-            .as_ref()
-            .map_or(0, |given| periods(given.si, t_s)),
-        calibration_log2: inverter.calibration_log2,
-        precharge_periods: finish_precharge(reader, inverter, t_s, errors),
-    })
-}
-
-fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {
-    let time = inverter
-        .precharge
-        .as_ref()
-        .map_or(PRECHARGE, |given| given.si);
-    let count = periods(time, t_s);
-    if count > 65535 {
-        let part = reader.part("precharge", || engineering(time, "s"));
-        let longest = engineering(at_most(65535.0 * t_s), "s");
-        errors.push(catalogue::out_of_limits(
-            &part.location,
-            "precharge",
-            &part.given,
-            "0 s",
-            &longest,
-        ));
-    }
-    count
 }

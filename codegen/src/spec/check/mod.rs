@@ -6,6 +6,7 @@
 mod consistency;
 mod controller;
 mod currents;
+mod finish;
 mod inverter;
 mod motor;
 mod origins;
@@ -40,7 +41,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
 
     consistency::check(&motor, &mut errors);
     relations::check(&motor_reader, &motor, &inverter, &mut errors);
-    let finished = inverter::finish(
+    let finished = finish::inverter(
         &inverter_reader,
         &inverter,
         &motor,

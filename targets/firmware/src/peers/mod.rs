@@ -6,6 +6,7 @@
 
 mod crates;
 mod naive;
+mod paper;
 mod real;
 
 pub use crates::{FocLoop, IdspLoop};

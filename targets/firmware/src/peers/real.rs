@@ -1,6 +1,6 @@
 //! Numbers of the naive controllers.
 
-use super::naive::{CORNERS, VECTORS};
+use super::paper::{CORNERS, VECTORS};
 use core::ops::{Add, Mul, Neg, Sub};
 use hexagen::fixed::types::I16F16;
 

@@ -11,6 +11,7 @@ mod emf;
 mod law;
 mod limit;
 mod motion;
+mod parts;
 mod physical;
 mod rotor;
 mod speed;
@@ -29,8 +30,9 @@ use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
+use parts::Part;
 use speed::Regulator;
-use state::{Part, State};
+use state::State;
 
 /// The bit-true controller of one drive, over any words.
 #[derive(Clone, Debug)]

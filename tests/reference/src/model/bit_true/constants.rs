@@ -1,6 +1,6 @@
 //! Coefficients and constants, rounded from the specification (section "Words").
 
-use super::state::{Part, Parts};
+use super::parts::{Part, Parts};
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};

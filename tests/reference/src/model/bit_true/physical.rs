@@ -2,7 +2,8 @@
 
 use super::constants::Constants;
 use super::law::phcc::in_due;
-use super::state::{Part, State};
+use super::parts::Part;
+use super::state::State;
 use super::{BitTrue, Signals};
 use crate::exact::{both, pow2};
 use crate::model::trace::{Past, PhysicalState, Trace};

@@ -1,6 +1,7 @@
 //! The state of the bit-true model, and its words in the order of `semantics.md`.
 
 use super::constants::Constants;
+use super::parts::{Part, Parts};
 use crate::exact::{Word, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
@@ -37,50 +38,6 @@ pub struct State<W: Word> {
 /// Number of a vector, 0 to 15.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Vector(pub usize);
-
-/// A group of state words that not every variant has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    Edges,
-    Direction,
-    Rotor,
-    Speed,
-    Commutation,
-    SectorInForce,
-    Sight,
-    VoltageCommand,
-    TerminalCommand,
-    OffMemory,
-    EmfMemory,
-    Integral,
-    PairIntegral,
-    Hysteresis,
-    VectorMemory,
-    Due,
-    Later,
-}
-
-/// The groups that a variant has.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Parts(u32);
-
-impl Parts {
-    /// Those of the groups whose condition is true.
-    pub fn new(groups: &[(Part, bool)]) -> Self {
-        Self(
-            groups
-                .iter()
-                .filter(|(_, present)| *present)
-                .fold(0, |set, (part, _)| set | 1 << *part as u8),
-        )
-    }
-
-    /// Whether the variant has the group.
-    #[inline]
-    pub fn has(self, part: Part) -> bool {
-        self.0 >> part as u8 & 1 != 0
-    }
-}
 
 /// A value that is kept as a state word.
 trait WordValue {

@@ -5,6 +5,7 @@ mod deadbeat;
 mod divided;
 mod fcs_mpc;
 mod held;
+mod off_leg;
 mod p_pwm;
 mod pdcc;
 mod phcc;

@@ -1,6 +1,6 @@
 //! Two vectors in one period: the point nearest to the demand on the line between them.
 
-use super::fcs_mpc::{TIE, floats, rail, with_off_leg};
+use super::off_leg::{TIE, floats, rail, with_off_leg};
 use super::{Command, Inputs, whole};
 use crate::FcsMpc;
 use crate::model::ideal::Duties;

@@ -1,0 +1,100 @@
+//! The inverter of a specification, out of what was read of it.
+
+use super::inverter::Inverter;
+use super::motor::Motor;
+use super::reader::Reader;
+use super::{currents, relations};
+use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
+use crate::spec::model::periods;
+use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
+
+/// Pre-charge time where none is given, second.
+const PRECHARGE: f64 = 1e-3;
+
+/// Fills in the defaults that depend on motor and controller and checks what follows from them.
+/// None if something is missing or in error.
+pub(super) fn inverter(
+    reader: &Reader,
+    inverter: &Inverter,
+    motor: &Motor,
+    capture: Option<HallCapture>,
+    controller: Option<&ControllerSpec>,
+    errors: &mut Collector,
+) -> Option<InverterSpec> {
+    let adc = inverter.adc.as_ref();
+    let rated = motor.rated_current.as_ref();
+    let currents =
+        adc.and_then(|adc| currents::finish(reader, inverter, adc, motor, controller, errors));
+    let speeds = motor.rated_speed.as_ref().map(|rated| {
+        let minimum = inverter
+            .minimum_speed
+            .as_ref()
+            .map_or(0.02 * rated.si, |given| given.si);
+        let maximum = inverter
+            .maximum_speed
+            .as_ref()
+            .map_or(1.5 * rated.si, |given| given.si);
+        let minimum_part = reader.part("minimum_speed", || rpm(minimum));
+        let maximum_part = reader.part("maximum_speed", || rpm(maximum));
+        relations::check_speeds(
+            inverter,
+            motor,
+            capture,
+            (minimum, &minimum_part),
+            (maximum, &maximum_part),
+            errors,
+        );
+        (minimum, maximum)
+    });
+    let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
+        (inverter.t_s?, adc?, currents?, speeds?);
+    rated?;
+    let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
+    if let Some(given) = &inverter.dead_time
+        && dead_time > 0.1 * t_s * (1.0 + 1e-9)
+    {
+        errors.push(catalogue::dead_time(&given.part, t_s));
+    }
+    Some(InverterSpec {
+        v_bus: inverter.v_bus.as_ref()?.si,
+        bus: inverter.bus?,
+        t_s,
+        timer_period: inverter.timer_period?,
+        dead_time,
+        adc_bits: adc.bits,
+        adc_gain: if adc.inverted { -adc.gain } else { adc.gain },
+        adc_offset: adc.offset,
+        offset_tolerance: adc.offset_tolerance,
+        trip_current,
+        max_current,
+        hall_capture: capture?,
+        minimum_speed,
+        maximum_speed,
+        stall_periods: inverter
+            .stall_timeout
+            .as_ref()
+            .map_or(0, |given| periods(given.si, t_s)),
+        calibration_log2: inverter.calibration_log2,
+        precharge_periods: finish_precharge(reader, inverter, t_s, errors),
+    })
+}
+
+fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {
+    let time = inverter
+        .precharge
+        .as_ref()
+        .map_or(PRECHARGE, |given| given.si);
+    let count = periods(time, t_s);
+    if count > 65535 {
+        let part = reader.part("precharge", || engineering(time, "s"));
+        let longest = engineering(at_most(65535.0 * t_s), "s");
+        errors.push(catalogue::out_of_limits(
+            &part.location,
+            "precharge",
+            &part.given,
+            "0 s",
+            &longest,
+        ));
+    }
+    count
+}
