@@ -69,7 +69,7 @@ enum BenchError {
     #[error("no stimulus: {0}")]
     Stimulus(String),
     #[error(transparent)]
-    Plant(#[from] hexagen_host::plant::PlantError),
+    Plant(#[from] hexagen_lab::plant::PlantError),
     #[error(transparent)]
     Io(#[from] std::io::Error),
     #[error("the ELF cannot be read: {0}")]

@@ -6,7 +6,7 @@ use crate::listing::Listed;
 use crate::targets::Target;
 use crate::vectors::{Answer, Vectors, drive_of, record};
 use hexagen_firmware::wire::{ANSWER, Mode, RECORD, STEP_RECORD, Task};
-use hexagen_host::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::time::Instant;

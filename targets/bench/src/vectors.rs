@@ -9,9 +9,9 @@ use crate::BenchError;
 use crate::listing::Listed;
 use hexagen::{Fault, Legs, Sample};
 use hexagen_firmware::wire::{BLOCK, Digest, Record, encode_outputs};
-use hexagen_host::closed_loop::{ClosedLoop, CurrentLoop, Delay};
-use hexagen_host::engine::{MotorSource, Prepared, plant_of, prepare};
-use hexagen_host::plant::{Plant, Truth};
+use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, Delay};
+use hexagen_lab::engine::{MotorSource, Prepared, plant_of, prepare};
+use hexagen_lab::plant::{Plant, Truth};
 use hexagen_reference::verify::{Action, Context, Stimulus, Subject};
 use std::f64::consts::TAU;
 

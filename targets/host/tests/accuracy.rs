@@ -6,7 +6,7 @@ use hexagen_codegen::ir::{StatedError, stated_errors};
 use hexagen_host::cli::PlantArguments;
 use hexagen_host::commands::accuracy::{OneStep, differences, one_step};
 use hexagen_host::commands::compare::at_speeds;
-use hexagen_host::engine::{MotorSource, Prepared, library, prepare};
+use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
 use rayon::prelude::*;
 
 /// Controllers that modulate.
@@ -65,9 +65,9 @@ fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
         let named = || format!("{}, {}", drive.motor, drive.variant);
         let measured = at_speeds(drive, &PlantArguments::default()).expect("runs");
         for (rpm, both) in &measured {
-            let [fixed, ideal] = [&both.fixed.merits, &both.ideal.merits];
-            for merit in differences(fixed, ideal, ideal) {
-                assert!(merit.close, "{}, {rpm} rpm: {merit:?}", named());
+            let [fixed, ideal] = [&both.fixed.figures, &both.ideal.figures];
+            for figure in differences(fixed, ideal, ideal) {
+                assert!(figure.close, "{}, {rpm} rpm: {figure:?}", named());
             }
         }
         let found = one_step(drive, measured.iter().map(|(_, both)| both)).0;

@@ -3,10 +3,10 @@
 mod page_support;
 mod report_support;
 
-use hexagen_host::closed_loop::{Cause, Held, LimitOutcome, Merits, Side, SpeedLimit, Trip};
 use hexagen_host::report::{
     Expectation, Expected, ExpectedPoint, ReportData, Variant, render, write,
 };
+use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -102,7 +102,7 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
     let mut data = DATA.clone();
     let variant = &mut data.variants[0];
     for point in variant.runs.iter_mut().map(|run| &mut run.points[0]) {
-        (point.merits, point.tripped) = (Merits::default(), Some(trip));
+        (point.figures, point.tripped) = (FiguresOfMerit::default(), Some(trip));
     }
     variant.records.remove(0);
     let limit = variant.runs[0].limit.as_mut().expect("was searched");

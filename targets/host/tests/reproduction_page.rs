@@ -2,11 +2,12 @@
 
 mod page_support;
 
-use hexagen_host::closed_loop::Merits;
-use hexagen_host::commands::reproduce::{Effort, READINGS, collect, summary};
+use hexagen_host::commands::reproduce::{Effort, collect, summary};
 use hexagen_host::report::reproduction::{
     Method, Reading, Reproduction, Verdict, distance_rms, render, write,
 };
+use hexagen_lab::READINGS;
+use hexagen_lab::closed_loop::FiguresOfMerit;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -86,9 +87,9 @@ fn printed_switching_row_trips_and_the_derived_one_does_not() {
     let phcc = &DATA.methods[Method::Phcc.index()];
     for (literal, corrected) in phcc.literal.points.iter().zip(&phcc.corrected.points) {
         let trip = literal.trip.expect("it loses its current");
-        assert!(trip.time_s > 0.0 && literal.merits == Merits::default());
+        assert!(trip.time_s > 0.0 && literal.figures == FiguresOfMerit::default());
         assert_eq!(corrected.trip, None);
-        let torque = corrected.merits.mean_torque_nm.expect("it runs");
+        let torque = corrected.figures.mean_torque_nm.expect("it runs");
         assert!((torque / DATA.torque - 1.0).abs() < 0.1);
     }
     assert_eq!(DATA.tables.printed[0], [0, 7, 12, 7, 0, 2, 1, 2]);

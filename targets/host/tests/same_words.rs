@@ -1,4 +1,4 @@
-//! Fixed and ideal runs on the same ADC words: every merit of every row of the result table that modulates,
+//! Fixed and ideal runs on the same ADC words: every figure of merit of every row of the result table that modulates,
 //! and, within 1 %, the mean torque of the others.
 //!
 //! A controller that applies one of a few vectors may decide a near tie either way, and the patterns differ from
@@ -6,8 +6,8 @@
 //! in the tests of `hexagen-reference`.
 
 use hexagen_host::commands::accuracy::{differences, side_by_side};
-use hexagen_host::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};
 use hexagen_host::report::design_table;
+use hexagen_lab::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};
 use std::f64::consts::TAU;
 
 const TORQUE: f64 = 3.3;
@@ -27,20 +27,20 @@ fn fixed_and_ideal_agree_in_every_merit_of_rows_that_modulate_and_in_the_torque_
             for rpm in [400.0, 1500.0] {
                 let run = run_of(&drive.spec, rpm * TAU / 60.0, TORQUE);
                 let both = side_by_side(&drive, &plant, &run, set_point).expect("runs");
-                let ideal = &both.ideal.merits;
+                let ideal = &both.ideal.figures;
                 let decides = !drive.spec.controller.modulates();
-                for merit in differences(&both.fixed.merits, ideal, ideal) {
-                    if decides && merit.merit != "mean torque" {
+                for figure in differences(&both.fixed.figures, ideal, ideal) {
+                    if decides && figure.figure != "mean torque" {
                         continue;
                     }
                     let most = if decides { 2.0 } else { 1.0 };
                     assert!(
-                        merit.of_allowance <= most,
-                        "{variant} at {rpm} rpm: {merit:?}"
+                        figure.of_allowance <= most,
+                        "{variant} at {rpm} rpm: {figure:?}"
                     );
                     compared += 1;
                 }
-                different += usize::from(both.fixed.merits != both.ideal.merits);
+                different += usize::from(both.fixed.figures != both.ideal.figures);
             }
         }
     }

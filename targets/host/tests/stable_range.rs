@@ -3,8 +3,8 @@
 
 use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_host::commands::stability::{run_off, sides};
-use hexagen_host::engine::{MotorSource, prepare};
 use hexagen_host::report::Outcome;
+use hexagen_lab::engine::{MotorSource, prepare};
 use rayon::prelude::*;
 
 /// Motors of different size, with Ts/L from 0.08 to 0.25 A/V and R Ts/L from 0.03 to 0.09.

@@ -232,7 +232,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
             environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
             ..step(
                 "all emitted C, checked and unchecked",
-                &["test", "--package", "hexagen-host", "--test", "c99"],
+                &["test", "--package", "hexagen-lab", "--test", "c99"],
             )
         },
         on_target("pil", &["--steps", "1000000"]),

@@ -13,7 +13,7 @@ use crate::BenchError;
 use crate::vectors::prepared;
 use counted::Counted;
 use expected::{Expected, difference};
-use hexagen_host::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 use rayon::prelude::*;
 use run::{Commands, in_full};
 

@@ -4,7 +4,7 @@ use crate::BenchError;
 use crate::vectors::{Called, OnHost, Stretch, Stretches};
 use hexagen::{LegState, Legs, Sample};
 use hexagen_firmware::wire::{Digest, Record};
-use hexagen_host::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 use std::fmt::Write as _;
 
 /// What a drive commanded.

@@ -7,8 +7,8 @@ use crate::firmware::Firmware;
 use crate::vectors::{Recorder, Stretch};
 use hexagen::{Legs, Sample};
 use hexagen_firmware::wire::{Mode, Record, Task};
-use hexagen_host::engine::Prepared;
-use hexagen_host::plant::Truth;
+use hexagen_lab::engine::Prepared;
+use hexagen_lab::plant::Truth;
 
 /// Steps of a stretch; its second half counts as settled.
 const STEPS: usize = 2000;

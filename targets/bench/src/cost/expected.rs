@@ -3,7 +3,7 @@
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_host::counted::{Counted, Figures};
+use hexagen_lab::counted::{Counted, Figures};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 //! entry to return, for the 660 W motor.
 
 use crate::targets::Target;
-use hexagen_host::counted::Figures;
+use hexagen_lab::counted::Figures;
 use std::fmt;
 
 /// A goal of one step; of what there is none, anything will do.

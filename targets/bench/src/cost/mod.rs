@@ -19,8 +19,8 @@ use elf::{Code, Image, Isa};
 use expected::Expected;
 use goals::goal;
 use hexagen_host::commands::reproduce::counted_readings;
-use hexagen_host::counted::{Counted, Figures};
-use hexagen_host::engine::{MotorSource, Prepared, prepare};
+use hexagen_lab::counted::{Counted, Figures};
+use hexagen_lab::engine::{MotorSource, Prepared, prepare};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

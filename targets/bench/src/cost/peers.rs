@@ -8,7 +8,7 @@ use crate::vectors::Answer;
 use hexagen::fixed::types::I16F16;
 use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Peer, Phcc, PiPwm};
 use hexagen_firmware::wire::{Mode, Task, encode_outputs};
-use hexagen_host::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 
 /// Steps of `foc` that are compared: the integral of its controllers has no limit, and in another's loop leaves its words
 /// some time after them, where a host that checks for it stops.

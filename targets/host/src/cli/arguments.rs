@@ -1,16 +1,16 @@
 //! The program's arguments, as clap reads them.
 
 use super::{Failure, quantity, tell_warnings, warn};
-use crate::closed_loop::RunOptions;
 use crate::commands::{
     compare, generate, limit, motors, prove, report, reproduce, simulate, verify,
 };
-use crate::engine::{
-    Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
-};
-use crate::plant::{Mechanics, PlantError, PlantParams};
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, SpecAst, option_help, parse_toml};
+use hexagen_lab::closed_loop::RunOptions;
+use hexagen_lab::engine::{
+    Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
+};
+use hexagen_lab::plant::{Mechanics, PlantError, PlantParams};
 use std::f64::consts::TAU;
 use std::str::FromStr;
 
@@ -320,6 +320,28 @@ impl PlantArguments {
     }
 }
 
+/// A model of a controller, as the command line names it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum ModelName {
+    /// The generated fixed-point program
+    #[default]
+    Fixed,
+    /// The bit-true reference: f64 with a quantiser at every rounding
+    BitTrue,
+    /// The ideal reference: f64 without rounding
+    Ideal,
+}
+
+impl From<ModelName> for Model {
+    fn from(name: ModelName) -> Self {
+        match name {
+            ModelName::Fixed => Self::Fixed,
+            ModelName::BitTrue => Self::BitTrue,
+            ModelName::Ideal => Self::Ideal,
+        }
+    }
+}
+
 /// Motor, controller and model of a run.
 #[derive(Args, Clone, Debug)]
 pub struct RunArguments {
@@ -331,7 +353,7 @@ pub struct RunArguments {
     pub controller: Option<String>,
     /// Which model of the controller runs
     #[arg(long, value_enum, default_value_t)]
-    pub model: Model,
+    pub model: ModelName,
     /// Demanded torque; braking torque is negative [default: rated torque, as far as max_current reaches]
     #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub torque: Option<f64>,
@@ -364,6 +386,11 @@ impl RunArguments {
         let drive = motor.prepare_for_torque(self.controller.as_deref())?;
         tell_warnings(&drive);
         Ok(drive)
+    }
+
+    /// The model that runs.
+    pub fn model(&self) -> Model {
+        self.model.into()
     }
 
     /// The demanded torque in newton metres: as given, else the rated one as far as the drive's

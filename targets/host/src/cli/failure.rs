@@ -1,12 +1,12 @@
 //! Why a command did not succeed.
 
 use crate::checker::Missing;
-use crate::closed_loop::Trip;
-use crate::counted::CountedError;
-use crate::engine::{BuildError, SourceError};
-use crate::plant::PlantError;
 use crate::report::ReportError;
 use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_lab::closed_loop::Trip;
+use hexagen_lab::counted::CountedError;
+use hexagen_lab::engine::{BuildError, SourceError};
+use hexagen_lab::plant::PlantError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

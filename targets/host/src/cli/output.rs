@@ -1,11 +1,11 @@
 //! Results as text, tables, JSON and files.
 
 use super::Failure;
-use crate::engine::Prepared;
 use crate::files::write_whole;
 use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, Table, Width};
+use hexagen_lab::engine::Prepared;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::Path;

@@ -3,11 +3,11 @@
 use crate::cli::{
     Emit, Failure, PlantArguments, SelectedMotor, note, print_text, tell_warnings, write_file,
 };
-use crate::engine::Prepared;
 use clap::Args;
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
+use hexagen_lab::engine::Prepared;
 use std::path::{Path, PathBuf};
 
 /// Options of `generate`.

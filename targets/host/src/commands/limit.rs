@@ -1,9 +1,9 @@
 //! `hexagen limit`: the speed up to which a controller holds the torque.
 
 use crate::cli::{Failure, RunArguments, print_json, print_text, significant, spinner};
-use crate::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
-use crate::engine::{EngineKind, Model, Prepared};
 use clap::Args;
+use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
+use hexagen_lab::engine::{EngineKind, Model, Prepared};
 use serde::Serialize;
 
 /// Options of `limit`.
@@ -56,7 +56,12 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
     let set_point = arguments.plant.set_point(&drive, torque);
     let scan = LimitOptions::new(drive.rated_rpm(), torque);
     let progress = spinner("scanning speeds");
-    let limit = speed_limit(&plant, &run, &scan, drive.maker(arguments.model, set_point));
+    let limit = speed_limit(
+        &plant,
+        &run,
+        &scan,
+        drive.maker(arguments.model(), set_point),
+    );
     progress.finish_and_clear();
     Ok((drive, limit?))
 }
@@ -67,7 +72,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
 /// As [`collect`], or a drive that tripped where it no longer held the torque.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, limit) = collect(options)?;
-    let model = options.run.model;
+    let model = options.run.model();
     let outcome = Outcome {
         motor: drive.motor.clone(),
         controller: drive.variant.clone(),

@@ -4,9 +4,9 @@ use crate::cli::{
     Failure, PlantArguments, SelectedMotor, TextTable, bar, note, print_json, print_text,
     significant,
 };
-use crate::closed_loop::{Held, RunOptions, STARTS, TOLERANCE, Trip, mean_torque};
-use crate::engine::{Model, Prepared, plant_of, run_of};
 use clap::Args;
+use hexagen_lab::closed_loop::{Held, RunOptions, STARTS, TOLERANCE, Trip, mean_torque};
+use hexagen_lab::engine::{Model, Prepared, plant_of, run_of};
 use rayon::prelude::*;
 use serde::Serialize;
 

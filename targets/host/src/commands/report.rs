@@ -6,14 +6,14 @@ use super::results::{Planned, SPEEDS, held};
 use super::robustness;
 use super::verify::{self, Checked};
 use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
-use crate::closed_loop::Side;
-use crate::engine::{EngineKind, Prepared};
 use crate::report::{
     self, Capture, ErrorsSeen, Judged, Model, ReportData, Run, SpeedMark, Variant, Verification,
     design_table, judge_limit, judge_mean, judge_pp, judge_rms,
 };
 use clap::Args;
 use hexagen_codegen::spec::KINDS;
+use hexagen_lab::closed_loop::Side;
+use hexagen_lab::engine::{EngineKind, Prepared};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -288,7 +288,7 @@ const PAPER_NOTES: [&str; 5] = [
      (`modulation=table2`), which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
     "PI-PWM six_step: the expected mean and ripple are those of a regulator that holds the largest of the three currents, \
      (|ia| + |ib| + |ic|)/2. Here it holds the mean of the conducting pair's, which sees the incoming phase from the \
-     first period of a commutation on (`cargo test -p hexagen-host --test plant_six_step` runs both; neither has the expected limit).",
+     first period of a commutation on (`cargo test -p hexagen-lab --test plant_six_step` runs both; neither has the expected limit).",
 ];
 
 /// Runs the command.
@@ -378,13 +378,13 @@ fn row(variant: &Variant, run: &Run) -> Vec<String> {
             .expected
             .as_ref()
             .and_then(|expected| expected.at(point.rpm.round()));
-        let mean = judge_mean(&point.merits, expected);
+        let mean = judge_mean(&point.figures, expected);
         cells.push(match point.tripped {
             None => figure(&mean, 3, "-"),
             Some(_) => figure(&mean, 3, "trips"),
         });
-        cells.push(figure(&judge_pp(&point.merits, expected), 2, "-"));
-        cells.push(figure(&judge_rms(&point.merits, expected), 3, "-"));
+        cells.push(figure(&judge_pp(&point.figures, expected), 2, "-"));
+        cells.push(figure(&judge_rms(&point.figures, expected), 3, "-"));
     }
     let limit = run.limit.as_ref();
     let found = figure(&judge_limit(limit, run.expected.as_ref()), 1, "never");

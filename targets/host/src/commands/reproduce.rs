@@ -2,18 +2,8 @@
 //!
 //! Both readings of each controller are generated drives in closed loop on the paper's motor.
 
-mod variants;
-
-pub use variants::{READINGS, Readings};
-
 use super::report::{FOLDER, PAPER_MOTOR};
 use crate::cli::{Failure, PlantArguments, SelectedMotor, TextTable, bar, print_text, significant};
-use crate::closed_loop::{
-    Delay, Held, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
-};
-use crate::counted::{Counted, Figures as StepCost};
-use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
-use crate::plant::PlantParams;
 use crate::report;
 use crate::report::reproduction::{
     self, BothReadings, CLOCK_HZ, Method, Point, Reading, Reproduction, Run, SwitchingTables,
@@ -21,6 +11,13 @@ use crate::report::reproduction::{
 };
 use clap::Args;
 use hexagen_codegen::interface::PublicValue;
+use hexagen_lab::READINGS;
+use hexagen_lab::closed_loop::{
+    Delay, Held, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
+};
+use hexagen_lab::counted::{Counted, Figures as StepCost};
+use hexagen_lab::engine::{Model, Prepared, SetPoint, plant_of, run_of};
+use hexagen_lab::plant::PlantParams;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -190,7 +187,7 @@ impl<'p> Bench<'p> {
             .par_iter()
             .map(|&rpm| {
                 let torque = match known(rpm) {
-                    Some(point) => point.merits.mean_torque_nm,
+                    Some(point) => point.figures.mean_torque_nm,
                     None => mean_torque(&self.plant, &self.at(rpm), &maker())?.ok(),
                 };
                 progress.inc(1);
@@ -237,7 +234,7 @@ impl<'p> Bench<'p> {
         };
         Ok(Point {
             rpm,
-            merits: measured.merits,
+            figures: measured.figures,
             hexagon_rms_a,
             trace,
             trip: measured.tripped,
@@ -311,7 +308,7 @@ fn table_5(data: &Reproduction) -> String {
             let microseconds = |time: f64| format!("{:.1}", 1e6 * time);
             let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
             let switching = run.points.iter().map(|point| {
-                let kilohertz = point.merits.switching_hz.map(|hertz| hertz / 1e3);
+                let kilohertz = point.figures.switching_hz.map(|hertz| hertz / 1e3);
                 or_dash(kilohertz.map(|figure| format!("{figure:.1}")))
             });
             let cells = [

@@ -6,16 +6,16 @@
 use super::accuracy::{OneStep, SideBySide, one_step, side_by_side};
 use super::stability;
 use crate::cli::{Emit, Failure};
-use crate::closed_loop::{
-    Held, LimitOptions, Measurement, RunOptions, measure, speed_limit_knowing,
-};
-use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
-use crate::plant::PlantParams;
 use crate::report::{
     Capture, DesignRow, Expected, GeneratedTexts, Record, Run, RunPoint, SameWords, SignalError,
     Variant,
 };
 use hexagen_codegen::emit::datasheet::emit_datasheet;
+use hexagen_lab::closed_loop::{
+    Held, LimitOptions, Measurement, RunOptions, measure, speed_limit_knowing,
+};
+use hexagen_lab::engine::{Model, Prepared, SetPoint, plant_of, run_of};
+use hexagen_lab::plant::PlantParams;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -76,7 +76,7 @@ impl AtSpeeds {
         at_speeds
             .map(|(part, measured)| RunPoint {
                 rpm: part * drive.rated_rpm(),
-                merits: measured.merits,
+                figures: measured.figures,
                 tripped: measured.tripped,
             })
             .collect()
@@ -113,8 +113,8 @@ impl Planned {
             rpm.iter().zip(&at.both).map(|(rpm, both)| SameWords {
                 capture: *capture,
                 rpm: *rpm,
-                fixed: both.fixed.merits,
-                ideal: both.ideal.merits,
+                fixed: both.fixed.figures,
+                ideal: both.ideal.figures,
             })
         });
         let same_words = same_words.collect();
@@ -189,7 +189,7 @@ impl Line<'_> {
         let conditions = Conditions::of(self.drive);
         let known: Vec<(f64, f64)> = points
             .iter()
-            .filter_map(|point| Some((point.rpm, point.merits.mean_torque_nm?)))
+            .filter_map(|point| Some((point.rpm, point.figures.mean_torque_nm?)))
             .collect();
         let scan = LimitOptions {
             held: self.held,

@@ -1,7 +1,7 @@
 //! The drives that a command line asks for.
 
 use crate::cli::{Failure, PlantArguments, SelectedMotor, tell_warnings, warn};
-use crate::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 use serde::Serialize;
 
 /// A controller that cannot be made for a motor.

@@ -4,12 +4,12 @@ use crate::cli::{
     Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
     warn, write_file,
 };
-use crate::closed_loop::{
-    Aim, MOST_RECORDED, Measurement, Merits, PeriodRow, RunOptions, Trip, measure,
-};
-use crate::engine::{EngineKind, Model, Prepared, run_of};
-use crate::plant::PlantParams;
 use clap::Args;
+use hexagen_lab::closed_loop::{
+    Aim, FiguresOfMerit, MOST_RECORDED, Measurement, PeriodRow, RunOptions, Trip, measure,
+};
+use hexagen_lab::engine::{EngineKind, Model, Prepared, run_of};
+use hexagen_lab::plant::PlantParams;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ pub struct Options {
     pub csv: Option<PathBuf>,
 }
 
-/// What a run was and what came out: the merits' keys and what they are about.
+/// What a run was and what came out: the figures of merit' keys and what they are about.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor.
@@ -48,14 +48,14 @@ pub struct Outcome {
     pub rpm: f64,
     /// Demanded torque, Nm.
     pub torque_nm: f64,
-    /// What tripped the drive; none if nothing did. A drive that tripped has no merits.
+    /// What tripped the drive; none if nothing did. A drive that tripped has no figures of merit.
     pub tripped: Option<Trip>,
     /// What speed a free shaft reached.
     #[serde(flatten)]
     pub speed: Option<Speed>,
     /// What was measured; null where there is no such figure.
     #[serde(flatten)]
-    pub merits: Merits,
+    pub figures: FiguresOfMerit,
 }
 
 /// What a free shaft reached, with or without a speed loop. None of it of a drive that tripped.
@@ -127,10 +127,10 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let mut set_point = arguments.plant.set_point(&drive, torque);
     set_point.rpm = options.speed_set;
     let progress = spinner("simulating");
-    let measured = measure(&plant, &run, drive.maker(arguments.model, set_point));
+    let measured = measure(&plant, &run, drive.maker(arguments.model(), set_point));
     progress.finish_and_clear();
     let mut measured = measured?;
-    if let (Some(_), Some(mean)) = (run.aim, measured.merits.mean_torque_nm) {
+    if let (Some(_), Some(mean)) = (run.aim, measured.figures.mean_torque_nm) {
         // The reference is what the speed loop asked for, not the most that it may.
         run.current = run_of(&drive.spec, run.omega_m, mean).current;
         measured = Measurement::of(measured.traces, measured.tripped, &run);
@@ -251,7 +251,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         write_file(path, &csv)?;
     }
-    let model = options.run.model;
+    let model = options.run.model();
     let outcome = Outcome {
         motor: drive.motor.clone(),
         controller: drive.variant.clone(),
@@ -264,7 +264,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             let least_rpm = drive.spec.inverter.minimum_speed * 60.0 / TAU;
             Speed::of(&measured, options.speed_set, least_rpm)
         }),
-        merits: measured.merits,
+        figures: measured.figures,
     };
     if let Some(Speed {
         set_rpm: Some(set),
@@ -298,7 +298,7 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         outcome.rpm
     ))?;
     if let Some(trip) = outcome.tripped {
-        return print_text(&format!("{trip}; it has no merits"));
+        return print_text(&format!("{trip}; it has no figures of merit"));
     }
     if let Some(speed) = outcome.speed {
         let of = speed.set_rpm.map_or("free shaft".to_owned(), |set_rpm| {
@@ -315,29 +315,29 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
             significant(speed.final_rpm, 5)
         ))?;
     }
-    let mut table = TextTable::new(1, ["merit", "value", "unit"]);
-    for (name, value, unit) in rows(&outcome.merits) {
+    let mut table = TextTable::new(1, ["figure of merit", "value", "unit"]);
+    for (name, value, unit) in rows(&outcome.figures) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     print_text(&table.render())
 }
 
-/// Names, values and units of merits, in the order of their keys.
-pub fn rows(merits: &Merits) -> [(&'static str, Option<f64>, &'static str); 14] {
+/// Names, values and units of figures of merit, in the order of their keys.
+pub fn rows(figures: &FiguresOfMerit) -> [(&'static str, Option<f64>, &'static str); 14] {
     [
-        ("mean torque", merits.mean_torque_nm, "Nm"),
-        ("torque ripple, peak to peak", merits.ripple_pp_pct, "%"),
-        ("torque ripple, rms", merits.ripple_rms_pct, "%"),
-        ("torque harmonic 6", merits.h6_pct, "%"),
-        ("torque harmonic 12", merits.h12_pct, "%"),
-        ("current harmonic 5", merits.i5_pct, "%"),
-        ("current harmonic 7", merits.i7_pct, "%"),
-        ("current harmonic 11", merits.i11_pct, "%"),
-        ("current harmonic 13", merits.i13_pct, "%"),
-        ("current distortion", merits.thd_pct, "%"),
-        ("tracking error, rms", merits.tracking_rms_a, "A"),
-        ("commutation", merits.commutation_us, "us"),
-        ("switching per device", merits.switching_hz, "Hz"),
-        ("saturated periods", merits.saturated_pct, "%"),
+        ("mean torque", figures.mean_torque_nm, "Nm"),
+        ("torque ripple, peak to peak", figures.ripple_pp_pct, "%"),
+        ("torque ripple, rms", figures.ripple_rms_pct, "%"),
+        ("torque harmonic 6", figures.h6_pct, "%"),
+        ("torque harmonic 12", figures.h12_pct, "%"),
+        ("current harmonic 5", figures.i5_pct, "%"),
+        ("current harmonic 7", figures.i7_pct, "%"),
+        ("current harmonic 11", figures.i11_pct, "%"),
+        ("current harmonic 13", figures.i13_pct, "%"),
+        ("current distortion", figures.thd_pct, "%"),
+        ("tracking error, rms", figures.tracking_rms_a, "A"),
+        ("commutation", figures.commutation_us, "us"),
+        ("switching per device", figures.switching_hz, "Hz"),
+        ("saturated periods", figures.saturated_pct, "%"),
     ]
 }

@@ -3,11 +3,11 @@
 
 use super::robustness::measured;
 use crate::cli::Failure;
-use crate::closed_loop::RunOptions;
-use crate::engine::{Prepared, plant_of, run_of};
 use crate::report::{Figures, Outcome, Parameter, Stability, StabilityCheck};
 use hexagen_codegen::laws::stable_range;
 use hexagen_codegen::spec::EmfSource;
+use hexagen_lab::closed_loop::RunOptions;
+use hexagen_lab::engine::{Prepared, plant_of, run_of};
 use rayon::prelude::*;
 
 /// Edges that are run, in true over stated value. Farther away there are no motors, and a loop with many times the

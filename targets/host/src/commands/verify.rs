@@ -2,8 +2,8 @@
 
 use crate::cli::{Failure, Selection, TextTable, bar, print_json, print_text, significant, warn};
 use crate::commands::selected::{Refused, select};
-use crate::engine::{BuildError, EngineKind, Prepared, Verifier};
 use clap::{Args, ValueEnum};
+use hexagen_lab::engine::{BuildError, EngineKind, Prepared, Verifier};
 use hexagen_reference::verify::Report;
 use indicatif::ProgressBar;
 use rayon::prelude::*;

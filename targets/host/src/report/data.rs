@@ -6,10 +6,10 @@
 
 use super::expected::Expected;
 use super::robustness::Robustness;
-use crate::closed_loop::{Held, Merits, SpeedLimit, Trace, Trip};
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::laws::StableRange;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+use hexagen_lab::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
 
 /// Everything on one page.
 #[derive(Clone, Debug)]
@@ -115,7 +115,7 @@ pub struct Run {
     pub model: Model,
     /// Hall capture.
     pub capture: Capture,
-    /// Merits at each speed of [`ReportData::speeds_rpm`], in that order.
+    /// Figures of merit at each speed of [`ReportData::speeds_rpm`], in that order.
     pub points: Vec<RunPoint>,
     /// Constant-torque speed limit, where it was searched.
     pub limit: Option<SpeedLimit>,
@@ -123,18 +123,18 @@ pub struct Run {
     pub expected: Option<Expected>,
 }
 
-/// Merits at one speed.
+/// Figures of merit at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunPoint {
     /// Speed in rpm.
     pub rpm: f64,
     /// What was measured.
-    pub merits: Merits,
-    /// What tripped the drive; then it has no merits.
+    pub figures: FiguresOfMerit,
+    /// What tripped the drive; then it has no figures of merit.
     pub tripped: Option<Trip>,
 }
 
-/// Merits of the fixed-point code at one speed, and of the ideal model on its own plant from the
+/// Figures of merit of the fixed-point code at one speed, and of the ideal model on its own plant from the
 /// same start, fed the ADC and Hall words that the fixed-point code read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SameWords {
@@ -143,9 +143,9 @@ pub struct SameWords {
     /// Speed in rpm.
     pub rpm: f64,
     /// Of the fixed-point code.
-    pub fixed: Merits,
+    pub fixed: FiguresOfMerit,
     /// Of the ideal model.
-    pub ideal: Merits,
+    pub ideal: FiguresOfMerit,
 }
 
 /// The record of a measured window, whole electrical periods.

@@ -3,7 +3,7 @@
 //! Tolerances: mean torque within 1 %, ripple within 15 % of its value or 0.5 points, speed limit
 //! within 2 points of rated speed.
 
-use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit};
+use hexagen_lab::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit};
 
 /// A figure that is expected to lie in a band; one value is a band of no width.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,21 +112,21 @@ impl Judged {
 }
 
 /// Mean torque against what is expected.
-pub fn judge_mean(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+pub fn judge_mean(figures: &FiguresOfMerit, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.mean_torque_nm);
-    Judged::new(merits.mean_torque_nm, band, |band| 0.01 * band.high.abs())
+    Judged::new(figures.mean_torque_nm, band, |band| 0.01 * band.high.abs())
 }
 
 /// Peak-to-peak ripple against what is expected.
-pub fn judge_pp(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+pub fn judge_pp(figures: &FiguresOfMerit, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.ripple_pp_pct);
-    Judged::new(merits.ripple_pp_pct, band, ripple_tolerance)
+    Judged::new(figures.ripple_pp_pct, band, ripple_tolerance)
 }
 
 /// RMS ripple against what is expected.
-pub fn judge_rms(merits: &Merits, expected: Option<&ExpectedPoint>) -> Judged {
+pub fn judge_rms(figures: &FiguresOfMerit, expected: Option<&ExpectedPoint>) -> Judged {
     let band = expected.and_then(|point| point.ripple_rms_pct);
-    Judged::new(merits.ripple_rms_pct, band, ripple_tolerance)
+    Judged::new(figures.ripple_rms_pct, band, ripple_tolerance)
 }
 
 /// Speed limit in percent of rated speed against what is expected.

@@ -1,6 +1,6 @@
 //! Harmonics as spectra show them.
 
-use crate::closed_loop::{Trace, amplitudes, percent};
+use hexagen_lab::closed_loop::{Trace, amplitudes, percent};
 
 /// Harmonics of the phase currents in percent of the fundamental, mean of the phases; none of a
 /// fundamental that is nothing.

@@ -1,8 +1,8 @@
 //! The robustness sheet as data: controllers in closed loop on plants that differ from the motor
 //! file in one point each, and what such a run is called.
 
-use crate::closed_loop::{Merits, Swing, Trip};
-use crate::engine::EngineKind;
+use hexagen_lab::closed_loop::{FiguresOfMerit, Swing, Trip};
+use hexagen_lab::engine::EngineKind;
 use serde::Serialize;
 
 /// Swing of the current, in percent, above which the loop of a controller that modulates counts as
@@ -171,8 +171,8 @@ pub struct Measured {
     pub modulates: bool,
     /// Torque in newton metres of the demanded current on this plant's EMF constant.
     pub expected_torque: f64,
-    /// Merits.
-    pub merits: Merits,
+    /// Figures of merit.
+    pub figures: FiguresOfMerit,
     /// The largest swing of the starts.
     pub swing: Swing,
     /// What tripped the drive.
@@ -182,7 +182,7 @@ pub struct Measured {
 impl Measured {
     /// Compares with the undisturbed run at the same speed.
     pub fn judged(&self, undisturbed: &Self) -> Figures {
-        let merits = &self.merits;
+        let figures = &self.figures;
         let swing = Some(self.swing).filter(|_| self.tripped.is_none());
         let outcome = if self.tripped.is_some() {
             Outcome::Trips
@@ -194,9 +194,9 @@ impl Measured {
         Figures {
             engine: self.engine,
             expected_torque_nm: self.expected_torque,
-            mean_torque_nm: merits.mean_torque_nm,
-            ripple_pp_pct: merits.ripple_pp_pct,
-            ripple_rms_pct: merits.ripple_rms_pct,
+            mean_torque_nm: figures.mean_torque_nm,
+            ripple_pp_pct: figures.ripple_pp_pct,
+            ripple_rms_pct: figures.ripple_rms_pct,
             swing_current_pct: swing.map(|swing| swing.current_pct),
             swing_voltage_pct: swing.map(|swing| swing.voltage_pct),
             outcome,
@@ -213,17 +213,17 @@ impl Measured {
             self.swing.current_pct > SWINGING_CURRENT || self.swing.voltage_pct > SWINGING_VOLTAGE
         } else {
             let ripples = self
-                .merits
+                .figures
                 .ripple_rms_pct
-                .zip(undisturbed.merits.ripple_rms_pct);
+                .zip(undisturbed.figures.ripple_rms_pct);
             ripples.is_some_and(|(own, calm)| own > SWINGING_RIPPLE * calm)
         }
     }
 
     fn heat(&self, undisturbed: &Self) -> Heat {
         let figures = |run: &Self| {
-            let torque = 100.0 * run.merits.mean_torque_nm? / run.expected_torque;
-            Some((torque, run.merits.ripple_rms_pct?))
+            let torque = 100.0 * run.figures.mean_torque_nm? / run.expected_torque;
+            Some((torque, run.figures.ripple_rms_pct?))
         };
         // A run without torque has no ripple in percent of it: it is far away.
         let Some((own, calm)) = figures(self).zip(figures(undisturbed)) else {
@@ -257,17 +257,17 @@ impl Robustness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_loop::Cause;
+    use hexagen_lab::closed_loop::Cause;
 
     fn run(mean_torque: f64, ripple_rms_pct: impl Into<Option<f64>>) -> Measured {
         Measured {
             engine: EngineKind::Compiled,
             modulates: true,
             expected_torque: 2.0,
-            merits: Merits {
+            figures: FiguresOfMerit {
                 mean_torque_nm: Some(mean_torque),
                 ripple_rms_pct: ripple_rms_pct.into(),
-                ..Merits::default()
+                ..FiguresOfMerit::default()
             },
             swing: Swing::default(),
             tripped: None,
@@ -331,7 +331,7 @@ mod tests {
                 time_s: 0.01,
                 rpm: 100.0,
             }),
-            merits: Merits::default(),
+            figures: FiguresOfMerit::default(),
             ..chooses(10.1)
         };
         let figures = tripped.judged(&undisturbed);

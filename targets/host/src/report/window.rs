@@ -3,7 +3,7 @@
 //! A column has the mean over one control period around its middle, which is what a controller
 //! can act on, and the least and greatest value in the same stretch, which is the PWM's ripple.
 
-use crate::closed_loop::Trace;
+use hexagen_lab::closed_loop::Trace;
 use std::ops::Range;
 
 /// Electrical angle in degrees at which sector S1 begins.

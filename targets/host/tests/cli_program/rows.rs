@@ -1,8 +1,8 @@
 //! The rows of the design document's table, in fixed point through 12-bit converters.
 
-use hexagen_host::closed_loop::{Held, LimitOptions, measure, speed_limit};
-use hexagen_host::engine::{EngineKind, Model, MotorSource, plant_of, prepare, run_of};
 use hexagen_host::report::{design_table, judge_limit, judge_mean, judge_pp, judge_rms};
+use hexagen_lab::closed_loop::{Held, LimitOptions, measure, speed_limit};
+use hexagen_lab::engine::{EngineKind, Model, MotorSource, plant_of, prepare, run_of};
 use std::f64::consts::TAU;
 
 /// Rows that have less ripple than expected, and why the expected figures are others.
@@ -64,14 +64,14 @@ fn rows_of_the_design_document_are_met() {
         }
         for point in &row.timer.points {
             let run = run_of(&drive.spec, point.rpm * TAU / 60.0, TORQUE);
-            let merits = measure(&plant, &run, maker()).expect("runs").merits;
-            let place = format!("{} at {} rpm: {merits:?}", row.label, point.rpm);
-            assert!(judge_mean(&merits, Some(point)).met, "{place}");
-            assert!(judge_rms(&merits, Some(point)).met, "{place}");
-            let pp = judge_pp(&merits, Some(point));
+            let figures = measure(&plant, &run, maker()).expect("runs").figures;
+            let place = format!("{} at {} rpm: {figures:?}", row.label, point.rpm);
+            assert!(judge_mean(&figures, Some(point)).met, "{place}");
+            assert!(judge_rms(&figures, Some(point)).met, "{place}");
+            let pp = judge_pp(&figures, Some(point));
             if CALMER.contains(&row.label) {
                 let expected = point.ripple_pp_pct.expect("is given").low;
-                let ripple = merits.ripple_pp_pct.expect("it has torque");
+                let ripple = figures.ripple_pp_pct.expect("it has torque");
                 assert!(ripple < 0.7 * expected, "{place}");
             } else {
                 assert!(pp.met, "{place}");

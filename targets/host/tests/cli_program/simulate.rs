@@ -1,8 +1,8 @@
 //! `hexagen simulate` and `limit`: keys, columns, models, signs and plant options.
 
 use crate::support::{PAPER, keys, number, run};
-use hexagen_host::closed_loop::{MOST_RECORDED, RunOptions};
-use hexagen_host::engine::{MotorSource, plant_of, prepare};
+use hexagen_lab::closed_loop::{MOST_RECORDED, RunOptions};
+use hexagen_lab::engine::{MotorSource, plant_of, prepare};
 use serde_json::Value;
 use std::f64::consts::TAU;
 

@@ -254,11 +254,11 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
         assert!(number(one_step, "equal_steps_pct") >= 99.9, "{row}");
         assert!(number(one_step, "compares_apart_counts") <= 1.0, "{row}");
         for at in row["closed_loop"].as_array().expect("a list") {
-            let merits = at["merits"].as_array().expect("a list");
-            assert_eq!(merits.len(), 14);
-            for merit in merits {
-                assert_eq!(merit["close"], true, "{merit}");
-                assert!(number(merit, "of_allowance") <= 1.0, "{merit}");
+            let figures = at["figures"].as_array().expect("a list");
+            assert_eq!(figures.len(), 14);
+            for figure in figures {
+                assert_eq!(figure["close"], true, "{figure}");
+                assert!(number(figure, "of_allowance") <= 1.0, "{figure}");
                 compared += 1;
             }
         }

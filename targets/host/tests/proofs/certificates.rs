@@ -4,7 +4,7 @@
 use crate::generated;
 use hexagen_codegen::emit::gappa::{Script, emit_gappa};
 use hexagen_host::checker::{certificate, check_certificate, coq_version};
-use hexagen_host::engine::library;
+use hexagen_lab::engine::library;
 use std::env;
 
 fn scripts() -> Vec<Script> {

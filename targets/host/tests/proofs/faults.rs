@@ -4,7 +4,7 @@
 use crate::generated;
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_host::checker::is_proved;
-use hexagen_host::engine::library;
+use hexagen_lab::engine::library;
 
 /// Stages whose scripts get faults.
 const STAGES: [&str; 5] = [

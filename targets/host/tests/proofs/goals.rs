@@ -4,7 +4,7 @@ use crate::{VARIANTS, generated};
 use hexagen_codegen::emit::gappa::{Script, Subject, emit_gappa};
 use hexagen_host::checker::missing_goals;
 use hexagen_host::commands::prove::collect_scripts;
-use hexagen_host::engine::{MotorSource, Prepared, library, prepare};
+use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
 
 fn drive(variant: &str) -> Prepared {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");

@@ -12,7 +12,7 @@ use hexagen_codegen::ir::stated_errors;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_host::checker::{Proof, WIDEST, missing_goals, prove};
-use hexagen_host::engine::library;
+use hexagen_lab::engine::library;
 use random_motor::RandomMotor;
 use rayon::prelude::*;
 use std::env;

@@ -7,16 +7,16 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
-use hexagen_host::closed_loop::{
-    CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
-};
-use hexagen_host::engine::EngineKind;
-use hexagen_host::plant::{PlantParams, Truth};
 use hexagen_host::report::{
     Capture, Cell, Column, DesignRow, ErrorsSeen, Figures, GeneratedTexts, Heat, Model, Outcome,
     Parameter, Record, ReportData, Robustness, Run, RunPoint, SameWords, SignalError, SpeedMark,
     Stability, StabilityCheck, Variant, Verification, design_table,
 };
+use hexagen_lab::closed_loop::{
+    CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
+};
+use hexagen_lab::engine::EngineKind;
+use hexagen_lab::plant::{PlantParams, Truth};
 use std::f64::consts::{PI, TAU};
 
 const R: f64 = 0.135;
@@ -109,7 +109,7 @@ impl CurrentLoop for Deadbeat {
     }
 }
 
-fn run(options: Options, params: &PlantParams, rpm: f64) -> hexagen_host::closed_loop::Measurement {
+fn run(options: Options, params: &PlantParams, rpm: f64) -> hexagen_lab::closed_loop::Measurement {
     let run = RunOptions {
         starts: vec![0.1],
         ..RunOptions::new(rpm * TAU / 60.0, CURRENT)
@@ -177,7 +177,7 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
             let mut measured = run(options, &motor(), rpm);
             points.push(RunPoint {
                 rpm,
-                merits: measured.merits,
+                figures: measured.figures,
                 tripped: measured.tripped,
             });
             if model == Model::Fixed {
@@ -217,8 +217,8 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
     let same_words = SPEEDS.iter().enumerate().map(|(k, &rpm)| SameWords {
         capture: Capture::Timer,
         rpm,
-        fixed: runs[0].points[k].merits,
-        ideal: runs[1].points[k].merits,
+        fixed: runs[0].points[k].figures,
+        ideal: runs[1].points[k].figures,
     });
     let same_words = same_words.collect();
     let (_, texts, mut stability) = generated(design.variant);
@@ -228,13 +228,13 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
                 (Parameter::Inductance, motor().scaled(1.0, factor, 1.0)),
                 (Parameter::Resistance, motor().scaled(factor, 1.0, 1.0)),
             ] {
-                let merits = run(options, &params, 400.0).merits;
+                let figures = run(options, &params, 400.0).figures;
                 stability.checks.push(StabilityCheck {
                     parameter,
                     factor,
                     rpm: 400.0,
-                    ripple_rms_pct: merits.ripple_rms_pct,
-                    stable: merits.ripple_rms_pct.is_some_and(|ripple| ripple < 5.0),
+                    ripple_rms_pct: figures.ripple_rms_pct,
+                    stable: figures.ripple_rms_pct.is_some_and(|ripple| ripple < 5.0),
                 });
             }
         }

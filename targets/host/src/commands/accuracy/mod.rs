@@ -1,4 +1,4 @@
-//! How far fixed point is from floating point: in one step from the same state, and in the merits
+//! How far fixed point is from floating point: in one step from the same state, and in the figures of merit
 //! of a closed loop.
 
 mod one_step;
@@ -8,13 +8,13 @@ pub use one_step::{BINS, Compared, OneStep};
 pub use uniform::{Uniform16, uniform_format};
 
 use crate::cli::Failure;
-use crate::closed_loop::{
-    ClosedLoop, CurrentLoop, Measurement, Merits, RunOptions, Trace, Trip, percent,
+use hexagen::{Fault, Legs, Sample};
+use hexagen_lab::closed_loop::{
+    ClosedLoop, CurrentLoop, FiguresOfMerit, Measurement, RunOptions, Trace, Trip, percent,
     share_of_allowance,
 };
-use crate::engine::{Engine, Model, Prepared, SetPoint};
-use crate::plant::{Plant, PlantError, PlantParams, Truth};
-use hexagen::{Fault, Legs, Sample};
+use hexagen_lab::engine::{Engine, Model, Prepared, SetPoint};
+use hexagen_lab::plant::{Plant, PlantError, PlantParams, Truth};
 use hexagen_reference::{BitTrue, Ideal};
 use one_step::{Step, Sums};
 use rayon::prelude::*;
@@ -151,11 +151,11 @@ fn settled<C: CurrentLoop>(
     (trace, closed.tripped(), closed.into_controller())
 }
 
-/// A merit of the fixed-point drive beside the ideal model's.
+/// A figure of merit of the fixed-point drive beside the ideal model's.
 #[derive(Clone, Debug, Serialize)]
-pub struct MeritDifference {
-    /// The merit.
-    pub merit: &'static str,
+pub struct FigureDifference {
+    /// The figure of merit.
+    pub figure: &'static str,
     /// Its unit.
     pub unit: &'static str,
     /// Of the fixed-point drive; null where there is no such figure, as after a trip.
@@ -171,7 +171,7 @@ pub struct MeritDifference {
     pub close: bool,
 }
 
-impl MeritDifference {
+impl FigureDifference {
     /// The difference with its unit: points of percentages, percent of everything else.
     pub fn text(&self) -> String {
         let both = self.fixed.zip(self.ideal);
@@ -185,17 +185,21 @@ impl MeritDifference {
     }
 }
 
-/// Compares merits one by one.
-pub fn differences(fixed: &Merits, ideal: &Merits, alone: &Merits) -> Vec<MeritDifference> {
+/// Compares figures of merit one by one.
+pub fn differences(
+    fixed: &FiguresOfMerit,
+    ideal: &FiguresOfMerit,
+    alone: &FiguresOfMerit,
+) -> Vec<FigureDifference> {
     let rows = super::simulate::rows;
     rows(fixed)
         .into_iter()
         .zip(rows(ideal).into_iter().zip(rows(alone)))
         .map(
-            |((merit, fixed, unit), ((_, ideal, _), (_, ideal_alone, _)))| {
+            |((figure, fixed, unit), ((_, ideal, _), (_, ideal_alone, _)))| {
                 let of_allowance = share_of_allowance(fixed, ideal, unit == "%");
-                MeritDifference {
-                    merit,
+                FigureDifference {
+                    figure,
                     unit,
                     fixed,
                     ideal,

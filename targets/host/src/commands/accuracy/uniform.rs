@@ -2,10 +2,10 @@
 
 use super::one_step::{Compared, OneStep, Step, Sums};
 use crate::cli::Failure;
-use crate::closed_loop::{ClosedLoop, CurrentLoop, RunOptions};
-use crate::engine::{Prepared, SetPoint};
-use crate::plant::{Plant, PlantParams, Truth};
 use hexagen::{Legs, Sample};
+use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, RunOptions};
+use hexagen_lab::engine::{Prepared, SetPoint};
+use hexagen_lab::plant::{Plant, PlantParams, Truth};
 use hexagen_reference::{BitTrue, Ideal, Spec, Uniform};
 
 /// Fraction bits of the one saturating 16-bit format of SI units that holds what every one of these motors needs: as

@@ -7,7 +7,7 @@ use crate::cli::{
 };
 use crate::commands::accuracy::{OneStep, Uniform16, uniform_format};
 use crate::commands::results::SPEEDS;
-use crate::engine::Prepared;
+use hexagen_lab::engine::Prepared;
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -4,16 +4,16 @@
 mod library;
 mod print;
 
-use super::accuracy::{MeritDifference, OneStep, SideBySide, differences, one_step, side_by_side};
+use super::accuracy::{FigureDifference, OneStep, SideBySide, differences, one_step, side_by_side};
 use super::results::SPEEDS;
 use super::robustness;
 use crate::cli::{
     Failure, PlantArguments, SelectedMotor, Selection, print_json, spinner, write_file,
 };
-use crate::closed_loop::{Trip, measure};
-use crate::engine::{EngineKind, Model, Prepared};
 use crate::report::Robustness;
 use clap::Args;
+use hexagen_lab::closed_loop::{Trip, measure};
+use hexagen_lab::engine::{EngineKind, Model, Prepared};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ pub struct Options {
     /// library
     #[arg(value_name = "MOTOR")]
     pub motor: Option<String>,
-    /// Controller variant, whose merits are printed one by one; or `all` [default: all]
+    /// Controller variant, whose figures of merit are printed one by one; or `all` [default: all]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]", requires = "motor")]
     pub controller: Option<Selection>,
     /// Run controllers on plants that differ from the motor file instead: R, L, k_b +-30 %, bus -10 %,
@@ -75,23 +75,23 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The merit of the closed loops that differs most, by what may differ, and its speed in rpm.
-    pub fn furthest(&self) -> Option<(&MeritDifference, f64)> {
-        let merits = self.closed_loop.iter();
-        let merits = merits.flat_map(|at| at.merits.iter().map(move |merit| (merit, at.rpm)));
-        merits.max_by(|(one, _), (other, _)| one.of_allowance.total_cmp(&other.of_allowance))
+    /// The figure of merit of the closed loops that differs most, by what may differ, and its speed in rpm.
+    pub fn furthest(&self) -> Option<(&FigureDifference, f64)> {
+        let figures = self.closed_loop.iter();
+        let figures = figures.flat_map(|at| at.figures.iter().map(move |figure| (figure, at.rpm)));
+        figures.max_by(|(one, _), (other, _)| one.of_allowance.total_cmp(&other.of_allowance))
     }
 }
 
-/// Merits at one speed.
+/// Figures of merit at one speed.
 #[derive(Clone, Debug, Serialize)]
 pub struct AtSpeed {
     /// Mechanical speed, rpm.
     pub rpm: f64,
-    /// What tripped the fixed-point drive; then it has no merits.
+    /// What tripped the fixed-point drive; then it has no figures of merit.
     pub tripped: Option<Trip>,
-    /// Every merit.
-    pub merits: Vec<MeritDifference>,
+    /// Every figure of merit.
+    pub figures: Vec<FigureDifference>,
 }
 
 /// One drive beside the ideal model at rated torque, as far as its set-point reaches, and each of the speeds in rpm.
@@ -123,11 +123,11 @@ pub fn accuracy(drive: &Prepared, plant: &PlantArguments) -> Result<Accuracy, Fa
     let closed_loop = measured.iter().map(|(rpm, both)| {
         let run = plant.run(drive, *rpm, torque);
         let alone = measure(&params, &run, drive.maker(Model::Ideal, set_point))?;
-        let merits = differences(&both.fixed.merits, &both.ideal.merits, &alone.merits);
+        let figures = differences(&both.fixed.figures, &both.ideal.figures, &alone.figures);
         Ok(AtSpeed {
             rpm: *rpm,
             tripped: both.fixed.tripped,
-            merits,
+            figures,
         })
     });
     let closed_loop = closed_loop.collect::<Result<_, Failure>>()?;

@@ -2,13 +2,13 @@
 
 use super::{Accuracy, Row};
 use crate::cli::{Failure, TextTable, print_text, significant};
-use crate::commands::accuracy::MeritDifference;
+use crate::commands::accuracy::FigureDifference;
 
-/// Prints the rows, and every merit where they are of one controller.
+/// Prints the rows, and every figure of merit where they are of one controller.
 ///
 /// # Errors
 /// As [`print_text`].
-pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
+pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
     print_text(&accuracy_table(rows))?;
     for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
         print_text(reason)?;
@@ -17,14 +17,14 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
         "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
          one step from the same state, phases a and b.\n\
          Decisions: sector, commutation, limit, vector. Where they differ (a tie that rounding broke) no errors are compared.\n\
-         Closed loop: the merit that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
+         Closed loop: the figure that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
          A controller of whole vectors takes another course from a broken tie on.\n\
          Duty: compare value less exact duty, timer counts, while no limit acts and where one does, each with its proven bound and \
          half a count for the compare value's own rounding.\n",
     )?;
     print_text(&step_table(rows))?;
-    if !with_merits {
-        return print_text("Every merit: --controller with one variant, or --json.");
+    if !with_figures {
+        return print_text("Every figure of merit: --controller with one variant, or --json.");
     }
     for row in rows {
         let Some(accuracy) = &row.accuracy else {
@@ -39,7 +39,7 @@ pub fn rows(rows: &[Row], with_merits: bool) -> Result<(), Failure> {
             ))?;
             match at.tripped {
                 Some(trip) => print_text(&trip.to_string())?,
-                None => print_text(&merit_table(&at.merits))?,
+                None => print_text(&figure_table(&at.figures))?,
             }
         }
     }
@@ -84,8 +84,8 @@ fn accuracy_table(rows: &[Row]) -> String {
             .filter(|at| at.tripped.is_some());
         let closed_loop = match (trips.next(), accuracy.furthest()) {
             (Some(at), _) => format!("trips, {:.0} rpm", at.rpm),
-            (None, Some((merit, rpm))) => {
-                format!("{}: {}, {rpm:.0} rpm", merit.text(), merit.merit)
+            (None, Some((figure, rpm))) => {
+                format!("{}: {}, {rpm:.0} rpm", figure.text(), figure.figure)
             }
             (None, None) => String::new(),
         };
@@ -137,16 +137,26 @@ fn step_table(rows: &[Row]) -> String {
     })
 }
 
-fn merit_table(merits: &[MeritDifference]) -> String {
-    let mut table = TextTable::new(1, ["merit", "fixed", "ideal", "alone", "unit", "close"]);
-    for merit in merits {
+fn figure_table(figures: &[FigureDifference]) -> String {
+    let mut table = TextTable::new(
+        1,
+        [
+            "figure of merit",
+            "fixed",
+            "ideal",
+            "alone",
+            "unit",
+            "close",
+        ],
+    );
+    for figure in figures {
         table.row([
-            merit.merit.to_owned(),
-            significant(merit.fixed, 5),
-            significant(merit.ideal, 5),
-            significant(merit.ideal_alone, 5),
-            merit.unit.to_owned(),
-            if merit.close { "yes" } else { "NO" }.to_owned(),
+            figure.figure.to_owned(),
+            significant(figure.fixed, 5),
+            significant(figure.ideal, 5),
+            significant(figure.ideal_alone, 5),
+            figure.unit.to_owned(),
+            if figure.close { "yes" } else { "NO" }.to_owned(),
         ]);
     }
     table.render()

@@ -2,8 +2,8 @@
 
 use crate::checker::{certificate, check_certificate};
 use crate::cli::{Failure, write_file};
-use crate::engine::Prepared;
 use hexagen_codegen::emit::gappa::Script;
+use hexagen_lab::engine::Prepared;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;

@@ -13,11 +13,11 @@ pub use print::print;
 
 use super::results::SPEEDS;
 use crate::cli::{Failure, PlantArguments, SelectedMotor, bar};
-use crate::closed_loop::{RunOptions, Swing, measure};
-use crate::engine::{Model, Prepared, SetPoint};
-use crate::plant::PlantParams;
 use crate::report::{Cell, Column, Measured, Robustness};
 use disturbance::{Disturbance, disturbances};
+use hexagen_lab::closed_loop::{RunOptions, Swing, measure};
+use hexagen_lab::engine::{Model, Prepared, SetPoint};
+use hexagen_lab::plant::PlantParams;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
@@ -214,7 +214,7 @@ pub(super) fn measured(
         engine: drive.engine_kind(),
         modulates: drive.spec.controller.modulates(),
         expected_torque: torque * params.k_phase[0] / drive.spec.motor.emf_constant,
-        merits: measured.merits,
+        figures: measured.figures,
         swing: swings.reduce(Swing::max).unwrap_or_default(),
         tripped: measured.tripped,
     })

@@ -5,8 +5,8 @@ use super::canvas::{
     polyline, px, rule_above, text, tick_text, ticks, write_at,
 };
 use super::palette::{AXIS, DEMAND, INK};
-use crate::closed_loop::{Held, Side, TOLERANCE};
 use crate::report::{ReportError, SpeedMark};
+use hexagen_lab::closed_loop::{Held, Side, TOLERANCE};
 use maud::PreEscaped;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};

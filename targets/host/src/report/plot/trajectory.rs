@@ -2,9 +2,9 @@
 
 use super::palette::IDEAL;
 use super::plane::{Named, Path, Plane, plane};
-use crate::closed_loop::{Trace, quasi_square};
 use crate::report::ReportError;
 use crate::report::window::first_turn;
+use hexagen_lab::closed_loop::{Trace, quasi_square};
 use maud::PreEscaped;
 use plotters::style::RGBColor;
 use std::f64::consts::FRAC_PI_3;

@@ -2,9 +2,9 @@
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
 use super::timing::{CLOCK_HZ, Times};
-use crate::closed_loop::{LimitOutcome, Merits, SpeedLimit, Trace, Trip};
-use crate::counted::Figures as StepCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+use hexagen_lab::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit, Trace, Trip};
+use hexagen_lab::counted::Figures as StepCost;
 
 /// The paper's methods, (a) to (d) of its figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,8 +157,8 @@ impl Run {
 pub struct Point {
     /// Speed in rpm.
     pub rpm: f64,
-    /// Merits over all starts.
-    pub merits: Merits,
+    /// Figures of merit over all starts.
+    pub figures: FiguresOfMerit,
     /// RMS distance of the current from the ideal hexagon's outline in amperes, mean of the starts.
     pub hexagon_rms_a: f64,
     /// Record of the first start.
@@ -206,19 +206,19 @@ impl Reproduction {
 fn figures(run: &Run) -> Figures {
     let [low, high] = [0, 1].map(|speed| {
         let Point {
-            merits,
+            figures,
             hexagon_rms_a,
             trip,
             ..
         } = &run.points[speed];
         AtSpeed {
-            mean_torque_nm: merits.mean_torque_nm,
-            h6_pct: merits.h6_pct,
-            h12_pct: merits.h12_pct,
-            i5_pct: merits.i5_pct,
-            i7_pct: merits.i7_pct,
+            mean_torque_nm: figures.mean_torque_nm,
+            h6_pct: figures.h6_pct,
+            h12_pct: figures.h12_pct,
+            i5_pct: figures.i5_pct,
+            i7_pct: figures.i7_pct,
             hexagon_rms_a: trip.is_none().then_some(*hexagon_rms_a),
-            switching_hz: merits.switching_hz,
+            switching_hz: figures.switching_hz,
         }
     });
     Figures {

@@ -1,7 +1,6 @@
 //! Figures of runs: 4 and 14 to 20.
 
 use super::data::{Method, Point, Reading, Reproduction};
-use crate::closed_loop::{Held, LimitOutcome};
 use crate::report::harmonics::{of_current, of_quasi_square};
 use crate::report::plot::{
     Bars, Curve, Group, Path, Plane, TorqueSpeed, Wave, bars, corners, dash, hexagon, means,
@@ -11,6 +10,7 @@ use crate::report::sections::waves::{COLUMNS, ideal_phase, torque_range};
 use crate::report::sections::{field, figure, legend, number, ripple, swatch};
 use crate::report::window::{Columns, columns};
 use crate::report::{ReportError, SpeedMark};
+use hexagen_lab::closed_loop::{Held, LimitOutcome};
 use maud::{Markup, html};
 use plotters::style::RGBColor;
 use std::f64::consts::TAU;
@@ -278,8 +278,8 @@ fn torque_harmonics(data: &Reproduction, speed: usize) -> Result<Markup, ReportE
     let value = |method: Method, reading, order| {
         let point = &data.methods[method.index()].of(reading).points[speed];
         match order {
-            6 => point.merits.h6_pct,
-            _ => point.merits.h12_pct,
+            6 => point.figures.h6_pct,
+            _ => point.figures.h12_pct,
         }
     };
     let orders = [6, 12];
@@ -332,12 +332,12 @@ fn torque_table(data: &Reproduction, speed: usize) -> Markup {
                 }
                 tbody {
                     @for panel in panels(data, speed) {
-                        @let merits = &panel.point.merits;
+                        @let figures = &panel.point.figures;
                         tr {
                             td { @if panel.reading == Reading::Literal { "(" (panel.method.letter()) ") " (panel.method.name()) } }
                             td { (panel.reading.name()) }
-                            td.number { (number(merits.mean_torque_nm, 3)) }
-                            @for value in [merits.ripple_pp_pct, merits.ripple_rms_pct, merits.h6_pct, merits.h12_pct] {
+                            td.number { (number(figures.mean_torque_nm, 3)) }
+                            @for value in [figures.ripple_pp_pct, figures.ripple_rms_pct, figures.h6_pct, figures.h12_pct] {
                                 td.number { (ripple(value)) }
                             }
                         }

@@ -266,7 +266,7 @@ pub fn table_5(data: &Reproduction) -> Markup {
                                     td.number.edge[k == 0] { (number(time.map(|time| 1e6 * time), 1)) }
                                 }
                                 @for (k, point) in run.points.iter().enumerate() {
-                                    td.number.edge[k == 0] { (number(point.merits.switching_hz.map(|hertz| hertz / 1e3), 1)) }
+                                    td.number.edge[k == 0] { (number(point.figures.switching_hz.map(|hertz| hertz / 1e3), 1)) }
                                 }
                             }
                         }

@@ -2,10 +2,10 @@
 
 use super::header::grouped;
 use super::{TorqueScale, capture_name, nothing, number, variant_swatch};
-use crate::closed_loop::{Merits, POINTS, RELATIVE, share_of_allowance};
 use crate::report::{ReportData, SameWords, Variant};
 use hexagen_codegen::diagnostics::significant;
 use hexagen_codegen::interface::{FormatEntry, Rounding};
+use hexagen_lab::closed_loop::{FiguresOfMerit, POINTS, RELATIVE, share_of_allowance};
 use maud::{Markup, html};
 
 /// Formats of every controller that shows them.
@@ -64,16 +64,16 @@ fn format_table(formats: &[FormatEntry]) -> Markup {
     }
 }
 
-/// A merit as the error table shows it.
+/// A figure of merit as the error table shows it.
 struct Shown {
     name: &'static str,
     unit: &'static str,
-    /// Units per unit of the merit.
+    /// Units per unit of the figure of merit.
     per_si: f64,
     decimals: usize,
     /// Whether it is a percentage, so that a few hundredths of a point count as equal.
     percentage: bool,
-    of: fn(&Merits) -> Option<f64>,
+    of: fn(&FiguresOfMerit) -> Option<f64>,
 }
 
 impl Shown {
@@ -82,8 +82,8 @@ impl Shown {
     }
 }
 
-/// The merits in the error table's columns.
-fn shown_merits(scale: &TorqueScale) -> [Shown; 14] {
+/// The figures of merit in the error table's columns.
+fn shown_figures(scale: &TorqueScale) -> [Shown; 14] {
     let percent = |name, of| Shown {
         name,
         unit: "%",
@@ -126,7 +126,7 @@ fn shown_merits(scale: &TorqueScale) -> [Shown; 14] {
     ]
 }
 
-/// Fixed and ideal values of a merit.
+/// Fixed and ideal values of a figure of merit.
 struct Pair {
     fixed: Option<f64>,
     ideal: Option<f64>,
@@ -153,9 +153,9 @@ impl Comparison<'_> {
         }
     }
 
-    /// How many of the merits differ.
-    fn differing(&self, merits: &[Shown]) -> usize {
-        merits
+    /// How many of the figures of merit differ.
+    fn differing(&self, figures: &[Shown]) -> usize {
+        figures
             .iter()
             .filter(|shown| !self.pair(shown).alike(shown.percentage))
             .count()
@@ -172,7 +172,7 @@ fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
         .collect()
 }
 
-/// Differences of merits, and of signals where they were measured.
+/// Differences of figures of merit, and of signals where they were measured.
 pub fn errors(data: &ReportData) -> Markup {
     let comparisons = comparisons(data);
     let with_signals: Vec<&Variant> = data
@@ -184,7 +184,7 @@ pub fn errors(data: &ReportData) -> Markup {
         return nothing("comparison of fixed point with float");
     }
     html! {
-        @if !comparisons.is_empty() { (merit_table(&comparisons, &shown_merits(&TorqueScale::of(data)))) }
+        @if !comparisons.is_empty() { (figure_table(&comparisons, &shown_figures(&TorqueScale::of(data)))) }
         @if !with_signals.is_empty() {
             h3 { "Signals" }
             p.note { "Distance of the emitted code from the ideal model, step by step, from the same state and samples." }
@@ -193,11 +193,11 @@ pub fn errors(data: &ReportData) -> Markup {
     }
 }
 
-fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
-    let total = comparisons.len() * merits.len();
+fn figure_table(comparisons: &[Comparison<'_>], figures: &[Shown]) -> Markup {
+    let total = comparisons.len() * figures.len();
     let apart: usize = comparisons
         .iter()
-        .map(|comparison| comparison.differing(merits))
+        .map(|comparison| comparison.differing(figures))
         .sum();
     let groups = || comparisons.chunk_by(|a, b| a.index == b.index);
     let ties: Vec<&str> = groups()
@@ -205,7 +205,7 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
         .filter(|group| {
             group
                 .iter()
-                .any(|comparison| comparison.differing(merits) > 0)
+                .any(|comparison| comparison.differing(figures) > 0)
         })
         .map(|group| group[0].variant.label.as_str())
         .collect();
@@ -226,7 +226,7 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
                     tr {
                         th { "Hall edges" }
                         th.number { "rpm" }
-                        @for shown in merits {
+                        @for shown in figures {
                             th.number { (shown.name) br; small { (shown.unit) } }
                         }
                     }
@@ -234,11 +234,11 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
                 @for group in groups() {
                     tbody {
                         tr {
-                            th colspan=(merits.len() + 2) scope="rowgroup" {
+                            th colspan=(figures.len() + 2) scope="rowgroup" {
                                 (variant_swatch(group[0].index)) " " (group[0].variant.label)
                             }
                         }
-                        @for comparison in group { (merit_row(comparison, merits)) }
+                        @for comparison in group { (figure_row(comparison, figures)) }
                     }
                 }
             }
@@ -253,12 +253,12 @@ fn merit_table(comparisons: &[Comparison<'_>], merits: &[Shown]) -> Markup {
     }
 }
 
-fn merit_row(comparison: &Comparison<'_>, merits: &[Shown]) -> Markup {
+fn figure_row(comparison: &Comparison<'_>, figures: &[Shown]) -> Markup {
     html! {
         tr {
             td { (capture_name(comparison.at.capture)) }
             td.number { (number(comparison.at.rpm, 0)) }
-            @for shown in merits {
+            @for shown in figures {
                 @let pair = comparison.pair(shown);
                 @let alike = pair.alike(shown.percentage);
                 td.number.missed[!alike] {

@@ -1,9 +1,9 @@
-//! The result table: every run, its merits at each speed, its limit, and what was expected.
+//! The result table: every run, its figures of merit at each speed, its limit, and what was expected.
 
 use super::{TorqueScale, capture_name, model_name, number, ripple, variant_swatch, variant_text};
-use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
 use crate::report::{Expectation, Expected, ReportData, Run, RunPoint};
+use hexagen_lab::closed_loop::{Held, LimitOutcome, Side};
 use maud::{Markup, html};
 
 /// The table, how many expected figures were met, and how to read it.
@@ -107,9 +107,9 @@ fn judge_point(run: &Run, rpm: f64) -> Option<[Judged; 3]> {
     let expected = run.expected.as_ref().and_then(|expected| expected.at(rpm));
     point_at(run, rpm).map(|point| {
         [
-            judge_mean(&point.merits, expected),
-            judge_pp(&point.merits, expected),
-            judge_rms(&point.merits, expected),
+            judge_mean(&point.figures, expected),
+            judge_pp(&point.figures, expected),
+            judge_rms(&point.figures, expected),
         ]
     })
 }

@@ -1,9 +1,9 @@
 //! Mean torque over speed, all variants.
 
 use super::{TorqueScale, legend, nothing, number, swatch};
-use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::report::plot::{Curve, TorqueSpeed, dash, palette, torque_speed};
 use crate::report::{ReportData, ReportError, Variant};
+use hexagen_lab::closed_loop::{Held, LimitOutcome, Side};
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 

@@ -1,10 +1,10 @@
 //! What happens over one electrical turn: phase currents, trajectory, torque.
 
 use super::{TorqueScale, field, figure, legend, nothing, number, plotted, swatch, variant_swatch};
-use crate::closed_loop::quasi_square;
 use crate::report::plot::{Wave, palette, trajectory, wave};
 use crate::report::window::{Columns, FIRST_DEG, columns};
 use crate::report::{Record, ReportData, ReportError, Variant};
+use hexagen_lab::closed_loop::quasi_square;
 use maud::{Markup, html};
 use std::ops::Range;
 

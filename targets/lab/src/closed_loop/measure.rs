@@ -1,6 +1,6 @@
 //! Runs that are measured: settling, the measured window, and the three starts.
 
-use super::{ClosedLoop, CurrentLoop, Delay, Merits, Trace, Trip, merits};
+use super::{ClosedLoop, CurrentLoop, Delay, FiguresOfMerit, Trace, Trip, figures_of_merit};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub struct RunOptions {
     pub current: f64,
     /// When commands reach the inverter.
     pub delay: Delay,
-    /// Current in amperes at which the merits count a commutation as ended.
+    /// Current in amperes at which the figures of merit count a commutation as ended.
     pub commutation_threshold: f64,
     /// Electrical start angles in radians; each is a run of its own.
     pub starts: Vec<f64>,
@@ -82,11 +82,11 @@ impl RunOptions {
     }
 }
 
-/// The merits over all starts and the records behind them.
+/// The figures of merit over all starts and the records behind them.
 #[derive(Clone, Debug)]
 pub struct Measurement {
     /// Worst peak-to-peak ripple of the starts, mean of all else; none of a drive that tripped.
-    pub merits: Merits,
+    pub figures: FiguresOfMerit,
     /// Record of each start's measured window.
     pub traces: Vec<Trace>,
     /// The trip of the first start whose controller tripped.
@@ -109,7 +109,7 @@ fn run_start<C: CurrentLoop>(
     Ok((trace, closed.tripped()))
 }
 
-/// Measures a controller from every start: the first 15 ms, and at least two electrical periods, settle the loop; the merits are those
+/// Measures a controller from every start: the first 15 ms, and at least two electrical periods, settle the loop; the figures of merit are those
 /// of the next six periods (fewer where they exceed [`MOST_RECORDED`]), the worst peak-to-peak ripple of all starts and the mean of everything else. `make` builds a fresh controller with its
 /// set-point for each start, told the plant's initial state; starts run in parallel.
 ///
@@ -138,16 +138,16 @@ where
 }
 
 impl Measurement {
-    /// The merits of the records of all starts of a run, of which none may have `tripped`.
+    /// The figures of merit of the records of all starts of a run, of which none may have `tripped`.
     pub fn of(traces: Vec<Trace>, tripped: Option<Trip>, options: &RunOptions) -> Self {
-        let starts: Vec<Merits> = traces
+        let starts: Vec<FiguresOfMerit> = traces
             .iter()
-            .map(|trace| merits(trace, options.current, options.commutation_threshold))
+            .map(|trace| figures_of_merit(trace, options.current, options.commutation_threshold))
             .collect();
         Self {
-            merits: match tripped {
-                None => Merits::of_starts(&starts),
-                Some(_) => Merits::default(),
+            figures: match tripped {
+                None => FiguresOfMerit::of_starts(&starts),
+                Some(_) => FiguresOfMerit::default(),
             },
             traces,
             tripped,

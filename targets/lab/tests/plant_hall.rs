@@ -2,7 +2,7 @@
 //! evenly are.
 
 use hexagen::Legs;
-use hexagen_host::plant::{Plant, PlantParams};
+use hexagen_lab::plant::{Plant, PlantParams};
 
 /// Ticks per control period.
 const TICKS: f64 = 1800.0;

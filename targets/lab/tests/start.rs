@@ -2,9 +2,9 @@
 
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::spec::BusSource;
-use hexagen_host::closed_loop::ClosedLoop;
-use hexagen_host::engine::{Model, MotorSource, Prepared, library, plant_of, prepare, run_of};
-use hexagen_host::plant::Plant;
+use hexagen_lab::closed_loop::ClosedLoop;
+use hexagen_lab::engine::{Model, MotorSource, Prepared, library, plant_of, prepare, run_of};
+use hexagen_lab::plant::Plant;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! Time series of a run: fine bins for merits and plots, one row per period for CSV.
+//! Time series of a run: fine bins for figures of merit and plots, one row per period for CSV.
 //!
 //! Bins of 2.5 us (a whole number per period) hold exact means, integrated on the solution.
 

@@ -5,16 +5,17 @@
 //! period k drives the inverter in period k + 1, or, without delay, in period k.
 
 mod allowance;
+mod figures_of_merit;
 mod harmonics;
 mod limit;
 mod measure;
-mod merits;
 mod percent;
 mod swing;
 mod trace;
 mod trip;
 
 pub use allowance::{POINTS, RELATIVE, share_of_allowance};
+pub use figures_of_merit::{FiguresOfMerit, figures_of_merit};
 pub use harmonics::amplitudes;
 pub use limit::{
     Held, LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, speed_limit, speed_limit_knowing,
@@ -22,7 +23,6 @@ pub use limit::{
 pub use measure::{
     Aim, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
 };
-pub use merits::{Merits, merits};
 pub use percent::percent;
 pub use swing::Swing;
 pub use trace::{PeriodRow, Trace, quasi_square};

@@ -4,8 +4,8 @@
 //! table of them. Every motor has the controller of its file; the paper's motor also has the
 //! variants of the result table and of the paper's experiment.
 
-#[path = "src/commands/reproduce/variants.rs"]
-mod variants;
+#[path = "src/readings.rs"]
+mod readings;
 
 use hexagen_codegen::spec::KINDS;
 use std::collections::BTreeSet;
@@ -114,7 +114,7 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
             ["timer", "sampled"]
                 .map(|capture| format!("{options},discretisation=euler,hall_capture={capture}"))
         });
-        let of_readings = variants::READINGS
+        let of_readings = readings::READINGS
             .iter()
             .flat_map(|readings| [readings.literal, readings.corrected].map(str::to_owned));
         // Some readings are rows of the table.

@@ -1,8 +1,8 @@
 //! At 120 % of rated speed no controller reaches more than a tenth less torque than the nearest-point rule with
 //! the same options, which loses what it must and no more, but for one rule: listed with what it reaches.
 
-use hexagen_host::closed_loop::{RunOptions, mean_torque};
-use hexagen_host::engine::{Model, MotorSource, plant_of, prepare, run_of};
+use hexagen_lab::closed_loop::{RunOptions, mean_torque};
+use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 use rayon::prelude::*;
 use std::ops::Range;
 

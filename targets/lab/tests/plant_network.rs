@@ -2,7 +2,7 @@
 //! rectification, volt-seconds of PWM, shaft motion, sensors, and the energy balance.
 
 use hexagen::{LegState, Legs};
-use hexagen_host::plant::{
+use hexagen_lab::plant::{
     AdcChannel, EmfShape, EnergyMeter, Mechanics, Observer, Plant, PlantError, PlantParams,
     Segment, Terminal,
 };

@@ -1,12 +1,12 @@
-//! When two merits count as alike.
+//! When two figures of merit count as alike.
 
-/// Greatest relative difference of merits that count as alike.
+/// Greatest relative difference of figures of merit that count as alike.
 pub const RELATIVE: f64 = 0.005;
 
 /// Greatest difference of percentages that count as alike, whatever their ratio, in points.
 pub const POINTS: f64 = 0.05;
 
-/// How far a merit is from what it should be, in parts of the difference that still counts as alike. Merits that
+/// How far a figure of merit is from what it should be, in parts of the difference that still counts as alike. Figures of merit that
 /// do not exist (percent of a zero torque) are alike when both do not; where one does, it is infinitely far.
 pub fn share_of_allowance(found: Option<f64>, expected: Option<f64>, is_percentage: bool) -> f64 {
     let (found, expected) = match (found, expected) {

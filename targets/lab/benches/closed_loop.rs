@@ -1,11 +1,11 @@
 //! A second of closed loop on one core: the 660 W motor at 1500 rpm under rated torque, sampled every 50 us.
 //!
-//! `cargo bench -p hexagen-host`; a second of one controller should take less than 0.2 s.
+//! `cargo bench -p hexagen-lab`; a second of one controller should take less than 0.2 s.
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use hexagen_host::closed_loop::{ClosedLoop, Delay};
-use hexagen_host::engine::{EngineKind, Model, MotorSource, Prepared, plant_of, prepare};
-use hexagen_host::plant::Plant;
+use hexagen_lab::closed_loop::{ClosedLoop, Delay};
+use hexagen_lab::engine::{EngineKind, Model, MotorSource, Prepared, plant_of, prepare};
+use hexagen_lab::plant::Plant;
 use std::f64::consts::TAU;
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const CONTROLLERS: [&str; 5] = ["fcs-mpc", "p-pwm", "pdcc", "phcc", "pi-pwm"];
 const RPM: f64 = 1500.0;
 
 /// A loop from rest, and the periods of a second.
-fn closed_loop(drive: &Prepared) -> (ClosedLoop<hexagen_host::engine::Engine<'_>>, usize) {
+fn closed_loop(drive: &Prepared) -> (ClosedLoop<hexagen_lab::engine::Engine<'_>>, usize) {
     let params = plant_of(&drive.spec);
     let periods = (1.0 / params.t_s).round() as usize;
     let set_point = drive.set_point(drive.demand());

@@ -6,11 +6,11 @@
 //! Each bound lies midway, by ratio, between two figures that stand beside it: what the law
 //! reaches, and the least wrong of what it reached with one sign turned or one term left out.
 
-use hexagen_host::closed_loop::{
+use hexagen_lab::closed_loop::{
     ClosedLoop, PeriodRow, Recorder, Step, Trace, measure, quasi_square,
 };
-use hexagen_host::engine::{Model, MotorSource, Prepared, plant_of, prepare, run_of};
-use hexagen_host::plant::{Observer, Plant, Segment};
+use hexagen_lab::engine::{Model, MotorSource, Prepared, plant_of, prepare, run_of};
+use hexagen_lab::plant::{Observer, Plant, Segment};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -104,11 +104,11 @@ fn measured(drive: &Prepared, rpm: f64, share: f64) -> (Vec<Trace>, f64, f64) {
     let maker = drive.maker(Model::Fixed, drive.set_point(torque));
     let found = measure(&plant_of(&drive.spec), &run, maker).expect("runs");
     assert_eq!(found.tripped, None, "{} at {rpm} rpm", drive.variant);
-    let merits = found.merits;
+    let figures = found.figures;
     (
         found.traces,
-        merits.mean_torque_nm.expect("runs") / torque,
-        merits.ripple_pp_pct.expect("turns"),
+        figures.mean_torque_nm.expect("runs") / torque,
+        figures.ripple_pp_pct.expect("turns"),
     )
 }
 

@@ -2,7 +2,7 @@
 //! network's invariants hold in every segment.
 
 use hexagen::{LegState, Legs};
-use hexagen_host::plant::{
+use hexagen_lab::plant::{
     EmfShape, EnergyMeter, Mechanics, Observer, Plant, PlantParams, Segment, Terminal,
 };
 

@@ -4,13 +4,13 @@ use super::{
     AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, reach_of,
 };
 use crate::plant::Truth;
+use crate::{Interpreted, formats, state_names};
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
 };
-use hexagen_lab::{Interpreted, formats, state_names};
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 
 /// One drive: specification, generated program and reference models at rest.

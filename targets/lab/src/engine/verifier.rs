@@ -2,10 +2,10 @@
 
 use super::external::{Binding, BuildError, External, Terms, compile, compile_c99, verify};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
+use crate::standalone::derived;
 use hexagen_codegen::emit::c99::emit_c99;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::ir::Demand;
-use hexagen_lab::standalone::derived;
 use hexagen_reference::verify::{Report, verify_subject};
 
 /// A drive and what runs it.

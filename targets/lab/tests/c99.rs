@@ -3,7 +3,7 @@
 
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::spec::parse_toml;
-use hexagen_host::engine::{Prepared, Verifier, prepare_ast};
+use hexagen_lab::engine::{Prepared, Verifier, prepare_ast};
 use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::kinds;

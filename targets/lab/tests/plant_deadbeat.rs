@@ -1,13 +1,13 @@
 //! A float64 reference experiment: an ideal deadbeat controller on the 660 W motor must give the
 //! PDCC rows of the reference study that it stands for (`report/expected.rs`). Nothing of the generator takes part, so a
-//! difference here is the plant's or the merits'.
+//! difference here is the plant's or the figures of merit'.
 
 use hexagen::{LegState, Legs, Sample};
-use hexagen_host::closed_loop::{
-    CurrentLoop, Held, LimitOptions, LimitOutcome, Merits, RunOptions, Side, measure, quasi_square,
-    speed_limit,
+use hexagen_lab::closed_loop::{
+    CurrentLoop, FiguresOfMerit, Held, LimitOptions, LimitOutcome, RunOptions, Side, measure,
+    quasi_square, speed_limit,
 };
-use hexagen_host::plant::{PlantParams, Truth};
+use hexagen_lab::plant::{PlantParams, Truth};
 use std::f64::consts::{PI, TAU};
 
 const R: f64 = 0.135;
@@ -128,13 +128,13 @@ impl CurrentLoop for Deadbeat {
     }
 }
 
-fn at(reference: Reference, rpm: f64, torque: f64) -> Merits {
+fn at(reference: Reference, rpm: f64, torque: f64) -> FiguresOfMerit {
     let options = RunOptions::new(rpm * TAU / 60.0, torque / 0.1648);
     let measurement = measure(&motor(), &options, |_: &Truth| {
         Deadbeat::new(reference, torque)
     })
     .unwrap();
-    measurement.merits
+    measurement.figures
 }
 
 fn assert_near(

@@ -1,7 +1,7 @@
 //! Building emitted code with rustc, or with the C compiler of this machine.
 
+use crate::standalone::{MACROS, fixed};
 use hexagen_codegen::emit::c99::{RUNTIME as RUNTIME_C, Sources};
-use hexagen_lab::standalone::{MACROS, fixed};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError, Weak};

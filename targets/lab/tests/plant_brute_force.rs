@@ -3,7 +3,7 @@
 //! through diodes, unequal phases, both EMF shapes, and rectification above the bus voltage.
 
 use hexagen::{LegState, Legs};
-use hexagen_host::plant::{EmfShape, Observer, Plant, PlantParams, Segment};
+use hexagen_lab::plant::{EmfShape, Observer, Plant, PlantParams, Segment};
 use std::f64::consts::{PI, TAU};
 
 /// Euler step in seconds.

@@ -4,12 +4,12 @@
 //! generator takes part in these; a generated drive holds the pair's current, too.
 
 use hexagen::{LegState, Legs, Sample};
-use hexagen_host::closed_loop::{
+use hexagen_lab::closed_loop::{
     ClosedLoop, CurrentLoop, Held as HeldTorque, LimitOptions, RunOptions, measure, quasi_square,
     speed_limit,
 };
-use hexagen_host::engine::{Model, MotorSource, SetPoint, plant_of, prepare, run_of};
-use hexagen_host::plant::{Plant, PlantParams, Truth};
+use hexagen_lab::engine::{Model, MotorSource, SetPoint, plant_of, prepare, run_of};
+use hexagen_lab::plant::{Plant, PlantParams, Truth};
 use std::f64::consts::TAU;
 
 const R: f64 = 0.135;
@@ -90,13 +90,13 @@ fn motor() -> PlantParams {
 /// Mean torque in newton metres, peak-to-peak and RMS ripple in percent.
 fn at(held: Held, rpm: f64) -> [f64; 3] {
     let run = RunOptions::new(rpm * TAU / 60.0, CURRENT);
-    let merits = measure(&motor(), &run, |_: &Truth| SixStep::new(held))
+    let figures = measure(&motor(), &run, |_: &Truth| SixStep::new(held))
         .expect("runs")
-        .merits;
+        .figures;
     [
-        merits.mean_torque_nm,
-        merits.ripple_pp_pct,
-        merits.ripple_rms_pct,
+        figures.mean_torque_nm,
+        figures.ripple_pp_pct,
+        figures.ripple_rms_pct,
     ]
     .map(|figure| figure.expect("it runs"))
 }

@@ -18,16 +18,16 @@ pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
 pub use verifier::Verifier;
 
+use crate::Interpreted;
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
 use hexagen::{Fault, Legs, Sample};
-use hexagen_lab::Interpreted;
 use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
 
 /// Which model of a controller runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// The generated fixed-point program

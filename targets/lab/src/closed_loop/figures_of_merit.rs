@@ -1,18 +1,18 @@
-//! The merits of a run as its record shows them: means over bins of 2.5 us.
+//! The figures of merit of a run as its record shows them: means over bins of 2.5 us.
 
 use super::trace::{Trace, quasi_square};
 use super::{amplitudes, percent};
 use serde::Serialize;
 
 /// What a run is judged by; JSON shows what there is none of as null. A drive that tripped has no
-/// merits at all ([`Merits::default`]).
+/// figures of merit at all ([`FiguresOfMerit::default`]).
 ///
 /// Percentages of mean torque and of the current's fundamental are none where that, or the current
 /// that was asked for, is below what the drive's converters resolve ([`Trace::current_floor`],
 /// [`Trace::torque_floor`]). Harmonics are none where the shaft made less than an electrical turn,
 /// as at standstill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Merits {
+pub struct FiguresOfMerit {
     /// Mean torque in newton metres, with its sign.
     pub mean_torque_nm: Option<f64>,
     /// Peak-to-peak torque after a moving mean over Ts, in percent of the mean.
@@ -50,10 +50,10 @@ pub struct Merits {
 /// The highest of all harmonics that are computed.
 const HIGHEST: usize = 13;
 
-/// The merits of one record. `current` is the quasi-square reference's amplitude in amperes, with
+/// The figures of merit of one record. `current` is the quasi-square reference's amplitude in amperes, with
 /// the torque's sign; `threshold` ends a commutation, in amperes. The record should span whole
 /// electrical periods.
-pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
+pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresOfMerit {
     let mean = mean(&trace.torque);
     let is_asked = current.abs() > trace.current_floor;
     let has_turned = trace.turns() >= 1.0;
@@ -98,7 +98,7 @@ pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
         .map(|row| u64::from(row.turn_ons))
         .sum();
     let saturated = trace.periods.iter().filter(|row| row.saturated).count();
-    Merits {
+    FiguresOfMerit {
         mean_torque_nm: Some(mean),
         ripple_pp_pct: of_mean(most - least),
         ripple_rms_pct: of_mean(deviation(&smoothed)),
@@ -116,8 +116,8 @@ pub fn merits(trace: &Trace, current: f64, threshold: f64) -> Merits {
     }
 }
 
-impl Merits {
-    /// The merits of several starts: the worst peak-to-peak ripple, the mean of all else; none of
+impl FiguresOfMerit {
+    /// The figures of merit of several starts: the worst peak-to-peak ripple, the mean of all else; none of
     /// what one of them has none of.
     pub(super) fn of_starts(starts: &[Self]) -> Self {
         let all = |of: fn(&Self) -> Option<f64>| starts.iter().map(of).collect::<Option<Vec<_>>>();
@@ -231,33 +231,33 @@ mod tests {
     fn harmonics_distortion_and_tracking_of_an_ideal_square() {
         let torque =
             |theta: f64| -3.0 + 0.06 * (6.0 * theta + 0.4).cos() + 0.03 * (12.0 * theta).sin();
-        let merits = merits(&synthetic(torque, square), 20.0, 0.5);
-        assert_close(merits.mean_torque_nm, -3.0, 1e-12);
-        assert_close(merits.h6_pct, 2.0, 1e-9);
-        assert_close(merits.h12_pct, 1.0, 1e-9);
+        let figures = figures_of_merit(&synthetic(torque, square), 20.0, 0.5);
+        assert_close(figures.mean_torque_nm, -3.0, 1e-12);
+        assert_close(figures.h6_pct, 2.0, 1e-9);
+        assert_close(figures.h12_pct, 1.0, 1e-9);
         // Fourier series of the six-step wave; its total distortion is sqrt(pi^2/9 - 1).
         for (got, order) in [
-            (merits.i5_pct, 5.0),
-            (merits.i7_pct, 7.0),
-            (merits.i11_pct, 11.0),
-            (merits.i13_pct, 13.0),
+            (figures.i5_pct, 5.0),
+            (figures.i7_pct, 7.0),
+            (figures.i11_pct, 11.0),
+            (figures.i13_pct, 13.0),
         ] {
             assert_close(got, 100.0 / order, 0.3);
         }
-        assert_close(merits.thd_pct, 31.08, 0.1);
-        assert_close(merits.tracking_rms_a, 0.0, 1e-9);
-        assert_close(merits.commutation_us, 0.0, 0.0);
-        assert_close(merits.switching_hz, 2.0 / 6.0 / 50e-6, 1e-6);
-        assert_close(merits.saturated_pct, 25.0, 0.0);
+        assert_close(figures.thd_pct, 31.08, 0.1);
+        assert_close(figures.tracking_rms_a, 0.0, 1e-9);
+        assert_close(figures.commutation_us, 0.0, 0.0);
+        assert_close(figures.switching_hz, 2.0 / 6.0 / 50e-6, 1e-6);
+        assert_close(figures.saturated_pct, 25.0, 0.0);
     }
 
     #[test]
     fn ripple_is_taken_after_a_moving_mean_over_the_period() {
         // A ripple at the PWM frequency (20 bins) vanishes, a slow one of 10 % remains.
         let torque = |theta: f64| 2.0 + 0.5 * (40.0 * theta).sin() + 0.1 * theta.sin();
-        let merits = merits(&synthetic(torque, square), 20.0, 0.5);
-        assert_close(merits.ripple_pp_pct, 10.0, 0.05);
-        assert_close(merits.ripple_rms_pct, 5.0 / 2.0_f64.sqrt(), 0.02);
+        let figures = figures_of_merit(&synthetic(torque, square), 20.0, 0.5);
+        assert_close(figures.ripple_pp_pct, 10.0, 0.05);
+        assert_close(figures.ripple_rms_pct, 5.0 / 2.0_f64.sqrt(), 0.02);
     }
 
     #[test]
@@ -280,32 +280,36 @@ mod tests {
         };
         let trace = synthetic(|_| 1.0, decaying);
         assert_close(
-            merits(&trace, 20.0, 0.5).commutation_us,
+            figures_of_merit(&trace, 20.0, 0.5).commutation_us,
             34.67 * 2.5 * 2.0 / 3.0,
             1.7,
         );
         assert_close(
-            merits(&trace, 20.0, 10.0).commutation_us,
+            figures_of_merit(&trace, 20.0, 10.0).commutation_us,
             17.78 * 2.5 * 2.0 / 3.0,
             1.7,
         );
         // Against the torque's sign the outgoing current counts as gone at once.
-        assert_close(merits(&trace, -20.0, 0.5).commutation_us, 0.0, 0.0);
+        assert_close(
+            figures_of_merit(&trace, -20.0, 0.5).commutation_us,
+            0.0,
+            0.0,
+        );
     }
 
     #[test]
     fn starts_combine_to_the_worst_peak_and_the_mean_of_all_else() {
-        let quiet = merits(
+        let quiet = figures_of_merit(
             &synthetic(|theta| 2.0 + 0.01 * theta.sin(), square),
             20.0,
             0.5,
         );
-        let loud = merits(
+        let loud = figures_of_merit(
             &synthetic(|theta| 3.0 + 0.6 * theta.sin(), square),
             20.0,
             0.5,
         );
-        let both = Merits::of_starts(&[quiet, loud, quiet]);
+        let both = FiguresOfMerit::of_starts(&[quiet, loud, quiet]);
         assert_eq!(both.ripple_pp_pct, loud.ripple_pp_pct);
         assert_close(both.mean_torque_nm, 7.0 / 3.0, 1e-9);
         assert_close(
@@ -314,27 +318,27 @@ mod tests {
             1e-12,
         );
         // What a start has none of, all of them have none of.
-        let still = merits(&synthetic(|_| 0.0, square), 20.0, 0.5);
-        let some = Merits::of_starts(&[quiet, still]);
+        let still = figures_of_merit(&synthetic(|_| 0.0, square), 20.0, 0.5);
+        let some = FiguresOfMerit::of_starts(&[quiet, still]);
         assert_eq!((some.ripple_pp_pct, some.ripple_rms_pct), (None, None));
         assert_close(some.mean_torque_nm, 1.0, 1e-9);
     }
 
     /// Percentages of mean torque, and of the current's fundamental.
-    fn percentages(merits: &Merits) -> ([Option<f64>; 4], [Option<f64>; 5]) {
+    fn percentages(figures: &FiguresOfMerit) -> ([Option<f64>; 4], [Option<f64>; 5]) {
         (
             [
-                merits.ripple_pp_pct,
-                merits.ripple_rms_pct,
-                merits.h6_pct,
-                merits.h12_pct,
+                figures.ripple_pp_pct,
+                figures.ripple_rms_pct,
+                figures.h6_pct,
+                figures.h12_pct,
             ],
             [
-                merits.i5_pct,
-                merits.i7_pct,
-                merits.i11_pct,
-                merits.i13_pct,
-                merits.thd_pct,
+                figures.i5_pct,
+                figures.i7_pct,
+                figures.i11_pct,
+                figures.i13_pct,
+                figures.thd_pct,
             ],
         )
     }
@@ -345,20 +349,20 @@ mod tests {
         let (count, torque) = (40.0 / 2048.0, 2.0 * 0.1 * 40.0 / 2048.0);
         for share in [0.0, 0.9] {
             let rippling = |theta: f64| share * torque + 0.5 * (6.0 * theta).sin();
-            let found = merits(&synthetic(rippling, square), 20.0, 0.5);
+            let found = figures_of_merit(&synthetic(rippling, square), 20.0, 0.5);
             assert_eq!(percentages(&found).0, [None; 4], "{found:?}");
             assert!(percentages(&found).1.iter().all(Option::is_some));
             assert_close(found.mean_torque_nm, share * torque, 1e-9);
 
             let small = |theta: f64| 0.9 * count * share * theta.sin() + 0.2 * (5.0 * theta).sin();
-            let found = merits(&synthetic(|_| 3.0, small), 20.0, 0.5);
+            let found = figures_of_merit(&synthetic(|_| 3.0, small), 20.0, 0.5);
             assert_eq!(percentages(&found).1, [None; 5], "{found:?}");
             assert!(percentages(&found).0.iter().all(Option::is_some));
 
-            let unasked = merits(&synthetic(|_| 3.0, square), share * count, 0.5);
+            let unasked = figures_of_merit(&synthetic(|_| 3.0, square), share * count, 0.5);
             assert_eq!(percentages(&unasked), ([None; 4], [None; 5]));
         }
-        let enough = merits(&synthetic(|_| 1.1 * torque, square), 20.0, 0.5);
+        let enough = figures_of_merit(&synthetic(|_| 1.1 * torque, square), 20.0, 0.5);
         assert!(percentages(&enough).0.iter().all(Option::is_some));
     }
 
@@ -367,7 +371,7 @@ mod tests {
         let mut trace = synthetic(|theta| 3.0 + 0.1 * theta.sin(), square);
         assert!((trace.turns() - 6.0).abs() < 0.01, "{}", trace.turns());
         trace.theta_e.iter_mut().for_each(|theta| *theta = 0.2);
-        let still = merits(&trace, 20.0, 0.5);
+        let still = figures_of_merit(&trace, 20.0, 0.5);
         assert_eq!((still.h6_pct, still.h12_pct), (None, None));
         assert_eq!(percentages(&still).1, [None; 5]);
         assert_eq!(still.commutation_us, None);

@@ -1,7 +1,7 @@
 //! An estimated sine keeps its length as it is moved on from period to period: the torque is the one that is asked for.
 
-use hexagen_host::closed_loop::mean_torque;
-use hexagen_host::engine::{Model, MotorSource, plant_of, prepare, run_of};
+use hexagen_lab::closed_loop::mean_torque;
+use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 
 /// Part of the torque that may be missing: a quasi-square reference comes up to a period late.
 const LOST: f64 = 0.08;

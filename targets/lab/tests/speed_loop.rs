@@ -1,9 +1,9 @@
 //! The speed loop in closed loop, on motors of different size: run-up from standstill under load, reversal, steps of
 //! the load, the limit of the current, and what is said of slow turning.
 
-use hexagen_host::closed_loop::ClosedLoop;
-use hexagen_host::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
-use hexagen_host::plant::{Mechanics, Plant};
+use hexagen_lab::closed_loop::ClosedLoop;
+use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
+use hexagen_lab::plant::{Mechanics, Plant};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

@@ -5,9 +5,9 @@
 //! cannot see" (`hexagen::Supervisor`, README) is to be changed with this test.
 
 use hexagen::{Fault, Sample};
-use hexagen_host::closed_loop::{ClosedLoop, CurrentLoop};
-use hexagen_host::engine::{Model, MotorSource, plant_of, prepare, run_of};
-use hexagen_host::plant::Plant;
+use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
+use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
+use hexagen_lab::plant::Plant;
 
 /// Control periods, a tenth of a second.
 const PERIODS: usize = 2000;
@@ -35,7 +35,7 @@ fn greatest_current(
     let mut engine = drive.engine(Model::Fixed, drive.set_point(share * drive.demand()));
     let (mut most, mut fault) = (0.0_f64, None);
     let mid_scale = inverter.adc_offset as u16;
-    let controller = |sample: &Sample, truth: &hexagen_host::plant::Truth| {
+    let controller = |sample: &Sample, truth: &hexagen_lab::plant::Truth| {
         let [adc_a, adc_b, _] = sample.adc();
         let adc_a = if is_frozen { mid_scale } else { adc_a };
         let sample = Sample::with_hall([adc_a, adc_b], sample.hall()).hall_ticks(sample.ticks());
