@@ -3,14 +3,13 @@
 mod page_support;
 mod report_support;
 
-use hexagen_host::report::{
-    Expectation, Expected, ExpectedPoint, ReportData, Variant, render, write,
-};
+use hexagen_host::report::{render, write};
 use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
+use hexagen_lab::results::{Expectation, Expected, ExpectedPoint, Results, Variant};
 use std::path::Path;
 use std::sync::LazyLock;
 
-static DATA: LazyLock<ReportData> = LazyLock::new(report_support::data);
+static DATA: LazyLock<Results> = LazyLock::new(report_support::data);
 static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA).expect("the page renders"));
 
 #[test]

@@ -2,12 +2,13 @@
 
 mod page_support;
 
-use hexagen_host::commands::reproduce::{Effort, collect, summary};
-use hexagen_host::report::reproduction::{
-    Method, Reading, Reproduction, Verdict, distance_rms, render, write,
-};
+use hexagen_host::commands::reproduce::summary;
+use hexagen_host::report::reproduction::{render, write};
 use hexagen_lab::READINGS;
 use hexagen_lab::closed_loop::FiguresOfMerit;
+use hexagen_lab::reproduction::{
+    Effort, Method, Reading, Reproduction, Verdict, distance_rms, reproduce,
+};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -18,7 +19,7 @@ static DATA: LazyLock<Reproduction> = LazyLock::new(|| {
         curve_rpm: vec![400.0, 1500.0, 2500.0],
         limit_rpm: (1000.0, 400.0),
     };
-    collect(&effort, None).expect("every drive runs")
+    reproduce(&effort, &()).expect("every drive runs")
 });
 static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA).expect("the page renders"));
 

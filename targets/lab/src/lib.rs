@@ -4,17 +4,29 @@
 //! The generator's tables of formats and limits come over in the runtime's types here: nothing else
 //! knows both.
 
+pub mod accuracy;
 pub mod closed_loop;
 pub mod counted;
 pub mod engine;
+mod error;
 mod inputs;
 mod interpreted;
+pub mod motors;
 pub mod plant;
+mod progress;
 mod readings;
+pub mod reproduction;
+pub mod results;
+pub mod robustness;
+pub mod stability;
 pub mod standalone;
 mod tables;
+pub mod text;
+pub mod verification;
 
+pub use error::LabError;
 pub use inputs::Inputs;
 pub use interpreted::Interpreted;
+pub use progress::Progress;
 pub use readings::{READINGS, Readings};
 pub use tables::{formats, limits, state_names};

@@ -18,9 +18,9 @@ use count::{Counts, Inputs, count, supervision};
 use elf::{Code, Image, Isa};
 use expected::Expected;
 use goals::goal;
-use hexagen_host::commands::reproduce::counted_readings;
 use hexagen_lab::counted::{Counted, Figures};
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
+use hexagen_lab::reproduction::counted_readings;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -5,13 +5,10 @@ use crate::commands::{
     compare, generate, limit, motors, prove, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
-use hexagen_codegen::spec::{KINDS, SpecAst, option_help, parse_toml};
-use hexagen_lab::closed_loop::RunOptions;
-use hexagen_lab::engine::{
-    Model, MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of,
-};
-use hexagen_lab::plant::{Mechanics, PlantError, PlantParams};
-use std::f64::consts::TAU;
+use hexagen_codegen::spec::{KINDS, option_help};
+use hexagen_lab::LabError;
+use hexagen_lab::engine::{Model, PlantOptions, Prepared, SelectedMotor, SetPoint};
+use hexagen_lab::plant::{PlantError, PlantParams};
 use std::str::FromStr;
 
 const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
@@ -114,64 +111,6 @@ impl Selection {
     }
 }
 
-/// A motor from the command line, with what the plant options change in its specification.
-#[derive(Clone, Debug)]
-pub struct SelectedMotor {
-    /// The motor.
-    pub source: MotorSource,
-    /// The syntax tree after the changes.
-    pub ast: SpecAst,
-}
-
-impl SelectedMotor {
-    /// Finds and reads a motor.
-    ///
-    /// # Errors
-    /// When there is none, or its file is no TOML.
-    pub fn find(given: &str, plant: &PlantArguments) -> Result<Self, Failure> {
-        let source = MotorSource::find(given)?;
-        Self::read(source, plant)
-    }
-
-    /// Every motor of the library.
-    ///
-    /// # Errors
-    /// As [`Self::find`].
-    pub fn library(plant: &PlantArguments) -> Result<Vec<Self>, Failure> {
-        let all = library().iter().map(MotorSource::from);
-        all.map(|source| Self::read(source, plant)).collect()
-    }
-
-    fn read(source: MotorSource, plant: &PlantArguments) -> Result<Self, Failure> {
-        let mut ast = parse_toml(&source.text, &source.file)?;
-        plant.change_specification(&mut ast)?;
-        Ok(Self { source, ast })
-    }
-
-    /// Takes a variant through the generator; none: the controller of the motor's file.
-    ///
-    /// # Errors
-    /// All diagnostics.
-    pub fn prepare(&self, variant: Option<&str>) -> Result<Prepared, Failure> {
-        Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
-    }
-
-    /// As [`Self::prepare`], for commands that measure the torque that is set.
-    ///
-    /// # Errors
-    /// All diagnostics, or a drive that regulates its speed.
-    pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, Failure> {
-        let drive = self.prepare(variant)?;
-        if drive.spec.controller.common().speed.is_some() {
-            return Err(Failure::Argument(
-                "`speed_loop: on`: the drive regulates its speed, and here the torque is set; give the controller `speed_loop=off`"
-                    .to_owned(),
-            ));
-        }
-        Ok(drive)
-    }
-}
-
 /// Options that change the simulated plant.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Plant")]
@@ -217,33 +156,22 @@ pub struct PlantArguments {
 }
 
 impl PlantArguments {
-    /// ADC bits and range are the controller's, too: they are laid over the specification.
-    fn change_specification(&self, ast: &mut SpecAst) -> Result<(), Failure> {
-        let bits = self.adc_bits.map(|bits| format!("adc_bits = {bits}"));
-        let range = self
-            .adc_range
-            .as_ref()
-            .map(|range| format!("adc_range = \"{range}\""));
-        if range.is_some() {
-            // Another way to say the range.
-            ast.inverter.fields.retain(|field| field.name != "adc_gain");
+    /// The options as the laboratory takes them.
+    pub fn options(&self) -> PlantOptions {
+        PlantOptions {
+            dead_time: self.dead_time,
+            adc_bits: self.adc_bits,
+            adc_range: self.adc_range.clone(),
+            adc_offset: self.adc_offset,
+            v_bus: self.v_bus,
+            scale_r: self.scale_r,
+            scale_l: self.scale_l,
+            scale_kb: self.scale_kb,
+            hall_error: self.hall_error,
+            inertia: self.inertia,
+            load: self.load,
+            start_angle: self.start_angle,
         }
-        let lines: Vec<String> = bits.into_iter().chain(range).collect();
-        if lines.is_empty() {
-            return Ok(());
-        }
-        // An offset counts in the bits of before; the middle of the new range takes its place.
-        ast.inverter
-            .fields
-            .retain(|field| field.name != "adc_offset");
-        let mut over = parse_toml(
-            &format!("[inverter]\n{}", lines.join("\n")),
-            "--adc-bits/--adc-range",
-        )?;
-        over.name = ast.name.clone();
-        over.inverter.location = None;
-        ast.overlay(over);
-        Ok(())
     }
 
     /// The plant of a drive.
@@ -251,35 +179,26 @@ impl PlantArguments {
     /// # Errors
     /// An option out of range.
     pub fn plant(&self, drive: &Prepared) -> Result<PlantParams, Failure> {
-        let mut plant = plant_of(&drive.spec).scaled(
-            self.scale_r.unwrap_or(1.0),
-            self.scale_l.unwrap_or(1.0),
-            self.scale_kb.unwrap_or(1.0),
-        );
-        plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
-        plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
-        for (channel, error) in plant
-            .adc
-            .iter_mut()
-            .zip(self.adc_offset.unwrap_or([0.0; 2]))
-        {
-            channel.offset += error / channel.amperes_per_count;
-        }
-        plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
-        plant.mechanics = self.inertia.map(|inertia| Mechanics {
-            inertia,
-            opposing_torque: self.load.unwrap_or(0.0),
-            external_torque: 0.0,
-            viscous: 0.0,
-        });
-        plant.check().map_err(|error| self.blame(error))?;
-        Ok(plant)
+        let plant = self.options().plant(drive);
+        plant.map_err(|error| self.blame(error.into()))
     }
 
-    /// The option that a parameter out of range comes from, where one was given.
-    fn blame(&self, error: PlantError) -> Failure {
-        let PlantError::Range { name, .. } = &error;
-        let option = match *name {
+    /// The failure that an error of the laboratory is, with the option that it comes from, where one was given.
+    pub fn blame(&self, error: LabError) -> Failure {
+        let Some(option) = self.option_of(&error) else {
+            return error.into();
+        };
+        let text = error.to_string();
+        Failure::Argument(text.replacen("error: ", &format!("{option}: "), 1))
+    }
+
+    fn option_of(&self, error: &LabError) -> Option<&'static str> {
+        let name = match error {
+            LabError::FreeShaft => "inertia",
+            LabError::Plant(PlantError::Range { name, .. }) => name,
+            _ => return None,
+        };
+        Some(match name {
             "dead_time" if self.dead_time.is_some() => "--dead-time",
             "v_bus" if self.v_bus.is_some() => "--v-bus",
             "resistance" if self.scale_r.is_some() => "--scale-r",
@@ -289,34 +208,20 @@ impl PlantArguments {
             "hall_error_deg" if self.hall_error.is_some() => "--hall-error",
             "inertia" => "--inertia",
             "opposing_torque" => "--load",
-            _ => return error.into(),
-        };
-        Failure::Argument(format!("{option}: {error}"))
-    }
-
-    /// The run of a drive at a mechanical speed in rpm and a torque in newton metres.
-    pub fn run(&self, drive: &Prepared, rpm: f64, torque: f64) -> RunOptions {
-        let mut run = run_of(&drive.spec, rpm * TAU / 60.0, torque);
-        if let Some(start) = self.start_angle {
-            run.starts = vec![start];
-        }
-        run
+            _ => return None,
+        })
     }
 
     /// The drive's set-point for a torque in newton metres; warns when it is beyond its limit.
     pub fn set_point(&self, drive: &Prepared, torque: f64) -> SetPoint {
-        let current = torque / drive.spec.torque_constant();
-        let max = drive.spec.inverter.max_current;
+        let set_point = self.options().set_point(drive, torque);
+        let (current, max) = (set_point.current, drive.spec.inverter.max_current);
         if current.abs() > max * (1.0 + 1e-9) {
             warn(&format!(
                 "{torque} Nm take {current:.2} A: the drive limits its set-point to max_current = {max} A"
             ));
         }
-        SetPoint {
-            current,
-            v_bus: self.v_bus.unwrap_or(drive.spec.inverter.v_bus),
-            rpm: None,
-        }
+        set_point
     }
 }
 
@@ -371,8 +276,8 @@ impl RunArguments {
     /// # Errors
     /// All diagnostics.
     pub fn prepare(&self) -> Result<Prepared, Failure> {
-        let drive =
-            SelectedMotor::find(&self.motor, &self.plant)?.prepare(self.controller.as_deref())?;
+        let motor = SelectedMotor::find(&self.motor, &self.plant.options())?;
+        let drive = motor.prepare(self.controller.as_deref())?;
         tell_warnings(&drive);
         Ok(drive)
     }
@@ -382,7 +287,7 @@ impl RunArguments {
     /// # Errors
     /// All diagnostics, or a drive that regulates its speed.
     pub fn prepare_for_torque(&self) -> Result<Prepared, Failure> {
-        let motor = SelectedMotor::find(&self.motor, &self.plant)?;
+        let motor = SelectedMotor::find(&self.motor, &self.plant.options())?;
         let drive = motor.prepare_for_torque(self.controller.as_deref())?;
         tell_warnings(&drive);
         Ok(drive)

@@ -2,10 +2,9 @@
 
 use crate::checker::Missing;
 use crate::report::ReportError;
-use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_lab::LabError;
 use hexagen_lab::closed_loop::Trip;
-use hexagen_lab::counted::CountedError;
-use hexagen_lab::engine::{BuildError, SourceError};
+use hexagen_lab::engine::BuildError;
 use hexagen_lab::plant::PlantError;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,15 +15,9 @@ pub enum Failure {
     /// A check failed; its result is already on stdout. The text is for stderr.
     #[error("{0}")]
     Check(String),
-    /// The specification, motor file or variant is wrong: all diagnostics, rendered.
-    #[error("{0}")]
-    Specification(String),
-    /// No such motor.
-    #[error("error: {0}")]
-    Motor(SourceError),
-    /// A plant option is out of range.
-    #[error("error: {0}")]
-    Plant(#[from] PlantError),
+    /// What the laboratory was asked for cannot be done.
+    #[error(transparent)]
+    Lab(#[from] LabError),
     /// An argument makes no sense beside the others.
     #[error("error: {0}")]
     Argument(String),
@@ -39,9 +32,6 @@ pub enum Failure {
     /// There is no checker of proofs.
     #[error("error: {0}")]
     Checker(#[from] Missing),
-    /// There is no count of a step.
-    #[error("error: {0}")]
-    Counted(#[from] CountedError),
     /// Emitted code cannot be compiled.
     #[error("error: {0}")]
     Compiler(#[from] BuildError),
@@ -50,18 +40,9 @@ pub enum Failure {
     Report(#[from] ReportError),
 }
 
-impl From<SourceError> for Failure {
-    fn from(error: SourceError) -> Self {
-        match error {
-            SourceError::Encoding(diagnostic) => Self::Specification(diagnostic),
-            unknown @ SourceError::Unknown { .. } => Self::Motor(unknown),
-        }
-    }
-}
-
-impl From<Diagnostics> for Failure {
-    fn from(errors: Diagnostics) -> Self {
-        Self::Specification(errors.to_string())
+impl From<PlantError> for Failure {
+    fn from(error: PlantError) -> Self {
+        Self::Lab(error.into())
     }
 }
 

@@ -9,14 +9,12 @@ mod output;
 mod progress;
 mod quantity;
 
-pub use arguments::{
-    Arguments, Command, Emit, PlantArguments, RunArguments, SelectedMotor, Selection, parse_rpm,
-};
+pub use arguments::{Arguments, Command, Emit, PlantArguments, RunArguments, Selection, parse_rpm};
 pub use failure::Failure;
 pub use output::{
-    Ground, TextTable, note, print_json, print_text, significant, tell_warnings, warn, write_file,
+    Ground, TextTable, note, print_json, print_text, tell_warnings, warn, write_file,
 };
-pub use progress::{bar, spinner};
+pub use progress::{Bar, spinner};
 
 use crate::commands;
 use clap::Parser;

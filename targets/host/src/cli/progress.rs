@@ -1,18 +1,40 @@
 //! Progress on stderr, when it is a terminal.
 
+use hexagen_lab::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// A bar of so many units; nothing is drawn when stderr is no terminal.
-pub fn bar(length: u64, message: &str) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    if let Ok(style) =
-        ProgressStyle::with_template("{msg:24} {wide_bar} {human_pos}/{human_len} {eta}")
-    {
-        bar.set_style(style);
+/// A bar that follows work in the laboratory and is gone when it is dropped; nothing is drawn when stderr is no
+/// terminal.
+pub struct Bar(ProgressBar);
+
+impl Default for Bar {
+    fn default() -> Self {
+        let bar = ProgressBar::new(0);
+        let template = "{msg:24} {wide_bar} {human_pos}/{human_len} {eta}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self(bar)
     }
-    bar.set_message(message.to_owned());
-    bar
+}
+
+impl Progress for Bar {
+    fn begin(&self, what: &'static str, units: u64) {
+        self.0.set_length(units);
+        self.0.set_message(what);
+        self.0.reset();
+    }
+
+    fn advance(&self, units: u64) {
+        self.0.inc(units);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 /// A sign of life for work without a known length.

@@ -1,13 +1,10 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
-use crate::cli::{
-    Emit, Failure, PlantArguments, SelectedMotor, note, print_text, tell_warnings, write_file,
-};
+use crate::cli::{Emit, Failure, note, print_text, tell_warnings, write_file};
 use clap::Args;
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
-use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
-use hexagen_lab::engine::Prepared;
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use std::path::{Path, PathBuf};
 
 /// Options of `generate`.
@@ -31,16 +28,13 @@ pub struct Options {
 pub fn text_of(drive: &Prepared, emit: Emit) -> String {
     let generated = &drive.generated;
     match emit {
-        Emit::Rust => {
-            let surface = Surface::public(&generated.interface.type_name);
-            readable_rust(&emit_rust(&generated.graph, &generated.interface, &surface))
-        }
+        Emit::Rust => drive.rust(),
         Emit::C99 => {
             let Sources { header, source, .. } = c99_of(drive);
             header + "\n" + &source
         }
         Emit::Ir => generated.graph.program().to_string(),
-        Emit::Datasheet => super::results::data_sheet(drive),
+        Emit::Datasheet => drive.data_sheet(),
         Emit::Gappa => emit_gappa(&generated.graph)
             .iter()
             .map(ToString::to_string)
@@ -54,7 +48,7 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
 /// # Errors
 /// Diagnostics, or a file that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let motor = SelectedMotor::find(&options.motor, &PlantArguments::default())?;
+    let motor = SelectedMotor::find(&options.motor, &PlantOptions::default())?;
     let drive = motor.prepare(options.controller.as_deref())?;
     tell_warnings(&drive);
     match options.emit {

@@ -1,9 +1,10 @@
 //! `hexagen limit`: the speed up to which a controller holds the torque.
 
-use crate::cli::{Failure, RunArguments, print_json, print_text, significant, spinner};
+use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
 use clap::Args;
 use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
 use hexagen_lab::engine::{EngineKind, Model, Prepared};
+use hexagen_lab::text::significant;
 use serde::Serialize;
 
 /// Options of `limit`.
@@ -52,7 +53,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
         ));
     }
     let plant = arguments.plant.plant(&drive)?;
-    let run = arguments.plant.run(&drive, 1.0, torque);
+    let run = arguments.plant.options().run(&drive, 1.0, torque);
     let set_point = arguments.plant.set_point(&drive, torque);
     let scan = LimitOptions::new(drive.rated_rpm(), torque);
     let progress = spinner("scanning speeds");

@@ -3,7 +3,6 @@
 //! Each has its options, a function that collects plain data, and one that prints them as a table
 //! or as JSON.
 
-pub mod accuracy;
 pub mod compare;
 pub mod generate;
 pub mod limit;
@@ -11,9 +10,7 @@ pub mod motors;
 pub mod prove;
 pub mod report;
 pub mod reproduce;
-pub mod results;
 pub mod robustness;
 pub mod selected;
 pub mod simulate;
-pub mod stability;
 pub mod verify;

@@ -5,13 +5,15 @@ mod certificates;
 pub use certificates::{Certificates, Certify};
 
 use crate::checker::{Proof, coq_version, gappa_version, missing_goals, prove};
-use crate::cli::{Failure, Selection, TextTable, bar, note, print_json, print_text, significant};
+use crate::cli::{Bar, Failure, Selection, TextTable, note, print_json, print_text};
 use crate::commands::selected::{Refused, select};
 use certificates::Certified;
 use clap::Args;
 use hexagen_codegen::emit::gappa::{Script, emit_gappa};
 use hexagen_codegen::ir::stated_errors;
+use hexagen_lab::Progress;
 use hexagen_lab::engine::Prepared;
+use hexagen_lab::text::significant;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -117,7 +119,8 @@ pub fn collect_scripts(
         .enumerate()
         .flat_map(|(drive, scripts)| scripts.into_iter().map(move |script| (drive, script)))
         .collect();
-    let progress = bar(scripts.len() as u64, "proving");
+    let progress = Bar::default();
+    progress.begin("proving", scripts.len() as u64);
     let proofs: Result<Vec<(usize, Proof, Option<Certified>)>, _> = scripts
         .par_iter()
         .map(|(drive, script)| {
@@ -126,11 +129,10 @@ pub fn collect_scripts(
             let certified = certified.transpose()?;
             let refused = certified.as_ref().and_then(|one| one.failure(&script.name));
             proof.failure = proof.failure.or(refused);
-            progress.inc(1);
+            progress.advance(1);
             Ok::<_, Failure>((*drive, proof, certified))
         })
         .collect();
-    progress.finish_and_clear();
     let proofs = proofs?;
     let of_drive = |(number, drive): (usize, &Prepared)| {
         let own = || proofs.iter().filter(|(of, ..)| *of == number);

@@ -1,7 +1,7 @@
 //! The drives that a command line asks for.
 
-use crate::cli::{Failure, PlantArguments, SelectedMotor, tell_warnings, warn};
-use hexagen_lab::engine::Prepared;
+use crate::cli::{Failure, tell_warnings, warn};
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use serde::Serialize;
 
 /// A controller that cannot be made for a motor.
@@ -25,7 +25,7 @@ pub fn select(
     variants: &[Option<String>],
     takes_all: bool,
 ) -> Result<(Vec<Prepared>, Vec<Refused>), Failure> {
-    let none = PlantArguments::default();
+    let none = PlantOptions::default();
     let motors = if motors.is_empty() {
         SelectedMotor::library(&none)?
     } else {
@@ -50,7 +50,7 @@ pub fn select(
                         reason: reason.to_string(),
                     });
                 }
-                (Err(failure), _) => return Err(failure),
+                (Err(failure), _) => return Err(failure.into()),
             }
         }
     }

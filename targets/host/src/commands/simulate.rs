@@ -1,15 +1,15 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
 use crate::cli::{
-    Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, significant, spinner,
-    warn, write_file,
+    Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, spinner, warn, write_file,
 };
 use clap::Args;
 use hexagen_lab::closed_loop::{
-    Aim, FiguresOfMerit, MOST_RECORDED, Measurement, PeriodRow, RunOptions, Trip, measure,
+    Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
 use hexagen_lab::engine::{EngineKind, Model, Prepared, run_of};
 use hexagen_lab::plant::PlantParams;
+use hexagen_lab::text::significant;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ pub struct Options {
     pub csv: Option<PathBuf>,
 }
 
-/// What a run was and what came out: the figures of merit' keys and what they are about.
+/// What a run was and what came out: figures of merit by their keys.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor.
@@ -58,60 +58,6 @@ pub struct Outcome {
     pub figures: FiguresOfMerit,
 }
 
-/// What a free shaft reached, with or without a speed loop. None of it of a drive that tripped.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Speed {
-    /// Speed that was set, rpm; none without a speed loop.
-    pub set_rpm: Option<f64>,
-    /// Mean speed while it was measured, rpm, mean of the starts.
-    pub mean_rpm: Option<f64>,
-    /// Speed at the end of what was measured, rpm, mean of the starts.
-    pub final_rpm: Option<f64>,
-    /// Whether the speed loop has settled: the mean speeds of the last three sixths of what was
-    /// measured, which are electrical turns at the set speed, are within 2 % of the set speed at
-    /// every start. (Of the least speed that the drive tells from standstill, where less is set.)
-    /// None without a speed loop.
-    pub settled: Option<bool>,
-}
-
-/// Distance of a settled speed from the set one, in parts of it.
-const SETTLED: f64 = 0.02;
-
-impl Speed {
-    /// What the shaft of a run reached. `set_rpm` is the speed loop's, `least_rpm` the least speed
-    /// that the drive tells from standstill.
-    fn of(measured: &Measurement, set_rpm: Option<f64>, least_rpm: f64) -> Self {
-        let traces = match measured.tripped {
-            None => &measured.traces[..],
-            Some(_) => &[],
-        };
-        let has_run = !traces.is_empty();
-        let over_starts = |speed: &dyn Fn(&[PeriodRow]) -> f64| {
-            let sum: f64 = traces.iter().map(|trace| speed(&trace.periods)).sum();
-            has_run.then(|| sum / traces.len() as f64)
-        };
-        let has_settled = |set: f64| {
-            let distance = SETTLED * set.abs().max(least_rpm);
-            let mut parts = traces.iter().flat_map(|trace| {
-                let sixth = trace.periods.len().div_ceil(6);
-                trace.periods.rchunks(sixth.max(1)).take(3)
-            });
-            parts.all(|rows| (mean_rpm(rows) - set).abs() <= distance)
-        };
-        Self {
-            set_rpm,
-            mean_rpm: over_starts(&mean_rpm),
-            final_rpm: over_starts(&|rows| mean_rpm(&rows[rows.len().saturating_sub(1)..])),
-            settled: set_rpm.filter(|_| has_run).map(has_settled),
-        }
-    }
-}
-
-/// Mean speed of periods, rpm.
-fn mean_rpm(rows: &[PeriodRow]) -> f64 {
-    rows.iter().map(|row| row.omega_m).sum::<f64>() / rows.len() as f64 * 60.0 / TAU
-}
-
 /// Runs and measures.
 ///
 /// # Errors
@@ -121,7 +67,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let drive = arguments.prepare()?;
     let torque = arguments.torque(&drive);
     let plant = arguments.plant.plant(&drive)?;
-    let mut run = arguments.plant.run(&drive, options.rpm, torque);
+    let mut run = arguments.plant.options().run(&drive, options.rpm, torque);
     run.aim = aim(options, &drive, &plant, torque)?;
     check_duration(&run, &plant, options)?;
     let mut set_point = arguments.plant.set_point(&drive, torque);
@@ -137,9 +83,6 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     }
     Ok((drive, run, measured))
 }
-
-/// Time constants of the speed loop's bandwidth in which it settles.
-const SETTLING_OF_SPEED: f64 = 6.0;
 
 /// What the speed loop is to reach, and the time for it: until its integral bears the load, that of the run-up at the
 /// torque that the load leaves, and that of the loop.
@@ -169,21 +112,8 @@ fn aim(
                     "--speed-set {rpm}: the drive limits its speed to maximum_speed = {most:.0} rpm"
                 ));
             }
-            // A load that takes all of the torque leaves a tenth: such a run shows that the speed is not reached.
-            let free = (torque.abs() - mechanics.opposing_torque).max(torque.abs() / 10.0);
-            let change = (rpm - options.rpm).abs() * TAU / 60.0;
-            let (omega_m, bandwidth) = (rpm * TAU / 60.0, TAU * speed.bandwidth);
-            let bearing = if rpm == 0.0 {
-                0.0
-            } else {
-                let rate = bandwidth * bandwidth * speed.inertia * omega_m.abs() / 4.0;
-                mechanics.opposing_torque.min(torque.abs()) / rate
-            };
-            let run_up = change * mechanics.inertia / free;
-            Ok(Some(Aim {
-                omega_m,
-                within: bearing + run_up + SETTLING_OF_SPEED / speed.bandwidth,
-            }))
+            let speeds = (options.rpm * TAU / 60.0, rpm * TAU / 60.0);
+            Ok(Some(Aim::of(&speed, &mechanics, torque, speeds)))
         }
     }
 }
@@ -316,28 +246,8 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         ))?;
     }
     let mut table = TextTable::new(1, ["figure of merit", "value", "unit"]);
-    for (name, value, unit) in rows(&outcome.figures) {
+    for (name, value, unit) in outcome.figures.rows() {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     print_text(&table.render())
-}
-
-/// Names, values and units of figures of merit, in the order of their keys.
-pub fn rows(figures: &FiguresOfMerit) -> [(&'static str, Option<f64>, &'static str); 14] {
-    [
-        ("mean torque", figures.mean_torque_nm, "Nm"),
-        ("torque ripple, peak to peak", figures.ripple_pp_pct, "%"),
-        ("torque ripple, rms", figures.ripple_rms_pct, "%"),
-        ("torque harmonic 6", figures.h6_pct, "%"),
-        ("torque harmonic 12", figures.h12_pct, "%"),
-        ("current harmonic 5", figures.i5_pct, "%"),
-        ("current harmonic 7", figures.i7_pct, "%"),
-        ("current harmonic 11", figures.i11_pct, "%"),
-        ("current harmonic 13", figures.i13_pct, "%"),
-        ("current distortion", figures.thd_pct, "%"),
-        ("tracking error, rms", figures.tracking_rms_a, "A"),
-        ("commutation", figures.commutation_us, "us"),
-        ("switching per device", figures.switching_hz, "Hz"),
-        ("saturated periods", figures.saturated_pct, "%"),
-    ]
 }

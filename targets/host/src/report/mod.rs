@@ -1,31 +1,18 @@
 //! The report: one HTML page about a motor and its controllers, complete in itself.
 //!
-//! [`ReportData`] says what there is to show; [`write()`] makes the page: no script, no reference to
+//! [`Results`] says what there is to show; [`write()`] makes the page: no script, no reference to
 //! anything outside the file, and the same bytes for the same data.
 
-mod data;
 mod document;
-mod expected;
-mod harmonics;
 mod highlight;
 mod page;
 mod plot;
 pub mod reproduction;
-mod robustness;
 mod sections;
 mod window;
 
-pub use data::{
-    Capture, ErrorsSeen, GeneratedTexts, Model, Parameter, Record, ReportData, Run, RunPoint,
-    SameWords, SignalError, SpeedMark, Stability, StabilityCheck, Variant, Verification,
-};
-pub use expected::{
-    Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
-    judge_mean, judge_pp, judge_rms,
-};
-pub use robustness::{Cell, Column, Figures, Heat, Measured, Outcome, Robustness, SWING_RULE};
-
 use crate::files::write_whole;
+use hexagen_lab::results::Results;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -54,7 +41,7 @@ pub enum ReportError {
 ///
 /// # Errors
 /// A file that cannot be written, or a plot that cannot be drawn.
-pub fn write(data: &ReportData, dir: &Path) -> Result<PathBuf, ReportError> {
+pub fn write(data: &Results, dir: &Path) -> Result<PathBuf, ReportError> {
     let html = page::render(data)?;
     write_page(
         &html,
@@ -89,7 +76,7 @@ pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn render(data: &ReportData) -> Result<String, ReportError> {
+pub fn render(data: &Results) -> Result<String, ReportError> {
     page::render(data)
 }
 

@@ -1,18 +1,19 @@
 //! The report's page: which sections it has, in which order.
 
+use super::ReportError;
 use super::document::{Section, document};
 use super::highlight::Highlighter;
 use super::sections::{
     header, histograms, numbers, results, robustness, spectra, stability, texts, torque_speed,
     waves,
 };
-use super::{ReportData, ReportError};
+use hexagen_lab::results::Results;
 
 /// The whole page.
 ///
 /// # Errors
 /// A plot that cannot be drawn or code that cannot be highlighted.
-pub fn render(data: &ReportData) -> Result<String, ReportError> {
+pub fn render(data: &Results) -> Result<String, ReportError> {
     let highlighter = Highlighter::new();
     let section = |id, title, content| Section { id, title, content };
     let sections = [

@@ -182,7 +182,7 @@ fn options_out_of_range_or_at_odds_are_told() {
         ),
         (
             &["compare", PAPER, "--robustness", "--adc-offset", "-41A"],
-            "adc offset",
+            "--adc-offset: plant: adc offset",
         ),
         (
             &["compare", PAPER, "--robustness", "--inertia", "1"],

@@ -1,8 +1,8 @@
 //! The rows of the design document's table, in fixed point through 12-bit converters.
 
-use hexagen_host::report::{design_table, judge_limit, judge_mean, judge_pp, judge_rms};
 use hexagen_lab::closed_loop::{Held, LimitOptions, measure, speed_limit};
 use hexagen_lab::engine::{EngineKind, Model, MotorSource, plant_of, prepare, run_of};
+use hexagen_lab::results::{design_table, judge_limit, judge_mean, judge_pp, judge_rms};
 use std::f64::consts::TAU;
 
 /// Rows that have less ripple than expected, and why the expected figures are others.

@@ -268,7 +268,7 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
 }
 
 #[test]
-fn compare_prints_a_row_per_controller_and_the_merits_of_one() {
+fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
     let all = run(["compare", PAPER, "--start-angle", "0.1"]);
     assert_eq!(all.code, 0, "{all:?}");
     for text in [

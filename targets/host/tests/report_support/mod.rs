@@ -7,16 +7,18 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
-use hexagen_host::report::{
-    Capture, Cell, Column, DesignRow, ErrorsSeen, Figures, GeneratedTexts, Heat, Model, Outcome,
-    Parameter, Record, ReportData, Robustness, Run, RunPoint, SameWords, SignalError, SpeedMark,
-    Stability, StabilityCheck, Variant, Verification, design_table,
-};
+
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
-use hexagen_lab::engine::EngineKind;
+use hexagen_lab::engine::{EngineKind, Model};
 use hexagen_lab::plant::{PlantParams, Truth};
+use hexagen_lab::results::{
+    Capture, DesignRow, ErrorsSeen, GeneratedTexts, Record, Results, Run, RunPoint, SameWords,
+    SignalError, SpeedMark, Variant, Verification, design_table,
+};
+use hexagen_lab::robustness::{Cell, Column, DisturbedFigures, Heat, Outcome, Robustness};
+use hexagen_lab::stability::{Parameter, Stability, StabilityCheck};
 use std::f64::consts::{PI, TAU};
 
 const R: f64 = 0.135;
@@ -297,7 +299,7 @@ fn robustness() -> Robustness {
                     _ => Outcome::Runs,
                 };
                 let is_refused = controller == "pdcc" && place == 3;
-                let figures = Figures {
+                let figures = DisturbedFigures {
                     engine: EngineKind::Compiled,
                     expected_torque_nm: TORQUE,
                     mean_torque_nm: Some(TORQUE - 0.1 * place as f64),
@@ -339,7 +341,7 @@ fn robustness() -> Robustness {
 }
 
 /// Data of a page with three variants.
-pub fn data() -> ReportData {
+pub fn data() -> Results {
     let fine = Options {
         proportional: false,
         keep_angle: false,
@@ -358,7 +360,7 @@ pub fn data() -> ReportData {
         label: label.to_owned(),
         percent,
     };
-    ReportData {
+    Results {
         generator: "hexagen 0.1.0".to_owned(),
         name: spec.name,
         file: "trivedi-keshri-660w".to_owned(),

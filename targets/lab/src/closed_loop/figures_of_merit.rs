@@ -117,6 +117,26 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
 }
 
 impl FiguresOfMerit {
+    /// Names, values and units of figures of merit, in the order of their keys.
+    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 14] {
+        [
+            ("mean torque", self.mean_torque_nm, "Nm"),
+            ("torque ripple, peak to peak", self.ripple_pp_pct, "%"),
+            ("torque ripple, rms", self.ripple_rms_pct, "%"),
+            ("torque harmonic 6", self.h6_pct, "%"),
+            ("torque harmonic 12", self.h12_pct, "%"),
+            ("current harmonic 5", self.i5_pct, "%"),
+            ("current harmonic 7", self.i7_pct, "%"),
+            ("current harmonic 11", self.i11_pct, "%"),
+            ("current harmonic 13", self.i13_pct, "%"),
+            ("current distortion", self.thd_pct, "%"),
+            ("tracking error, rms", self.tracking_rms_a, "A"),
+            ("commutation", self.commutation_us, "us"),
+            ("switching per device", self.switching_hz, "Hz"),
+            ("saturated periods", self.saturated_pct, "%"),
+        ]
+    }
+
     /// The figures of merit of several starts: the worst peak-to-peak ripple, the mean of all else; none of
     /// what one of them has none of.
     pub(super) fn of_starts(starts: &[Self]) -> Self {

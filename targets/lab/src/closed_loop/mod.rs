@@ -10,13 +10,16 @@ mod harmonics;
 mod limit;
 mod measure;
 mod percent;
+mod speed;
 mod swing;
 mod trace;
 mod trip;
 
 pub use allowance::{POINTS, RELATIVE, share_of_allowance};
 pub use figures_of_merit::{FiguresOfMerit, figures_of_merit};
-pub use harmonics::amplitudes;
+pub use harmonics::{
+    amplitudes, harmonic_of_quasi_square, harmonics_of_current, harmonics_of_torque,
+};
 pub use limit::{
     Held, LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, speed_limit, speed_limit_knowing,
 };
@@ -24,8 +27,9 @@ pub use measure::{
     Aim, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
 };
 pub use percent::percent;
+pub use speed::{SETTLED, Speed};
 pub use swing::Swing;
-pub use trace::{PeriodRow, Trace, quasi_square};
+pub use trace::{PeriodRow, Trace, hexagon, quasi_square};
 pub use trip::{Cause, Trip};
 
 use crate::plant::{Observer, Plant, Truth};

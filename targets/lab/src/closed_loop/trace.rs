@@ -92,6 +92,13 @@ pub struct Trace {
     filled: usize,
 }
 
+/// The closed hexagon between the corners of the quasi-square reference.
+pub fn hexagon(current: f64) -> Vec<(f64, f64)> {
+    (0..=6)
+        .map(|k| quasi_square(f64::from(k) * FRAC_PI_3, current))
+        .collect()
+}
+
 impl Trace {
     /// An empty record that continues from the plant's present state; `periods` is the expected
     /// length.

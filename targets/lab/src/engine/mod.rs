@@ -9,6 +9,7 @@ mod external;
 mod motor;
 mod plant;
 mod prepared;
+mod selected;
 mod verifier;
 
 pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
@@ -16,6 +17,7 @@ pub use external::BuildError;
 pub use motor::{MotorSource, SourceError};
 pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
+pub use selected::{PlantOptions, SelectedMotor};
 pub use verifier::Verifier;
 
 use crate::Interpreted;

@@ -7,6 +7,8 @@ use crate::plant::Truth;
 use crate::{Interpreted, formats, state_names};
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::emit::datasheet::emit_datasheet;
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
@@ -195,6 +197,23 @@ impl Prepared {
     /// The bit-for-bit test of this drive.
     pub fn verifier(&self) -> Verifier<'_> {
         Verifier::new(self)
+    }
+
+    /// The emitted Rust module.
+    pub fn rust(&self) -> String {
+        let Generated {
+            graph, interface, ..
+        } = &self.generated;
+        readable_rust(&emit_rust(
+            graph,
+            interface,
+            &Surface::public(&interface.type_name),
+        ))
+    }
+
+    /// The data sheet, in Markdown.
+    pub fn data_sheet(&self) -> String {
+        emit_datasheet(&self.generated.graph, &self.generated.interface)
     }
 
     /// Rated torque in newton metres: as stated, else that of the rated current.

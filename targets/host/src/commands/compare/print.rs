@@ -1,8 +1,8 @@
 //! The comparison as tables.
 
-use super::{Accuracy, Row};
-use crate::cli::{Failure, TextTable, print_text, significant};
-use crate::commands::accuracy::FigureDifference;
+use crate::cli::{Failure, TextTable, print_text};
+use hexagen_lab::accuracy::{Accuracy, FigureDifference, Row};
+use hexagen_lab::text::significant;
 
 /// Prints the rows, and every figure of merit where they are of one controller.
 ///

@@ -17,5 +17,5 @@ pub use levels::{Level, levels};
 pub use plane::{Named, Path, Plane, plane};
 pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
-pub use trajectory::{corners, hexagon, means, trajectory};
+pub use trajectory::{corners, means, trajectory};
 pub use wave::{Wave, wave};

@@ -4,7 +4,8 @@ use super::canvas::{
     self, Axis, Margins, chart, decimals, failed, line, polyline, px, tick_text, ticks,
 };
 use super::palette::PHASES;
-use crate::report::{ReportError, StabilityCheck};
+use crate::report::ReportError;
+use hexagen_lab::stability::StabilityCheck;
 use maud::PreEscaped;
 use plotters::prelude::*;
 

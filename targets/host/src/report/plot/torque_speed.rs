@@ -5,8 +5,9 @@ use super::canvas::{
     polyline, px, rule_above, text, tick_text, ticks, write_at,
 };
 use super::palette::{AXIS, DEMAND, INK};
-use crate::report::{ReportError, SpeedMark};
+use crate::report::ReportError;
 use hexagen_lab::closed_loop::{Held, Side, TOLERANCE};
+use hexagen_lab::results::SpeedMark;
 use maud::PreEscaped;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};

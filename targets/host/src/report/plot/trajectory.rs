@@ -4,10 +4,9 @@ use super::palette::IDEAL;
 use super::plane::{Named, Path, Plane, plane};
 use crate::report::ReportError;
 use crate::report::window::first_turn;
-use hexagen_lab::closed_loop::{Trace, quasi_square};
+use hexagen_lab::closed_loop::{Trace, hexagon};
 use maud::PreEscaped;
 use plotters::style::RGBColor;
-use std::f64::consts::FRAC_PI_3;
 
 /// Width of the picture in CSS pixels.
 const WIDTH: f64 = 281.0;
@@ -41,13 +40,6 @@ pub fn trajectory(
         ],
         points: corners(current, "S"),
     })
-}
-
-/// The closed hexagon between the corners of the quasi-square reference.
-pub fn hexagon(current: f64) -> Vec<(f64, f64)> {
-    (0..=6)
-        .map(|k| quasi_square(f64::from(k) * FRAC_PI_3, current))
-        .collect()
 }
 
 /// Its corners, named by their sectors behind `prefix`.

@@ -1,17 +1,16 @@
 //! Figures that need no run: 2, 3, 9, 12 and 13.
 
-use super::data::Reproduction;
 use super::tables::{emf, emf_corner, twelfth};
 use crate::report::ReportError;
-use crate::report::harmonics::of_quasi_square;
 use crate::report::plot::{
-    Bars, Group, Level, Named, Path, Plane, Wave, bars, corners, hexagon, levels, palette, plane,
-    wave,
+    Bars, Group, Level, Named, Path, Plane, Wave, bars, corners, levels, palette, plane, wave,
 };
 use crate::report::sections::waves::ideal_phase;
 use crate::report::sections::{figure, legend, swatch};
 use crate::report::window::{Columns, FIRST_DEG};
 use hexagen_codegen::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector};
+use hexagen_lab::closed_loop::{harmonic_of_quasi_square, hexagon};
+use hexagen_lab::reproduction::Reproduction;
 use maud::{Markup, html};
 use std::f64::consts::FRAC_PI_6;
 
@@ -223,7 +222,7 @@ pub fn figures_12_13(data: &Reproduction) -> Result<Markup, ReportError> {
             .iter()
             .map(|&order| Group {
                 name: order.to_string(),
-                values: vec![Some(of_quasi_square(order))],
+                values: vec![Some(harmonic_of_quasi_square(order))],
                 ideal: None,
             })
             .collect(),
@@ -236,8 +235,8 @@ pub fn figures_12_13(data: &Reproduction) -> Result<Markup, ReportError> {
         }
         p.note {
             "The fundamental is 2\u{221a}3/\u{3c0} I = " (crate::report::sections::quantity(fundamental, "A"))
-            "; harmonic n is 1/n of it: 5th " (crate::report::sections::number(of_quasi_square(5), 1))
-            "\u{a0}%, 7th " (crate::report::sections::number(of_quasi_square(7), 1)) "\u{a0}%."
+            "; harmonic n is 1/n of it: 5th " (crate::report::sections::number(harmonic_of_quasi_square(5), 1))
+            "\u{a0}%, 7th " (crate::report::sections::number(harmonic_of_quasi_square(7), 1)) "\u{a0}%."
         }
     })
 }

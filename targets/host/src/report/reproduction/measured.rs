@@ -1,16 +1,17 @@
 //! Figures of runs: 4 and 14 to 20.
 
-use super::data::{Method, Point, Reading, Reproduction};
-use crate::report::harmonics::{of_current, of_quasi_square};
+use crate::report::ReportError;
 use crate::report::plot::{
-    Bars, Curve, Group, Path, Plane, TorqueSpeed, Wave, bars, corners, dash, hexagon, means,
-    palette, plane, torque_speed, trajectory, wave,
+    Bars, Curve, Group, Path, Plane, TorqueSpeed, Wave, bars, corners, dash, means, palette, plane,
+    torque_speed, trajectory, wave,
 };
 use crate::report::sections::waves::{COLUMNS, ideal_phase, torque_range};
 use crate::report::sections::{field, figure, legend, number, ripple, swatch};
 use crate::report::window::{Columns, columns};
-use crate::report::{ReportError, SpeedMark};
 use hexagen_lab::closed_loop::{Held, LimitOutcome};
+use hexagen_lab::closed_loop::{harmonic_of_quasi_square, harmonics_of_current, hexagon};
+use hexagen_lab::reproduction::{Method, Point, Reading, Reproduction};
+use hexagen_lab::results::SpeedMark;
 use maud::{Markup, html};
 use plotters::style::RGBColor;
 use std::f64::consts::TAU;
@@ -185,7 +186,7 @@ fn current_spectra(data: &Reproduction, speed: usize) -> Result<Markup, ReportEr
             let of = |reading| {
                 let point = &data.methods[method.index()].of(reading).points[speed];
                 match point.trip {
-                    None => of_current(&point.trace, HIGHEST),
+                    None => harmonics_of_current(&point.trace, HIGHEST),
                     Some(_) => vec![None; HIGHEST + 1],
                 }
             };
@@ -210,7 +211,7 @@ fn current_spectra(data: &Reproduction, speed: usize) -> Result<Markup, ReportEr
                 .map(|&order| Group {
                     name: order.to_string(),
                     values: both.iter().map(|spectrum| spectrum[order]).collect(),
-                    ideal: Some(of_quasi_square(order)),
+                    ideal: Some(harmonic_of_quasi_square(order)),
                 })
                 .collect(),
         })?;

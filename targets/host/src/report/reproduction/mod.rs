@@ -1,29 +1,17 @@
 //! The paper's experiment as one page: its tables, figures and claims, in its order.
 //!
-//! [`Reproduction`] says what was run; [`claims`] judges the paper's claims by it; [`write()`] makes
+//! [`Reproduction`] says what was run; [`write()`] makes
 //! the page, under the same rules as the report's: no script, nothing from outside the file, the
 //! same bytes for the same data.
 
-mod claims;
-mod data;
-mod experiment;
 mod ideal;
-mod judge;
 mod measured;
-mod outline;
 mod page;
 mod tables;
-mod timing;
 mod verdicts;
 
-pub use claims::claims;
-pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables};
-pub use experiment::{AtSpeed, Experiment, Figures, Setting};
-pub use judge::{Claim, Finding, Statement, Verdict};
-pub use outline::distance_rms;
-pub use timing::{CLOCK_HZ, TIMES_TEXT, Times};
-
 use super::ReportError;
+use hexagen_lab::reproduction::Reproduction;
 use std::path::{Path, PathBuf};
 
 /// Name of the page's file.

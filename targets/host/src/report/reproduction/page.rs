@@ -1,10 +1,10 @@
 //! The page of the paper's experiment: which sections it has, in which order.
 
-use super::data::Reproduction;
 use super::{ideal, measured, tables, verdicts};
 use crate::report::ReportError;
 use crate::report::document::{Section, document};
 use crate::report::sections::{number, quantity};
+use hexagen_lab::reproduction::Reproduction;
 use maud::{Markup, html};
 
 /// Title of the page.

@@ -1,11 +1,10 @@
 //! Tables 1, 2, 3 and 5.
 
-use super::data::{Method, Reading, Reproduction};
-use super::timing::{CLOCK_HZ, TIMES_TEXT};
 use crate::report::sections::{number, quantity};
 use hexagen_codegen::design::vectors::{
     LegSigns, SECTOR_CURRENT, THREE_PHASE, TWO_PHASE, clarke, leg_vector,
 };
+use hexagen_lab::reproduction::{CLOCK_HZ, Method, Reading, Reproduction, TIMES_TEXT};
 use maud::{Markup, html};
 use std::f64::consts::{FRAC_PI_6, TAU};
 

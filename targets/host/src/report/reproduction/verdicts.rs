@@ -1,8 +1,7 @@
 //! The paper's claims with our figures and verdicts, and what the two readings are.
 
-use super::data::{Method, Reading, Reproduction};
-use super::judge::{Claim, Finding, Verdict};
 use crate::report::sections::variant_text;
+use hexagen_lab::reproduction::{Claim, Finding, Method, Reading, Reproduction, Verdict};
 use maud::{Markup, html};
 
 /// The claims.

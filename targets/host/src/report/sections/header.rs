@@ -1,17 +1,17 @@
 //! What the report is about: heading, motor, inverter, and what follows from them.
 
 use super::{number, quantity};
-use crate::report::ReportData;
 use hexagen_codegen::spec::{BusSource, EmfShape};
+use hexagen_lab::results::Results;
 use maud::{Markup, html};
 use std::f64::consts::{PI, TAU};
 
 /// The page's title.
-pub fn title(data: &ReportData) -> String {
+pub fn title(data: &Results) -> String {
     format!("{}: current controllers in fixed point", motor_name(data))
 }
 
-fn motor_name(data: &ReportData) -> &str {
+fn motor_name(data: &Results) -> &str {
     if data.motor.description.is_empty() {
         &data.name
     } else {
@@ -20,7 +20,7 @@ fn motor_name(data: &ReportData) -> &str {
 }
 
 /// Heading and the sentence below it.
-pub fn heading(data: &ReportData) -> Markup {
+pub fn heading(data: &Results) -> Markup {
     html! {
         h1 { (motor_name(data)) }
         p.lead {
@@ -56,7 +56,7 @@ pub(super) fn grouped(count: u64) -> String {
 }
 
 /// Tables of given and derived numbers.
-pub fn facts(data: &ReportData) -> Markup {
+pub fn facts(data: &Results) -> Markup {
     html! {
         div.facts {
             (table("Motor, per phase of the star", &motor(data)))
@@ -80,7 +80,7 @@ fn table(title: &str, rows: &[(&str, String)]) -> Markup {
     }
 }
 
-fn motor(data: &ReportData) -> Vec<(&'static str, String)> {
+fn motor(data: &Results) -> Vec<(&'static str, String)> {
     let motor = &data.motor;
     let shape = match motor.emf_shape {
         EmfShape::Trapezoidal { flat_top_deg } => {
@@ -111,7 +111,7 @@ fn motor(data: &ReportData) -> Vec<(&'static str, String)> {
     rows
 }
 
-fn inverter(data: &ReportData) -> Vec<(&'static str, String)> {
+fn inverter(data: &Results) -> Vec<(&'static str, String)> {
     let inverter = &data.inverter;
     let bus = match inverter.bus {
         BusSource::Fixed => quantity(inverter.v_bus, "V"),
@@ -154,7 +154,7 @@ fn line_factor(shape: EmfShape) -> f64 {
     }
 }
 
-fn derived(data: &ReportData) -> Vec<(&'static str, String)> {
+fn derived(data: &Results) -> Vec<(&'static str, String)> {
     let (motor, inverter) = (&data.motor, &data.inverter);
     let pole_pairs = f64::from(motor.pole_pairs);
     let per_volt = inverter.t_s / motor.inductance;

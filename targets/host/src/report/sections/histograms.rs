@@ -1,16 +1,17 @@
 //! Errors of single steps against their proven bounds, per controller and word length.
 
 use super::{field, figure, legend, number, swatch, variant_text};
+use crate::report::ReportError;
 use crate::report::plot::{Histogram, histogram, palette};
-use crate::report::{ErrorsSeen, ReportData, ReportError};
 use hexagen_codegen::diagnostics::engineering;
+use hexagen_lab::results::{ErrorsSeen, Results};
 use maud::{Markup, html};
 
 /// A plot of each controller and word length, with its figures in the caption; nothing where none was measured.
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn section(data: &Results) -> Result<Markup, ReportError> {
     let plots = data
         .errors
         .iter()

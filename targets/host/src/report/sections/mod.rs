@@ -12,8 +12,9 @@ pub mod torque_speed;
 pub mod waves;
 
 use super::plot::palette;
-use super::{Capture, Model, ReportData, Variant};
 use hexagen_codegen::diagnostics::engineering;
+use hexagen_lab::engine::Model;
+use hexagen_lab::results::{Capture, Results, Variant};
 use maud::{Markup, PreEscaped, html};
 use plotters::style::RGBColor;
 
@@ -62,7 +63,7 @@ struct TorqueScale {
 
 impl TorqueScale {
     /// Millinewton metres for demands below 0.1 Nm.
-    fn of(data: &ReportData) -> Self {
+    fn of(data: &Results) -> Self {
         let demand = data.torque.abs();
         let (unit, per_nm) = if demand < 0.1 {
             ("mNm", 1e3)
@@ -139,13 +140,13 @@ pub(in crate::report) fn figure(caption: &Markup, plot: &PreEscaped<String>) -> 
 }
 
 /// The variants that have records, with their place in the table.
-fn plotted(data: &ReportData) -> impl Iterator<Item = (usize, &Variant)> {
+fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
     let variants = data.variants.iter().enumerate();
     variants.filter(|(_, variant)| !variant.records.is_empty())
 }
 
 /// Legend of all plotted variants.
-fn variant_legend(data: &ReportData) -> Markup {
+fn variant_legend(data: &Results) -> Markup {
     legend(
         plotted(data)
             .map(|(index, variant)| (field(palette::variant(index), 1.0), variant.label.clone())),

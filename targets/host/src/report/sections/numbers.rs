@@ -2,14 +2,14 @@
 
 use super::header::grouped;
 use super::{TorqueScale, capture_name, nothing, number, variant_swatch};
-use crate::report::{ReportData, SameWords, Variant};
 use hexagen_codegen::diagnostics::significant;
 use hexagen_codegen::interface::{FormatEntry, Rounding};
 use hexagen_lab::closed_loop::{FiguresOfMerit, POINTS, RELATIVE, share_of_allowance};
+use hexagen_lab::results::{Results, SameWords, Variant};
 use maud::{Markup, html};
 
 /// Formats of every controller that shows them.
-pub fn formats(data: &ReportData) -> Markup {
+pub fn formats(data: &Results) -> Markup {
     let shown: Vec<(&Variant, &[FormatEntry])> = data
         .variants
         .iter()
@@ -162,7 +162,7 @@ impl Comparison<'_> {
     }
 }
 
-fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
+fn comparisons(data: &Results) -> Vec<Comparison<'_>> {
     let variants = data.variants.iter().enumerate();
     variants
         .flat_map(|(index, variant)| {
@@ -173,7 +173,7 @@ fn comparisons(data: &ReportData) -> Vec<Comparison<'_>> {
 }
 
 /// Differences of figures of merit, and of signals where they were measured.
-pub fn errors(data: &ReportData) -> Markup {
+pub fn errors(data: &Results) -> Markup {
     let comparisons = comparisons(data);
     let with_signals: Vec<&Variant> = data
         .variants

@@ -1,13 +1,15 @@
 //! The result table: every run, its figures of merit at each speed, its limit, and what was expected.
 
 use super::{TorqueScale, capture_name, model_name, number, ripple, variant_swatch, variant_text};
-use crate::report::expected::{Judged, judge_limit, judge_mean, judge_pp, judge_rms};
-use crate::report::{Expectation, Expected, ReportData, Run, RunPoint};
 use hexagen_lab::closed_loop::{Held, LimitOutcome, Side};
+use hexagen_lab::results::{
+    Expectation, Expected, Judged, Results, Run, RunPoint, judge_limit, judge_mean, judge_pp,
+    judge_rms,
+};
 use maud::{Markup, html};
 
 /// The table, how many expected figures were met, and how to read it.
-pub fn section(data: &ReportData) -> Markup {
+pub fn section(data: &Results) -> Markup {
     let judged: Vec<Judged> = data
         .variants
         .iter()
@@ -74,7 +76,7 @@ fn without_capture(variant: &str) -> String {
         .replace(",hall_capture=sampled", "")
 }
 
-fn head(data: &ReportData) -> Markup {
+fn head(data: &Results) -> Markup {
     html! {
         thead {
             tr {
@@ -115,7 +117,7 @@ fn judge_point(run: &Run, rpm: f64) -> Option<[Judged; 3]> {
 }
 
 /// All judged figures of a run that are in the table.
-fn judge_run(data: &ReportData, run: &Run) -> Vec<Judged> {
+fn judge_run(data: &Results, run: &Run) -> Vec<Judged> {
     let points = data
         .speeds_rpm
         .iter()
@@ -124,7 +126,7 @@ fn judge_run(data: &ReportData, run: &Run) -> Vec<Judged> {
     points.flatten().chain([limit]).collect()
 }
 
-fn figures(data: &ReportData, run: &Run) -> Markup {
+fn figures(data: &Results, run: &Run) -> Markup {
     let scale = TorqueScale::of(data);
     let mean = |torque: f64| scale.text(torque, 0);
     let whole = |value: f64| number(value, 0);

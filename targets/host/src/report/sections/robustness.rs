@@ -1,11 +1,12 @@
 //! The robustness sheet: controllers over disturbances, coloured by distance from the undisturbed run.
 
 use super::{TorqueScale, legend, nothing, number, ripple, variant_text};
-use crate::report::{Cell, Figures, Heat, Outcome, ReportData, Robustness, SWING_RULE};
+use hexagen_lab::results::Results;
+use hexagen_lab::robustness::{Cell, DisturbedFigures, Heat, Outcome, Robustness, SWING_RULE};
 use maud::{Markup, html};
 
 /// The table, its legend and the rule by which a run oscillates.
-pub fn section(data: &ReportData) -> Markup {
+pub fn section(data: &Results) -> Markup {
     let Some(sheet) = &data.robustness else {
         return nothing("robustness sheet");
     };
@@ -81,7 +82,7 @@ fn entry(cell: Option<&Cell>, scale: &TorqueScale) -> Markup {
     let Some(figures) = cell.and_then(|cell| cell.figures.as_ref()) else {
         return html! { td.number { "\u{2013}" } };
     };
-    let Figures {
+    let DisturbedFigures {
         outcome,
         heat,
         mean_torque_nm: torque,

@@ -1,9 +1,12 @@
 //! Harmonics of the phase current against the ideal wave, and of the torque.
 
 use super::{figure, legend, nothing, number, plotted, swatch, variant_legend};
-use crate::report::harmonics::{of_current, of_quasi_square, of_torque};
+use crate::report::ReportError;
 use crate::report::plot::{Bars, Group, bars, palette};
-use crate::report::{ReportData, ReportError};
+use hexagen_lab::closed_loop::{
+    harmonic_of_quasi_square, harmonics_of_current, harmonics_of_torque,
+};
+use hexagen_lab::results::Results;
 use maud::{Markup, html};
 
 /// Orders of the current's plot: those that the quasi-square wave has.
@@ -23,7 +26,7 @@ struct AtSpeed {
     torque: Vec<Vec<Option<f64>>>,
 }
 
-fn at_speed(data: &ReportData, rpm: f64) -> AtSpeed {
+fn at_speed(data: &Results, rpm: f64) -> AtSpeed {
     let mut result = AtSpeed {
         rpm,
         colors: Vec::new(),
@@ -34,8 +37,12 @@ fn at_speed(data: &ReportData, rpm: f64) -> AtSpeed {
         let record = variant.records.iter().find(|record| record.rpm == rpm);
         if let Some(record) = record {
             result.colors.push(palette::variant(index));
-            result.current.push(of_current(&record.trace, HIGHEST));
-            result.torque.push(of_torque(&record.trace, HIGHEST));
+            result
+                .current
+                .push(harmonics_of_current(&record.trace, HIGHEST));
+            result
+                .torque
+                .push(harmonics_of_torque(&record.trace, HIGHEST));
         }
     }
     result
@@ -45,7 +52,7 @@ fn at_speed(data: &ReportData, rpm: f64) -> AtSpeed {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn section(data: &Results) -> Result<Markup, ReportError> {
     let speeds: Vec<AtSpeed> = data
         .speeds_rpm
         .iter()
@@ -72,7 +79,7 @@ pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
             top: current_top,
             colors: spectra.colors.clone(),
             groups: groups(&spectra.current, &CURRENT_ORDERS, &|order| {
-                Some(of_quasi_square(order))
+                Some(harmonic_of_quasi_square(order))
             }),
         })?;
         current.push(figure(

@@ -1,15 +1,17 @@
 //! Stable ranges of the motor's parameters, computed and simulated.
 
 use super::{figure, legend, nothing, number, swatch, variant_swatch};
+use crate::report::ReportError;
 use crate::report::plot::{SEARCH, palette, stability};
-use crate::report::{Parameter, ReportData, ReportError, Stability, StabilityCheck, Variant};
+use hexagen_lab::results::{Results, Variant};
+use hexagen_lab::stability::{Parameter, Stability, StabilityCheck};
 use maud::{Markup, html};
 
 /// Table of the ranges, and plots of the simulated runs.
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn section(data: &Results) -> Result<Markup, ReportError> {
     let known: Vec<(usize, &Variant, &Stability)> = data
         .variants
         .iter()

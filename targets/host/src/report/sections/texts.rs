@@ -1,13 +1,14 @@
 //! Emitted texts: code, data sheet, specification.
 
 use super::nothing;
+use crate::report::ReportError;
 use crate::report::highlight::Highlighter;
-use crate::report::{GeneratedTexts, ReportData, ReportError, Variant};
+use hexagen_lab::results::{GeneratedTexts, Results, Variant};
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::html::push_html;
 use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
-fn generated(data: &ReportData) -> impl Iterator<Item = (&Variant, &GeneratedTexts)> {
+fn generated(data: &Results) -> impl Iterator<Item = (&Variant, &GeneratedTexts)> {
     data.variants
         .iter()
         .filter_map(|variant| Some((variant, variant.generated.as_ref()?)))
@@ -17,7 +18,7 @@ fn generated(data: &ReportData) -> impl Iterator<Item = (&Variant, &GeneratedTex
 ///
 /// # Errors
 /// Code that cannot be highlighted.
-pub fn code(data: &ReportData, highlighter: &Highlighter) -> Result<Markup, ReportError> {
+pub fn code(data: &Results, highlighter: &Highlighter) -> Result<Markup, ReportError> {
     let mut blocks = Vec::new();
     for (variant, texts) in generated(data) {
         let block = highlighter.rust(&texts.rust)?;
@@ -37,7 +38,7 @@ pub fn code(data: &ReportData, highlighter: &Highlighter) -> Result<Markup, Repo
 }
 
 /// Data sheets, folded.
-pub fn data_sheet(data: &ReportData) -> Markup {
+pub fn data_sheet(data: &Results) -> Markup {
     folded(data, "data sheet", |texts| {
         let sheet = texts.data_sheet.trim();
         (!sheet.is_empty()).then(|| html! { div.sheet { (markdown(sheet)) } })
@@ -45,7 +46,7 @@ pub fn data_sheet(data: &ReportData) -> Markup {
 }
 
 /// Normalised specifications, folded.
-pub fn spec(data: &ReportData) -> Markup {
+pub fn spec(data: &Results) -> Markup {
     folded(data, "specification", |texts| {
         let spec = texts.spec_toml.trim();
         (!spec.is_empty()).then(|| html! { pre { (spec) } })
@@ -53,7 +54,7 @@ pub fn spec(data: &ReportData) -> Markup {
 }
 
 fn folded(
-    data: &ReportData,
+    data: &Results,
     what: &str,
     content: impl Fn(&GeneratedTexts) -> Option<Markup>,
 ) -> Markup {

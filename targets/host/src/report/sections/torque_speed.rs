@@ -1,9 +1,10 @@
 //! Mean torque over speed, all variants.
 
 use super::{TorqueScale, legend, nothing, number, swatch};
+use crate::report::ReportError;
 use crate::report::plot::{Curve, TorqueSpeed, dash, palette, torque_speed};
-use crate::report::{ReportData, ReportError, Variant};
 use hexagen_lab::closed_loop::{Held, LimitOutcome, Side};
+use hexagen_lab::results::{Results, Variant};
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 
@@ -37,7 +38,7 @@ fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn section(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn section(data: &Results) -> Result<Markup, ReportError> {
     let variants: Vec<(usize, &Variant)> = data
         .variants
         .iter()

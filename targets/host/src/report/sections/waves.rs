@@ -1,10 +1,11 @@
 //! What happens over one electrical turn: phase currents, trajectory, torque.
 
 use super::{TorqueScale, field, figure, legend, nothing, number, plotted, swatch, variant_swatch};
+use crate::report::ReportError;
 use crate::report::plot::{Wave, palette, trajectory, wave};
 use crate::report::window::{Columns, FIRST_DEG, columns};
-use crate::report::{Record, ReportData, ReportError, Variant};
 use hexagen_lab::closed_loop::quasi_square;
+use hexagen_lab::results::{Record, Results, Variant};
 use maud::{Markup, html};
 use std::ops::Range;
 
@@ -42,7 +43,7 @@ impl Panel<'_> {
 }
 
 /// One panel per variant and speed, variants in rows.
-fn panels(data: &ReportData) -> Vec<Panel<'_>> {
+fn panels(data: &Results) -> Vec<Panel<'_>> {
     plotted(data)
         .flat_map(|(index, variant)| {
             variant.records.iter().map(move |record| Panel {
@@ -58,7 +59,7 @@ fn panels(data: &ReportData) -> Vec<Panel<'_>> {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn currents(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn currents(data: &Results) -> Result<Markup, ReportError> {
     let panels: Vec<_> = panels(data)
         .into_iter()
         .map(|panel| {
@@ -129,7 +130,7 @@ pub(in crate::report) fn ideal_phase(current: f64, phase: usize) -> Vec<(f64, f6
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn trajectories(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn trajectories(data: &Results) -> Result<Markup, ReportError> {
     let panels = panels(data);
     if panels.is_empty() {
         return Ok(nothing("records"));
@@ -170,7 +171,7 @@ pub fn trajectories(data: &ReportData) -> Result<Markup, ReportError> {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn torque(data: &ReportData) -> Result<Markup, ReportError> {
+pub fn torque(data: &Results) -> Result<Markup, ReportError> {
     let scale = TorqueScale::of(data);
     let demand = scale.per_nm * data.torque;
     let panels: Vec<(Panel<'_>, Columns)> = panels(data)

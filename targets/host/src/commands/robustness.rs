@@ -1,7 +1,8 @@
 //! The robustness sheet in the terminal: a heat table per speed.
 
-use crate::cli::{Failure, Ground, TextTable, print_text, significant};
-use crate::report::{Cell, Heat, Outcome, Robustness, SWING_RULE};
+use crate::cli::{Failure, Ground, TextTable, print_text};
+use hexagen_lab::robustness::{Cell, Heat, Outcome, Robustness, SWING_RULE};
+use hexagen_lab::text::significant;
 
 /// Grounds of the cells, from pale to dark, in the 256 colours of terminals; the pale ones bear
 /// dark ink.

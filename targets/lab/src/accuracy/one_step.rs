@@ -1,9 +1,9 @@
 //! One step of the bit-true and of the ideal model from the same state: how far their voltages and compare values
 //! are apart, and how far the proof says that they may be.
 
+use crate::engine::Prepared;
 use hexagen::Legs;
 use hexagen_codegen::ir::stated_errors;
-use hexagen_lab::engine::Prepared;
 use hexagen_reference::{BitTrue, Duties, Ideal, PhysicalState, Reach, Trace};
 use serde::Serialize;
 

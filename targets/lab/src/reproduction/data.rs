@@ -2,9 +2,9 @@
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
 use super::timing::{CLOCK_HZ, Times};
+use crate::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit, Trace, Trip};
+use crate::counted::Figures as StepCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
-use hexagen_lab::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit, Trace, Trip};
-use hexagen_lab::counted::Figures as StepCost;
 
 /// The paper's methods, (a) to (d) of its figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,24 +3,20 @@
 //! The rows are those of the design document; for other motors than the paper's the same variants
 //! run with the generator's own discretisation, and nothing is expected of them.
 
-use super::accuracy::{OneStep, SideBySide, one_step, side_by_side};
-use super::stability;
-use crate::cli::{Emit, Failure};
-use crate::report::{
-    Capture, DesignRow, Expected, GeneratedTexts, Record, Run, RunPoint, SameWords, SignalError,
-    Variant,
+use super::{
+    Capture, DesignRow, Expected, GeneratedTexts, Record, Run, RunPoint, SPEEDS, SameWords,
+    SignalError, Variant,
 };
-use hexagen_codegen::emit::datasheet::emit_datasheet;
-use hexagen_lab::closed_loop::{
+use crate::LabError;
+use crate::accuracy::{OneStep, SideBySide, one_step, side_by_side};
+use crate::closed_loop::{
     Held, LimitOptions, Measurement, RunOptions, measure, speed_limit_knowing,
 };
-use hexagen_lab::engine::{Model, Prepared, SetPoint, plant_of, run_of};
-use hexagen_lab::plant::PlantParams;
+use crate::engine::{Model, Prepared, SetPoint, plant_of, run_of};
+use crate::plant::PlantParams;
+use crate::stability;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Speeds of the result table, in parts of rated speed.
-pub const SPEEDS: [f64; 2] = [0.2, 0.75];
 
 /// One row of the table before it runs: the same variant with each way of reading Hall edges.
 #[derive(Debug)]
@@ -52,7 +48,7 @@ struct AtSpeeds {
 }
 
 impl AtSpeeds {
-    fn measure(drive: &Prepared) -> Result<Self, Failure> {
+    fn measure(drive: &Prepared) -> Result<Self, LabError> {
         let conditions = Conditions::of(drive);
         let measured = SPEEDS.par_iter().map(|part| {
             let run = conditions.at(drive, part * drive.rated_rpm());
@@ -61,7 +57,7 @@ impl AtSpeeds {
             let alone = measure(plant, &run, drive.maker(Model::Ideal, set_point))?;
             Ok((both, alone))
         });
-        let measured = measured.collect::<Result<Vec<_>, Failure>>()?;
+        let measured = measured.collect::<Result<Vec<_>, LabError>>()?;
         let (both, alone) = measured.into_iter().unzip();
         Ok(Self { both, alone })
     }
@@ -88,7 +84,7 @@ impl Planned {
     ///
     /// # Errors
     /// A plant parameter out of range.
-    pub fn run(&self, shows_texts: bool) -> Result<Variant, Failure> {
+    pub fn run(&self, shows_texts: bool) -> Result<Variant, LabError> {
         let measured = self
             .drives
             .par_iter()
@@ -185,7 +181,7 @@ pub fn held(is_expected: bool) -> Held {
 
 impl Line<'_> {
     /// Finds the limit; `points` are those at the table's speeds.
-    fn run(&self, points: Vec<RunPoint>) -> Result<Run, Failure> {
+    fn run(&self, points: Vec<RunPoint>) -> Result<Run, LabError> {
         let conditions = Conditions::of(self.drive);
         let known: Vec<(f64, f64)> = points
             .iter()
@@ -199,11 +195,7 @@ impl Line<'_> {
         let maker = self.drive.maker(self.model, conditions.set_point);
         let limit = speed_limit_knowing(&conditions.plant, &run, &scan, &known, maker)?;
         Ok(Run {
-            model: match self.model {
-                Model::Fixed => crate::report::Model::Fixed,
-                Model::BitTrue => crate::report::Model::BitTrue,
-                Model::Ideal => crate::report::Model::Ideal,
-            },
+            model: self.model,
             capture: self.capture,
             points,
             limit: Some(limit),
@@ -264,17 +256,12 @@ impl Conditions {
     }
 }
 
-/// The data sheet of a drive, in Markdown.
-pub fn data_sheet(drive: &Prepared) -> String {
-    emit_datasheet(&drive.generated.graph, &drive.generated.interface)
-}
-
 fn texts(drive: &Prepared) -> GeneratedTexts {
     let interface = &drive.generated.interface;
     GeneratedTexts {
         formats: interface.formats.clone(),
-        rust: super::generate::text_of(drive, Emit::Rust),
-        data_sheet: data_sheet(drive),
+        rust: drive.rust(),
+        data_sheet: drive.data_sheet(),
         spec_toml: interface.spec_toml.clone(),
     }
 }

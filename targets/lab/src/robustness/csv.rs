@@ -1,6 +1,6 @@
 //! The robustness sheet as CSV: one row per controller, disturbance and speed.
 
-use crate::report::{Figures, Robustness};
+use super::{DisturbedFigures, Robustness};
 use serde::Serialize;
 
 /// A row; what a refused cell or a tripped drive does not have is empty.
@@ -59,7 +59,7 @@ pub fn csv(sheet: &Robustness) -> Result<Vec<u8>, csv::Error> {
     Ok(bytes)
 }
 
-fn values(figures: Option<&Figures>) -> ([Option<f64>; 7], [Option<String>; 4]) {
+fn values(figures: Option<&DisturbedFigures>) -> ([Option<f64>; 7], [Option<String>; 4]) {
     let Some(figures) = figures else {
         return ([None; 7], [const { None }; 4]);
     };

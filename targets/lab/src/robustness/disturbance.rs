@@ -1,11 +1,11 @@
 //! The disturbances of the robustness sheet, as changes of the plant options.
 
-use crate::cli::PlantArguments;
+use crate::engine::PlantOptions;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::InverterSpec;
 
 /// A plant option.
-type Scale = fn(&mut PlantArguments) -> &mut Option<f64>;
+type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
 
 /// Parameters of the motor, each with the option that scales it.
 const SCALES: [(&str, Scale); 3] = [
@@ -24,10 +24,10 @@ const HALL_ERRORS: [(&str, [f64; 3]); 3] = [
     ("Hall +5, -5, 0 deg", [5.0, -5.0, 0.0]),
 ];
 
-/// Resolutions of the current converters in bits.
+/// Resolutions of the current ADCs in bits.
 const ADC_BITS: [u32; 2] = [10, 12];
 
-/// Error of the converters' zero, of both alike, in parts of the largest current they read.
+/// Error of the ADCs' zero, of both alike, in parts of the largest current they read.
 const ADC_OFFSET: f64 = 0.005;
 
 /// One disturbance.
@@ -36,14 +36,14 @@ pub struct Disturbance {
     /// What readers call it.
     pub name: String,
     /// Plant options with it.
-    pub plant: PlantArguments,
+    pub plant: PlantOptions,
 }
 
 /// The undisturbed plant, then every disturbance of it. `inverter` is that of the drives on the
 /// undisturbed plant.
-pub fn disturbances(undisturbed: &PlantArguments, inverter: &InverterSpec) -> Vec<Disturbance> {
+pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<Disturbance> {
     let mut all = Vec::new();
-    let mut add = |name: &str, change: &dyn Fn(&mut PlantArguments)| {
+    let mut add = |name: &str, change: &dyn Fn(&mut PlantOptions)| {
         let mut plant = undisturbed.clone();
         change(&mut plant);
         let name = name.to_owned();

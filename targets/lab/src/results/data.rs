@@ -1,19 +1,20 @@
 //! What a report shows, as plain data. Units stand in names or comments; speeds are mechanical.
 //!
-//! The caller fills a [`ReportData`] from the checked specification, measured runs and emitted
+//! The caller fills a [`Results`] from the checked specification, measured runs and emitted
 //! texts. The page derives nothing from them but plots, harmonics and differences; what is left
 //! empty leaves its part of the page out.
 
 use super::expected::Expected;
-use super::robustness::Robustness;
+use crate::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
+use crate::engine::Model;
+use crate::robustness::Robustness;
+use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
-use hexagen_codegen::laws::StableRange;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
-use hexagen_lab::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
 
 /// Everything on one page.
 #[derive(Clone, Debug)]
-pub struct ReportData {
+pub struct Results {
     /// Program and version: "hexagen 0.1.0".
     pub generator: String,
     /// Name of the motor's type, `UpperCamelCase`.
@@ -70,7 +71,7 @@ pub struct Variant {
     pub chooses_vectors: bool,
     /// Runs that were measured: one row each in the result table, best known first.
     pub runs: Vec<Run>,
-    /// Records of the first run, one per speed of [`ReportData::speeds_rpm`] at which it did not
+    /// Records of the first run, one per speed of [`Results::speeds_rpm`] at which it did not
     /// trip; empty for a variant that is not plotted.
     pub records: Vec<Record>,
     /// Torque-speed curve of the first run: rpm and mean torque in newton metres, ascending.
@@ -86,17 +87,6 @@ pub struct Variant {
     pub stability: Option<Stability>,
     /// Formats and emitted texts, where they are to be shown.
     pub generated: Option<GeneratedTexts>,
-}
-
-/// Which model of the controller ran.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Model {
-    /// The emitted integer code.
-    Fixed,
-    /// The bit-true reference.
-    BitTrue,
-    /// The ideal floating-point reference.
-    Ideal,
 }
 
 /// How Hall edges reached the controller.
@@ -115,7 +105,7 @@ pub struct Run {
     pub model: Model,
     /// Hall capture.
     pub capture: Capture,
-    /// Figures of merit at each speed of [`ReportData::speeds_rpm`], in that order.
+    /// Figures of merit at each speed of [`Results::speeds_rpm`], in that order.
     pub points: Vec<RunPoint>,
     /// Constant-torque speed limit, where it was searched.
     pub limit: Option<SpeedLimit>,
@@ -189,39 +179,6 @@ pub struct ErrorsSeen {
     pub decisions_equal_pct: f64,
     /// How many errors lie in each of equal parts of the range from the negative to the positive bound.
     pub counts: Vec<u64>,
-}
-
-/// Stable range as computed from the closed-loop poles, and what simulation says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stability {
-    /// True over stated resistance and inductance; 0.1 and 10 are the ends of the search.
-    pub range: StableRange,
-    /// Simulated runs with one parameter off.
-    pub checks: Vec<StabilityCheck>,
-}
-
-/// A simulated run whose plant differs from the controller's model in one parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StabilityCheck {
-    /// The parameter.
-    pub parameter: Parameter,
-    /// Its true over its stated value.
-    pub factor: f64,
-    /// Speed in rpm.
-    pub rpm: f64,
-    /// RMS torque ripple in percent of the mean.
-    pub ripple_rms_pct: Option<f64>,
-    /// Whether the run counts as stable.
-    pub stable: bool,
-}
-
-/// A motor parameter that the controller's model contains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// Phase inductance.
-    Inductance,
-    /// Phase resistance.
-    Resistance,
 }
 
 /// A mark on the speed axis.

@@ -5,9 +5,9 @@
 //! there on. Their single decisions are compared, from the same state,
 //! in the tests of `hexagen-reference`.
 
-use hexagen_host::commands::accuracy::{differences, side_by_side};
-use hexagen_host::report::design_table;
+use hexagen_lab::accuracy::{differences, side_by_side};
 use hexagen_lab::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};
+use hexagen_lab::results::design_table;
 use std::f64::consts::TAU;
 
 const TORQUE: f64 = 3.3;

@@ -1,14 +1,46 @@
 //! Runs on both sides of the edges of a loop's stable range, and how they are judged: by the rule of the robustness
 //! sheet.
 
-use super::robustness::measured;
-use crate::cli::Failure;
-use crate::report::{Figures, Outcome, Parameter, Stability, StabilityCheck};
-use hexagen_codegen::laws::stable_range;
+use crate::LabError;
+use crate::closed_loop::RunOptions;
+use crate::engine::{Prepared, plant_of, run_of};
+use crate::robustness::{DisturbedFigures, Outcome, measured};
+use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_codegen::spec::EmfSource;
-use hexagen_lab::closed_loop::RunOptions;
-use hexagen_lab::engine::{Prepared, plant_of, run_of};
 use rayon::prelude::*;
+
+/// Stable range as computed from the closed-loop poles, and what simulation says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stability {
+    /// True over stated resistance and inductance; 0.1 and 10 are the ends of the search.
+    pub range: StableRange,
+    /// Simulated runs with one parameter off.
+    pub checks: Vec<StabilityCheck>,
+}
+
+/// A simulated run whose plant differs from the controller's model in one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StabilityCheck {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its true over its stated value.
+    pub factor: f64,
+    /// Speed in rpm.
+    pub rpm: f64,
+    /// RMS torque ripple in percent of the mean.
+    pub ripple_rms_pct: Option<f64>,
+    /// Whether the run counts as stable.
+    pub stable: bool,
+}
+
+/// A motor parameter that the controller's model contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Phase inductance.
+    Inductance,
+    /// Phase resistance.
+    Resistance,
+}
 
 /// Edges that are run, in true over stated value. Farther away there are no motors, and a loop with many times the
 /// inductance leaves its range by slow growth, which is not what the rule looks for; the search for the range itself
@@ -49,7 +81,11 @@ fn factors((low, high): (f64, f64)) -> Vec<f64> {
 ///
 /// # Errors
 /// A plant parameter out of range.
-pub fn run_off(drive: &Prepared, resistance: f64, inductance: f64) -> Result<Figures, Failure> {
+pub fn run_off(
+    drive: &Prepared,
+    resistance: f64,
+    inductance: f64,
+) -> Result<DisturbedFigures, LabError> {
     let torque = drive.demand();
     let run = RunOptions {
         starts: vec![START],
@@ -65,7 +101,7 @@ pub fn run_off(drive: &Prepared, resistance: f64, inductance: f64) -> Result<Fig
 ///
 /// # Errors
 /// A plant parameter out of range.
-pub fn checked(drive: &Prepared) -> Result<Option<Stability>, Failure> {
+pub fn checked(drive: &Prepared) -> Result<Option<Stability>, LabError> {
     if drive.spec.controller.common().emf != EmfSource::Estimated {
         return Ok(None);
     }
@@ -98,6 +134,6 @@ pub fn checked(drive: &Prepared) -> Result<Option<Stability>, Failure> {
                 stable: figures.outcome == Outcome::Runs,
             })
         })
-        .collect::<Result<Vec<_>, Failure>>()?;
+        .collect::<Result<Vec<_>, LabError>>()?;
     Ok(Some(Stability { range, checks }))
 }

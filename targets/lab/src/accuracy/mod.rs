@@ -1,20 +1,24 @@
 //! How far fixed point is from floating point: in one step from the same state, and in the figures of merit
 //! of a closed loop.
 
+mod compare;
+mod library;
 mod one_step;
 mod uniform;
 
+pub use compare::{Accuracy, AtSpeed, Row, WORDS, accuracy, at_speeds, compare, with_word};
+pub use library::{LAW, Library, LibraryRow, compare_library};
 pub use one_step::{BINS, Compared, OneStep};
 pub use uniform::{Uniform16, uniform_format};
 
-use crate::cli::Failure;
-use hexagen::{Fault, Legs, Sample};
-use hexagen_lab::closed_loop::{
+use crate::LabError;
+use crate::closed_loop::{
     ClosedLoop, CurrentLoop, FiguresOfMerit, Measurement, RunOptions, Trace, Trip, percent,
     share_of_allowance,
 };
-use hexagen_lab::engine::{Engine, Model, Prepared, SetPoint};
-use hexagen_lab::plant::{Plant, PlantError, PlantParams, Truth};
+use crate::engine::{Engine, Model, Prepared, SetPoint};
+use crate::plant::{Plant, PlantError, PlantParams, Truth};
+use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::{BitTrue, Ideal};
 use one_step::{Step, Sums};
 use rayon::prelude::*;
@@ -99,7 +103,7 @@ pub fn side_by_side(
     plant: &PlantParams,
     run: &RunOptions,
     set_point: SetPoint,
-) -> Result<SideBySide, Failure> {
+) -> Result<SideBySide, LabError> {
     let (settling, measured) = run.periods(plant);
     let none = Sums::new(Compared::of(drive));
     let starts = run.starts.par_iter().map(|&start| {
@@ -181,7 +185,7 @@ impl FigureDifference {
             Some((0.0, _)) => (Some(0.0), "%"),
             Some((distance, ideal)) => (percent(distance, ideal, 0.0), "%"),
         };
-        format!("{} {unit}", crate::cli::significant(value, 2))
+        format!("{} {unit}", crate::text::significant(value, 2))
     }
 }
 
@@ -191,7 +195,7 @@ pub fn differences(
     ideal: &FiguresOfMerit,
     alone: &FiguresOfMerit,
 ) -> Vec<FigureDifference> {
-    let rows = super::simulate::rows;
+    let rows = FiguresOfMerit::rows;
     rows(fixed)
         .into_iter()
         .zip(rows(ideal).into_iter().zip(rows(alone)))

@@ -6,7 +6,7 @@
 use super::data::Method::{self, FcsMpc, Pdcc, Phcc, PiPwm};
 use super::experiment::{AtSpeed, Experiment, Extreme, Of, lost, number, short};
 use super::judge::{Claim, Finding, Statement};
-use crate::report::harmonics::of_quasi_square;
+use crate::closed_loop::harmonic_of_quasi_square;
 
 /// Points of rated speed within which a speed limit is the claimed one.
 const ABOUT: f64 = 5.0;
@@ -419,7 +419,10 @@ fn equal(x: &Experiment, of: Of) -> Finding {
 fn off_spectrum(x: &Experiment, method: Method, speed: usize) -> Option<[f64; 2]> {
     let i5 = x.at(method, speed, |at| at.i5_pct)?;
     let i7 = x.at(method, speed, |at| at.i7_pct)?;
-    Some([i5 - of_quasi_square(5), i7 - of_quasi_square(7)])
+    Some([
+        i5 - harmonic_of_quasi_square(5),
+        i7 - harmonic_of_quasi_square(7),
+    ])
 }
 
 fn spectrum_distance(x: &Experiment, method: Method, speed: usize) -> Option<f64> {

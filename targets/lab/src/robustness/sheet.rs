@@ -1,24 +1,15 @@
-//! `hexagen compare --robustness`: every controller in closed loop on plants that are not as the
-//! motor file says.
+//! Every controller in closed loop on plants that are not as the motor file says.
 //!
-//! Drives are generated for the motor as given; only the plant changes, by the options that
-//! `simulate` has. (Bits of the converters are the exception: they are the drive's, too.)
+//! Drives are generated for the motor as given; only the plant changes. (Bits of the ADCs are the exception: they are
+//! the drive's, too.)
 
-mod csv;
-mod disturbance;
-mod print;
-
-pub use csv::csv;
-pub use print::print;
-
-use super::results::SPEEDS;
-use crate::cli::{Failure, PlantArguments, SelectedMotor, bar};
-use crate::report::{Cell, Column, Measured, Robustness};
-use disturbance::{Disturbance, disturbances};
-use hexagen_lab::closed_loop::{RunOptions, Swing, measure};
-use hexagen_lab::engine::{Model, Prepared, SetPoint};
-use hexagen_lab::plant::PlantParams;
-use indicatif::ProgressBar;
+use super::disturbance::{Disturbance, disturbances};
+use super::{Cell, Column, Measured, Robustness};
+use crate::closed_loop::{RunOptions, Swing, measure};
+use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, SetPoint};
+use crate::plant::PlantParams;
+use crate::results::SPEEDS;
+use crate::{LabError, Progress};
 use rayon::prelude::*;
 
 /// Runs every variant under every disturbance.
@@ -26,15 +17,14 @@ use rayon::prelude::*;
 /// # Errors
 /// No such motor, no variant that generates, or a plant option out of range. A single disturbance
 /// that this motor cannot have is a cell with the reason.
-pub fn collect(
+pub fn robustness(
     motor: &str,
     variants: &[String],
-    undisturbed: &PlantArguments,
-) -> Result<Robustness, Failure> {
+    undisturbed: &PlantOptions,
+    progress: &dyn Progress,
+) -> Result<Robustness, LabError> {
     if undisturbed.inertia.is_some() {
-        return Err(Failure::Argument(
-            "--inertia: the sheet is about fixed speeds; leave the inertia out".to_owned(),
-        ));
+        return Err(LabError::FreeShaft);
     }
     let drive = first_that_generates(&SelectedMotor::find(motor, undisturbed)?, variants)?;
     undisturbed.plant(&drive)?;
@@ -48,13 +38,12 @@ pub fn collect(
     let sheet = Sheet {
         speeds_rpm: SPEEDS.map(|part| part * drive.rated_rpm()),
         disturbances,
-        progress: bar(0, "disturbing"),
+        progress,
     };
     let cells = variants.len() * sheet.places().count();
-    sheet.progress.set_length(cells as u64);
+    progress.begin("disturbing", cells as u64);
     let controllers = drives.par_iter().map(|drives| sheet.column(drives));
     let controllers = controllers.collect();
-    sheet.progress.finish_and_clear();
     Ok(Robustness {
         speeds_rpm: sheet.speeds_rpm.to_vec(),
         disturbances: sheet
@@ -70,7 +59,7 @@ pub fn collect(
 ///
 /// # Errors
 /// All diagnostics of the first variant, where none does.
-fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Prepared, Failure> {
+fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Prepared, LabError> {
     let mut reason = None;
     for variant in variants {
         match motor.prepare(Some(variant)) {
@@ -78,14 +67,14 @@ fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Pr
             Err(failure) => reason = reason.or(Some(failure)),
         }
     }
-    Err(reason.unwrap_or_else(|| Failure::Argument("no controller to compare".to_owned())))
+    Err(reason.unwrap_or_else(|| LabError::Argument("no controller to compare".to_owned())))
 }
 
 /// The motor with each resolution of the converters that a disturbance has.
 fn motors(
     motor: &str,
     disturbances: &[Disturbance],
-) -> Result<Vec<(Option<u32>, SelectedMotor)>, Failure> {
+) -> Result<Vec<(Option<u32>, SelectedMotor)>, LabError> {
     let mut motors: Vec<(Option<u32>, SelectedMotor)> = Vec::new();
     for Disturbance { plant, .. } in disturbances {
         if motors.iter().all(|(bits, _)| *bits != plant.adc_bits) {
@@ -114,7 +103,7 @@ impl<'v> Drives<'v> {
     }
 
     /// The drive for a plant, or why there is none.
-    fn of(&self, plant: &PlantArguments) -> Result<&Prepared, String> {
+    fn of(&self, plant: &PlantOptions) -> Result<&Prepared, String> {
         let drive = self
             .by_bits
             .iter()
@@ -127,13 +116,13 @@ impl<'v> Drives<'v> {
 }
 
 /// What is run.
-struct Sheet {
+struct Sheet<'p> {
     speeds_rpm: [f64; 2],
     disturbances: Vec<Disturbance>,
-    progress: ProgressBar,
+    progress: &'p dyn Progress,
 }
 
-impl Sheet {
+impl Sheet<'_> {
     /// Every disturbance with every speed.
     fn places(&self) -> impl Iterator<Item = (&Disturbance, f64)> {
         self.disturbances
@@ -147,7 +136,7 @@ impl Sheet {
         let controller = match drives.by_bits.first() {
             Some((_, Ok(drive))) => drive.variant.clone(),
             Some((_, Err(reason))) => {
-                self.progress.inc(places.len() as u64);
+                self.progress.advance(places.len() as u64);
                 return Column {
                     controller: drives.variant.to_owned(),
                     refused: Some(reason.clone()),
@@ -163,7 +152,7 @@ impl Sheet {
                     let run = run(drive, plant, *rpm);
                     run.map_err(|failure| failure.to_string())
                 });
-                self.progress.inc(1);
+                self.progress.advance(1);
                 run
             })
             .collect();
@@ -190,7 +179,7 @@ impl Sheet {
 }
 
 /// Measures a drive at the torque that it is measured at elsewhere.
-fn run(drive: &Prepared, plant: &PlantArguments, rpm: f64) -> Result<Measured, Failure> {
+fn run(drive: &Prepared, plant: &PlantOptions, rpm: f64) -> Result<Measured, LabError> {
     let params = plant.plant(drive)?;
     let torque = drive.demand();
     let run = plant.run(drive, rpm, torque);
@@ -198,13 +187,16 @@ fn run(drive: &Prepared, plant: &PlantArguments, rpm: f64) -> Result<Measured, F
 }
 
 /// A run of a drive with a set-point for a torque in newton metres, ready to be judged.
-pub(super) fn measured(
+///
+/// # Errors
+/// A plant that cannot be.
+pub fn measured(
     drive: &Prepared,
     params: &PlantParams,
     run: &RunOptions,
     set_point: SetPoint,
     torque: f64,
-) -> Result<Measured, Failure> {
+) -> Result<Measured, LabError> {
     let measured = measure(params, run, drive.maker(Model::Fixed, set_point))?;
     let swings = measured
         .traces

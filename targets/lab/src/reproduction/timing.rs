@@ -1,6 +1,6 @@
 //! Table 5's times: the counted instructions of a Cortex-M4 at a stated clock.
 
-use hexagen_lab::counted::Figures;
+use crate::counted::Figures;
 
 /// Clock of the processor in hertz: that of the motor file's timer.
 pub const CLOCK_HZ: f64 = 72e6;

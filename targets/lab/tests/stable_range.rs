@@ -2,9 +2,9 @@
 //! and oscillate outside, by the rule of the robustness sheet.
 
 use hexagen_codegen::laws::{StableRange, stable_range};
-use hexagen_host::commands::stability::{run_off, sides};
-use hexagen_host::report::Outcome;
 use hexagen_lab::engine::{MotorSource, prepare};
+use hexagen_lab::robustness::Outcome;
+use hexagen_lab::stability::{run_off, sides};
 use rayon::prelude::*;
 
 /// Motors of different size, with Ts/L from 0.08 to 0.25 A/V and R Ts/L from 0.03 to 0.09.

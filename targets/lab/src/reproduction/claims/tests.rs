@@ -1,8 +1,8 @@
 //! Every claim both ways: with figures as the paper claims them, and with contrary ones.
 
 use super::*;
-use crate::report::reproduction::experiment::{Figures, Setting};
-use crate::report::reproduction::judge::Verdict;
+use crate::reproduction::experiment::{Figures, Setting};
+use crate::reproduction::judge::Verdict;
 
 const SETTING: Setting = Setting {
     torque: 3.3,

@@ -3,7 +3,7 @@
 //! Tolerances: mean torque within 1 %, ripple within 15 % of its value or 0.5 points, speed limit
 //! within 2 points of rated speed.
 
-use hexagen_lab::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit};
+use crate::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit};
 
 /// A figure that is expected to lie in a band; one value is a band of no width.
 #[derive(Clone, Copy, Debug, PartialEq)]

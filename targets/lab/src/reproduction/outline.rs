@@ -1,7 +1,7 @@
 //! How far a current is from the ideal hexagon, whatever its place on it.
 
-use crate::report::plot::hexagon;
-use hexagen_lab::closed_loop::Trace;
+use crate::closed_loop::Trace;
+use crate::closed_loop::hexagon;
 
 /// RMS distance in amperes of a record's current, as a moving mean over one control period, from
 /// the outline of the hexagon between the quasi-square reference's corners of amplitude `current`.

@@ -5,7 +5,7 @@
 
 use super::data::Method;
 use super::judge::Finding;
-use hexagen_lab::closed_loop::{Held, Side};
+use crate::closed_loop::{Held, Side};
 
 /// Fraction of the demand below which a drive has lost its current.
 const LOST: f64 = 0.5;

@@ -1,8 +1,15 @@
 //! The robustness sheet as data: controllers in closed loop on plants that differ from the motor
 //! file in one point each, and what such a run is called.
 
-use hexagen_lab::closed_loop::{FiguresOfMerit, Swing, Trip};
-use hexagen_lab::engine::EngineKind;
+mod csv;
+mod disturbance;
+mod sheet;
+
+pub use csv::csv;
+pub use sheet::{measured, robustness};
+
+use crate::closed_loop::{FiguresOfMerit, Swing, Trip};
+use crate::engine::EngineKind;
 use serde::Serialize;
 
 /// Swing of the current, in percent, above which the loop of a controller that modulates counts as
@@ -59,12 +66,12 @@ pub struct Cell {
     pub refused: Option<String>,
     /// What was measured otherwise.
     #[serde(flatten)]
-    pub figures: Option<Figures>,
+    pub figures: Option<DisturbedFigures>,
 }
 
 /// What a run gave.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Figures {
+pub struct DisturbedFigures {
     /// What ran the fixed-point program.
     pub engine: EngineKind,
     /// Torque in newton metres of the demanded current on this plant's EMF constant.
@@ -181,7 +188,7 @@ pub struct Measured {
 
 impl Measured {
     /// Compares with the undisturbed run at the same speed.
-    pub fn judged(&self, undisturbed: &Self) -> Figures {
+    pub fn judged(&self, undisturbed: &Self) -> DisturbedFigures {
         let figures = &self.figures;
         let swing = Some(self.swing).filter(|_| self.tripped.is_none());
         let outcome = if self.tripped.is_some() {
@@ -191,7 +198,7 @@ impl Measured {
         } else {
             Outcome::Runs
         };
-        Figures {
+        DisturbedFigures {
             engine: self.engine,
             expected_torque_nm: self.expected_torque,
             mean_torque_nm: figures.mean_torque_nm,
@@ -257,7 +264,7 @@ impl Robustness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hexagen_lab::closed_loop::Cause;
+    use crate::closed_loop::Cause;
 
     fn run(mean_torque: f64, ripple_rms_pct: impl Into<Option<f64>>) -> Measured {
         Measured {

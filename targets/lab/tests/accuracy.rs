@@ -3,10 +3,8 @@
 
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::ir::{StatedError, stated_errors};
-use hexagen_host::cli::PlantArguments;
-use hexagen_host::commands::accuracy::{OneStep, differences, one_step};
-use hexagen_host::commands::compare::at_speeds;
-use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
+use hexagen_lab::accuracy::{OneStep, at_speeds, differences, one_step};
+use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, library, prepare};
 use rayon::prelude::*;
 
 /// Controllers that modulate.
@@ -17,7 +15,7 @@ fn drive(motor: &MotorSource, variant: &str) -> Prepared {
 }
 
 fn accuracy(drive: &Prepared) -> OneStep {
-    let measured = at_speeds(drive, &PlantArguments::default()).expect("runs");
+    let measured = at_speeds(drive, &PlantOptions::default()).expect("runs");
     one_step(drive, measured.iter().map(|(_, both)| both)).0
 }
 
@@ -63,7 +61,7 @@ fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
     assert!(drives.len() >= 2 * 16 + 3, "{}", drives.len());
     drives.par_iter().for_each(|drive| {
         let named = || format!("{}, {}", drive.motor, drive.variant);
-        let measured = at_speeds(drive, &PlantArguments::default()).expect("runs");
+        let measured = at_speeds(drive, &PlantOptions::default()).expect("runs");
         for (rpm, both) in &measured {
             let [fixed, ideal] = [&both.fixed.figures, &both.ideal.figures];
             for figure in differences(fixed, ideal, ideal) {

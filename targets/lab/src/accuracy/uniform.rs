@@ -1,11 +1,11 @@
 //! A drive of 16-bit words beside the same law in one format that must serve every motor.
 
 use super::one_step::{Compared, OneStep, Step, Sums};
-use crate::cli::Failure;
+use crate::LabError;
+use crate::closed_loop::{ClosedLoop, CurrentLoop, RunOptions};
+use crate::engine::{Prepared, SetPoint};
+use crate::plant::{Plant, PlantParams, Truth};
 use hexagen::{Legs, Sample};
-use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, RunOptions};
-use hexagen_lab::engine::{Prepared, SetPoint};
-use hexagen_lab::plant::{Plant, PlantParams, Truth};
 use hexagen_reference::{BitTrue, Ideal, Spec, Uniform};
 
 /// Fraction bits of the one saturating 16-bit format of SI units that holds what every one of these motors needs: as
@@ -75,9 +75,9 @@ impl Uniform16 {
         runs: &[RunOptions],
         set_point: SetPoint,
         frac_bits: i32,
-    ) -> Result<Option<Self>, Failure> {
+    ) -> Result<Option<Self>, LabError> {
         let uniform = Uniform::new(&drive.reference, frac_bits)
-            .map_err(|error| Failure::Argument(error.to_string()))?;
+            .map_err(|error| LabError::Argument(error.to_string()))?;
         let Some(uniform) = uniform else {
             return Ok(None);
         };

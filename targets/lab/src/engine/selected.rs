@@ -1,0 +1,174 @@
+//! Motors with their plants: what is simulated may differ from what the motor's file says.
+
+use super::{MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of};
+use crate::LabError;
+use crate::closed_loop::RunOptions;
+use crate::plant::{Mechanics, PlantError, PlantParams};
+use hexagen_codegen::spec::{SpecAst, parse_toml};
+use std::f64::consts::TAU;
+
+/// What a simulated plant differs in from the motor's file; nothing by default.
+#[derive(Clone, Debug, Default)]
+pub struct PlantOptions {
+    /// Dead time of the inverter's legs in seconds.
+    pub dead_time: Option<f64>,
+    /// Bits of the current ADCs, of plant and controller alike: the specification changes.
+    pub adc_bits: Option<u32>,
+    /// Range of the current ADCs with its unit, of plant and controller alike: the specification changes.
+    pub adc_range: Option<String>,
+    /// Error in amperes of the current ADCs' zero, which the controller does not know of.
+    pub adc_offset: Option<[f64; 2]>,
+    /// True bus voltage in volts.
+    pub v_bus: Option<f64>,
+    /// True over stated resistance.
+    pub scale_r: Option<f64>,
+    /// True over stated inductance.
+    pub scale_l: Option<f64>,
+    /// True over stated EMF constant.
+    pub scale_kb: Option<f64>,
+    /// Placement errors of the Hall sensors in electrical degrees; positive is late in forward rotation.
+    pub hall_error: Option<[f64; 3]>,
+    /// Inertia of rotor and load in kg m2: the speed is free.
+    pub inertia: Option<f64>,
+    /// Load torque in newton metres that opposes the motion of a free shaft.
+    pub load: Option<f64>,
+    /// Electrical angle at the start in radians: one run in place of three.
+    pub start_angle: Option<f64>,
+}
+
+/// A motor with what the plant options change in its specification.
+#[derive(Clone, Debug)]
+pub struct SelectedMotor {
+    /// The motor.
+    pub source: MotorSource,
+    /// The syntax tree after the changes.
+    pub ast: SpecAst,
+}
+
+impl SelectedMotor {
+    /// Finds and reads a motor.
+    ///
+    /// # Errors
+    /// When there is none, or its file is no TOML.
+    pub fn find(given: &str, plant: &PlantOptions) -> Result<Self, LabError> {
+        let source = MotorSource::find(given)?;
+        Self::read(source, plant)
+    }
+
+    /// Every motor of the library.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn library(plant: &PlantOptions) -> Result<Vec<Self>, LabError> {
+        let all = library().iter().map(MotorSource::from);
+        all.map(|source| Self::read(source, plant)).collect()
+    }
+
+    fn read(source: MotorSource, plant: &PlantOptions) -> Result<Self, LabError> {
+        let mut ast = parse_toml(&source.text, &source.file)?;
+        plant.change_specification(&mut ast)?;
+        Ok(Self { source, ast })
+    }
+
+    /// Takes a variant through the generator; none: the controller of the motor's file.
+    ///
+    /// # Errors
+    /// All diagnostics.
+    pub fn prepare(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
+        Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
+    }
+
+    /// As [`Self::prepare`], for commands that measure the torque that is set.
+    ///
+    /// # Errors
+    /// All diagnostics, or a drive that regulates its speed.
+    pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
+        let drive = self.prepare(variant)?;
+        if drive.spec.controller.common().speed.is_some() {
+            return Err(LabError::Argument(
+                "`speed_loop: on`: the drive regulates its speed, and here the torque is set; give the controller `speed_loop=off`"
+                    .to_owned(),
+            ));
+        }
+        Ok(drive)
+    }
+}
+
+impl PlantOptions {
+    /// ADC bits and range are the controller's, too: they are laid over the specification.
+    fn change_specification(&self, ast: &mut SpecAst) -> Result<(), LabError> {
+        let bits = self.adc_bits.map(|bits| format!("adc_bits = {bits}"));
+        let range = self
+            .adc_range
+            .as_ref()
+            .map(|range| format!("adc_range = \"{range}\""));
+        if range.is_some() {
+            // Another way to say the range.
+            ast.inverter.fields.retain(|field| field.name != "adc_gain");
+        }
+        let lines: Vec<String> = bits.into_iter().chain(range).collect();
+        if lines.is_empty() {
+            return Ok(());
+        }
+        // An offset counts in the bits of before; the middle of the new range takes its place.
+        ast.inverter
+            .fields
+            .retain(|field| field.name != "adc_offset");
+        let mut over = parse_toml(
+            &format!("[inverter]\n{}", lines.join("\n")),
+            "ADC bits and range",
+        )?;
+        over.name = ast.name.clone();
+        over.inverter.location = None;
+        ast.overlay(over);
+        Ok(())
+    }
+
+    /// The plant of a drive.
+    ///
+    /// # Errors
+    /// An option out of range.
+    pub fn plant(&self, drive: &Prepared) -> Result<PlantParams, PlantError> {
+        let mut plant = plant_of(&drive.spec).scaled(
+            self.scale_r.unwrap_or(1.0),
+            self.scale_l.unwrap_or(1.0),
+            self.scale_kb.unwrap_or(1.0),
+        );
+        plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
+        plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
+        for (channel, error) in plant
+            .adc
+            .iter_mut()
+            .zip(self.adc_offset.unwrap_or([0.0; 2]))
+        {
+            channel.offset += error / channel.amperes_per_count;
+        }
+        plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
+        plant.mechanics = self.inertia.map(|inertia| Mechanics {
+            inertia,
+            opposing_torque: self.load.unwrap_or(0.0),
+            external_torque: 0.0,
+            viscous: 0.0,
+        });
+        plant.check()?;
+        Ok(plant)
+    }
+
+    /// The run of a drive at a mechanical speed in rpm and a torque in newton metres.
+    pub fn run(&self, drive: &Prepared, rpm: f64, torque: f64) -> RunOptions {
+        let mut run = run_of(&drive.spec, rpm * TAU / 60.0, torque);
+        if let Some(start) = self.start_angle {
+            run.starts = vec![start];
+        }
+        run
+    }
+
+    /// The drive's set-point for a torque in newton metres.
+    pub fn set_point(&self, drive: &Prepared, torque: f64) -> SetPoint {
+        SetPoint {
+            current: torque / drive.spec.torque_constant(),
+            v_bus: self.v_bus.unwrap_or(drive.spec.inverter.v_bus),
+            rpm: None,
+        }
+    }
+}

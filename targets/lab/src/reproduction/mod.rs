@@ -1,0 +1,19 @@
+//! The paper's experiment, and its claims judged by it.
+//!
+//! [`reproduce`] runs it; [`Reproduction`] says what was run, [`claims`] judges the paper's claims by it.
+
+mod claims;
+mod data;
+mod experiment;
+mod judge;
+mod outline;
+mod run;
+mod timing;
+
+pub use claims::claims;
+pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables};
+pub use experiment::{AtSpeed, Experiment, Figures, Setting};
+pub use judge::{Claim, Finding, Statement, Verdict};
+pub use outline::distance_rms;
+pub use run::{Effort, counted_readings, reproduce};
+pub use timing::{CLOCK_HZ, TIMES_TEXT, Times};

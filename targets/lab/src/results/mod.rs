@@ -1,0 +1,23 @@
+//! The result table of a motor, and what else is found out about its controllers.
+
+mod collect;
+mod data;
+mod expected;
+mod planned;
+
+pub use collect::Plan;
+pub use data::{
+    Capture, ErrorsSeen, GeneratedTexts, Record, Results, Run, RunPoint, SameWords, SignalError,
+    SpeedMark, Variant, Verification,
+};
+pub use expected::{
+    Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
+    judge_mean, judge_pp, judge_rms,
+};
+pub use planned::{Planned, held};
+
+/// The motor of the paper.
+pub const PAPER_MOTOR: &str = "trivedi-keshri-660w";
+
+/// Speeds of the result table, in parts of rated speed.
+pub const SPEEDS: [f64; 2] = [0.2, 0.75];
