@@ -1,8 +1,8 @@
-//! The `hexagen` program: commands on top of the laboratory (`hexagen-lab`), and the pages that they
-//! write.
+//! The `hexagen` program: commands on top of the laboratory (`hexagen-lab`), and renderers of its
+//! reports.
 
 pub mod checker;
 pub mod cli;
 pub mod commands;
 mod files;
-pub mod report;
+pub mod render;

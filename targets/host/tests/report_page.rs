@@ -3,14 +3,19 @@
 mod page_support;
 mod report_support;
 
-use hexagen_host::report::{render, write};
+use hexagen_host::render::{self, html, terminal};
 use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
+use hexagen_lab::report::{results_blocks, results_page};
 use hexagen_lab::results::{Expectation, Expected, ExpectedPoint, Results, Variant};
 use std::path::Path;
 use std::sync::LazyLock;
 
 static DATA: LazyLock<Results> = LazyLock::new(report_support::data);
-static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA).expect("the page renders"));
+static PAGE: LazyLock<String> = LazyLock::new(|| render(&DATA));
+
+fn render(data: &Results) -> String {
+    html(&results_page(data)).expect("the page renders")
+}
 
 #[test]
 fn every_section_is_there_and_linked() {
@@ -49,7 +54,31 @@ fn page_is_complete_in_itself_and_well_formed() {
 
 #[test]
 fn same_data_give_the_same_bytes() {
-    assert_eq!(render(&DATA).expect("the page renders"), *PAGE);
+    assert_eq!(render(&DATA), *PAGE);
+}
+
+#[test]
+fn the_page_as_json_has_its_sections_tables_and_plots() {
+    let page = serde_json::to_value(results_page(&DATA)).expect("all of it is data");
+    let sections = page["sections"].as_array().expect("a list");
+    assert_eq!(sections.len(), PAGE.matches("<section ").count());
+    let text = page.to_string();
+    assert_eq!(text.matches("\"elements\":").count(), 27, "plots");
+    let rows = &page["sections"][1]["blocks"][2]["table"]["groups"][0]["rows"];
+    assert_eq!(rows[0][2]["text"], "3.30", "the first mean: {rows}");
+}
+
+#[test]
+fn the_result_table_in_the_terminal_says_what_the_page_says() {
+    let text = terminal::text(&results_blocks(&DATA));
+    for part in [
+        "| Variant ",
+        "All 21 expected figures are met.",
+        " 3.30 (3.30) |",
+        "| ideal float |",
+    ] {
+        assert!(text.contains(part), "no `{part}` in\n{text}");
+    }
 }
 
 #[test]
@@ -83,10 +112,10 @@ fn difference_from_the_expected_is_marked() {
         tripped: None,
         curve: Vec::new(),
     });
-    let page = render(&data).expect("the page renders");
+    let page = render(&data);
     assert!(page.contains("\u{2260}\u{a0}3.30"), "the mean differs");
     assert!(page.contains("2.0\u{2013}3.0"), "a band is shown as one");
-    let limit = "missed\">never held, torque above";
+    let limit = "missed\">\u{2260}\u{a0}never held, torque above";
     assert!(page.contains(limit), "so does the limit, with its side");
     assert!(page.contains("expected figures are met; the others are marked"));
 }
@@ -106,7 +135,7 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
     variant.records.remove(0);
     let limit = variant.runs[0].limit.as_mut().expect("was searched");
     (limit.tripped, limit.lost) = (Some(trip), None);
-    let page = render(&data).expect("the page renders");
+    let page = render(&data);
     let cell = "<td class=\"number edge missed\" colspan=\"3\">trips</td>";
     assert_eq!(page.matches(cell).count(), 2, "fixed and ideal");
     assert!(page.contains("rpm: the drive trips at 400 rpm)"));
@@ -116,12 +145,14 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
 
 #[test]
 fn the_page_says_which_torque_counts_as_held() {
-    assert!(PAGE.contains("falls below 97 % of the demand, as in the design document's table"));
+    assert!(
+        PAGE.contains("falls below 97\u{a0}% of the demand, as in the design document's table")
+    );
     assert!(PAGE.contains("\n97 % of demand\n") && !PAGE.contains("\n103 % of demand\n"));
     let mut data = DATA.clone();
     data.held = Held::Within;
-    let page = render(&data).expect("the page renders");
-    assert!(page.contains("is no longer within 3 % of the demand, on either side"));
+    let page = render(&data);
+    assert!(page.contains("is no longer within 3\u{a0}% of the demand, on either side"));
     page_support::assert_plots_stay_inside_their_frames(&page);
     assert!(page.contains("\n97 % of demand\n") && page.contains("\n103 % of demand\n"));
 }
@@ -135,23 +166,22 @@ fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
     // Five disturbances at two speeds; of three controllers one is not there.
     assert_eq!(sheet.matches("<td").count(), 5 * 2 * 2);
     for (class, count) in [
-        ("none", 4),
-        ("slight", 4),
-        ("marked", 4),
-        ("strong", 2),
-        ("broken", 4),
+        ("number", 4),
+        ("number muted", 2),
+        ("number slight", 4),
+        ("number marked", 4),
+        ("number strong", 2),
+        ("number broken", 4),
     ] {
-        let cells = sheet
-            .matches(&format!("<td class=\"number {class}\">"))
-            .count();
+        let cells = sheet.matches(&format!("<td class=\"{class}\">")).count();
         assert_eq!(cells, count, "{class}");
     }
     for text in [
         ">trips</td>",
         ">oscillates</td>",
         "3.30 <small>12.0 / 2.5</small>",
-        "R +30 %",
-        "L \u{2212}30 %",
+        "R +30\u{a0}%",
+        "L \u{2212}30\u{a0}%",
         "dead time 1 \u{b5}s",
         "10-bit ADC, 200 mA off",
         "<code>phcc</code> is not there: one vector moves the current too far",
@@ -188,7 +218,7 @@ fn page_without_runs_says_so_instead_of_failing() {
     data.marks.clear();
     data.robustness = None;
     data.errors.clear();
-    let page = render(&data).expect("the page renders");
+    let page = render(&data);
     for what in [
         "records",
         "torque-speed curves",
@@ -205,7 +235,7 @@ fn page_without_runs_says_so_instead_of_failing() {
 #[test]
 fn page_is_written_whole_under_the_motors_name() {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report");
-    let path = write(&DATA, &dir).expect("the page is written");
+    let path = render::write(&results_page(&DATA), &dir).expect("the page is written");
     assert_eq!(path, dir.join("report-trivedi-keshri-660w.html"));
     assert_eq!(std::fs::read_to_string(&path).expect("it is there"), *PAGE);
     let left: Vec<_> = std::fs::read_dir(&dir)

@@ -1,5 +1,6 @@
 //! The laboratory: a simulated plant, closed loops of any model of a controller, what they are
-//! judged by, and all ways to run a generated drive. A library without a command line.
+//! judged by, all ways to run a generated drive, and reports as data. A library without a command
+//! line.
 //!
 //! The generator's tables of formats and limits come over in the runtime's types here: nothing else
 //! knows both.
@@ -15,6 +16,7 @@ pub mod motors;
 pub mod plant;
 mod progress;
 mod readings;
+pub mod report;
 pub mod reproduction;
 pub mod results;
 pub mod robustness;

@@ -1,7 +1,7 @@
 //! Why a command did not succeed.
 
 use crate::checker::Missing;
-use crate::report::ReportError;
+use crate::render::RenderError;
 use hexagen_lab::LabError;
 use hexagen_lab::closed_loop::Trip;
 use hexagen_lab::engine::BuildError;
@@ -37,7 +37,7 @@ pub enum Failure {
     Compiler(#[from] BuildError),
     /// The report's page cannot be made.
     #[error("error: {0}")]
-    Report(#[from] ReportError),
+    Report(#[from] RenderError),
 }
 
 impl From<PlantError> for Failure {

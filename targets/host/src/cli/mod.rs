@@ -12,7 +12,7 @@ mod quantity;
 pub use arguments::{Arguments, Command, Emit, PlantArguments, RunArguments, Selection, parse_rpm};
 pub use failure::Failure;
 pub use output::{
-    Ground, TextTable, note, print_json, print_text, tell_warnings, warn, write_file,
+    note, print_blocks, print_json, print_table, print_text, tell_warnings, warn, write_file,
 };
 pub use progress::{Bar, spinner};
 

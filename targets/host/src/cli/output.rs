@@ -1,11 +1,10 @@
-//! Results as text, tables, JSON and files.
+//! Results as text, JSON and files.
 
 use super::Failure;
 use crate::files::write_whole;
-use anstream::{AutoStream, ColorChoice};
-use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, Table, Width};
+use crate::render::terminal;
 use hexagen_lab::engine::Prepared;
+use hexagen_lab::report::{Block, Table};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -41,6 +40,22 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print_text(&text)
 }
 
+/// Prints parts of a page.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn print_blocks(blocks: &[Block]) -> Result<(), Failure> {
+    print_text(&terminal::text(blocks))
+}
+
+/// Prints a table.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn print_table(table: &Table) -> Result<(), Failure> {
+    print_text(&terminal::table(table))
+}
+
 /// A note on stderr.
 pub fn warn(text: &str) {
     note(&format!("warning: {text}"));
@@ -62,76 +77,6 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
         path: path.to_owned(),
         reason: error.to_string(),
     })
-}
-
-/// Colours of a cell, by their numbers among the 256 of terminals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ground {
-    /// Of the cell.
-    pub color: u8,
-    /// Of its text.
-    pub ink: u8,
-}
-
-/// A table in Markdown, with colours where a terminal shows them and nobody asked for none; every column but the first `left` ones is right-aligned.
-pub struct TextTable {
-    table: Table,
-    left: usize,
-}
-
-impl TextTable {
-    /// An empty table with a header.
-    pub fn new<T: Into<String>>(left: usize, header: impl IntoIterator<Item = T>) -> Self {
-        let mut table = Table::new();
-        table.load_style(ASCII_MARKDOWN);
-        // NO_COLOR, CLICOLOR and the kind of stdout decide.
-        match AutoStream::choice(&std::io::stdout()) {
-            ColorChoice::Never => table.force_no_tty(),
-            _ => table.enforce_styling(),
-        };
-        table.set_header(header.into_iter().map(Into::into).collect::<Vec<String>>());
-        Self { table, left }
-    }
-
-    /// Adds a row.
-    pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
-        self.table
-            .add_row(cells.into_iter().map(Into::into).collect::<Vec<String>>());
-    }
-
-    /// Adds a row of cells that may have a ground.
-    pub fn painted_row(&mut self, cells: impl IntoIterator<Item = (String, Option<Ground>)>) {
-        let cells = cells.into_iter().map(|(text, ground)| match ground {
-            None => Cell::new(text),
-            Some(Ground { color, ink }) => Cell::new(text)
-                .bg(Color::AnsiValue(color))
-                .fg(Color::AnsiValue(ink)),
-        });
-        self.table.add_row(cells.collect::<Vec<_>>());
-    }
-
-    /// Breaks the lines of a column's cells where they are longer than so many characters.
-    #[must_use]
-    pub fn wrapped(mut self, column: usize, most: u16) -> Self {
-        // Without a width of the whole nothing is broken; this one leaves the choice to the column.
-        self.table
-            .set_content_arrangement(ContentArrangement::Dynamic)
-            .set_width(u16::MAX);
-        if let Some(column) = self.table.column_mut(column) {
-            column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most)));
-        }
-        self
-    }
-
-    /// The table as text.
-    pub fn render(mut self) -> String {
-        for (index, column) in self.table.column_iter_mut().enumerate() {
-            if index >= self.left {
-                column.set_cell_alignment(CellAlignment::Right);
-            }
-        }
-        self.table.trim_fmt()
-    }
 }
 
 #[cfg(test)]

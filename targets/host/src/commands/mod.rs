@@ -10,7 +10,6 @@ pub mod motors;
 pub mod prove;
 pub mod report;
 pub mod reproduce;
-pub mod robustness;
 pub mod selected;
 pub mod simulate;
 pub mod verify;

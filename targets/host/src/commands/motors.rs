@@ -1,9 +1,10 @@
 //! `hexagen motors`: the library, and whether each motor's default drive holds its rating.
 
-use crate::cli::{Bar, Failure, TextTable, note, print_json, print_text};
+use crate::cli::{Bar, Failure, note, print_json, print_table, print_text};
 use clap::Args;
 use hexagen_lab::closed_loop::TOLERANCE;
 use hexagen_lab::motors::{LibraryMotor, library_at_rating};
+use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
@@ -28,10 +29,24 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         return print_json(&Library { motors });
     }
-    let mut table = TextTable::new(
-        1,
+    print_table(&table(&motors))?;
+    print_text(&format!(
+        "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
+         speed from the nominal bus, in percent of the rated one; it holds it within {:.0} % on either side.",
+        100.0 * TOLERANCE
+    ))?;
+    for motor in &motors {
+        if let Some(reason) = &motor.reason {
+            note(reason);
+        }
+    }
+    Ok(())
+}
+
+fn table(motors: &[LibraryMotor]) -> Table {
+    let mut table = Table::listed(
+        ["motor"],
         [
-            "motor",
             "pole pairs",
             "R ohm",
             "L mH",
@@ -46,7 +61,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "holds",
         ],
     );
-    for motor in &motors {
+    for motor in motors {
         let number = |value: Option<f64>, scale: f64| {
             value.map_or("-".to_owned(), |value| significant(value * scale, 3))
         };
@@ -76,16 +91,5 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             .to_owned(),
         ]);
     }
-    print_text(&table.render())?;
-    print_text(&format!(
-        "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
-         speed from the nominal bus, in percent of the rated one; it holds it within {:.0} % on either side.",
-        100.0 * TOLERANCE
-    ))?;
-    for motor in &motors {
-        if let Some(reason) = &motor.reason {
-            note(reason);
-        }
-    }
-    Ok(())
+    table
 }

@@ -5,7 +5,7 @@ mod certificates;
 pub use certificates::{Certificates, Certify};
 
 use crate::checker::{Proof, coq_version, gappa_version, missing_goals, prove};
-use crate::cli::{Bar, Failure, Selection, TextTable, note, print_json, print_text};
+use crate::cli::{Bar, Failure, Selection, note, print_json, print_table};
 use crate::commands::selected::{Refused, select};
 use certificates::Certified;
 use clap::Args;
@@ -13,6 +13,7 @@ use hexagen_codegen::emit::gappa::{Script, emit_gappa};
 use hexagen_codegen::ir::stated_errors;
 use hexagen_lab::Progress;
 use hexagen_lab::engine::Prepared;
+use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -222,7 +223,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             refused,
         })?;
     } else {
-        print_text(&table(&results))?;
+        print_table(&table(&results))?;
     }
     if let (Some(folder), Some(Err(missing))) = (&options.coq, &coq) {
         note(&format!(
@@ -237,12 +238,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-fn table(results: &[Proved]) -> String {
+fn table(results: &[Proved]) -> Table {
     let certifies = results.iter().any(|proved| proved.certificates.is_some());
     let mut header = vec![
-        "motor",
-        "controller",
-        "result",
         "scripts",
         "goals",
         "proved",
@@ -256,7 +254,9 @@ fn table(results: &[Proved]) -> String {
     if certifies {
         header.extend(["certificates", "checked by Coq", "longest s"]);
     }
-    let mut table = TextTable::new(3, header);
+    let columns = header.into_iter().map(|name| Column::number(name, ""));
+    let names = ["motor", "controller", "result"].map(Column::text);
+    let mut table = Table::new("", names.into_iter().chain(columns));
     for proved in results {
         let of = |quantity: &str| {
             proved
@@ -290,5 +290,5 @@ fn table(results: &[Proved]) -> String {
         }
         table.row(cells);
     }
-    table.render()
+    table
 }

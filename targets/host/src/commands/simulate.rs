@@ -1,7 +1,7 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
 use crate::cli::{
-    Failure, RunArguments, TextTable, parse_rpm, print_json, print_text, spinner, warn, write_file,
+    self, Failure, RunArguments, parse_rpm, print_json, print_text, spinner, warn, write_file,
 };
 use clap::Args;
 use hexagen_lab::closed_loop::{
@@ -9,6 +9,7 @@ use hexagen_lab::closed_loop::{
 };
 use hexagen_lab::engine::{EngineKind, Model, Prepared, run_of};
 use hexagen_lab::plant::PlantParams;
+use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -245,9 +246,9 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
             significant(speed.final_rpm, 5)
         ))?;
     }
-    let mut table = TextTable::new(1, ["figure of merit", "value", "unit"]);
+    let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
     for (name, value, unit) in outcome.figures.rows() {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
-    print_text(&table.render())
+    cli::print_table(&table)
 }

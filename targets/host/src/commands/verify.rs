@@ -1,9 +1,10 @@
 //! `hexagen verify`: generated code against the bit-true reference, on every output and state bit.
 
-use crate::cli::{Bar, Failure, Selection, TextTable, print_json, print_text, warn};
+use crate::cli::{Bar, Failure, Selection, print_json, print_table, warn};
 use crate::commands::selected::{Refused, select};
 use clap::{Args, ValueEnum};
 use hexagen_lab::engine::{BuildError, Prepared, Verifier};
+use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use hexagen_lab::verification::{Checked, verify_with};
 use rayon::prelude::*;
@@ -122,18 +123,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             refused,
         })?;
     } else {
-        print_text(&table(&results))?;
+        print_table(&table(&results))?;
     }
     outcome
 }
 
-fn table(results: &[Checked]) -> String {
-    let mut table = TextTable::new(
-        3,
+fn table(results: &[Checked]) -> Table {
+    let mut table = Table::listed(
+        ["motor", "controller", "engine"],
         [
-            "motor",
-            "controller",
-            "engine",
             "steps",
             "result",
             "Msteps/s/core",
@@ -168,5 +166,5 @@ fn table(results: &[Checked]) -> String {
             share(coverage.tripped),
         ]);
     }
-    table.render()
+    table
 }

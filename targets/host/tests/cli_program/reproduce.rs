@@ -13,7 +13,7 @@ fn experiment_runs_and_leaves_its_page() {
         "(h) ",
         "holds in part",
         "does not hold",
-        "T_f us",
+        "T_f",
     ] {
         assert!(
             said.stdout.contains(text),

@@ -208,7 +208,8 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
         "1500 rpm:",
         "| L -30 %",
         "oscillates |",
-        " Nm ",
+        "mean torque in Nm",
+        "colour",
         "A run oscillates where",
     ] {
         assert!(piped.contains(part), "no `{part}` in\n{piped}");

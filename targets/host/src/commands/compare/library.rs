@@ -1,8 +1,9 @@
 //! Words of 16 bits over the library: the formats that the generator chooses for each motor, against one saturating
 //! format of SI units that holds them all.
 
-use crate::cli::{Failure, PlantArguments, TextTable, print_json, print_text, spinner};
+use crate::cli::{Failure, PlantArguments, print_json, print_table, print_text, spinner};
 use hexagen_lab::accuracy::{LAW, compare_library};
+use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 
 /// Prints the comparison.
@@ -17,10 +18,9 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
     if json {
         return print_json(&library);
     }
-    let mut table = TextTable::new(
-        1,
+    let mut table = Table::listed(
+        ["motor"],
         [
-            "motor",
             "SNR dB",
             "largest V",
             "bound V",
@@ -45,7 +45,7 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
             decibel(row.better_by_db),
         ]);
     }
-    print_text(&table.render())?;
+    print_table(&table)?;
     for reason in library.rows.iter().filter_map(|row| row.refused.as_ref()) {
         print_text(reason)?;
     }

@@ -4,10 +4,12 @@
 mod library;
 mod print;
 
-use super::robustness;
-use crate::cli::{Bar, Failure, PlantArguments, Selection, print_json, spinner, write_file};
+use crate::cli::{
+    Bar, Failure, PlantArguments, Selection, print_blocks, print_json, spinner, write_file,
+};
 use clap::Args;
 use hexagen_lab::accuracy::{Row, compare};
+use hexagen_lab::report::robustness_blocks;
 use hexagen_lab::robustness::{Robustness, csv, robustness};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -122,5 +124,5 @@ fn run_robustness(options: &Options, motor: &str, selection: &Selection) -> Resu
             robustness: sheet,
         });
     }
-    robustness::print(&sheet)
+    print_blocks(&robustness_blocks(&sheet))
 }

@@ -1,7 +1,8 @@
 //! The comparison as tables.
 
-use crate::cli::{Failure, TextTable, print_text};
+use crate::cli::{Failure, print_table, print_text};
 use hexagen_lab::accuracy::{Accuracy, FigureDifference, Row};
+use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
 
 /// Prints the rows, and every figure of merit where they are of one controller.
@@ -9,7 +10,7 @@ use hexagen_lab::text::significant;
 /// # Errors
 /// As [`print_text`].
 pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
-    print_text(&accuracy_table(rows))?;
+    print_table(&accuracy_table(rows))?;
     for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
         print_text(reason)?;
     }
@@ -22,7 +23,7 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
          Duty: compare value less exact duty, timer counts, while no limit acts and where one does, each with its proven bound and \
          half a count for the compare value's own rounding.\n",
     )?;
-    print_text(&step_table(rows))?;
+    print_table(&step_table(rows))?;
     if !with_figures {
         return print_text("Every figure of merit: --controller with one variant, or --json.");
     }
@@ -39,7 +40,7 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
             ))?;
             match at.tripped {
                 Some(trip) => print_text(&trip.to_string())?,
-                None => print_text(&figure_table(&at.figures))?,
+                None => print_table(&figure_table(&at.figures))?,
             }
         }
     }
@@ -53,9 +54,10 @@ fn table<const N: usize>(
     rows: &[Row],
     header: [&str; N],
     cells: impl Fn(&Accuracy) -> Vec<String>,
-) -> String {
-    let first = ["controller", "word"].into_iter();
-    let mut table = TextTable::new(1, first.chain(header));
+) -> Table {
+    let numbers = ["word"].into_iter().chain(header);
+    let numbers = numbers.map(|name| Column::number(name, ""));
+    let mut table = Table::new("", [Column::text("controller")].into_iter().chain(numbers));
     for row in rows {
         let mut all = vec![row.controller.clone(), row.word.to_string()];
         match &row.accuracy {
@@ -64,10 +66,10 @@ fn table<const N: usize>(
         }
         table.row(all);
     }
-    table.render()
+    table
 }
 
-fn accuracy_table(rows: &[Row]) -> String {
+fn accuracy_table(rows: &[Row]) -> Table {
     let header = [
         "SNR dB",
         "largest V",
@@ -100,7 +102,7 @@ fn accuracy_table(rows: &[Row]) -> String {
     })
 }
 
-fn step_table(rows: &[Row]) -> String {
+fn step_table(rows: &[Row]) -> Table {
     let header = [
         "steps",
         "rms V",
@@ -137,17 +139,10 @@ fn step_table(rows: &[Row]) -> String {
     })
 }
 
-fn figure_table(figures: &[FigureDifference]) -> String {
-    let mut table = TextTable::new(
-        1,
-        [
-            "figure of merit",
-            "fixed",
-            "ideal",
-            "alone",
-            "unit",
-            "close",
-        ],
+fn figure_table(figures: &[FigureDifference]) -> Table {
+    let mut table = Table::listed(
+        ["figure of merit"],
+        ["fixed", "ideal", "alone", "unit", "close"],
     );
     for figure in figures {
         table.row([
@@ -159,5 +154,5 @@ fn figure_table(figures: &[FigureDifference]) -> String {
             if figure.close { "yes" } else { "NO" }.to_owned(),
         ]);
     }
-    table.render()
+    table
 }

@@ -1,0 +1,221 @@
+//! Pages as HTML: one file, complete in itself; no script, nothing from outside.
+
+use super::svg::svg;
+use super::texts::{code, markdown};
+use super::{RenderError, table};
+use hexagen_lab::report::{
+    AXIS, Block, Color, DEMAND, Figure, GRID, IDEAL, INK, Key, PHASES, Page, Sign, Span, VARIANTS,
+    spans,
+};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::fmt::Write;
+
+/// Style sheet, without the rules for plots on a dark ground.
+const STYLE: &str = include_str!("page.css");
+
+/// Colours that the dark scheme replaces; the others read well on both grounds.
+const DARK: [(Color, &str); 13] = [
+    (INK, "#D7DCE2"),
+    (AXIS, "#8B949E"),
+    (GRID, "#2D333B"),
+    (IDEAL, "#545D68"),
+    (DEMAND, "#ADBAC7"),
+    (PHASES[0], "#6CA6E0"),
+    (PHASES[2], "#E0788A"),
+    (VARIANTS[0], "#4DA3D9"),
+    (VARIANTS[1], "#F07F35"),
+    (VARIANTS[2], "#2FC295"),
+    (VARIANTS[6], "#B8946C"),
+    (VARIANTS[8], "#9A8CF0"),
+    (VARIANTS[10], "#CC66A0"),
+];
+
+/// A page as text.
+///
+/// # Errors
+/// A plot that cannot be drawn, or a text that cannot be coloured.
+pub fn html(page: &Page) -> Result<String, RenderError> {
+    let opening = blocks(&page.opening)?;
+    let sections = page.sections.iter();
+    let contents = sections
+        .map(|section| Ok((section, blocks(&section.blocks)?)))
+        .collect::<Result<Vec<_>, RenderError>>()?;
+    let document = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (page.title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(dark_rules())) }
+            }
+            body {
+                header {
+                    h1 { (page.heading) }
+                    (opening)
+                    nav {
+                        @for section in &page.sections {
+                            a href={ "#" (section.id) } { (section.title) }
+                        }
+                    }
+                }
+                main {
+                    @for (section, content) in contents {
+                        section id=(section.id) {
+                            h2 { (section.title) }
+                            (content)
+                        }
+                    }
+                }
+                footer { p { "Written by " (page.generator) "." } }
+            }
+        }
+    };
+    Ok(document.into_string())
+}
+
+/// The colour as CSS writes it and as plots contain it.
+fn css(Color(red, green, blue): Color) -> String {
+    format!("#{red:02X}{green:02X}{blue:02X}")
+}
+
+/// Rules that redraw plots and swatches for a dark ground.
+fn dark_rules() -> String {
+    let mut rules = "@media (prefers-color-scheme: dark) {\n".to_owned();
+    for (light, dark) in DARK {
+        let light = css(light);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            rules,
+            ".plot [stroke=\"{light}\"],.swatch [stroke=\"{light}\"]{{stroke:{dark}}}\
+             .plot [fill=\"{light}\"],.swatch [fill=\"{light}\"]{{fill:{dark}}}"
+        );
+    }
+    rules + "}"
+}
+
+fn blocks(blocks: &[Block]) -> Result<Markup, RenderError> {
+    let parts = blocks.iter().map(block);
+    let parts = parts.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { @for part in parts { (part) } })
+}
+
+fn block(block: &Block) -> Result<Markup, RenderError> {
+    Ok(match block {
+        Block::Heading(text) => html! { h3 { (prose(text)) } },
+        Block::Lead(text) => html! { p.lead { (prose(text)) } },
+        Block::Prose(text) => html! { p { (prose(text)) } },
+        Block::Note(text) => html! { p.note { (prose(text)) } },
+        Block::Table(of) => html! { div.scroll { (table::html(of)) } },
+        Block::Tables(tables) => html! {
+            div.facts {
+                @for of in tables { div { h3 { (of.title) } (table::html(of)) } }
+            }
+        },
+        Block::Legend(keys) => legend(keys),
+        Block::Figures { columns, figures } => row_of_figures(*columns, figures)?,
+        Block::Details {
+            summary,
+            is_open,
+            blocks: content,
+        } => html! {
+            details open[*is_open] {
+                summary { (prose(summary)) }
+                div { (blocks(content)?) }
+            }
+        },
+        Block::Markdown(text) => markdown(text),
+        Block::Code { language, text } => code(language, text)?,
+    })
+}
+
+/// A text with its marks; percentages do not break before their sign, code may break after commas.
+pub fn prose(text: &str) -> Markup {
+    let text = text.replace(" %", "\u{a0}%");
+    html! {
+        @for span in spans(&text) {
+            @match span {
+                Span::Plain(text) => {
+                    @for (place, line) in text.split('\n').enumerate() {
+                        @if place > 0 { br; }
+                        (line)
+                    }
+                }
+                Span::Code(text) => code {
+                    @for part in text.split_inclusive(',') {
+                        (part) @if part.ends_with(',') { wbr; }
+                    }
+                }
+                Span::Strong(text) => strong { (text) }
+                Span::Subscript(text) => sub { (text) }
+            }
+        }
+    }
+}
+
+fn legend(keys: &[Key]) -> Markup {
+    html! {
+        ul.legend {
+            @for key in keys { li { (sign(key.sign)) span { (prose(&key.text)) } } }
+        }
+    }
+}
+
+/// A sign as legends, captions and tables show it.
+pub fn sign(sign: Sign) -> Markup {
+    let drawn = match sign {
+        Sign::Cell(tone) => return html! { span.heat.(tone.name()) {} },
+        Sign::Line(color, width, (dash, gap)) => {
+            let dashes = (gap > 0.0).then(|| format!("{dash} {gap}"));
+            html! {
+                line x1="1" y1="6" x2="29" y2="6" stroke=(css(color)) stroke-width=(width)
+                    stroke-dasharray=[dashes] {}
+            }
+        }
+        Sign::Field(color, opacity) => html! {
+            rect x="1" y="1" width="28" height="10" fill=(css(color)) opacity=(opacity) {}
+        },
+        Sign::Dot(color) => html! { circle cx="15" cy="6" r="4" fill=(css(color)) {} },
+        Sign::Cross(color) => html! {
+            path d="M11 2 L19 10 M11 10 L19 2" stroke=(css(color)) stroke-width="2" fill="none" {}
+        },
+    };
+    html! { svg.swatch viewBox="0 0 30 12" aria-hidden="true" { (drawn) } }
+}
+
+/// Greatest width of a narrow plot in CSS pixels.
+const NARROW: f64 = 620.0;
+
+/// Figures side by side.
+fn row_of_figures(columns: usize, figures: &[Figure]) -> Result<Markup, RenderError> {
+    // A single column is as wide as the page only for plots that are.
+    let is_wide = |of: &Figure| of.plot.as_ref().is_some_and(|plot| plot.size.0 > NARROW);
+    let class = match columns {
+        1 if figures.iter().any(is_wide) => "full",
+        0 | 1 => "one",
+        2 => "two",
+        3 => "three",
+        _ => "four",
+    };
+    let figures = figures.iter().map(figure);
+    let figures = figures.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { div.plots.(class) { @for figure in figures { (figure) } } })
+}
+
+fn figure(figure: &Figure) -> Result<Markup, RenderError> {
+    let plot = figure.plot.as_ref().map(svg).transpose()?;
+    let is_empty = plot.is_none();
+    Ok(html! {
+        figure.nothing[is_empty] {
+            @if !figure.caption.is_empty() {
+                figcaption {
+                    @if let Some(of) = figure.sign { (sign(of)) }
+                    span { (prose(&figure.caption)) }
+                }
+            }
+            @if let Some(plot) = plot { (plot) }
+            @if let Some(note) = &figure.note { p.note { (prose(note)) } }
+        }
+    })
+}

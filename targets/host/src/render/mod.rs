@@ -1,0 +1,60 @@
+//! Renderers of the laboratory's reports: HTML and terminals; of JSON they are as they stand.
+
+mod html;
+mod svg;
+mod table;
+pub mod terminal;
+mod texts;
+
+pub use html::html;
+
+use crate::files::write_whole;
+use hexagen_lab::report::Page;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The file could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A plot could not be drawn.
+    #[error("cannot draw a plot: {0}")]
+    Plot(String),
+    /// Emitted code could not be highlighted.
+    #[error("cannot highlight code: {0}")]
+    Highlight(String),
+}
+
+/// Writes a page as HTML into a folder, which is created where it is missing, and returns its path.
+/// A page of that name is replaced at once or not at all.
+///
+/// # Errors
+/// A file that cannot be written, or as [`html()`].
+pub fn write(page: &Page, dir: &Path) -> Result<PathBuf, RenderError> {
+    let path = dir.join(format!("{}.html", page.file));
+    match write_whole(&path, html(page)?.as_bytes()) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(RenderError::Write { path, source }),
+    }
+}
+
+/// Makes the folder of a page where it is missing, and sees whether files can be made in it: a
+/// reason to stop is better known before the work than after it.
+///
+/// # Errors
+/// A folder that cannot be made or written into.
+pub fn prepare_folder(dir: &Path) -> Result<(), RenderError> {
+    let tried = fs::create_dir_all(dir).and_then(|()| tempfile::tempfile_in(dir));
+    tried.map(|_| ()).map_err(|source| RenderError::Write {
+        path: dir.to_owned(),
+        source,
+    })
+}

@@ -1,0 +1,193 @@
+//! What the report is about: heading, motor, inverter, and what follows from them.
+
+use crate::report::{Block, Cell, Column, Table};
+use crate::results::Results;
+use crate::text::{grouped, number, quantity};
+use hexagen_codegen::spec::{BusSource, EmfShape};
+use std::f64::consts::{PI, TAU};
+
+/// The page's title.
+pub fn title(data: &Results) -> String {
+    format!("{}: current controllers in fixed point", motor_name(data))
+}
+
+/// What the motor is called.
+pub fn motor_name(data: &Results) -> &str {
+    if data.motor.description.is_empty() {
+        &data.name
+    } else {
+        &data.motor.description
+    }
+}
+
+/// The sentences below the heading.
+pub fn opening(data: &Results) -> Vec<Block> {
+    let lead = format!(
+        "Predictive current controllers for this motor, generated as fixed-point code and simulated in closed loop: \
+         {}-bit current samples every {}, {} demanded.",
+        data.inverter.adc_bits,
+        quantity(data.inverter.t_s, "s"),
+        quantity(data.torque, "Nm")
+    );
+    let check = data.verification.as_ref().map(|check| {
+        let (steps, engine) = (grouped(check.steps), &check.engine);
+        if check.mismatches == 0 && check.steps > 0 {
+            format!(
+                "**Bit for bit verified:** {steps} steps of {engine} code equal the bit-true model in every output and state bit."
+            )
+        } else {
+            format!(
+                "**Not verified:** {engine} code of {} controllers differs from the bit-true model ({steps} steps compared).",
+                grouped(check.mismatches)
+            )
+        }
+    });
+    let check = check.map(Block::Prose);
+    [Block::Lead(lead)].into_iter().chain(check).collect()
+}
+
+/// Tables of given and derived numbers.
+pub fn facts(data: &Results) -> Vec<Block> {
+    let tables = Block::Tables(vec![
+        table("Motor, per phase of the star", motor(data)),
+        table("Inverter and sensors", inverter(data)),
+        table("Derived", derived(data)),
+    ]);
+    let source = data.source.as_ref();
+    let source = source.map(|source| Block::Note(format!("Data: {source}")));
+    [tables].into_iter().chain(source).collect()
+}
+
+fn table(title: &str, rows: Vec<(&str, String)>) -> Table {
+    let mut table = Table::new("", [Column::text("Quantity"), Column::number("Value", "")]);
+    title.clone_into(&mut table.title);
+    for (name, value) in rows {
+        table.row([Cell::from(name), Cell::from(value)]);
+    }
+    table
+}
+
+fn motor(data: &Results) -> Vec<(&'static str, String)> {
+    let motor = &data.motor;
+    let shape = match motor.emf_shape {
+        EmfShape::Trapezoidal { flat_top_deg } => {
+            format!("trapezoidal, {}\u{b0} flat top", number(flat_top_deg, 0))
+        }
+        EmfShape::Sinusoidal => "sinusoidal".to_owned(),
+    };
+    let mut rows = vec![
+        ("Pole pairs", motor.pole_pairs.to_string()),
+        ("Resistance", quantity(motor.resistance, "ohm")),
+        ("Inductance", quantity(motor.inductance, "H")),
+        (
+            "EMF constant, peak",
+            quantity(motor.emf_constant, "V\u{b7}s/rad"),
+        ),
+        ("EMF shape", shape),
+        ("Rated current, peak", quantity(motor.rated_current, "A")),
+    ];
+    if let Some(torque) = motor.rated_torque {
+        rows.push(("Rated torque", quantity(torque, "Nm")));
+    }
+    let rpm = motor.rated_speed * 60.0 / TAU;
+    rows.push(("Rated speed", format!("{}\u{a0}rpm", number(rpm, 0))));
+    if let Some(inertia) = motor.inertia {
+        // Engineering prefixes do not go with squares of kilograms and metres.
+        rows.push(("Inertia", format!("{inertia:.3e}\u{a0}kg\u{b7}m\u{b2}")));
+    }
+    rows
+}
+
+fn inverter(data: &Results) -> Vec<(&'static str, String)> {
+    let inverter = &data.inverter;
+    let bus = match inverter.bus {
+        BusSource::Fixed => quantity(inverter.v_bus, "V"),
+        BusSource::Measured { min, max, .. } => format!(
+            "{}, measured, {} to {}",
+            quantity(inverter.v_bus, "V"),
+            quantity(min, "V"),
+            quantity(max, "V")
+        ),
+    };
+    let half_range = inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1));
+    vec![
+        ("Bus voltage", bus),
+        ("Control period", quantity(inverter.t_s, "s")),
+        ("PWM frequency", quantity(1.0 / inverter.t_s, "Hz")),
+        (
+            "Timer counts for full duty",
+            inverter.timer_period.to_string(),
+        ),
+        ("Dead time", quantity(inverter.dead_time, "s")),
+        (
+            "Current ADCs",
+            format!(
+                "{} bits, \u{b1}{}",
+                inverter.adc_bits,
+                quantity(half_range, "A")
+            ),
+        ),
+        ("One count", quantity(inverter.adc_gain, "A")),
+        ("Trip level", quantity(inverter.trip_current, "A")),
+    ]
+}
+
+/// Peak line-to-line EMF over peak phase EMF: twice the shape at 60 degrees, where two phases
+/// contribute alike.
+fn line_factor(shape: EmfShape) -> f64 {
+    2.0 * match shape {
+        EmfShape::Trapezoidal { flat_top_deg } => (60.0 / (90.0 - flat_top_deg / 2.0)).min(1.0),
+        EmfShape::Sinusoidal => 60.0_f64.to_radians().sin(),
+    }
+}
+
+fn derived(data: &Results) -> Vec<(&'static str, String)> {
+    let (motor, inverter) = (&data.motor, &data.inverter);
+    let pole_pairs = f64::from(motor.pole_pairs);
+    let per_volt = inverter.t_s / motor.inductance;
+    let emf = line_factor(motor.emf_shape) * motor.emf_constant * motor.rated_speed;
+    let degrees = (motor.rated_speed * pole_pairs * inverter.t_s) * 180.0 / PI;
+    vec![
+        ("Current for the demand", quantity(data.current, "A")),
+        (
+            "Torque per ampere",
+            quantity(data.torque / data.current, "Nm/A"),
+        ),
+        (
+            "Time constant L/R",
+            quantity(motor.inductance / motor.resistance, "s"),
+        ),
+        ("Current per volt and period", quantity(per_volt, "A")),
+        (
+            "Frequency at rated speed",
+            quantity(motor.rated_speed * pole_pairs / TAU, "Hz"),
+        ),
+        (
+            "Line EMF at rated speed",
+            format!(
+                "{} ({}\u{a0}% of bus)",
+                quantity(emf, "V"),
+                number(100.0 * emf / inverter.v_bus, 0)
+            ),
+        ),
+        (
+            "Angle per period, rated",
+            format!("{}\u{b0} el.", number(degrees, 2)),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::line_factor;
+    use hexagen_codegen::spec::EmfShape;
+
+    #[test]
+    fn line_emf_follows_the_shape() {
+        let trapezoid = |flat_top_deg| line_factor(EmfShape::Trapezoidal { flat_top_deg });
+        assert_eq!((trapezoid(120.0), trapezoid(60.0)), (2.0, 2.0));
+        // A triangle of peak 1 at 90 degrees is 2/3 at 60.
+        assert!((trapezoid(0.0) - 4.0 / 3.0).abs() < 1e-12);
+        assert!((line_factor(EmfShape::Sinusoidal) - 3.0_f64.sqrt()).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,120 @@
+//! The pages: what the report of a motor and the paper's experiment show, in which order.
+
+mod accuracy;
+mod facts;
+mod paper;
+mod robustness;
+mod spectra;
+mod stability;
+mod table;
+mod texts;
+mod torque_speed;
+mod waves;
+
+pub use paper::{reproduction_blocks, reproduction_page};
+pub use robustness::robustness_blocks;
+pub use table::results_blocks;
+
+use super::{Block, Key, PHASES, Page, Section, Sign, variant};
+use crate::results::{Capture, Results, Variant};
+
+/// The report of a motor.
+pub fn results_page(data: &Results) -> Page {
+    let section = |id, title, blocks| Section { id, title, blocks };
+    let robustness = match &data.robustness {
+        Some(sheet) => robustness_blocks(sheet),
+        None => Block::nothing("robustness sheet"),
+    };
+    Page {
+        file: format!("report-{}", file_stem(&data.file)),
+        title: facts::title(data),
+        heading: facts::motor_name(data).to_owned(),
+        opening: facts::opening(data),
+        sections: vec![
+            section("motor", "Motor and inverter", facts::facts(data)),
+            section("results", "Results", results_blocks(data)),
+            section("currents", "Phase currents", waves::currents(data)),
+            section(
+                "trajectory",
+                "Current in the alpha-beta plane",
+                waves::trajectories(data),
+            ),
+            section("torque", "Torque", waves::torque(data)),
+            section("spectra", "Spectra", spectra::blocks(data)),
+            section(
+                "torque-speed",
+                "Torque over speed",
+                torque_speed::blocks(data),
+            ),
+            section("formats", "Formats", accuracy::formats(data)),
+            section(
+                "errors",
+                "Fixed point against float",
+                accuracy::errors(data),
+            ),
+            section("stability", "Stable ranges", stability::blocks(data)),
+            section("robustness", "Robustness", robustness),
+            section("code", "Emitted code", texts::code(data)),
+            section("data-sheet", "Data sheet", texts::data_sheet(data)),
+            section("spec", "Specification", texts::spec(data)),
+        ],
+        generator: data.generator.clone(),
+    }
+}
+
+/// A name as part of a file name: what is neither letter nor digit of any script, `-`, `_` nor `.`
+/// becomes `-`.
+fn file_stem(name: &str) -> String {
+    let kept = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let stem: String = name
+        .chars()
+        .map(|c| if kept(c) { c } else { '-' })
+        .collect();
+    let stem = stem.trim_matches(['-', '.']);
+    if stem.is_empty() { "motor" } else { stem }.to_owned()
+}
+
+/// The sign of the variant at a place in the table.
+fn variant_sign(index: usize) -> Sign {
+    Sign::line(variant(index), 3.0)
+}
+
+/// What the colours of phases mean.
+fn phase_keys(names: [&str; 3]) -> Vec<Key> {
+    let phases = PHASES.into_iter().zip(names);
+    phases
+        .map(|(color, name)| Sign::line(color, 2.5).means(name))
+        .collect()
+}
+
+/// The variants that have records, with their place in the table.
+fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
+    let variants = data.variants.iter().enumerate();
+    variants.filter(|(_, variant)| !variant.records.is_empty())
+}
+
+/// A capture's name.
+fn capture_name(capture: Capture) -> &'static str {
+    match capture {
+        Capture::Sampled => "sampled",
+        Capture::Timer => "timer",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_stem;
+
+    #[test]
+    fn names_become_file_names() {
+        for (name, stem) in [
+            ("trivedi-keshri-660w", "trivedi-keshri-660w"),
+            ("Hub_2.1", "Hub_2.1"),
+            ("../etc/x", "etc-x"),
+            ("", "motor"),
+            ("A B", "A-B"),
+        ] {
+            assert_eq!(file_stem(name), stem);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The paper's claims with our figures and verdicts, and what the two readings are.
+
+use crate::report::{Block, Cell, Column, Label, Table, Tone};
+use crate::reproduction::{Claim, Finding, Method, Reading, Reproduction, Verdict};
+
+/// A table of claims without rows.
+fn table_of_claims() -> Table {
+    let names = [
+        "Claim of the paper",
+        "Literal reading",
+        "Corrected reading",
+        "Verdict",
+    ];
+    Table::new("results claims", names.map(Column::text))
+}
+
+/// The claims with their verdicts, then the reasons.
+pub fn summary(data: &Reproduction) -> Vec<Block> {
+    let (claims, mut table) = (data.claims(), table_of_claims());
+    for claim in &claims {
+        table.row(verdict_row(claim));
+    }
+    let figures = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM.".to_owned();
+    let reasons = claims
+        .iter()
+        .map(|claim| format!("({}) {}", claim.letter, claim.reason()));
+    let first = [Block::Note(figures), Block::Table(table)];
+    first.into_iter().chain(reasons.map(Block::Prose)).collect()
+}
+
+/// The claims with their verdicts, reasons and statements.
+pub fn claims(data: &Reproduction) -> Vec<Block> {
+    let mut table = table_of_claims();
+    for claim in &data.claims() {
+        table.group(Label::None);
+        table.row(verdict_row(claim));
+        let summary = Cell::from(format!("{}.", claim.summary()));
+        table.row([summary.across(4)]);
+        for statement in &claim.statements {
+            let findings = statement.findings.iter().map(finding_text);
+            let cells = [statement.text.clone()].into_iter().chain(findings);
+            table.row(cells.map(|text| Cell::from(text).toned(Tone::Muted)));
+        }
+    }
+    let note = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM, in this order; a dash stands for a drive that has lost its current, \
+                and what depends on it is not judged. A claim holds when each of its statements is true under every reading that can \
+                tell, does not hold when none is true, and else holds in part. Verdicts and reasons are computed from the figures.";
+    vec![Block::Note(note.to_owned()), Block::Table(table)]
+}
+
+/// A claim with its figures and verdict.
+fn verdict_row(claim: &Claim) -> [Cell; 4] {
+    let verdict = claim.verdict();
+    let tone = match verdict {
+        Verdict::Holds => Tone::Good,
+        Verdict::DoesNotHold => Tone::Missed,
+        Verdict::InPart | Verdict::CannotBeJudged => Tone::None,
+    };
+    let [literal, corrected] = claim
+        .figures
+        .each_ref()
+        .map(|text| text.replace("; ", "\n"));
+    [
+        Cell::from(format!("**({}) {}**", claim.letter, claim.text)),
+        literal.into(),
+        corrected.into(),
+        Cell::from(format!("**{}**", verdict.text())).toned(tone),
+    ]
+}
+
+fn finding_text(finding: &Finding) -> String {
+    let outcome = match finding.outcome {
+        Some(true) => "**true**",
+        Some(false) => "**false**",
+        None => "not judged",
+    };
+    format!("{outcome}: {}", finding.why)
+}
+
+/// What the readings are, and what cannot be had.
+pub fn readings(data: &Reproduction) -> Vec<Block> {
+    let mut table = Table::new(
+        "results readings",
+        ["Method", "Reading", "Drive", "What it is"].map(Column::text),
+    );
+    for method in Method::ALL {
+        table.group(Label::Beside(lettered(method).into()));
+        for reading in Reading::ALL {
+            let run = data.methods[method.index()].of(reading);
+            let drive = Cell::from(format!("`{}`", run.variant));
+            table.row([
+                reading.name().into(),
+                drive.detail(format!("\n{}", run.engine)),
+                about(method, reading).into(),
+            ]);
+        }
+    }
+    let how = format!(
+        "Every drive is generated fixed-point code, fed by the simulated motor through {}-bit ADCs and a Hall timer. The literal reading \
+         takes the paper's equations and tables as they are printed; the corrected one takes them with the errata that the documentation \
+         of the crate hexagen lists (hexagen::errata).",
+        data.inverter.adc_bits
+    );
+    vec![Block::Prose(how), Block::Table(table)]
+}
+
+/// A method's name behind its letter.
+pub fn lettered(method: Method) -> String {
+    format!("({}) {}", method.letter(), method.name())
+}
+
+fn about(method: Method, reading: Reading) -> &'static str {
+    match (method, reading) {
+        (Method::FcsMpc, Reading::Literal) => {
+            "Predicts as if its command took effect at once; the loop has a period of delay. Table 2's vectors whatever the off leg does; EMF from the last period."
+        }
+        (Method::FcsMpc, Reading::Corrected) => {
+            "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's shape."
+        }
+        (Method::Pdcc, Reading::Literal) => {
+            "Voltage scaled to the hexagon; EMF from the last period. The paper's own modulation over neighbouring pair vectors, (15), cannot be had from compare values with one state per leg and period: all three legs are pulsed."
+        }
+        (Method::Pdcc, Reading::Corrected) => {
+            "Keeps the component along the EMF at the limit of voltage, commutates two periods ahead; EMF from the motor's shape."
+        }
+        (Method::Phcc, Reading::Literal) => {
+            "The printed row of sector 1, turned through the sectors; EMF from the last period."
+        }
+        (Method::Phcc, Reading::Corrected) => {
+            "Switching table derived from the vectors' geometry; EMF from the motor's shape."
+        }
+        (Method::PiPwm, Reading::Literal) => {
+            "800 Hz, integral time 0.5 ms, no EMF feed-forward. (15) cannot be had, as with PDCC: all three legs are pulsed."
+        }
+        (Method::PiPwm, Reading::Corrected) => {
+            "1 kHz, integral time L/R, feed-forward of the motor's EMF."
+        }
+    }
+}

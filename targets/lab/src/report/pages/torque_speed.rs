@@ -1,0 +1,84 @@
+//! Mean torque over speed, all variants.
+
+use crate::closed_loop::{Held, LimitOutcome, Side};
+use crate::report::plot::{Curve, TorqueSpeed, dash, torque_speed};
+use crate::report::{Block, Figure, Sign, variant};
+use crate::results::{Results, Variant};
+use crate::text::{TorqueScale, number};
+use std::f64::consts::TAU;
+
+/// The plot and its legend.
+pub fn blocks(data: &Results) -> Vec<Block> {
+    let variants = data.variants.iter().enumerate();
+    let variants: Vec<(usize, &Variant)> = variants
+        .filter(|(_, variant)| !variant.torque_speed.is_empty())
+        .collect();
+    if variants.is_empty() {
+        return Block::nothing("torque-speed curves");
+    }
+    let scale = TorqueScale::of(data.torque);
+    let curves = variants.iter().map(|&(index, of)| Curve {
+        color: variant(index),
+        index,
+        points: of
+            .torque_speed
+            .iter()
+            .map(|&(rpm, torque)| (rpm, scale.per_nm * torque))
+            .collect(),
+        limit_rpm: limit_rpm(of),
+    });
+    let plot = torque_speed(&TorqueSpeed {
+        torque: scale.per_nm * data.torque,
+        unit: scale.unit,
+        rated_rpm: data.motor.rated_speed * 60.0 / TAU,
+        curves: curves.collect(),
+        marks: &data.marks,
+        held: data.held,
+    });
+    let keys = variants.iter().map(|&(index, of)| {
+        let text = format!("{}{}", of.label, limit_text(of, &scale));
+        Sign::Line(variant(index), 3.0, dash(index)).means(text)
+    });
+    let held = match data.held {
+        Held::AtLeast => "falls below 97 %",
+        Held::Within => "is no longer within 3 %",
+    };
+    let note = format!(
+        "Dots and the speeds in the legend mark where mean torque {held} of the demand (of the torque given in the legend, where a limited \
+         set-point cannot ask for more). Curves end where the search for this limit ended."
+    );
+    vec![
+        Block::Legend(keys.collect()),
+        Block::Note(note),
+        Block::Figures {
+            columns: 1,
+            figures: vec![Figure::new(None, "", plot)],
+        },
+    ]
+}
+
+fn limit_rpm(variant: &Variant) -> Option<f64> {
+    let run = variant.runs.first()?;
+    run.limit.as_ref()?.limit_rpm
+}
+
+/// The limit as the legend has it, with the space before it.
+fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
+    let Some(limit) = variant.runs.first().and_then(|run| run.limit.as_ref()) else {
+        return String::new();
+    };
+    let speed = match (limit.outcome, limit.limit_rpm) {
+        (LimitOutcome::NeverHeld, _) => "never held".to_owned(),
+        (LimitOutcome::NotReached, Some(rpm)) => format!("above {} rpm", number(rpm, 0)),
+        (_, Some(rpm)) => format!("{} rpm", number(rpm, 0)),
+        (_, None) => return String::new(),
+    };
+    let at = variant.reach.map_or_else(String::new, |torque| {
+        let torque = scale.text(torque, 0);
+        format!(" at {torque}\u{a0}{}, its most", scale.unit)
+    });
+    // That it falls off is the rule, and what the note below says.
+    let why = limit.why().filter(|_| limit.lost != Some(Side::Below));
+    let why = why.map_or_else(String::new, |why| format!(": {why}"));
+    format!(" ({speed}{at}{why})")
+}

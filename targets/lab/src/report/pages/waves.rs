@@ -1,0 +1,232 @@
+//! What happens over one electrical turn: phase currents, trajectory, torque.
+
+use super::{phase_keys, plotted};
+use crate::closed_loop::Trace;
+use crate::report::plot::{Columns, Wave, columns, ideal_phase, torque_range, trajectory, wave};
+use crate::report::{Block, Color, DEMAND, Figure, IDEAL, Key, PHASES, Plot, Sign, variant};
+use crate::results::Results;
+use crate::text::{TorqueScale, number};
+
+/// Columns of a plot over one turn.
+const COLUMNS: usize = 480;
+
+/// A record that is plotted.
+pub struct Panel<'a> {
+    /// Colour of its lines.
+    pub color: Color,
+    /// What it is of, for screen readers: "PDCC at 400 rpm".
+    pub of: String,
+    /// Caption.
+    pub caption: String,
+    /// The record.
+    pub trace: &'a Trace,
+    /// Why there is nothing to show, where that is so.
+    pub nothing: Option<String>,
+}
+
+impl Panel<'_> {
+    /// A plot with the panel's caption; where there is nothing to show, why.
+    pub fn figure(&self, plot: impl FnOnce() -> Plot) -> Figure {
+        let nothing = self.nothing.as_ref();
+        Figure {
+            sign: Some(Sign::line(self.color, 3.0)),
+            caption: self.caption.clone(),
+            plot: nothing.is_none().then(plot),
+            note: nothing.map(|why| format!("Nothing to show: {why}.")),
+        }
+    }
+}
+
+/// Figures of currents with their ideal waves, all with the same axis.
+pub fn current_figures<'a>(
+    panels: &[Panel<'a>],
+    amplitude: f64,
+    (what, title): (&str, &str),
+    signals: impl Fn(&Panel<'a>) -> Vec<(Color, Columns)>,
+    ideal: &[Vec<(f64, f64)>],
+) -> Vec<Figure> {
+    let signals: Vec<_> = panels.iter().map(signals).collect();
+    let most = signals
+        .iter()
+        .flatten()
+        .flat_map(|(_, columns)| columns.most.iter().chain(&columns.least))
+        .fold(1.1 * amplitude.abs(), |most, i| most.max(i.abs()));
+    let figures = panels.iter().zip(signals).map(|(panel, signals)| {
+        panel.figure(|| {
+            wave(Wave {
+                description: format!("{what} of {}", panel.of),
+                title: title.to_owned(),
+                range: -most..most,
+                signals,
+                ideal: ideal.to_vec(),
+                demand: None,
+            })
+        })
+    });
+    figures.collect()
+}
+
+/// The current of a phase over a turn of a record.
+pub fn phase_current(trace: &Trace, phase: usize) -> Columns {
+    columns(trace, COLUMNS, |k| match phase {
+        0 => trace.i_a[k],
+        1 => trace.i_b[k],
+        _ => -trace.i_a[k] - trace.i_b[k],
+    })
+}
+
+/// Figures of torque, all with the same axis.
+pub fn torque_figures(panels: &[Panel<'_>], demand: f64) -> Vec<Figure> {
+    let scale = TorqueScale::of(demand);
+    let demand = scale.per_nm * demand;
+    let torques: Vec<Columns> = panels
+        .iter()
+        .map(|panel| {
+            columns(panel.trace, COLUMNS, |k| {
+                scale.per_nm * panel.trace.torque[k]
+            })
+        })
+        .collect();
+    let shown = panels
+        .iter()
+        .zip(&torques)
+        .filter(|(panel, _)| panel.nothing.is_none());
+    let range = torque_range(demand, shown.map(|(_, columns)| columns));
+    let figures = panels.iter().zip(torques).map(|(panel, torque)| {
+        panel.figure(|| {
+            wave(Wave {
+                description: format!("Torque of {}", panel.of),
+                title: format!("torque in {}", scale.unit),
+                range: range.clone(),
+                signals: vec![(panel.color, torque)],
+                ideal: Vec::new(),
+                demand: Some(demand),
+            })
+        })
+    });
+    figures.collect()
+}
+
+/// Figures of the current in the alpha-beta plane, all with the same axes.
+pub fn trajectory_figures(panels: &[Panel<'_>], current: f64) -> Vec<Figure> {
+    let most = panels
+        .iter()
+        .flat_map(|panel| (0..panel.trace.theta_e.len()).map(|k| panel.trace.i_alpha_beta(k)))
+        .fold(0.0_f64, |most, (alpha, beta)| {
+            most.max(alpha.abs()).max(beta.abs())
+        });
+    // The corners lie 2/sqrt(3) of the current from the centre, their names outside of them.
+    let reach = (1.04 * most).max(1.53 * current.abs());
+    let figures = panels.iter().map(|panel| {
+        panel.figure(|| {
+            let description = format!("Current in the alpha-beta plane of {}", panel.of);
+            trajectory(description, panel.trace, (current, reach), panel.color)
+        })
+    });
+    figures.collect()
+}
+
+/// One panel per variant and speed, variants in rows.
+fn panels<'a>(data: &'a Results, separator: &str) -> Vec<Panel<'a>> {
+    let records = plotted(data).flat_map(|(index, variant)| {
+        variant
+            .records
+            .iter()
+            .map(move |record| (index, variant, record))
+    });
+    let panels = records.map(|(index, of, record)| {
+        let (label, rpm) = (&of.label, number(record.rpm, 0));
+        Panel {
+            color: variant(index),
+            of: format!("{label} at {rpm} rpm"),
+            caption: format!("{label}{separator}**{rpm}\u{a0}rpm**"),
+            trace: &record.trace,
+            nothing: None,
+        }
+    });
+    panels.collect()
+}
+
+/// What the ripple's field means.
+pub fn ripple_key(color: Color) -> Key {
+    Sign::Field(color, 0.22).means("ripple of the PWM")
+}
+
+/// What the ideal wave's line means.
+pub fn ideal_key(text: &str) -> Key {
+    Sign::line(IDEAL, 5.0).means(text)
+}
+
+/// What the demand's line means.
+pub fn demand_key() -> Key {
+    Sign::Line(DEMAND, 1.5, (6.0, 4.0)).means("demand")
+}
+
+/// Phase currents over one turn, against the ideal quasi-square wave.
+pub fn currents(data: &Results) -> Vec<Block> {
+    let panels = panels(data, ", ");
+    if panels.is_empty() {
+        return Block::nothing("records");
+    }
+    let signals = |panel: &Panel<'_>| {
+        let phases = PHASES.into_iter().enumerate();
+        phases
+            .map(|(phase, color)| (color, phase_current(panel.trace, phase)))
+            .collect()
+    };
+    let ideal = [0, 1, 2].map(|phase| ideal_phase(data.current, phase));
+    let names = ("Phase currents", "phase current in A");
+    let mut keys = phase_keys(["phase a", "phase b", "phase c"]);
+    keys.extend([ripple_key(PHASES[0]), ideal_key("ideal quasi-square wave")]);
+    let note = "Lines are means over one control period. Sectors S1 to S6 are those of the true rotor angle; the pair that conducts \
+                changes at their borders.";
+    vec![
+        Block::Legend(keys),
+        Block::Note(note.to_owned()),
+        Block::Figures {
+            columns: 2,
+            figures: current_figures(&panels, data.current, names, signals, &ideal),
+        },
+    ]
+}
+
+/// Trajectories of the current in the alpha-beta plane.
+pub fn trajectories(data: &Results) -> Vec<Block> {
+    let panels = panels(data, "\n");
+    if panels.is_empty() {
+        return Block::nothing("records");
+    }
+    let color = variant(0);
+    vec![
+        Block::Legend(vec![
+            ideal_key("ideal hexagon between the reference corners (circles) of sectors S1 to S6"),
+            Sign::line(color, 2.5).means("mean over one control period"),
+            Sign::line(color, 1.0).means("with the ripple of the PWM, pale"),
+        ]),
+        Block::Figures {
+            columns: 4,
+            figures: trajectory_figures(&panels, data.current),
+        },
+    ]
+}
+
+/// Torque over one turn.
+pub fn torque(data: &Results) -> Vec<Block> {
+    let panels = panels(data, ", ");
+    if panels.is_empty() {
+        return Block::nothing("records");
+    }
+    let mean = "mean over one control period, which the ripple figures judge";
+    vec![
+        Block::Legend(vec![
+            Sign::line(variant(0), 2.5).means(mean),
+            ripple_key(variant(0)),
+            demand_key(),
+        ]),
+        Block::Note("The vertical axis does not begin at zero.".to_owned()),
+        Block::Figures {
+            columns: 2,
+            figures: torque_figures(&panels, data.torque),
+        },
+    ]
+}

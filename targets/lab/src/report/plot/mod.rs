@@ -1,0 +1,295 @@
+//! Plots: two axes and what is drawn between them. Lengths are those of CSS pixels.
+
+mod bars;
+mod plane;
+mod stability;
+mod torque_speed;
+mod turn;
+mod window;
+
+pub use bars::{Bars, bars, histogram};
+pub use plane::{Named, Plane, corners, plane, ray, trajectory};
+pub use stability::{SEARCH, stability};
+pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
+pub use turn::{Level, Wave, ideal_phase, levels, torque_range, wave};
+pub use window::{Columns, FIRST_DEG, columns, means};
+
+use super::palette::{AXIS, Color};
+use serde::Serialize;
+use std::ops::Range;
+
+/// Width of a label's character, rather too wide than too narrow.
+pub const CHARACTER: f64 = 7.2;
+
+/// A point of the plotted plane.
+pub type Point = (f64, f64);
+
+/// A plot.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plot {
+    /// What a screen reader says.
+    pub description: String,
+    /// Width and height.
+    pub size: (f64, f64),
+    /// Room around the plotted area.
+    pub margins: Margins,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// What is drawn, the lowest first.
+    pub elements: Vec<Element>,
+}
+
+impl Plot {
+    /// A plot without content, with the room that its vertical axis needs.
+    pub fn new(description: impl Into<String>, size: (f64, f64), x: Axis, y: Axis) -> Self {
+        Self {
+            description: description.into(),
+            size,
+            margins: Margins::fitting(&y),
+            x,
+            y,
+            elements: Vec::new(),
+        }
+    }
+
+    /// Draws something above all else.
+    pub fn add(&mut self, element: Element) {
+        self.elements.push(element);
+    }
+
+    /// Draws a line.
+    pub fn line(&mut self, points: impl IntoIterator<Item = Point>, stroke: Stroke) {
+        let points = points.into_iter().collect();
+        self.add(Element::Line { points, stroke });
+    }
+
+    /// Fills a rectangle between two corners.
+    pub fn block(&mut self, from: Point, to: Point, (color, opacity): (Color, f64)) {
+        let points = vec![from, (from.0, to.1), to, (to.0, from.1)];
+        self.add(Element::Area {
+            points,
+            color,
+            opacity,
+        });
+    }
+
+    /// Writes above a point, in the middle.
+    pub fn write_above(&mut self, text: impl Into<String>, at: Point, (color, size): (Color, f64)) {
+        self.add(Element::Label(Label {
+            at,
+            offset: (0.0, -3.0),
+            text: text.into(),
+            color,
+            size,
+            anchor: (Side::Middle, Side::End),
+        }));
+    }
+
+    /// Draws a frame around the plotted area.
+    pub fn frame(&mut self) {
+        let ((left, right), (low, high)) = (self.x.range, self.y.range);
+        let corners = [
+            (left, low),
+            (left, high),
+            (right, high),
+            (right, low),
+            (left, low),
+        ];
+        self.line(corners, Stroke::solid(AXIS, 1.0));
+    }
+}
+
+/// Room around the plotted area.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Margins {
+    /// Above.
+    pub top: f64,
+    /// To the right.
+    pub right: f64,
+    /// Below, for ticks and title.
+    pub bottom: f64,
+    /// To the left, for ticks and title.
+    pub left: f64,
+}
+
+impl Margins {
+    /// Room that fits the labels of a vertical axis, and beside the longest its title.
+    fn fitting(y: &Axis) -> Self {
+        let longest = y.ticks.iter().map(|(_, label)| label.chars().count());
+        let labels = CHARACTER * longest.max().unwrap_or(0) as f64;
+        Self {
+            top: 8.0,
+            right: 12.0,
+            bottom: 40.0,
+            left: (30.0 + labels).max(52.0),
+        }
+    }
+}
+
+/// An axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// Name and unit.
+    pub title: String,
+    /// From and to.
+    pub range: (f64, f64),
+    /// Places of ticks and grid lines, with their labels.
+    pub ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// An axis with ticks that part its range into at most so many pieces.
+    pub fn new(title: impl Into<String>, range: &Range<f64>, pieces: usize) -> Self {
+        Self::stepped(title, range, step(range, pieces))
+    }
+
+    /// An axis with ticks at the multiples of a step.
+    pub fn stepped(title: impl Into<String>, range: &Range<f64>, step: f64) -> Self {
+        let digits = (-step.log10() - 1e-9).ceil().clamp(0.0, 9.0) as usize;
+        let ticks = multiples(range, step).into_iter();
+        Self {
+            title: title.into(),
+            range: (range.start, range.end),
+            ticks: ticks.map(|at| (at, tick_text(at, digits))).collect(),
+        }
+    }
+}
+
+/// What is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Element {
+    /// A line through points.
+    Line {
+        /// The points.
+        points: Vec<Point>,
+        /// How it is drawn.
+        stroke: Stroke,
+    },
+    /// A filled polygon.
+    Area {
+        /// Its corners.
+        points: Vec<Point>,
+        /// Its colour.
+        color: Color,
+        /// 0 to 1.
+        opacity: f64,
+    },
+    /// A circle.
+    Dot {
+        /// Its centre.
+        at: Point,
+        /// Its radius.
+        radius: f64,
+        /// Its colour.
+        color: Color,
+        /// Width of its line; none for a filled one.
+        width: Option<f64>,
+    },
+    /// A cross.
+    Cross {
+        /// Its centre.
+        at: Point,
+        /// Its colour.
+        color: Color,
+    },
+    /// An upright line from a point upwards, which may leave the plotted area.
+    Rule {
+        /// Its foot.
+        at: Point,
+        /// Its length.
+        length: f64,
+    },
+    /// A few words.
+    Label(Label),
+}
+
+/// A few words at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Label {
+    /// The point.
+    pub at: Point,
+    /// How far to the right and down of it.
+    pub offset: (f64, f64),
+    /// The words.
+    pub text: String,
+    /// Their colour.
+    pub color: Color,
+    /// Their size relative to that of ticks.
+    pub size: f64,
+    /// Which sides of the words are at the place, across and upright.
+    pub anchor: (Side, Side),
+}
+
+/// A side of a text: left or top, the middle, right or bottom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Left or top.
+    Start,
+    /// The middle.
+    Middle,
+    /// Right or bottom.
+    End,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Stroke {
+    /// Its colour.
+    pub color: Color,
+    /// Its width.
+    pub width: f64,
+    /// 0 to 1.
+    pub opacity: f64,
+    /// Dash and gap; no gap means a solid line.
+    pub dash: (f64, f64),
+}
+
+impl Stroke {
+    /// A solid opaque line.
+    pub fn solid(color: Color, width: f64) -> Self {
+        Self::dashed(color, width, (0.0, 0.0))
+    }
+
+    /// An opaque line of dashes.
+    pub fn dashed(color: Color, width: f64, dash: (f64, f64)) -> Self {
+        Self {
+            color,
+            width,
+            opacity: 1.0,
+            dash,
+        }
+    }
+}
+
+/// Steps of 1, 2 or 5 times a power of ten that part a range into at most so many pieces.
+fn step(range: &Range<f64>, most: usize) -> f64 {
+    let least = (range.end - range.start) / most as f64;
+    let power = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|digit| digit * power)
+        .find(|&step| step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+/// The multiples of a step within a range.
+fn multiples(range: &Range<f64>, step: f64) -> Vec<f64> {
+    let first = (range.start / step - 1e-9).ceil() as i64;
+    let last = (range.end / step + 1e-9).floor() as i64;
+    (first..=last).map(|k| k as f64 * step).collect()
+}
+
+/// A number for a tick: so many decimals, a true minus sign, no negative zero.
+fn tick_text(value: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", value.abs());
+    let is_zero = text.chars().all(|c| c == '0' || c == '.');
+    if value < 0.0 && !is_zero {
+        format!("\u{2212}{text}")
+    } else {
+        text
+    }
+}

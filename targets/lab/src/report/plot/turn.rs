@@ -1,0 +1,144 @@
+//! Signals over one electrical turn, with the sectors named above.
+
+use super::super::palette::{AXIS, Color, DEMAND, IDEAL};
+use super::window::{Columns, FIRST_DEG};
+use super::{Axis, CHARACTER, Element, Plot, Point, Stroke};
+use crate::closed_loop::quasi_square;
+use std::ops::Range;
+
+/// Signals to draw over the electrical angle.
+#[derive(Debug)]
+pub struct Wave {
+    /// What a screen reader says.
+    pub description: String,
+    /// Name and unit of the vertical axis.
+    pub title: String,
+    /// Vertical range.
+    pub range: Range<f64>,
+    /// Each signal with its colour.
+    pub signals: Vec<(Color, Columns)>,
+    /// Ideal waves, drawn broad below the signals: corners (angle in degrees, value).
+    pub ideal: Vec<Vec<Point>>,
+    /// A demand, drawn dashed across.
+    pub demand: Option<f64>,
+}
+
+/// An empty plot over one electrical turn.
+fn over_a_turn(description: String, height: f64, y: Axis) -> Plot {
+    let turn = FIRST_DEG..FIRST_DEG + 360.0;
+    let mut x = Axis::stepped("electrical angle in degrees", &(0.0..360.0), 60.0);
+    for (at, label) in &mut x.ticks {
+        *at += FIRST_DEG;
+        *label = super::tick_text(*at, 0);
+    }
+    x.range = (turn.start, turn.end);
+    let top = y.range.1;
+    let mut plot = Plot::new(description, (550.0, height), x, y);
+    plot.margins.top = 22.0;
+    for sector in 1..=6 {
+        let middle = FIRST_DEG + 60.0 * (f64::from(sector) - 0.5);
+        plot.write_above(format!("S{sector}"), (middle, top), (AXIS, 0.95));
+    }
+    plot
+}
+
+/// Signals: ripple as a pale band, mean over one control period as a line.
+pub fn wave(wave: Wave) -> Plot {
+    let y = Axis::new(wave.title, &wave.range, 8);
+    let mut plot = over_a_turn(wave.description, 250.0, y);
+    for corners in wave.ideal {
+        plot.line(corners, Stroke::solid(IDEAL, 3.0));
+    }
+    let across = |height: f64| [(FIRST_DEG, height), (FIRST_DEG + 360.0, height)];
+    if wave.range.start < 0.0 {
+        plot.line(across(0.0), Stroke::solid(AXIS, 0.5));
+    }
+    for (color, columns) in &wave.signals {
+        let there = columns.angle.iter().zip(&columns.most);
+        let back = columns.angle.iter().zip(&columns.least).rev();
+        plot.add(Element::Area {
+            points: there.chain(back).map(|(x, y)| (*x, *y)).collect(),
+            color: *color,
+            opacity: 0.22,
+        });
+    }
+    for (color, columns) in wave.signals {
+        let points = columns.angle.into_iter().zip(columns.mean);
+        plot.line(points, Stroke::solid(color, 1.4));
+    }
+    if let Some(demand) = wave.demand {
+        plot.line(across(demand), Stroke::dashed(DEMAND, 1.0, (6.0, 4.0)));
+    }
+    plot.frame();
+    plot
+}
+
+/// Height of a two-valued signal's step; the signals are 1 apart.
+const STEP: f64 = 0.6;
+
+/// A two-valued signal: its name, its colour, and its value in sectors S1 to S6.
+#[derive(Debug)]
+pub struct Level {
+    /// Name beside its line.
+    pub name: &'static str,
+    /// Colour.
+    pub color: Color,
+    /// Whether it is 1, per sector.
+    pub values: [bool; 6],
+}
+
+/// Two-valued signals, the first at the top.
+pub fn levels(description: String, signals: &[Level]) -> Plot {
+    let count = signals.len() as f64;
+    let base = |index: usize| count - 1.0 - index as f64;
+    let names = signals.iter().enumerate();
+    let y = Axis {
+        title: "0 below, 1 above".to_owned(),
+        range: (-0.2, count),
+        ticks: names
+            .map(|(k, signal)| (base(k) + STEP / 2.0, signal.name.to_owned()))
+            .collect(),
+    };
+    let mut plot = over_a_turn(description, 190.0, y);
+    // As wide as beside the labels of a signal from -1.0 to 1.0.
+    plot.margins.left = 30.0 + 4.0 * CHARACTER;
+    for (index, signal) in signals.iter().enumerate() {
+        let points = (0..6).zip(signal.values).flat_map(|(sector, is_high)| {
+            let from = FIRST_DEG + 60.0 * f64::from(sector);
+            let height = base(index) + if is_high { STEP } else { 0.0 };
+            [(from, height), (from + 60.0, height)]
+        });
+        plot.line(points, Stroke::solid(signal.color, 2.0));
+    }
+    plot.frame();
+    plot
+}
+
+/// Corners of the ideal quasi-square current of a phase over the plotted turn.
+pub fn ideal_phase(current: f64, phase: usize) -> Vec<Point> {
+    (0..6)
+        .flat_map(|sector| {
+            let from = FIRST_DEG + 60.0 * f64::from(sector);
+            let (alpha, beta) = quasi_square((from + 30.0).to_radians(), current);
+            let half = 3.0_f64.sqrt() / 2.0;
+            let value = match phase {
+                0 => alpha,
+                1 => -alpha / 2.0 + half * beta,
+                _ => -alpha / 2.0 - half * beta,
+            };
+            [(from, value), (from + 60.0, value)]
+        })
+        .collect()
+}
+
+/// A range that holds the demand and every signal, with a little room.
+pub fn torque_range<'a>(demand: f64, signals: impl Iterator<Item = &'a Columns>) -> Range<f64> {
+    let span = 0.1 * demand.abs().max(1e-9);
+    let (least, most) = signals
+        .flat_map(|columns| columns.least.iter().chain(&columns.most))
+        .fold((demand - span, demand + span), |(least, most), &torque| {
+            (least.min(torque), most.max(torque))
+        });
+    let pad = 0.04 * (most - least);
+    least - pad..most + pad
+}
