@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn words_have_names_and_initial_values() {
         let text = derive_state(quote! {
-            /// What outlives a control period.
+            /// State kept from one control period to the next.
             pub struct State {
                 /// A half.
                 age: u16,

@@ -108,7 +108,7 @@ pub struct Interface {
     pub timer_capture: bool,
     /// Periods without a call of `set_bus` after which the bus voltage is stale; none where it is fixed.
     pub bus_periods: Option<i32>,
-    /// What samples are judged by, and how the drive starts up.
+    /// Limits of samples, and start-up.
     pub limits: Limits,
     /// Units of what a drive tells of itself.
     pub units: Units,
@@ -123,7 +123,7 @@ pub struct Limits {
     pub adc_inverted: bool,
     /// Fraction bits of currents.
     pub current_bits: u32,
-    /// ADC count at zero current, where calibration has not told another.
+    /// ADC count at zero current before calibration.
     pub offset: u16,
     /// Least and greatest offset that calibration accepts, counts.
     pub offsets: [u16; 2],

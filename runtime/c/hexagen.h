@@ -331,7 +331,7 @@ typedef struct {
     bool adc_inverted;
     /** Fraction bits of currents. */
     uint16_t current_bits;
-    /** ADC count at zero current, where calibration has not told another. */
+    /** ADC count at zero current before calibration. */
     uint16_t offset;
     /** Least and greatest offset that calibration accepts, counts. */
     uint16_t offset_least;

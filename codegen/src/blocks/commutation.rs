@@ -40,7 +40,7 @@ impl<'b> CommutationRule<'b> {
             l.b.memory("sector_eff_prev", 0, Interval::new(0, 6), doc)
         });
         let range = Interval::new(0, i64::from(timeout));
-        let doc = "Samples for which the commutation may last behind the last one; 0 while the outgoing phase carries no current.";
+        let doc = "Samples left to the commutation after the last one; 0 while the outgoing phase carries no current.";
         Self {
             sector_prev,
             left: l.b.memory("commutation_left", 0, range, doc),
@@ -52,7 +52,7 @@ impl<'b> CommutationRule<'b> {
     /// Commutation time-out with its first sample, samples.
     fn whole(&self, l: &Lowering<'b>) -> Expr<'b> {
         let samples = i64::from(self.timeout) + 1;
-        let doc = "What a commutation that begins is given: one for its first sample, and one for each that it may last behind it.";
+        let doc = "Commutation time-out with its first sample, samples.";
         l.number("commutation_begun", samples, doc)
     }
 
@@ -66,7 +66,7 @@ impl<'b> CommutationRule<'b> {
 
     /// Whether the sector in force is another than at the last sample, for a reference that runs ahead of the sample.
     pub fn sector_changed(&self, l: &Lowering<'b>, last: Memory<'b>, sector: Expr<'b>) -> Flag<'b> {
-        let doc = "Whether the sector in force is another than at the last sample.";
+        let doc = "Change of the sector in force since the last sample.";
         l.b.stage("compare_sectors", &[doc]);
         named! {
             let changed = sector.is_not(last.read()) & last.read().is_not(0);
@@ -85,7 +85,7 @@ impl<'b> CommutationRule<'b> {
         let shares = outgoing_shares(l);
         l.b.stage(
             "detect_commutation",
-            &["Whether a commutation begins, or may last on."],
+            &["Start of a commutation, and its time-out."],
         );
         named! {
             let outgoing_phase = phases.at(sector);
@@ -122,7 +122,10 @@ impl<'b> CommutationRule<'b> {
             ("commutation_left_now", left_while_flowing, none_left),
             ("commutating", commutating_now, none),
         ]);
-        l.b.stage("find_commutation", &["Whether a commutation goes on."]);
+        l.b.stage(
+            "find_commutation",
+            &["State of the commutation after this sample."],
+        );
         named! {
             let in_commutation = word.is_not(0);
         }
@@ -153,7 +156,7 @@ fn outgoing_shares<'b>(l: &Lowering<'b>) -> [Lut<'b>; 2] {
         };
         let column = OFF_PHASE.iter().zip(OUTGOING_SIGN).map(share);
         let doc = format!(
-            "What the current of phase {letter} adds to the outgoing one on entry of sectors 1 to 6, positive torque, forward."
+            "Weight of the phase-{letter} current in the outgoing current on entry of sectors 1 to 6, positive torque, forward."
         );
         let column = std::iter::once(0).chain(column).collect();
         l.b.column("sector", &format!("outgoing_{letter}"), column, &doc)

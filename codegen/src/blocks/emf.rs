@@ -27,7 +27,7 @@ struct PeriodicTable<'b> {
 struct FluxModel<'b> {
     table: PeriodicTable<'b>,
     frac_bits: u32,
-    /// Largest EMF that is believed, words of voltage.
+    /// Largest plausible EMF, words of voltage.
     limit: i64,
 }
 
@@ -162,7 +162,7 @@ impl<'b> FluxModel<'b> {
 
     /// The mean EMF between two flux linkages.
     fn emf(&self, l: &Lowering<'b>, start: Phases<'b>, end: Phases<'b>) -> Phases<'b> {
-        let doc = "Largest EMF that is believed, one and a half times that of the greatest speed";
+        let doc = "Largest plausible EMF, one and a half times that of the greatest speed";
         let change = end - start;
         let volts = match self.frac_bits.checked_sub(l.scale.voltage_bits) {
             None | Some(0) => change,
@@ -173,7 +173,7 @@ impl<'b> FluxModel<'b> {
 }
 
 /// Mean EMF over the target period and, with delay 1, over the present one, as differences of flux
-/// linkage at their ends; phases a and b. `e_limit` is the largest that is believed, volt.
+/// linkage at their ends; phases a and b. `e_limit` is the largest plausible one, volt.
 pub fn model_emf<'b>(
     l: &Lowering<'b>,
     rotor: &Rotor<'b>,

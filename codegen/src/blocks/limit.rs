@@ -77,7 +77,7 @@ impl<'b> Hexagon<'b> {
         u_unsat: Phases<'b>,
     ) -> Limited<'b> {
         let bus = self.bus.volts;
-        let doc = "Largest less smallest phase voltage: more than the bus means saturation.";
+        let doc = "Spread of the phase voltages: more than the bus means saturation.";
         l.b.stage("find_saturation", &[doc]);
         let u = u_unsat.with_c("u_unsat");
         let [high, low] = u.extremes(["u_max", "u_min"]);

@@ -275,7 +275,7 @@ impl<'b> OffLeg<'b> {
         l.b.stage(
             "applied_voltage",
             &[
-                "Phase voltages that the inverter really applies during this period.",
+                "Phase voltages applied in this period.",
                 "",
                 "A leg that is off is clamped to a rail by its diode while it carries current, else it sits at its EMF",
                 "above the star point of the driven pair.",

@@ -143,7 +143,7 @@ pub fn sense_direction<'b>(
         hall.changed,
         true,
         &[
-            "What a new sector brings: the direction of rotation, 1 to the next sector, -1 to the one before (a jump and the first",
+            "Direction of rotation from a new sector, 1 to the next sector, -1 to the previous one (a jump and the first",
             "sample change nothing), and, where it is followed, a commutation that begins.",
         ],
     );
@@ -259,7 +259,7 @@ impl<'b> RotorWords<'b> {
         let doc = match l.spec.inverter.hall_capture {
             HallCapture::Sampled => "Time since the last Hall edge, in half periods.",
             HallCapture::Timer { .. } => {
-                "Time since the last Hall edge, in ticks of the edge timer. One that was read before an edge or behind it, other than the code, is not believed."
+                "Time since the last Hall edge, in ticks of the edge timer. A count read on the other side of an edge than the code is rejected."
             }
         };
         l.b.stage("age_edge", &[doc]);
@@ -430,7 +430,7 @@ fn sector_starts() -> Vec<i32> {
 fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
     let limit = || {
-        let doc = "Largest angle per period that is believed: 30 degrees.";
+        let doc = "Largest plausible angle per period: 30 degrees.";
         l.rounded_number("turn_max", SIXTH / 2, sixth_turn(0.5), doc)
     };
     if ticks.are_whole() {

@@ -1,4 +1,4 @@
-//! What each stage of a function takes, yields and stores: everything that a signature needs.
+//! Arguments, results and stored words of each stage: everything that a signature needs.
 //!
 //! Constants, small numbers, inputs, set-point words and state words are leaves: they belong to no
 //! stage and are read where they are used. All else is a result of the stage that computes it if

@@ -93,7 +93,7 @@ fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {
             "ADC_BITS",
             "u32",
             i64::from(inverter.adc_bits),
-            "Bits of the phase-current converters.",
+            "Bits of the phase-current ADCs.",
         ),
         fixed(
             "ADC_GAIN",
@@ -109,7 +109,7 @@ fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {
             "ADC_OFFSET",
             "u16",
             i64::from(inverter.adc_offset),
-            "ADC count at zero current, where calibration has not told another.",
+            "ADC count at zero current before calibration.",
         ),
     ]
 }

@@ -179,7 +179,7 @@ fn header(design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
             scale.voltage_bits
         ),
         format!(
-            "A change of current of more than {} in a period is not believed.",
+            "A change of current is limited to {} per period.",
             engineering(design.di_limit, "A")
         ),
     ]

@@ -145,7 +145,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = "Legs of the chosen vector: a high leg is pulsed with a full compare value.";
         self.l.b.stage("drive_legs", &[doc]);
         let command = vector.command();
-        let doc = "What later steps need to know of the chosen vector.";
+        let doc = "Terminals and off leg of the chosen vector, for later steps.";
         self.l.b.stage("remember_vector", &[doc]);
         if let (Some(held), true) = (&front.held, self.tables_left_over()) {
             let left = vector.tabled_left_over(held);
@@ -247,7 +247,7 @@ impl<'b> Vector<'_, 'b> {
             .collect();
         let of_left = [
             "left",
-            "What is left of the vector's voltage one period later, a v",
+            "Remainder of the vector's voltage one period later, a v",
         ];
         let of_both = [
             "both",

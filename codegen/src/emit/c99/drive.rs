@@ -77,7 +77,7 @@ impl Drive<'_> {
         let Interface { limits, units, .. } = self.interface;
         let limits = arguments(limits).map(|(value, name)| format!("{value} /* {name} */"));
         let limits = limits.join(&format!(",\n{INDENT}"));
-        let comment = "What samples are judged by, and how the drive starts up.";
+        let comment = "Limits of samples, and start-up.";
         let mut text = self.names.comment("", &[comment]);
         let _ = write!(text, "HEXAGEN_LIMITS(limits,\n{INDENT}{limits});\n\n");
 
@@ -113,7 +113,7 @@ impl Drive<'_> {
         text + "\n};\n\n"
     }
 
-    /// What stands behind the law: the public functions, and those that they call.
+    /// Functions after the law: the public functions, and those that they call.
     pub(super) fn functions(&self) -> String {
         let mut text = self.step_at_rest();
         let setters = self.program.setters.iter();
@@ -416,7 +416,7 @@ impl Drive<'_> {
             ),
             Method {
                 doc: doc(&[
-                    "What the drive is doing and what tripped it, as of the last control period or call: from any context.",
+                    "Mode and fault of the drive, as of the last control period or call: from any context.",
                 ]),
                 head: format!(
                     "hexagen_status {}(const {})",

@@ -108,7 +108,7 @@ impl<'a> StepFunctions<'a> {
         });
         let comment = self
             .names
-            .comment("", &["What tracking tells of the rotor."]);
+            .comment("", &["Rotor angle and speed from tracking."]);
         format!(
             "{comment}typedef struct {{\n{}}} tracked;\n\n",
             fields.collect::<String>()

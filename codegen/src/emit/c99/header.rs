@@ -87,10 +87,7 @@ impl Drive<'_> {
     /// The state, and the drive around it.
     fn types(&self) -> String {
         let names = self.names;
-        let mut text = names.comment(
-            "",
-            &["What the law keeps from one control period to the next."],
-        );
+        let mut text = names.comment("", &["State kept from one control period to the next."]);
         text.push_str("typedef struct {\n");
         let mut before = String::new();
         for word in &self.program.states {
@@ -125,19 +122,22 @@ impl Drive<'_> {
         let state = names.state();
         for (doc, field) in [
             (
-                "What the control loop last said.",
+                "Last status of the control loop.",
                 "volatile int32_t status",
             ),
-            ("The control loop's own.", "hexagen_supervisor supervisor"),
             (
-                "What the law keeps; the control loop's own.",
+                "Owned by the control loop.",
+                "hexagen_supervisor supervisor",
+            ),
+            (
+                "State of the law; owned by the control loop.",
                 &format!("{state} state"),
             ),
         ] {
             text.push_str(&names.comment(INDENT, &[doc]));
             let _ = writeln!(text, "{INDENT}{field};");
         }
-        let mut signals = names.comment(INDENT, &["Where signals go over."]);
+        let mut signals = names.comment(INDENT, &["Port of the signals."]);
         let _ = write!(signals, "{INDENT}hexagen_port signals;");
         text.push_str(where_defined(SIGNALS, &signals).trim_end());
         text + &format!("\n}} {};\n\n", names.prefix)

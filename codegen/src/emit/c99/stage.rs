@@ -212,7 +212,7 @@ impl<'a> StageFunction<'a> {
         if !self.has_structure() {
             return String::new();
         }
-        let line = format!("What {} yields.", self.own_name);
+        let line = format!("Results of {}.", self.own_name);
         let mut text = self.names.comment("", &[line]) + "typedef struct {\n";
         for outcome in &self.plan.outcomes {
             let (kind, name) = (kind(outcome.signal.shape), self.local(outcome));

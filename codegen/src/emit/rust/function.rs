@@ -96,7 +96,7 @@ impl<'a> StepFunctions<'a> {
             .iter()
             .map(|&value| rust_type(self.context.shape(value)));
         quote! {
-            /// What tracking tells of the rotor.
+            /// Rotor angle and speed from tracking.
             #[derive(Clone, Copy)]
             pub struct Rotor { #(#names: #kinds),* }
         }

@@ -45,7 +45,7 @@ impl Types<'_> {
             quote!(#doc #initial #name: #kind)
         });
         quote! {
-            /// What outlives a control period.
+            /// State kept from one control period to the next.
             #[derive(::hexagen::State)]
             pub struct State {
                 #(#fields),*

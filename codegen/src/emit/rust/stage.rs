@@ -107,7 +107,7 @@ impl Results {
             let (name, kind) = (snake(&signal.name), rust_type(signal.shape));
             quote!(#name: #kind)
         });
-        let line = format!("What [`{stage}`] yields.");
+        let line = format!("Results of [`{stage}`].");
         let doc = docs(&[line]);
         quote! {
             #doc

@@ -138,7 +138,7 @@ fn emit_rows(program: &Program, row: &'static str, whole: Option<&WholeCommand<'
          }| quote!(#doc #name: #element),
     );
     let names: Vec<String> = every.iter().map(|field| field.name.to_string()).collect();
-    let doc = docs(&[format!("What each {row} has.")]);
+    let doc = docs(&[format!("Row of a table, by {row}.")]);
     let layout = padding(program, row, whole).map(|bytes| quote!(#[repr(align(#bytes))]));
     let alike = share_a_word(&names)
         .then(|| quote!(#[expect(clippy::struct_field_names, reason = "signals of three phases")]));

@@ -11,7 +11,7 @@ impl CurrentLoop<'_, '_> {
         } else {
             "K a"
         };
-        let doc = "What the present current still contributes when the voltage takes effect.";
+        let doc = "Contribution of the present current when the voltage takes effect.";
         let (value, word) = (self.design.k_hold, self.options.word);
         self.l
             .impedance("k_hold", value, word, doc, [symbol, "V/A"])

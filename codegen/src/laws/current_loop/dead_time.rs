@@ -41,7 +41,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             ],
         );
         let dead_time = engineering(inverter.dead_time, "s");
-        let doc = format!("What {dead_time} of dead time cost");
+        let doc = format!("Voltage lost to {dead_time} of dead time");
         let limit = l.volts_word(lost);
         named! {
             let flow = reference + held;

@@ -22,7 +22,7 @@ pub(super) struct Emf<'b> {
 }
 
 /// What the limit of an estimate is.
-const BELIEVED: &str = "Largest EMF that is believed, the largest bus voltage";
+const BELIEVED: &str = "Largest plausible EMF, the largest bus voltage";
 
 /// An estimate of a phase's EMF, limited to what is believed; added to the open stage.
 pub(super) fn believed<'b>(l: &Lowering<'b>, e: Expr<'b>) -> Expr<'b> {
@@ -79,7 +79,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (i_prev, v_prev) = (read(words.i_prev?), read(words.v_prev?));
         // A power of two.
         let limit = self.l.ampere_word(self.design.di_limit);
-        let doc = "Limit of the change of current in one period that is believed";
+        let doc = "Limit of the plausible change of current in one period";
         let low = || self.l.current("di_min", -limit, doc);
         let high = || self.l.current("di_max", limit - 1, doc);
         named! {
@@ -114,7 +114,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "integrate_emf",
             &[
-                "What the modelled EMF lacked in the period that just ended, against the one that voltage and currents show,",
+                "Error of the modelled EMF in the last period, against the EMF that voltage and currents show,",
                 "goes slowly into an integral per phase, which stands for errors of the EMF constant, the angle, R and L.",
             ],
         );
@@ -166,7 +166,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 "EMF of the period that just ended: seen is e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form),",
                 "of which the estimate takes over a share.",
                 "",
-                "v is the voltage really applied; a change of current of several times what the bus can cause is not believed.",
+                "v is the voltage really applied; a change of current is limited to several times what the bus can cause.",
             ],
         );
         let seen = self.see_emf(words, i, sight)?;
@@ -201,7 +201,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             return e;
         };
         let (l, off) = (self.l, off_prev.read());
-        let doc = "Whether a leg was off in the period that just ended.";
+        let doc = "Off leg in the last period.";
         l.b.stage("find_floated_leg", &[doc]);
         named! {
             let floated = off.is_not(0);

@@ -59,7 +59,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let past = l.impedance("k_past", k_di * past, word, doc, [symbols[1], "V/A"]);
         let fade = fades.then(|| {
             let change = -self.design.k_decay;
-            let doc = "What a voltage's effect changes by in one period.";
+            let doc = "Decay of a voltage's effect in one period.";
             l.coefficient("k_fade", change, word, doc, &format!("a - 1 = {change:.6}"))
         });
         Folded { now, past, fade }
@@ -88,21 +88,21 @@ impl<'b> CurrentLoop<'_, 'b> {
         let [due_bound, later_bound] = self.folded_bounds(&folded);
         let memory = self.needs.memory;
         let doc = if memory == 0 {
-            "What past samples and commands add to this step's voltage."
+            "Contribution of past samples and commands to this step's voltage."
         } else {
-            "What past samples, commands and wishes add to this step's voltage."
+            "Contribution of past samples, commands and wishes to this step's voltage."
         };
         let range = Interval::symmetric(due_bound + memory);
         let due = l.memories(["due_a", "due_b"], range, doc);
         let later = (self.options.delay == 1).then(|| {
-            let doc = "What past commands add to the next step's voltage.";
+            let doc = "Contribution of past commands to the next step's voltage.";
             l.memories(
                 ["later_a", "later_b"],
                 Interval::symmetric(later_bound),
                 doc,
             )
         });
-        let doc = "What past samples and commands and the present current add to this step's voltage: due + k_now i.";
+        let doc = "Contribution of past samples and commands and of the present current to this step's voltage: due + k_now i.";
         l.b.stage("carry_past", &[doc]);
         named! {
             let carried = read(due) + folded.now * currents;
@@ -133,7 +133,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let Some(fade) = held.folded.fade else {
             return held.unfaded(u);
         };
-        let doc = "What is left of this step's voltage one period later, a v, and both together.";
+        let doc = "Remainder of this step's voltage one period later, a v, and their sum.";
         self.l.b.stage("decay", &[doc]);
         named! {
             let left = u + fade * u;
@@ -147,7 +147,7 @@ impl<'b> CurrentLoop<'_, 'b> {
 
     /// Step 12 with a held EMF: what this step's currents and its command leave to the next two.
     pub fn fold(&self, held: &Held<'b>, left_over: LeftOver<'b>) -> Remembered<'b> {
-        let doc = "What this step's current and voltage add to the voltages of the next two steps.";
+        let doc = "Contribution of this step's current and voltage to the voltages of the next two steps.";
         self.l.b.stage("fold", &[doc]);
         let sampled = held.folded.past * held.currents;
         named! {

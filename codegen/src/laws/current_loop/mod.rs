@@ -330,8 +330,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let u = self.held_voltage(held, reference);
             let shifts = compensates.then(|| {
                 let k_hold = self.k_hold();
-                let doc =
-                    "What the present current still contributes when the voltage takes effect.";
+                let doc = "Contribution of the present current when the voltage takes effect.";
                 self.l.b.stage("hold_current", &[doc]);
                 named! {
                     let held = k_hold * i;

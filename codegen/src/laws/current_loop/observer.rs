@@ -92,7 +92,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 "Moves the estimate on by a period and more: a sinusoidal EMF turns, e + w e_across - w^2/2 e."
             }
             EmfShape::Trapezoidal { .. } => {
-                "Moves the estimate on by a period and more: the EMF of the sector's off phase goes from one flat top to the other."
+                "Advances the estimate by a period or more: the EMF of the sector's off phase goes from one flat top to the other."
             }
         };
         let k_slope = self.k_slope(range);
@@ -101,7 +101,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         self.l.b.stage("move_emf", &[doc, "", how]);
         let weights = self.line_weights(sector);
         let [line_a, line_b] = weights.zip(e, |weight, e| weight * e).0;
-        let doc = "Line EMF from which on its motion no longer grows";
+        let doc = "Line EMF above which its motion no longer grows";
         let most = self.l.voltage("line_max", range.limit, doc);
         named! {
             let e_line = (line_a + line_b).within(most);

@@ -115,26 +115,25 @@ impl<'b> CurrentLoop<'_, 'b> {
                 l.memories(["i_a_prev", "i_b_prev"], range, doc)
             }),
             v_cmd: (needs_command && (needs.predicts() || sees)).then(|| {
-                let doc = "Limited voltage of the last step, applied during this period.";
+                let doc = "Limited voltage of the last step, applied in this period.";
                 l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
             }),
             t_cmd: (is_delayed && needs.off_leg).then(|| self.terminal_words()),
             v_prev: sees.then(|| {
-                let doc = "Voltage applied during the period that just ended.";
+                let doc = "Voltage applied in the last period.";
                 l.memories(["v_a_prev", "v_b_prev"], volts, doc)
             }),
             off_prev: (estimated && needs.off_leg).then(|| {
-                let doc =
-                    "Leg that was off during the period that just ended: 1 a, 2 b, 3 c, 0 none.";
+                let doc = "Off leg of the last period: 1 a, 2 b, 3 c, 0 none.";
                 l.b.memory("off_prev", 0, LEGS, doc)
             }),
             e_prev: (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
                 let range = Interval::symmetric(e_bound + e_moves);
-                let doc = "EMF that the last step expects of the period that it began.";
+                let doc = "EMF that the last step expected for the period that has ended.";
                 l.memories(["e_a_prev", "e_b_prev"], range, doc)
             }),
             integral: needs.integral.then(|| {
-                let doc = "What the modelled EMF lacks, words of voltage.";
+                let doc = "Error of the modelled EMF, integrated, words of voltage.";
                 l.memories(["integral_a", "integral_b"], volts, doc)
             }),
         }

@@ -12,8 +12,7 @@ pub(super) struct Changes<'b>(pub(super) [[Expr<'b>; 3]; 3]);
 impl<'b> Changes<'b> {
     /// Looks up what the changes cost: `volts` each, in multiples of the bus.
     pub(super) fn new(l: &Lowering<'b>, memory: Memory<'b>, volts: f64, weight: f64) -> Self {
-        let doc =
-            "What it costs to turn each leg high, low and off, by the vector of the last step.";
+        let doc = "Cost of switching each leg high, low and off, by the vector of the last step.";
         l.b.stage("cost_of_changes", &[doc]);
         let cost = l.volts_word(volts);
         if i32::try_from(cost).is_err() {
@@ -30,7 +29,7 @@ impl<'b> Changes<'b> {
             [("high", 1), ("low", -1), ("off", 0)].map(|(state, sign)| {
                 let name = format!("change_to_{state}_{phase}");
                 let costs = vector_legs().map(|legs| if legs[x] == sign { 0 } else { cost as i32 });
-                let doc = format!("What turning leg {phase} {state} costs {doc}");
+                let doc = format!("Cost of switching leg {phase} {state}, {doc}");
                 let found = l.b.table(&name, costs.to_vec(), &[doc]).at(last);
                 found.named(&format!("to_{state}_{phase}"))
             })

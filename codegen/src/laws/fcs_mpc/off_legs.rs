@@ -36,7 +36,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "predict_off_legs",
             &[
-                "Where each leg would sit if it were off in the target period: at a rail while its predicted current flows",
+                "Terminal voltage of each leg if it were off in the target period: a rail while its predicted current flows",
                 "through a diode, else where its EMF puts it. h = K a i(k+1) = K i_ref + e - u needs no product.",
             ],
         );

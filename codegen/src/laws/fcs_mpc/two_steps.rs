@@ -42,7 +42,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = "Weight of the square of the first vector.";
         let k_first = l.coefficient("k_first", 1.0 + pole * pole, word, doc, "1 + a^2");
         let doc =
-            "What a sixth of the bus, applied first, takes off the voltage that is wanted second.";
+            "Effect of a sixth of the bus in the first period on the voltage wanted in the second.";
         let k_sixth = l.coefficient("k_pole_sixth", pole / 6.0, word, doc, "a/6");
         l.b.stage(
             "second_period",

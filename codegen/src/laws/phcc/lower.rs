@@ -108,7 +108,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                     1.0
                 },
             self.options.word,
-            "What is left of the present current when the vector takes effect, as the voltage K i.",
+            "Remainder of the present current when the vector takes effect, as the voltage K i.",
             [if is_delayed { "K a" } else { "K" }, "V/A"],
         );
         let doc: &[&str] = if is_delayed {
