@@ -48,7 +48,7 @@ impl Comparisons {
                 unguarded.push(guard.is_none());
             }
         }
-        let named = results.into_iter().map(|value| (Output::probe(""), value));
+        let named = results.into_iter().map(|value| (Output::Probe(""), value));
         probe.step.outputs = named.collect();
         Self { probe, unguarded }
     }

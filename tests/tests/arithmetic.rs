@@ -33,7 +33,7 @@ fn interpreted(
         .map(|(name, &interval)| b.input(name, interval, ""))
         .collect();
     b.output(
-        Output::probe("result"),
+        Output::Probe("result"),
         build(&inputs, table).named("result"),
     );
     let graph = verify(b.finish()).expect("the program is right");

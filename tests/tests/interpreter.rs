@@ -208,7 +208,7 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     let mut values = probe.step.values();
     let angle = values.find(|&value| probe.step.node(value).name == "step_angle");
     probe.step.outputs = vec![(
-        Output::probe("step_angle"),
+        Output::Probe("step_angle"),
         angle.expect("the rotor is followed"),
     )];
     let mut machine = Machine::of_program(&probe);

@@ -1,7 +1,7 @@
 //! The step and the setters as calls of their stages: what every language's functions are made of.
 
 use super::plan::{Context, StagePlan};
-use crate::ir::{AtRest, Function, Op, StateId, Value, Word};
+use crate::ir::{AtRest, Demand, Function, Op, Program, StateId, Value, Word};
 
 /// The two parts of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,10 +26,14 @@ pub(super) fn results(function: &Function) -> impl Iterator<Item = Value> {
     outputs.chain(function.told.iter().map(|&(_, value)| value))
 }
 
-/// Positions of the set-point words that a function reads.
-pub(super) fn params_read(function: &Function) -> Vec<usize> {
+/// Set-point words that the runtime keeps each by itself, under these names.
+pub(super) const SINGLE: [(Demand, &str); 2] =
+    [(Demand::Current, "current"), (Demand::Speed, "speed")];
+
+/// The set-point words that a function reads.
+pub(super) fn demands_read(program: &Program, function: &Function) -> Vec<Demand> {
     let read = function.nodes.iter().filter_map(|node| match node.op {
-        Op::Param(id) => Some(id.index()),
+        Op::Param(id) => Some(program.params[id.index()].0),
         _ => None,
     });
     read.collect()

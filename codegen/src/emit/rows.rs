@@ -39,10 +39,10 @@ impl<'a> WholeCommand<'a> {
     /// states, and the command is put together.
     pub(super) fn of(program: &'a Program) -> Option<Self> {
         let path = &program.step;
-        let [compares, legs] = [Output::Compare, Output::Leg].map(|of| Phase::ALL.map(of));
+        let outputs = [Output::Compare, Output::Leg].map(|of| Phase::ALL.map(of));
         let mut place = None;
         let (mut columns, mut entries, mut tables) = (vec![], vec![], vec![]);
-        for sought in compares.iter().chain(&legs) {
+        for sought in outputs.into_iter().flatten() {
             let value = path.output(sought)?;
             let Op::Lookup { table, index, .. } = path.node(value).op else {
                 return None;

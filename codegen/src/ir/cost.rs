@@ -194,7 +194,7 @@ mod tests {
             let product = y.mul_round(x, 4);
         }
         let [result] = b.join([("result", product, sum)]);
-        b.output(Output::probe("result"), result);
+        b.output(Output::Probe("result"), result);
         let function = b.finish().step;
         let normal = Cost {
             additions: 1,

@@ -194,9 +194,9 @@ pub enum AtRest {
 
 impl Function {
     /// The value of an output, where there is one.
-    pub fn output(&self, sought: &Output) -> Option<Value> {
+    pub fn output(&self, sought: Output) -> Option<Value> {
         let mut outputs = self.outputs.iter();
-        let found = outputs.find(|(output, _)| output == sought);
+        let found = outputs.find(|(output, _)| *output == sought);
         found.map(|&(_, value)| value)
     }
 
@@ -356,13 +356,6 @@ pub struct Program {
 }
 
 impl Program {
-    /// The function that sets something, where there is one.
-    pub fn setter(&self, sought: Setter) -> Option<&Function> {
-        let mut setters = self.setters.iter();
-        let found = setters.find(|(setter, _)| *setter == sought);
-        found.map(|(_, function)| function)
-    }
-
     /// The place of a set-point word, where there is such a word.
     pub fn place_of(&self, sought: Demand) -> Option<usize> {
         let mut params = self.params.iter();

@@ -251,11 +251,11 @@ fn check_condition(
             let otherwise = x[1] - 1;
             let holds = condition(x);
         }
-        b.output(Output::probe("chosen"), holds.choose(then, otherwise));
+        b.output(Output::Probe("chosen"), holds.choose(then, otherwise));
         named! {
             let direct = holds.choose(x[0], x[1]);
         }
-        b.output(Output::probe("direct"), direct);
+        b.output(Output::Probe("direct"), direct);
     });
     let guarded = program(ranges, |b, x| {
         named! {
@@ -267,7 +267,7 @@ fn check_condition(
             let then = x[0] + 1;
         }
         let [joined] = b.join([("joined", then, otherwise)]);
-        b.output(Output::probe("joined"), joined);
+        b.output(Output::Probe("joined"), joined);
     });
     for program in [&selected, &guarded] {
         let step = &program.step;
@@ -370,7 +370,7 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
             let otherwise = x[0] - 1;
         }
         let holds = x[0].is_below(x[1]) & x[0].is_below(x[2]);
-        b.output(Output::probe("chosen"), holds.choose(then, otherwise));
+        b.output(Output::Probe("chosen"), holds.choose(then, otherwise));
     });
     let bounds = Bounds::new(&either, &either.step);
     let then = bounds.interval(value_named(&either.step, "then"));

@@ -441,10 +441,10 @@ mod tests {
         let x = ["x", "y", "z"].map(|name| b.input(name, range, ""));
         // Inputs that a shape leaves out are results, too.
         for (name, x) in ["x_too", "y_too", "z_too"].into_iter().zip(x) {
-            b.output(Output::probe(name), x);
+            b.output(Output::Probe(name), x);
         }
         let result = shape(x).named("result");
-        b.output(Output::probe("result"), result);
+        b.output(Output::Probe("result"), result);
         b.finish()
     }
 
@@ -494,7 +494,7 @@ mod tests {
         let all = [x.min(y), x.max(y), y.min(x), y.max(x)];
         let names = ["min", "max", "min_turned", "max_turned"];
         for (name, value) in names.into_iter().zip(all) {
-            b.output(Output::probe(name), value.named(name));
+            b.output(Output::Probe(name), value.named(name));
         }
         let step = b.finish().rewritten().step;
         names.map(|name| {

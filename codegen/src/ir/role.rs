@@ -29,21 +29,14 @@ impl fmt::Display for Phase {
 }
 
 /// What a result of a function is.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Output {
     /// The compare value of a leg.
     Compare(Phase),
     /// The state of a leg.
     Leg(Phase),
     /// A value of a program that is looked into, by its name.
-    Probe(String),
-}
-
-impl Output {
-    /// A value that is looked into.
-    pub fn probe(name: &str) -> Self {
-        Self::Probe(name.to_owned())
-    }
+    Probe(&'static str),
 }
 
 impl fmt::Display for Output {

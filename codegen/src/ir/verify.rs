@@ -21,8 +21,7 @@
 //!     state word that it does not set may be 0.
 
 use std::collections::HashSet;
-use std::fmt;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::hash::Hash;
 
 use super::graph::{AtRest, Function, Program, Word};

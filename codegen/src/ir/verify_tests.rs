@@ -31,7 +31,7 @@ fn right() -> Program {
         let limited = scaled.clamp(-5, 5);
     }
     memory.set(limited);
-    b.output(Output::probe("result"), result);
+    b.output(Output::Probe("result"), result);
     b.setter(Setter::Current, &[], |b| {
         b.stage("round", &[]);
         param.set(b.input("given", word, ""));

@@ -1,9 +1,8 @@
-//! The laboratory: a simulated plant, closed loops of any model of a controller, what they are
-//! judged by, all ways to run a generated drive, and reports as data. A library without a command
-//! line.
+//! The laboratory, a library without a command line: a simulated plant, closed loops of any model of
+//! a controller, their figures of merit, all ways to run a generated drive, and reports as data.
 //!
-//! The generator's tables of formats and limits come over in the runtime's types here: nothing else
-//! knows both.
+//! It alone knows both generator and runtime, so it also converts the generator's tables of formats
+//! and limits into the runtime's types.
 
 pub mod accuracy;
 pub mod closed_loop;

@@ -117,7 +117,7 @@ fn entry(motor: &SelectedMotor, rating: Option<Result<f64, Trip>>) -> LibraryMot
                 v_bus_v: Some(inverter.v_bus),
                 rated_current_a: Some(spec.rated_current),
                 rated_torque_nm: Some(rated),
-                rated_rpm: Some(spec.rated_speed * 30.0 / std::f64::consts::PI),
+                rated_rpm: Some(drive.rated_rpm()),
                 t_s: Some(inverter.t_s),
                 generates: true,
                 holds_rating: rating.map(|rating| {

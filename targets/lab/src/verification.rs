@@ -34,6 +34,16 @@ pub struct Checked {
     pub mismatch: Option<String>,
 }
 
+/// What differs, a line for each drive; none where nothing does.
+pub fn mismatches(checked: &[Checked]) -> Option<String> {
+    let differing = checked.iter().filter_map(|drive| {
+        let mismatch = drive.mismatch.as_ref()?;
+        Some(format!("{}, {}: {mismatch}", drive.motor, drive.controller))
+    });
+    let lines: Vec<String> = differing.collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
 /// How many steps went which way.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Coverage {

@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, params_read, results, writes,
+    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, results, writes,
 };
 use super::super::plan::Context;
 use super::super::signal::Shape;
@@ -306,7 +306,7 @@ impl<'a> StepFunctions<'a> {
     fn legs(&self) -> String {
         let printer = self.printer(false);
         let compare = Phase::ALL.map(|phase| {
-            let value = self.function().output(&Output::Compare(phase));
+            let value = self.function().output(Output::Compare(phase));
             match value.map(|value| (value, printer.scope.literal(value))) {
                 None => "0".to_owned(),
                 Some((_, Some(literal))) => literal.to_string(),
@@ -314,7 +314,7 @@ impl<'a> StepFunctions<'a> {
             }
         });
         let state = Phase::ALL.map(|phase| {
-            let state = self.function().output(&Output::Leg(phase));
+            let state = self.function().output(Output::Leg(phase));
             state.map_or_else(
                 || leg_state(Leg::Off).to_owned(),
                 |value| printer.shaped(value, Shape::Leg),
@@ -333,14 +333,12 @@ impl<'a> StepFunctions<'a> {
 
 /// Reads the set-point words that a function uses, under their names.
 fn read_words(program: &Program, function: &Function, names: &Names) -> String {
-    let read = params_read(function);
+    let read = demands_read(program, function);
     let name_where_read = |demand: Demand| {
-        let place = program.place_of(demand)?;
-        let name = || names.local(&program.params[place].1.name);
-        read.contains(&place).then(name)
+        let word = program.param(demand).filter(|_| read.contains(&demand))?;
+        Some(names.local(&word.name))
     };
-    let single = [(Demand::Current, "current"), (Demand::Speed, "speed")];
-    let single = single.into_iter().filter_map(|(demand, field)| {
+    let single = SINGLE.into_iter().filter_map(|(demand, field)| {
         let name = name_where_read(demand)?;
         Some(format!("{INDENT}const int32_t {name} = drive->{field};\n"))
     });

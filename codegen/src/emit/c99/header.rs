@@ -4,8 +4,9 @@ use super::super::texts;
 use super::drive::{Drive, Method, SIGNALS, VERIFICATION, where_defined};
 use super::layout::INDENT;
 use super::names::{number, typed_number};
+use crate::emit::path::SINGLE;
 use crate::interface::{PublicConstant, PublicValue};
-use crate::ir::{Demand, Word};
+use crate::ir::Word;
 use std::fmt::Write as _;
 
 impl Drive<'_> {
@@ -108,7 +109,7 @@ impl Drive<'_> {
         let doc = "A drive; all of it is the functions' own. Which of them may be called from where says hexagen.h.";
         text.push_str(&names.comment("", &[doc]));
         text.push_str("typedef struct {\n");
-        for (demand, field) in [(Demand::Current, "current"), (Demand::Speed, "speed")] {
+        for (demand, field) in SINGLE {
             if let Some(word) = self.program.param(demand) {
                 text.push_str(&names.comment(INDENT, &[meaning(word)]));
                 let _ = writeln!(text, "{INDENT}volatile int32_t {field};");

@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, inputs_used, kept, kept_at_rest, params_read, results, writes,
+    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, results, writes,
 };
 use super::super::plan::Context;
 use super::super::rows::WholeCommand;
@@ -249,7 +249,7 @@ impl<'a> StepFunctions<'a> {
         let pattern = self
             .has_rotor()
             .then(|| quote!(let Rotor { #(#names),* } = rotor;));
-        let words = read_words(self.context.program, &params_read(self.function()));
+        let words = read_words(self.context.program, self.function());
         let set_point = named("set_point", !words.as_str().is_empty());
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let rotor = named("rotor", self.has_rotor());
@@ -299,7 +299,7 @@ impl<'a> StepFunctions<'a> {
         }
         let function = self.function();
         let compare = Phase::ALL.map(|phase| {
-            let Some(value) = function.output(&Output::Compare(phase)) else {
+            let Some(value) = function.output(Output::Compare(phase)) else {
                 return quote!(0);
             };
             scope.literal(value).map_or_else(
@@ -311,7 +311,7 @@ impl<'a> StepFunctions<'a> {
             )
         });
         let states = Phase::ALL.map(|phase| {
-            let state = function.output(&Output::Leg(phase));
+            let state = function.output(Output::Leg(phase));
             state.map_or_else(
                 || quote!(LegState::Off),
                 |value| scope.shaped(value, Shape::Leg),
@@ -331,14 +331,11 @@ fn named(name: &str, is_used: bool) -> Source {
     })
 }
 
-/// The statements that read these words of the set-point; an underscore stands for one that comes along.
-fn read_words(program: &Program, read: &[usize]) -> Source {
-    let is_read = |demand: Demand| {
-        let place = program.place_of(demand);
-        place.is_some_and(|place| read.contains(&place))
-    };
-    let single = [(Demand::Current, "current"), (Demand::Speed, "speed")];
-    let single = single.into_iter().filter(|&(demand, _)| is_read(demand));
+/// The statements that read the set-point words of a function; an underscore stands for one that comes along.
+fn read_words(program: &Program, function: &Function) -> Source {
+    let read = demands_read(program, function);
+    let is_read = |demand: Demand| read.contains(&demand);
+    let single = SINGLE.into_iter().filter(|&(demand, _)| is_read(demand));
     let single = single.filter_map(|(demand, method)| {
         let (name, method) = (snake(&program.param(demand)?.name), Source::of(method));
         Some(quote!(let #name = set_point.#method();))

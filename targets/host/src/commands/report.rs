@@ -5,6 +5,7 @@ use crate::render;
 use clap::Args;
 use hexagen_lab::report::{results_blocks, results_page};
 use hexagen_lab::results::{PAPER_MOTOR, Plan};
+use hexagen_lab::verification::mismatches;
 use std::path::PathBuf;
 
 /// Where the page goes.
@@ -44,16 +45,5 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_blocks(&results_blocks(&data))?;
         print_text(&format!("Page: {}", path.display()))?;
     }
-    let different: Vec<String> = checked
-        .iter()
-        .filter_map(|drive| {
-            let mismatch = drive.mismatch.as_ref()?;
-            Some(format!("{}, {}: {mismatch}", drive.motor, drive.controller))
-        })
-        .collect();
-    if different.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::Check(different.join("\n")))
-    }
+    mismatches(&checked).map_or(Ok(()), |lines| Err(Failure::Check(lines)))
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use hexagen_lab::engine::{BuildError, Prepared, Verifier};
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
-use hexagen_lab::verification::{Checked, verify_with};
+use hexagen_lab::verification::{Checked, mismatches, verify_with};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::env;
@@ -101,20 +101,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let (steps, seed) = (options.steps, options.seed);
     let results = verify_with(&drives, &verifiers, steps, seed, &Bar::default());
-    let failed: Vec<&Checked> = results.iter().filter(|checked| !checked.passed).collect();
-    let outcome = match failed.first() {
-        None => Ok(()),
-        Some(_) => Err(Failure::Check(
-            failed
-                .iter()
-                .map(|checked| {
-                    let mismatch = checked.mismatch.as_deref().unwrap_or_default();
-                    format!("{}, {}: {mismatch}", checked.motor, checked.controller)
-                })
-                .collect::<Vec<_>>()
-                .join("\n"),
-        )),
-    };
+    let outcome = mismatches(&results).map_or(Ok(()), |lines| Err(Failure::Check(lines)));
     if options.json {
         print_json(&Verification {
             passed: outcome.is_ok(),

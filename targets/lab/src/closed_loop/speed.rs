@@ -1,4 +1,4 @@
-//! What speed a free shaft reached, and the time that a speed loop needs for it.
+//! Speed of a free shaft, and the time that a speed loop needs to reach its set-point.
 
 use super::{Aim, Measurement, PeriodRow};
 use crate::plant::Mechanics;
@@ -6,19 +6,18 @@ use hexagen_codegen::spec::SpeedLoop;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// What a free shaft reached, with or without a speed loop. None of it of a drive that tripped.
+/// Speed of a free shaft, with or without a speed loop; nothing for a drive that tripped.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Speed {
-    /// Speed that was set, rpm; none without a speed loop.
+    /// Set-point of the speed loop, rpm; none without one.
     pub set_rpm: Option<f64>,
-    /// Mean speed while it was measured, rpm, mean of the starts.
+    /// Mean speed over the measured window, rpm; mean over all start angles.
     pub mean_rpm: Option<f64>,
-    /// Speed at the end of what was measured, rpm, mean of the starts.
+    /// Speed at the end of the measured window, rpm; mean over all start angles.
     pub final_rpm: Option<f64>,
-    /// Whether the speed loop has settled: the mean speeds of the last three sixths of what was
-    /// measured, which are electrical turns at the set speed, are within 2 % of the set speed at
-    /// every start. (Of the least speed that the drive tells from standstill, where less is set.)
-    /// None without a speed loop.
+    /// Whether the speed loop has settled: the mean speed of each of the last three sixths of the
+    /// measured window is within 2 % of the set-point, at every start angle. (Below the least speed
+    /// that the drive tells from standstill: within 2 % of that speed.) None without a speed loop.
     pub settled: Option<bool>,
 }
 
@@ -26,7 +25,7 @@ pub struct Speed {
 pub const SETTLED: f64 = 0.02;
 
 impl Speed {
-    /// What the shaft of a run reached. `set_rpm` is the speed loop's, `least_rpm` the least speed
+    /// The speed of a run. `set_rpm` is the speed loop's, `least_rpm` the least speed
     /// that the drive tells from standstill.
     pub fn of(measured: &Measurement, set_rpm: Option<f64>, least_rpm: f64) -> Self {
         let traces = match measured.tripped {

@@ -36,7 +36,7 @@ pub struct PlantOptions {
     pub start_angle: Option<f64>,
 }
 
-/// A motor with what the plant options change in its specification.
+/// A motor, its specification changed as the plant options say.
 #[derive(Clone, Debug)]
 pub struct SelectedMotor {
     /// The motor.

@@ -259,16 +259,8 @@ fn source(drive: &Prepared) -> Option<String> {
 
 /// The paper's claims and the bound of any controller, in percent of rated speed.
 fn paper_marks() -> Vec<SpeedMark> {
-    let mark = |label: &str, percent| SpeedMark {
-        label: label.to_owned(),
-        percent,
-    };
-    vec![
-        mark("PI-PWM (paper)", 67.0),
-        mark("predictive (paper)", 85.0),
-        mark("PDCC (paper)", 87.0),
-        mark("bound at 20 A", 119.0),
-    ]
+    let bound = SpeedMark::new("bound at 20 A", 119.0);
+    SpeedMark::of_paper().into_iter().chain([bound]).collect()
 }
 
 /// What is known about differences from the design document's table.

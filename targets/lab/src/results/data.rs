@@ -190,6 +190,25 @@ pub struct SpeedMark {
     pub percent: f64,
 }
 
+impl SpeedMark {
+    /// A mark at so many percent of rated speed.
+    pub fn new(label: &str, percent: f64) -> Self {
+        Self {
+            label: label.to_owned(),
+            percent,
+        }
+    }
+
+    /// Speeds up to which the paper's controllers hold their torque, as it claims.
+    pub fn of_paper() -> [Self; 3] {
+        [
+            Self::new("PI-PWM (paper)", 67.0),
+            Self::new("predictive (paper)", 85.0),
+            Self::new("PDCC (paper)", 87.0),
+        ]
+    }
+}
+
 /// Formats and texts of one emitted controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeneratedTexts {

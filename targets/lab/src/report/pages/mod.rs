@@ -20,7 +20,6 @@ use crate::results::{Capture, Results, Variant};
 
 /// The report of a motor.
 pub fn results_page(data: &Results) -> Page {
-    let section = |id, title, blocks| Section { id, title, blocks };
     let robustness = match &data.robustness {
         Some(sheet) => robustness_blocks(sheet),
         None => Block::nothing("robustness sheet"),
@@ -31,32 +30,32 @@ pub fn results_page(data: &Results) -> Page {
         heading: facts::motor_name(data).to_owned(),
         opening: facts::opening(data),
         sections: vec![
-            section("motor", "Motor and inverter", facts::facts(data)),
-            section("results", "Results", results_blocks(data)),
-            section("currents", "Phase currents", waves::currents(data)),
-            section(
+            Section::new("motor", "Motor and inverter", facts::facts(data)),
+            Section::new("results", "Results", results_blocks(data)),
+            Section::new("currents", "Phase currents", waves::currents(data)),
+            Section::new(
                 "trajectory",
                 "Current in the alpha-beta plane",
                 waves::trajectories(data),
             ),
-            section("torque", "Torque", waves::torque(data)),
-            section("spectra", "Spectra", spectra::blocks(data)),
-            section(
+            Section::new("torque", "Torque", waves::torque(data)),
+            Section::new("spectra", "Spectra", spectra::blocks(data)),
+            Section::new(
                 "torque-speed",
                 "Torque over speed",
                 torque_speed::blocks(data),
             ),
-            section("formats", "Formats", accuracy::formats(data)),
-            section(
+            Section::new("formats", "Formats", accuracy::formats(data)),
+            Section::new(
                 "errors",
                 "Fixed point against float",
                 accuracy::errors(data),
             ),
-            section("stability", "Stable ranges", stability::blocks(data)),
-            section("robustness", "Robustness", robustness),
-            section("code", "Emitted code", texts::code(data)),
-            section("data-sheet", "Data sheet", texts::data_sheet(data)),
-            section("spec", "Specification", texts::spec(data)),
+            Section::new("stability", "Stable ranges", stability::blocks(data)),
+            Section::new("robustness", "Robustness", robustness),
+            Section::new("code", "Emitted code", texts::code(data)),
+            Section::new("data-sheet", "Data sheet", texts::data_sheet(data)),
+            Section::new("spec", "Specification", texts::spec(data)),
         ],
         generator: data.generator.clone(),
     }

@@ -288,15 +288,6 @@ pub fn figure_20(data: &Reproduction) -> Vec<Block> {
 }
 
 fn of_reading(data: &Reproduction, reading: Reading) -> [Block; 3] {
-    let marks = [
-        ("PI-PWM (paper)", 67.0),
-        ("predictive (paper)", 85.0),
-        ("PDCC (paper)", 87.0),
-    ];
-    let marks = marks.map(|(label, percent)| SpeedMark {
-        label: label.to_owned(),
-        percent,
-    });
     let runs = Method::ALL.map(|method| (method, data.methods[method.index()].of(reading)));
     let running = runs.iter().filter(|(_, run)| !is_lost(run));
     let plot = torque_speed(&TorqueSpeed {
@@ -311,7 +302,7 @@ fn of_reading(data: &Reproduction, reading: Reading) -> [Block; 3] {
                 limit_rpm: run.limit.limit_rpm,
             })
             .collect(),
-        marks: &marks,
+        marks: &SpeedMark::of_paper(),
         held: Held::AtLeast,
     });
     let keys = runs.map(|(method, run)| {

@@ -42,43 +42,39 @@ pub fn reproduction_blocks(data: &Reproduction) -> Vec<Block> {
     all.chain(tables::table_5(data)).collect()
 }
 
-fn section(id: &'static str, title: &'static str, blocks: Vec<Block>) -> Section {
-    Section { id, title, blocks }
-}
-
 /// Tables and figures in the paper's order.
 fn sections(data: &Reproduction) -> Vec<Section> {
     let computed = vec![
-        section("claims", "Claims", verdicts::claims(data)),
-        section("readings", "Readings", verdicts::readings(data)),
-        section(
+        Section::new("claims", "Claims", verdicts::claims(data)),
+        Section::new("readings", "Readings", verdicts::readings(data)),
+        Section::new(
             "table-1",
             "Table 1: reference and EMF corners",
             tables::table_1(data),
         ),
-        section("table-2", "Table 2: vectors", tables::table_2(data)),
-        section("table-3", "Table 3: switching table", tables::table_3(data)),
-        section(
+        Section::new("table-2", "Table 2: vectors", tables::table_2(data)),
+        Section::new("table-3", "Table 3: switching table", tables::table_3(data)),
+        Section::new(
             "figure-2",
             "Figure 2: EMF, currents, Hall signals",
             ideal::figure_2(data),
         ),
-        section(
+        Section::new(
             "figure-3",
             "Figure 3: trajectories of EMF and current",
             ideal::figure_3(data),
         ),
-        section(
+        Section::new(
             "figure-4",
             "Figure 4: real trajectories",
             measured::figure_4(data),
         ),
-        section(
+        Section::new(
             "figure-9",
             "Figure 9: twelve sectors",
             ideal::figure_9(data),
         ),
-        section(
+        Section::new(
             "figure-12",
             "Figures 12, 13: ideal current",
             ideal::figures_12_13(data),
@@ -103,42 +99,42 @@ fn of_runs(data: &Reproduction) -> Vec<Section> {
     let (currents, torques) = (measured::currents, measured::torques);
     let trajectories = measured::trajectories;
     vec![
-        section(
+        Section::new(
             "figure-14",
             "Figure 14: phase current, low speed",
             at(LOW, currents),
         ),
-        section(
+        Section::new(
             "figure-15",
             "Figure 15: phase current, high speed",
             at(HIGH, currents),
         ),
-        section(
+        Section::new(
             "figure-16",
             "Figure 16: torque, low speed",
             at(LOW, torques),
         ),
-        section(
+        Section::new(
             "figure-17",
             "Figure 17: torque, high speed",
             at(HIGH, torques),
         ),
-        section(
+        Section::new(
             "figure-18",
             "Figure 18: trajectories, low speed",
             at(LOW, trajectories),
         ),
-        section(
+        Section::new(
             "figure-19",
             "Figure 19: trajectories, high speed",
             at(HIGH, trajectories),
         ),
-        section(
+        Section::new(
             "figure-20",
             "Figure 20: torque over speed",
             measured::figure_20(data),
         ),
-        section(
+        Section::new(
             "table-5",
             "Table 5: computation time and switching",
             tables::table_5(data),

@@ -163,7 +163,7 @@ pub fn table_2(data: &Reproduction) -> Vec<Block> {
     vec![Block::Table(table), Block::Note(note.to_owned())]
 }
 
-/// Name of a vector number as in the switching tables.
+/// Name of a vector by its number in the switching tables.
 fn vector_name(vector: u8) -> String {
     match vector {
         0..=6 => format!("V_{{{vector}}}"),
