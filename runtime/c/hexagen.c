@@ -1,4 +1,4 @@
-/* What the drives of hexagen have in common, off the normal path: see hexagen.h. */
+/* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
 #if HEXAGEN_ABI != 1
@@ -15,7 +15,7 @@ static uint32_t divide_digit(uint32_t *above, uint32_t next, uint32_t divisor)
 {
     const uint32_t top = divisor >> 16;
     const uint32_t bottom = divisor & UINT32_C(0xffff);
-    /* By the divisor's upper half alone the digit is up to two too large. */
+    /* An estimate by the divisor's upper half alone is up to two too large. */
     uint32_t digit = *above / top;
     uint32_t rest = *above - digit * top;
     if (digit * bottom > ((rest << 16) | next)) {
@@ -30,8 +30,8 @@ static uint32_t divide_digit(uint32_t *above, uint32_t next, uint32_t divisor)
 }
 
 /*
- * Two digits of 16 bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D), for
- * a library takes hundreds of instructions to divide 64 bits.
+ * Two digits of 16 bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D): a
+ * library takes hundreds of instructions to divide 64 bits.
  */
 int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
 {
@@ -71,7 +71,7 @@ int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, ui
 int32_t hexagen_thousandths(int32_t number)
 {
     const int32_t most = INT32_C(32767999);
-    /* 2^16/1000 = 65.536: the whole, and the rest with 31 fraction bits. */
+    /* 2^16/1000 = 65.536: the integer part, and the fraction with 31 bits. */
     const int32_t rest = INT32_C(1151051235);
     const int32_t limited = hexagen_clamp(number, -most, most);
     return limited * 65 + hexagen_mul_round(rest, limited, 31);
@@ -101,7 +101,7 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     supervisor->offset_b = offset;
 }
 
-/** Turns all legs off until a reset. The first cause stays. */
+/** Turns all legs off until a reset. The first fault is kept. */
 static void trip(hexagen_supervisor *supervisor, hexagen_fault fault)
 {
     if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
@@ -139,7 +139,7 @@ static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits
         (limits->precharge_periods == 0U) ? HEXAGEN_MODE_RUN : HEXAGEN_MODE_PRECHARGE;
 }
 
-/** Counts a period down; true where it was the last. */
+/** Counts a period down; true for the last one. */
 static bool is_last(hexagen_supervisor *supervisor)
 {
     if (supervisor->countdown != 0U) {
@@ -148,11 +148,11 @@ static bool is_last(hexagen_supervisor *supervisor)
     return supervisor->countdown == 0U;
 }
 
-/** Calibration averages the counts of all its samples, then pre-charge counts its periods down. */
+/** Calibration averages the counts of all its samples; then pre-charge counts its periods down. */
 static void start_up(
     hexagen_supervisor *supervisor, const hexagen_limits *limits, int32_t count_a, int32_t count_b)
 {
-    /* The countdown ends the sums before this limit, whatever state they began in. */
+    /* The countdown ends the sums before this limit, whatever the initial state. */
     const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
     switch (supervisor->mode) {
     case HEXAGEN_MODE_CALIBRATE:
@@ -264,7 +264,7 @@ void hexagen_start_bus(hexagen_bus *bus, int32_t first, int32_t second)
 void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
 {
     int32_t spare;
-    /* A call that was interrupted would go on filling the bank that this one publishes. */
+    /* The interrupted call would go on filling the bank that this one publishes. */
     if (bus->storing != 0) {
         return;
     }
@@ -277,7 +277,7 @@ void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
     bus->told = 1;
 }
 
-/* ---- Signals for people ------------------------------------------------------------------ */
+/* ---- Signals ------------------------------------------------------------------------------ */
 
 #ifdef HEXAGEN_SIGNALS
 void hexagen_start_port(hexagen_port *port)
@@ -285,7 +285,7 @@ void hexagen_start_port(hexagen_port *port)
     port->turn = 0;
 }
 
-/** Timer counts for which the upper switch of a leg is on; none of a leg that is off. */
+/** Timer counts for which the upper switch of a leg is on; HEXAGEN_NONE if the leg is off. */
 static int32_t on(const hexagen_legs *legs, uint16_t leg)
 {
     if (legs->state[leg] == HEXAGEN_LEG_OFF) {
@@ -309,7 +309,7 @@ void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs le
     port->turn = 2;
 }
 
-/** A word of a unit as a number with 16 fraction bits; saturates. */
+/** A word in its unit, as a number with 16 fraction bits; saturates. */
 static int32_t in_unit(hexagen_unit unit, int32_t word)
 {
     const int64_t product = (int64_t)unit.factor * word;
@@ -318,7 +318,7 @@ static int32_t in_unit(hexagen_unit unit, int32_t word)
     return (bits < INT32_MIN) ? INT32_MIN : (bits > INT32_MAX) ? INT32_MAX : (int32_t)bits;
 }
 
-/** Three values of zero sum, of which two are given. */
+/** Three phase values of zero sum, from those of phases a and b. */
 static void of_phases(int32_t *values, hexagen_unit unit, int32_t a, int32_t b)
 {
     values[0] = in_unit(unit, a);
@@ -339,13 +339,13 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
     int32_t speed;
     const int32_t turn = port->turn;
     if (turn != 2) {
-        /* Once: the answer may come meanwhile. */
+        /* Read once: the answer may arrive in between. */
         if (turn == 0) {
             port->turn = 1;
         }
         return false;
     }
-    /* Who interrupts this finds nothing to take. */
+    /* A context that interrupts here finds nothing to take. */
     port->turn = 3;
     of_phases(signals->currents, units->ampere, port->words[0], port->words[1]);
     signals->sector = units->sectors[(uint32_t)port->words[2] & 7U];

@@ -1,16 +1,16 @@
 /**
- * What the drives of hexagen have in common, in C99: samples and commands, supervision, arithmetic.
+ * C99 runtime of hexagen's drives: samples and commands, supervision, arithmetic.
  *
- * A drive is emitted per motor and controller as `hub_drive.h` and `hub_drive.c`: constants, tables
- * and the control law. This header and `hexagen.c` are the rest, the same for all drives of a
- * program. A compiler needs `stdbool.h`, `stdint.h`, and types of 16, 32 and 64 bits; none of 8,
- * which some cores do not have. No signed number overflows, and no negative one is shifted.
+ * Each motor and controller has its emitted files, `hub_drive.h` and `hub_drive.c`: constants,
+ * tables and the control law. This header and `hexagen.c` are common to all drives of a program. A
+ * compiler needs `stdbool.h`, `stdint.h`, and types of 16, 32 and 64 bits; none of 8, which some
+ * cores lack. No signed number overflows, and no negative one is shifted.
  *
  * One context, the control interrupt, calls a drive's `step`; `init`, `reset`, `calibrate` and
- * `precharge` belong to it or run while it does not. From all other contexts of the same core:
- * setters, `status` and `signals`. A word that passes between contexts is a `volatile int32_t`,
- * which cores of 32 bits and a C2000 load and store in one instruction; where that takes several,
- * keep the interrupt out around these calls.
+ * `precharge` belong to it or run while it does not. All other contexts of the same core may call
+ * setters, `status` and `signals`. Words shared between contexts are `volatile int32_t`, which
+ * 32-bit cores and a C2000 load and store in one instruction; where that takes several, mask the
+ * interrupt around these calls.
  */
 #ifndef HEXAGEN_H
 #define HEXAGEN_H
@@ -22,10 +22,10 @@
 extern "C" {
 #endif
 
-/** What drives rely on here. They refuse to compile with a header of another number. */
+/** Version of this interface. Drives refuse to compile with a header of another version. */
 #define HEXAGEN_ABI 1
 
-/** A function off the normal path, which is not to be inlined into it. */
+/** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HEXAGEN_COLD __attribute__((cold, noinline))
 #else
@@ -34,7 +34,7 @@ extern "C" {
 
 /* ---- Samples and commands ---------------------------------------------------------------- */
 
-/** The measurements at the begin of a control period, as the hardware gives them. */
+/** Measurements at the beginning of a control period, as the hardware gives them. */
 typedef struct {
     /** ADC counts of the currents of phases a, b, c; 0 where there is no sensor. */
     uint16_t adc[3];
@@ -47,8 +47,8 @@ typedef struct {
 } hexagen_sample;
 
 /**
- * ADC counts of phases a and b, and a Hall code. Any code may be given: one that Hall sensors
- * cannot have (0, 7 and above) trips the drive.
+ * ADC counts of phases a and b, and a Hall code. Any code is accepted: one that Hall sensors cannot
+ * give (0, 7 and above) trips the drive.
  */
 static inline hexagen_sample hexagen_with_hall(uint16_t adc_a, uint16_t adc_b, uint16_t hall)
 {
@@ -63,7 +63,7 @@ static inline hexagen_sample hexagen_with_hall(uint16_t adc_a, uint16_t adc_b, u
 }
 
 /**
- * ADC counts of phases a and b, and an electrical angle, 2^32 a turn, 0 where the EMF of phase a
+ * ADC counts of phases a and b, and an electrical angle, 2^32 per turn, 0 where the EMF of phase a
  * rises through 0. It has no Hall code: a drive that needs one trips.
  */
 static inline hexagen_sample hexagen_with_angle(uint16_t adc_a, uint16_t adc_b, uint32_t angle)
@@ -76,9 +76,8 @@ static inline hexagen_sample hexagen_with_angle(uint16_t adc_a, uint16_t adc_b, 
 /**
  * The same sample with the time since the last Hall edge, for drives with `hall_capture: timer`.
  *
- * Code and ticks are one snapshot, which no edge may tear apart: latch both in the capture
- * interrupt, or read the ticks, the code, and the ticks again, until the second count is not below
- * the first.
+ * Code and ticks must belong together: latch both in the capture interrupt, or read the ticks, the
+ * code, and the ticks again, until the second count is not below the first.
  */
 static inline hexagen_sample hexagen_with_ticks(hexagen_sample sample, uint16_t hall_ticks)
 {
@@ -86,14 +85,14 @@ static inline hexagen_sample hexagen_with_ticks(hexagen_sample sample, uint16_t 
     return sample;
 }
 
-/** The same sample with the ADC count of phase c, for drives with three sensors. */
+/** The same sample with the ADC count of phase c, for drives with three current sensors. */
 static inline hexagen_sample hexagen_with_third(hexagen_sample sample, uint16_t adc_c)
 {
     sample.adc[2] = adc_c;
     return sample;
 }
 
-/** What a leg of the inverter does for one PWM period. */
+/** State of an inverter leg for one PWM period. */
 typedef enum {
     /** Both switches follow the timer channel (complementary outputs). */
     HEXAGEN_LEG_PULSED = 0,
@@ -103,14 +102,14 @@ typedef enum {
     HEXAGEN_LEG_OFF = 2
 } hexagen_leg;
 
-/** The state of a number: 0 pulsed, 1 low, else off. */
+/** The state with this number: 0 pulsed, 1 low, else off. */
 static inline hexagen_leg hexagen_leg_of(int32_t number)
 {
     return (number == 0) ? HEXAGEN_LEG_PULSED : (number == 1) ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF;
 }
 
 /**
- * Compare values for a centre-aligned timer and a state per leg, of legs a, b, c.
+ * Compare values for a centre-aligned timer and a state per leg, for legs a, b, c.
  *
  * A compare value is the time for which the upper switch is on, timer counts from 0 to the timer's
  * period. It is 0 for a leg that is not pulsed.
@@ -120,7 +119,7 @@ typedef struct {
     hexagen_leg state[3];
 } hexagen_legs;
 
-/** All legs alike, without pulses. */
+/** All legs in the same state, without pulses. */
 static inline hexagen_legs hexagen_all_legs(hexagen_leg state)
 {
     const hexagen_legs legs = { { 0, 0, 0 }, { state, state, state } };
@@ -129,7 +128,7 @@ static inline hexagen_legs hexagen_all_legs(hexagen_leg state)
 
 /* ---- Status ------------------------------------------------------------------------------ */
 
-/** What a drive is doing. */
+/** Operating mode of a drive. */
 typedef enum {
     /** Current control. */
     HEXAGEN_MODE_RUN = 0,
@@ -141,35 +140,35 @@ typedef enum {
     HEXAGEN_MODE_TRIPPED = 3
 } hexagen_mode;
 
-/** Why a drive tripped. Where one sample has several causes, the first of this list is told. */
+/** Cause of a trip. If one sample has several, the first of this list is reported. */
 typedef enum {
     /** Not tripped. */
     HEXAGEN_FAULT_NONE = 0,
     /** A current ADC was at an end of its range: count 0, the largest count, or more. */
     HEXAGEN_FAULT_ADC_RANGE = 1,
-    /** The Hall code was none that three sensors can have: 000, 111 or above. */
+    /** The Hall code was invalid: 000, 111 or above. */
     HEXAGEN_FAULT_HALL = 3,
     /** A phase current was above the trip level. */
     HEXAGEN_FAULT_OVER_CURRENT = 2,
-    /** No Hall edge within the stall time-out while a set-point was not 0. */
+    /** No Hall edge within the stall time-out while the set-point was not 0. */
     HEXAGEN_FAULT_STALL = 4,
     /** A calibrated current offset was too far from its nominal value. */
     HEXAGEN_FAULT_OFFSET = 5
 } hexagen_fault;
 
-/** What a drive is doing and what tripped it, as of the end of the last control period or call. */
+/** Mode and fault of a drive, as of the end of the last control period or call. */
 typedef struct {
     hexagen_mode mode;
     hexagen_fault fault;
     /**
-     * `v_bus: measured`: for 100 ms no call of `set_bus` took effect, so the controller goes by an
-     * old voltage; from the start to the first call by the nominal one. A warning, which trips
-     * nothing. Never with `v_bus: fixed`.
+     * `v_bus: measured`: no call of `set_bus` took effect for 100 ms, so the controller uses an old
+     * voltage; before the first call, the nominal one. A warning, which trips nothing. Never set
+     * with `v_bus: fixed`.
      */
     bool bus_is_stale;
 } hexagen_status;
 
-/** What the control loop published as one word, mode in the lower 8 bits and fault above. */
+/** Unpacks the status word of the control loop: mode in the lower 8 bits, fault above. */
 static inline hexagen_status hexagen_status_of(int32_t word, bool bus_is_stale)
 {
     hexagen_status status;
@@ -181,7 +180,7 @@ static inline hexagen_status hexagen_status_of(int32_t word, bool bus_is_stale)
 
 /* ---- Arithmetic -------------------------------------------------------------------------- */
 
-/** The two's complement word of these bits. */
+/** The two's complement word with these bits. */
 static inline int32_t hexagen_wrap(uint32_t bits)
 {
     return (bits <= UINT32_C(0x7fffffff)) ? (int32_t)bits : -1 - (int32_t)~bits;
@@ -199,19 +198,19 @@ static inline int32_t hexagen_shift_right(int32_t x, uint16_t shift)
     return (x >= 0) ? (x >> shift) : ~(~x >> shift);
 }
 
-/** floor(x / 2^shift), as a word: the quotient is known to fit. */
+/** floor(x / 2^shift) as a word; the quotient must fit. */
 static inline int32_t hexagen_shift_right_wide(int64_t x, uint16_t shift)
 {
     return (int32_t)((x >= 0) ? (x >> shift) : ~(~x >> shift));
 }
 
-/** Sum of two angles: a turn is 2^32, so that sums wrap. */
+/** Sum of two angles; wraps, as a turn is 2^32. */
 static inline int32_t hexagen_angle_add(int32_t a, int32_t b)
 {
     return hexagen_wrap((uint32_t)a + (uint32_t)b);
 }
 
-/** Difference of two angles: a turn is 2^32, so that differences wrap. */
+/** Difference of two angles; wraps, as a turn is 2^32. */
 static inline int32_t hexagen_angle_sub(int32_t a, int32_t b)
 {
     return hexagen_wrap((uint32_t)a - (uint32_t)b);
@@ -223,19 +222,19 @@ static inline int32_t hexagen_abs(int32_t x)
     return (x < 0) ? -x : x;
 }
 
-/** The lesser of the two. */
+/** Minimum. */
 static inline int32_t hexagen_min(int32_t a, int32_t b)
 {
     return (a < b) ? a : b;
 }
 
-/** The greater of the two. */
+/** Maximum. */
 static inline int32_t hexagen_max(int32_t a, int32_t b)
 {
     return (a > b) ? a : b;
 }
 
-/** `low` below `low`, `high` above `high`. */
+/** Clamps to `low` to `high`. */
 static inline int32_t hexagen_clamp(int32_t x, int32_t low, int32_t high)
 {
     return hexagen_min(hexagen_max(x, low), high);
@@ -254,7 +253,7 @@ static inline int32_t hexagen_mul_round(int32_t coefficient, int32_t signal, uin
     return hexagen_shift_right_wide((int64_t)coefficient * signal + half, shift);
 }
 
-/** As hexagen_mul_round, for products that fit a word together with their rounding. */
+/** Like hexagen_mul_round, for products that fit a word including their rounding. */
 static inline int32_t hexagen_mul_round_narrow(int32_t coefficient, int32_t signal, uint16_t shift)
 {
     return hexagen_shift_right(coefficient * signal + (INT32_C(1) << (shift - 1)), shift);
@@ -266,14 +265,14 @@ static inline int32_t hexagen_mul_floor(int32_t a, int32_t b, uint16_t shift)
     return hexagen_shift_right_wide((int64_t)a * b, shift);
 }
 
-/** floor((a b + c d) / 2^shift) of a sum that fits 64 bits. */
+/** floor((a b + c d) / 2^shift) for a sum that fits 64 bits. */
 static inline int32_t hexagen_mul_add_floor(
     int32_t a, int32_t b, int32_t c, int32_t d, uint16_t shift)
 {
     return hexagen_shift_right_wide((int64_t)a * b + (int64_t)c * d, shift);
 }
 
-/** min(a b, limit) for factors that are not negative; the product may exceed the word. */
+/** min(a b, limit) for non-negative factors; the product may exceed the word. */
 static inline int32_t hexagen_mul_limited(int32_t a, int32_t b, int32_t limit)
 {
     const int64_t product = (int64_t)a * b;
@@ -281,12 +280,12 @@ static inline int32_t hexagen_mul_limited(int32_t a, int32_t b, int32_t limit)
 }
 
 /**
- * min(floor(numerator 2^shift / denominator), limit) for a numerator and a limit that are not
- * negative, and a denominator of at least 1. For paths off the normal one.
+ * min(floor(numerator 2^shift / denominator), limit) for a non-negative numerator and limit, and a
+ * denominator of at least 1. For use off the normal path.
  */
 int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift);
 
-/** As hexagen_divide, where the shifted numerator fits 32 bits. */
+/** Like hexagen_divide, for a shifted numerator that fits 32 bits. */
 static inline int32_t hexagen_divide_narrow(
     int32_t numerator, int32_t denominator, int32_t limit, uint16_t shift)
 {
@@ -294,34 +293,34 @@ static inline int32_t hexagen_divide_narrow(
     return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
 }
 
-/** floor((2^32 - 1) / ticks): the angle per tick, where a turn, 2^32, lasts `ticks`, at least 2. */
+/** floor((2^32 - 1) / ticks): angle per tick if a turn, 2^32, lasts `ticks`, at least 2. */
 static inline int32_t hexagen_turn_over(int32_t ticks)
 {
     return (int32_t)(UINT32_C(0xffffffff) / (uint32_t)ticks);
 }
 
-/** Which of `segments` equal parts of a turn the angle lies in, from 0. */
+/** Index, from 0, of the one of `segments` equal parts of a turn that contains the angle. */
 static inline int32_t hexagen_angle_index(int32_t angle, uint32_t segments)
 {
     return (int32_t)(((uint64_t)(uint32_t)angle * segments) >> 32);
 }
 
-/** The position within that part, 2^31 being its whole width. */
+/** Position within that part; its width is 2^31. */
 static inline int32_t hexagen_angle_fraction(int32_t angle, uint32_t segments)
 {
     return (int32_t)((uint32_t)((uint32_t)angle * segments) >> 1);
 }
 
-/** A number of thousandths as a number with 16 fraction bits, to the nearest; saturates. */
+/** Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates. */
 int32_t hexagen_thousandths(int32_t number);
 
-/** A whole number as a number with 16 fraction bits; saturates. */
+/** An integer as a number with 16 fraction bits; saturates. */
 int32_t hexagen_whole(int32_t number);
 
 /* ---- Supervision ------------------------------------------------------------------------- */
 
 /**
- * What a drive's samples are judged by, and how it starts up. Words of current are ADC counts with
+ * Limits of a drive's samples, and its start-up times. Words of current are ADC counts with
  * `current_bits` fraction bits.
  */
 typedef struct {
@@ -329,29 +328,31 @@ typedef struct {
     uint16_t adc_max;
     /** Whether counts fall with the current into the motor. */
     bool adc_inverted;
-    /** Fraction bits of currents. */
+    /** Fraction bits of words of current. */
     uint16_t current_bits;
     /** ADC count at zero current before calibration. */
     uint16_t offset;
     /** Least and greatest offset that calibration accepts, counts. */
     uint16_t offset_least;
     uint16_t offset_most;
-    /** Largest phase current, words of current: one above it trips. */
+    /** Trip level, words of current: a phase current above it trips. */
     int32_t trip;
-    /** Least and greatest current of any count at any accepted offset, words of current. */
+    /** Least and greatest current over all counts and accepted offsets, words of current. */
     int32_t current_least;
     int32_t current_most;
-    /** Base-2 logarithm of the samples of a calibration. */
+    /** Base-2 logarithm of the number of calibration samples. */
     uint16_t calibration_log2;
-    /** Control periods of bootstrap pre-charge; 0 where there is none. */
+    /** Control periods of bootstrap pre-charge; 0 for none. */
     uint16_t precharge_periods;
-    /** Control periods without a Hall edge under demand that are a stall; 0 where none count. */
+    /**
+     * Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
+     */
     int32_t stall_periods;
 } hexagen_limits;
 
 /**
- * Defines constant limits of this name, and refuses to compile where they contradict each other or
- * a sum or a current of theirs does not fit 32 bits.
+ * Defines constant limits with this name. Does not compile if they contradict each other, or if a
+ * sum or a current does not fit 32 bits.
  */
 #define HEXAGEN_LIMITS(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
@@ -364,7 +365,7 @@ typedef struct {
         offset_least, offset_most, trip, current_least, current_most, calibration_log2, \
         precharge_periods, stall_periods }
 
-/** Whether limits hold; phase c is the negative sum of two currents. */
+/** Whether limits are valid; phase c is the negative sum of two currents. */
 #define HEXAGEN_LIMITS_HOLD(adc_max, inverted, bits, offset, least, most, trip, low, high, log2, \
     stall) \
     ((bits) < 31 && (log2) < 16 && (adc_max) > 1 && (least) <= (offset) && (offset) <= (most) \
@@ -381,7 +382,7 @@ typedef struct {
     (((inverted) ? (most) : (adc_max) - (least)) * (INT64_C(1) << ((bits) & 31)))
 
 /**
- * The supervisor of a drive: its mode, its first fault, the offsets of its current ADCs.
+ * The supervisor of a drive: mode, first fault, offsets of the current ADCs.
  *
  * It trips on what samples show: a current above the trip level, a current ADC at an end of its
  * range, an invalid Hall code, and where told to, a rotor that stands. It cannot see, and nothing
@@ -403,9 +404,9 @@ typedef struct {
     hexagen_fault fault;
     /** Periods left in calibration or pre-charge. */
     uint16_t countdown;
-    /** Hall code of the last sample that had one, where a stall is watched for; 0 before. */
+    /** Last valid Hall code, if stalls are detected; 0 before the first. */
     uint16_t hall_prev;
-    /** Periods without a Hall edge under demand. */
+    /** Periods under demand since the last Hall edge. */
     int32_t stall_count;
     /** Sums of calibration samples, counts. */
     int32_t sum_a;
@@ -416,20 +417,20 @@ typedef struct {
 } hexagen_supervisor;
 
 /**
- * A sample that the supervisor has looked at: what a law goes by. Only hexagen_check and
- * hexagen_rest make one; its currents lie within `current_least` and `current_most` of the limits.
+ * A sample that has passed the supervisor: the input of a law. Only hexagen_check and hexagen_rest
+ * make one; its currents lie within `current_least` and `current_most` of the limits.
  */
 typedef struct {
     /** Currents of phases a and b into the motor, words of current. */
     int32_t i_a;
     int32_t i_b;
-    /** Hall code, 1 to 6; at rest 0 where the sensors gave none. */
+    /** Hall code, 1 to 6; 0 only at rest, if it was invalid. */
     int32_t hall;
     /** Ticks since the last Hall edge, 0 to 65535. */
     int32_t hall_ticks;
 } hexagen_checked;
 
-/** A phase current in words of current: `count` less `offset`, a word of current. */
+/** A phase current in words of current; `offset` is a word of current, too. */
 static inline int32_t hexagen_current(const hexagen_limits *limits, uint16_t count, int32_t offset)
 {
     const uint32_t word = (uint32_t)count << limits->current_bits;
@@ -443,7 +444,7 @@ static inline bool hexagen_is_at_end(const hexagen_limits *limits, uint16_t coun
     return count == 0U || count >= limits->adc_max;
 }
 
-/** Whether three Hall sensors can give the code: 001 to 110. */
+/** Whether the Hall code is valid: 001 to 110. */
 static inline bool hexagen_is_hall_code(uint16_t hall)
 {
     return hall >= 1U && hall <= 6U;
@@ -457,14 +458,14 @@ static inline bool hexagen_is_over(const hexagen_limits *limits, int32_t i_a, in
         || hexagen_exceeds(i_c, limits->trip);
 }
 
-/** Whether the rotor has stood for too long. */
+/** Whether the stall time-out has passed. */
 static inline bool hexagen_is_stalled(
     const hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
     return limits->stall_periods != 0 && supervisor->stall_count == limits->stall_periods;
 }
 
-/** Counts periods without a Hall edge under demand; true where they are a stall. */
+/** Counts periods without a Hall edge under demand; true on a stall. */
 static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     uint16_t sampled, const volatile int32_t *set_point)
 {
@@ -485,9 +486,9 @@ static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hex
 }
 
 /**
- * Whether the period is controlled, by the checked sample. False where the drive rests in this
- * period: it is starting up or tripped, or the sample has a fault; then hexagen_rest is to be
- * called with the same sample. `set_point` is 0 where nothing is demanded of the motor.
+ * Whether the period is controlled, with the checked sample. False if the drive rests in this
+ * period: it is starting up or tripped, or the sample has a fault; then call hexagen_rest with the
+ * same sample. `set_point` is 0 if no current is demanded.
  */
 static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)
@@ -503,28 +504,30 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
 }
 
 /**
- * The supervisor of a drive that controls currents from its first period on, with nominal offsets.
+ * A supervisor that allows control from the first period on, with nominal offsets.
  */
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
 /**
- * A period without control, behind a hexagen_check that said so: goes on with start-up, trips where
- * there is a fault, and says what all legs do. The checked sample has its counts held within the
- * ADC's range, and Hall code 0 where there was none.
+ * A period without control, after hexagen_check returned false: continues start-up, trips on a
+ * fault, and returns the state of all legs. In the checked sample, counts are clamped to the ADC's
+ * range, and an invalid Hall code is 0.
  */
 HEXAGEN_COLD hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, hexagen_checked *checked);
 
 /**
- * Clears a trip; keeps calibrated offsets. False, and nothing done, while calibrating and
- * pre-charging.
+ * Clears a trip; keeps calibrated offsets. False, without effect, during calibration and
+ * pre-charge.
  */
 bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
 /** Starts calibration; ignored when tripped. */
 void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
-/** Starts pre-charge; ignored when tripped, while calibrating, and where there is none. */
+/**
+ * Starts pre-charge; ignored when tripped, while calibrating, and if the specification has none.
+ */
 void hexagen_precharge(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
 /** Mode and fault in one word, as the control loop publishes them. */
@@ -536,44 +539,43 @@ static inline int32_t hexagen_status_word(const hexagen_supervisor *supervisor)
 /* ---- Bus voltage ------------------------------------------------------------------------- */
 
 /**
- * A bus voltage that is told, as two words that are replaced as one, seen from other contexts of
- * the same core: two banks, of which one is published. A reader that interrupts a call gets the old
- * words whole.
+ * A measured bus voltage as two words that are replaced together, while other contexts of the same
+ * core may read: two banks, one of them published. A reader that interrupts a call gets both old
+ * words.
  */
 typedef struct {
     volatile int32_t banks[2][2];
-    /** The bank that is read. */
+    /** The published bank. */
     volatile int32_t published;
-    /** Not 0: a call is at it, and has so many control periods left. */
+    /** Control periods left of a call in progress; 0 for none. */
     volatile int32_t storing;
     /** Not 0: a call took effect since the last control period. */
     volatile int32_t told;
-    /** Control periods until the voltage is stale; the control loop's own. */
+    /** Control periods until the voltage is stale; written by the control loop only. */
     volatile int32_t left;
 } hexagen_bus;
 
-/** Control periods after which a call that has not ended counts as given up. */
+/** Control periods after which an unfinished call is given up. */
 #define HEXAGEN_GIVEN_UP INT32_C(65536)
 
-/** A voltage that was not told yet, with the nominal one's words. */
+/** Initial state, with the words of the nominal voltage. */
 void hexagen_start_bus(hexagen_bus *bus, int32_t first, int32_t second);
 
 /**
- * Replaces both words together. A call that interrupts another one has no effect; one that was
- * interrupted for good keeps later calls from having an effect for HEXAGEN_GIVEN_UP control
- * periods.
+ * Replaces both words together. A call that interrupts another one has no effect; one that never
+ * resumes after an interruption blocks later calls for HEXAGEN_GIVEN_UP control periods.
  */
 void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second);
 
-/** The words last told. */
+/** The words of the last call. */
 static inline const volatile int32_t *hexagen_bus_words(const hexagen_bus *bus)
 {
     return bus->banks[(bus->published == 0) ? 0 : 1];
 }
 
 /**
- * A control period begins: the voltage is that much older, and so is a call that has not come to
- * its end. It is stale where `periods` of them pass without a call that takes effect.
+ * Called at each control period: ages the voltage, and a call in progress. The voltage is stale
+ * after `periods` of them without a call that takes effect.
  */
 static inline void hexagen_pass_period(hexagen_bus *bus, int32_t periods)
 {
@@ -598,12 +600,12 @@ static inline bool hexagen_bus_is_stale(const hexagen_bus *bus)
     return bus->left == 0;
 }
 
-/* ---- Signals for people ------------------------------------------------------------------ */
+/* ---- Signals ------------------------------------------------------------------------------ */
 
-/** A word of what there is not. */
+/** Marks a word without a value. */
 #define HEXAGEN_NONE INT32_MIN
 
-/** What a law believes of the motor, in its own words; HEXAGEN_NONE of what it does not know. */
+/** Estimates of a law, in its own words; HEXAGEN_NONE for those it does not make. */
 typedef struct {
     /** EMF of phases a and b, words of voltage. */
     int32_t e_a;
@@ -612,49 +614,49 @@ typedef struct {
     int32_t speed;
 } hexagen_observation;
 
-/** The observation of a law that tells nothing. */
+/** The observation of a law without estimates. */
 #define HEXAGEN_UNOBSERVED { HEXAGEN_NONE, HEXAGEN_NONE, HEXAGEN_NONE }
 
 /*
- * Where HEXAGEN_SIGNALS is defined, for all files of a program alike: the look whether somebody
- * asks takes some ten instructions of every control period, and a drive 40 bytes more.
+ * If HEXAGEN_SIGNALS is defined, in all files of a program alike. The test for a request takes some
+ * ten instructions of every control period, and a drive 40 bytes more.
  */
 #ifdef HEXAGEN_SIGNALS
 
 /**
- * What a drive saw, believed and commanded in one control period: numbers with 16 fraction bits,
- * which saturate at 32768 to both sides.
+ * Measurements, estimates and command of one control period: numbers with 16 fraction bits, which
+ * saturate at +-32768.
  */
 typedef struct {
     /** Currents of phases a, b, c into the motor at the begin of the period, ampere. */
     int32_t currents[3];
     /**
-     * Mean terminal voltages that the period commands, for the next one with `delay: 1`, volt
-     * against the negative rail at the nominal bus; 0 of a leg that is off.
+     * Mean terminal voltages of the command (with `delay: 1` in effect in the next period), volt
+     * against the negative rail at the nominal bus; 0 for a leg that is off.
      */
     int32_t voltages[3];
     /** Whether the legs are off. */
     bool is_off[3];
     /**
-     * Whether the law works an EMF out, and that of phases a, b, c which it expects in the period
-     * in which the command takes effect (PHCC: in the one that begins), volt; else 0.
+     * Whether the law estimates the EMF, and that of phases a, b, c in the period in which the
+     * command takes effect (PHCC: in the current one), volt; else 0.
      */
     bool has_emf;
     int32_t emf[3];
-    /** Whether the law follows Hall edges, and the speed in rpm, forward positive; 0 if unknown. */
+    /** Whether the law measures the speed, and the speed in rpm, forward positive; 0 if unknown. */
     bool has_speed;
     int32_t speed;
     /** Sector 1 to 6. */
     uint16_t sector;
 } hexagen_signals;
 
-/** What a word stands for: a factor with 16 fraction bits, times 2^shift; shift is 1 to 62. */
+/** Unit of a word: a factor with 16 fraction bits, times 2^shift; shift is 1 to 62. */
 typedef struct {
     int32_t factor;
     uint16_t shift;
 } hexagen_unit;
 
-/** Units of what a drive tells of itself. */
+/** Units of a drive's signals. */
 typedef struct {
     /** Ampere per word of current. */
     hexagen_unit ampere;
@@ -664,38 +666,38 @@ typedef struct {
     hexagen_unit volt_per_count;
     /** Revolutions per minute per word of speed. */
     hexagen_unit rpm;
-    /** Sector 1 to 6 by Hall code; 0 for codes that cannot be. */
+    /** Sector 1 to 6 by Hall code; 0 for invalid codes. */
     uint16_t sectors[8];
 } hexagen_units;
 
 /**
- * Where the words of a period go over. The control loop writes while it is asked, and at no other
- * time; the main program writes while it is not, and reads while it is answered. Neither side ever
- * waits for the other.
+ * Hands the words of a period from the control loop to the main program. The control loop writes
+ * only while they are requested; the main program writes only while they are not, and reads only
+ * after the answer. Neither side waits for the other.
  */
 typedef struct {
     /**
-     * 0: nobody has asked. 1: the next controlled period's words are wanted. 2: they are there.
-     * 3: they are being taken.
+     * 0: idle. 1: words of the next controlled period are requested. 2: answered. 3: the main
+     * program is reading.
      */
     volatile int32_t turn;
     volatile int32_t words[9];
 } hexagen_port;
 
-/** A port at which nobody has asked. */
+/** A port without a request. */
 void hexagen_start_port(hexagen_port *port);
 
-/** Whether the words of this period are wanted. */
+/** Whether the words of this period are requested. */
 static inline bool hexagen_is_asked(const hexagen_port *port)
 {
     return port->turn == 1;
 }
 
-/** Answers with the words of this period; by value, so that they stand in memory on this path alone. */
+/** Answers with the words of this period; by value, so that they use memory on this path only. */
 HEXAGEN_COLD void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs legs,
     hexagen_observation observation);
 
-/** The signals that are there; else asks for those of the next controlled period. */
+/** The signals, if answered; else requests those of the next controlled period. */
 bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signals *signals);
 
 #endif

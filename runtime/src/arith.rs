@@ -1,10 +1,11 @@
 //! The integer primitives of emitted code, besides the operators of [`Word`].
 //!
-//! Each is exact where its arguments are as it says; for no argument does it panic. None has a loop or
-//! a float, nor a panic path from `opt-level = 1` on, and only those divide whose names say so. Coefficients, shifts and segments are constants in emitted code; with those none
-//! asks for a branch, but [`divide`] on cores of 32 bits. The generator proves that every result fits its
-//! word; the `_narrow` forms are chosen where the product (or dividend) itself fits 32 bits, which saves a
-//! 64-bit product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
+//! Each is exact for arguments within the stated ranges; none panics for any argument. None has a
+//! loop or a float, nor, from `opt-level = 1` on, a panic path; only those with `divide` in their
+//! names divide. Coefficients, shifts and segments are constants in emitted code; with constants
+//! none needs a branch, except [`divide`] on 32-bit cores. The generator proves that every result
+//! fits its word; it uses the `_narrow` forms where the product (or dividend) fits 32 bits, which
+//! saves a 64-bit product on small cores. On a Cortex-M4 `mul_round(c, x, 32)` is one SMMULR.
 #![expect(
     clippy::inline_always,
     reason = "each is a handful of instructions, and firmware is debugged unoptimised, too"
@@ -24,12 +25,14 @@ pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
     Word(product.wrapping_add(half).wrapping_shr(shift) as i32)
 }
 
-/// [`mul_round`] for cores without a carry flag, where a sum of 64 bits takes long; `coefficient` is a constant there.
+/// [`mul_round`] for cores without a carry flag, where a 64-bit sum is slow; `coefficient` is a
+/// constant there.
 #[doc(hidden)]
 #[inline(always)]
 #[must_use]
 pub fn mul_round_without_carry(coefficient: Word, signal: Word, shift: u32) -> Word {
-    // Where twice the coefficient fits a word, the upper word of its product is the result and the bit below it.
+    // If twice the coefficient fits a word, the upper word of its product is the result and the bit
+    // below it.
     if shift == 32 && coefficient.0.unsigned_abs() < 1 << 30 {
         let twice = i64::from(coefficient.0 << 1).wrapping_mul(i64::from(signal.0));
         return (Word((twice >> 32) as i32) + 1) >> 1;
@@ -39,7 +42,7 @@ pub fn mul_round_without_carry(coefficient: Word, signal: Word, shift: u32) -> W
     Word(product.wrapping_shr(shift) as i32) + (below & 1) as i32
 }
 
-/// As [`mul_round`], for products that fit 32 bits together with their rounding. `shift` is 1 to 30.
+/// [`mul_round`] for products that fit 32 bits including their rounding. `shift` is 1 to 30.
 #[inline(always)]
 #[must_use]
 pub fn mul_round_narrow(coefficient: Word, signal: Word, shift: u32) -> Word {
@@ -54,7 +57,7 @@ pub fn mul_floor(a: Word, b: Word, shift: u32) -> Word {
     Word(product.wrapping_shr(shift) as i32)
 }
 
-/// `floor((a b + c d) / 2^shift)` of a sum that fits 64 bits: equal sums give equal words, however they part into products.
+/// `floor((a b + c d) / 2^shift)` for a sum that fits 64 bits: depends on the sum only.
 #[inline(always)]
 #[must_use]
 pub fn mul_add_floor(a: Word, b: Word, c: Word, d: Word, shift: u32) -> Word {
@@ -63,7 +66,7 @@ pub fn mul_add_floor(a: Word, b: Word, c: Word, d: Word, shift: u32) -> Word {
     Word(first.wrapping_add(second).wrapping_shr(shift) as i32)
 }
 
-/// `min(a b, limit)` for factors that are not negative; the product may exceed the word.
+/// `min(a b, limit)` for non-negative factors; the product may exceed the word.
 #[inline(always)]
 #[must_use]
 pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
@@ -71,24 +74,25 @@ pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
     Word(product.min(i64::from(limit.0)) as i32)
 }
 
-/// `min(floor(numerator 2^shift / denominator), limit)`, numerator not negative, denominator at least
-/// 1, limit not negative. `shift` is 0 to 31. For paths off the normal one.
+/// `min(floor(numerator 2^shift / denominator), limit)`, numerator and limit not negative,
+/// denominator at least 1. `shift` is 0 to 31. For use off the normal path.
 #[inline(always)]
 #[must_use]
 pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
     if cfg!(not(target_pointer_width = "64")) {
         return divide_by_digits(numerator, denominator, limit, shift);
     }
-    // The proven lower limit, repeated where the compiler sees it: no division by zero to check. Where
-    // it does not look, `checked_div` has no panic path either.
+    // The proven lower limit, repeated for the compiler, which then needs no check for division by
+    // zero. Unoptimised, `checked_div` has no panic path either.
     let denominator = denominator.0.max(1) as u64;
     let numerator = (numerator.0 as u32 as u64).wrapping_shl(shift);
     let quotient = numerator.checked_div(denominator).unwrap_or(0);
     Word(quotient.min(limit.0 as u32 as u64) as i32)
 }
 
-/// [`divide`] for cores that divide 32 bits, where their library takes hundreds of instructions for 64: two digits of 16
-/// bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D).
+/// [`divide`] for cores with a 32-bit divider, whose library takes hundreds of instructions for 64
+/// bits: two digits of 16 bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm
+/// D).
 #[doc(hidden)]
 #[inline(always)]
 #[must_use]
@@ -100,7 +104,7 @@ pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: 
         return limit;
     }
     let zeros = denominator.leading_zeros();
-    // `zeros` is at most 31; a plain shift by a variable is checked where nothing is optimised.
+    // `zeros` is at most 31; unoptimised, a plain shift by a variable is checked.
     let (dividend, divisor) = (
         numerator.wrapping_shl(zeros),
         denominator.wrapping_shl(zeros),
@@ -111,12 +115,13 @@ pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: 
     Word(quotient.min(limit.0 as u32) as i32)
 }
 
-/// Quotient, below 2^16, and rest of `above 2^16 + next` and a divisor above `above` with its highest bit set.
+/// Quotient, below 2^16, and remainder of `above 2^16 + next` and a divisor above `above` with its
+/// highest bit set.
 #[inline(always)]
 fn divide_digit(above: u32, next: u16, divisor: u32) -> (u32, u32) {
-    // What is known of the divisor, repeated where the compiler sees it.
+    // The divisor's proven range, repeated for the compiler.
     let (top, bottom) = (divisor >> 16 | 0x8000, divisor & 0xffff);
-    // By the divisor's upper half alone the digit is up to two too large.
+    // An estimate by the divisor's upper half alone is up to two too large.
     let mut digit = above.checked_div(top).unwrap_or(0);
     let mut rest = above.wrapping_sub(digit.wrapping_mul(top));
     let is_too_large =
@@ -132,7 +137,7 @@ fn divide_digit(above: u32, next: u16, divisor: u32) -> (u32, u32) {
     (digit, whole.wrapping_sub(digit.wrapping_mul(divisor)))
 }
 
-/// As [`divide`], where the shifted numerator fits 32 unsigned bits: one UDIV where the core has it.
+/// [`divide`] for a shifted numerator that fits 32 unsigned bits: one UDIV if the core has it.
 #[inline(always)]
 #[must_use]
 pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
@@ -142,8 +147,7 @@ pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32
     Word(quotient.min(limit.0 as u32) as i32)
 }
 
-/// `floor((2^32 - 1) / ticks)`: the angle per tick, one turn being 2^32, where a turn lasts
-/// `ticks`, at least 2.
+/// `floor((2^32 - 1) / ticks)`: angle per tick if a turn, 2^32, lasts `ticks`, at least 2.
 #[inline(always)]
 #[must_use]
 pub fn turn_over(ticks: Word) -> Word {
@@ -151,16 +155,17 @@ pub fn turn_over(ticks: Word) -> Word {
     Word(u32::MAX.checked_div(ticks).unwrap_or(0) as i32)
 }
 
-/// Which of `segments` equal parts of a turn the angle lies in, from 0. `segments` is 1 to 65536.
+/// Index, from 0, of the one of `segments` equal parts of a turn that contains the angle.
+/// `segments` is 1 to 65536.
 ///
-/// Angles are words that wrap: one turn is 2^32, so `theta + advance` needs no care.
+/// Angles wrap at 2^32, one turn, so `theta + advance` needs no modulo.
 #[inline(always)]
 #[must_use]
 pub fn angle_index(angle: Word, segments: u32) -> Word {
     Word(((angle.0 as u32 as u64).wrapping_mul(segments as u64) >> 32) as i32)
 }
 
-/// The position within that part, 2^31 being its whole width. `segments` is 1 to 65536.
+/// Position within that part; its width is 2^31. `segments` is 1 to 65536.
 #[inline(always)]
 #[must_use]
 pub fn angle_fraction(angle: Word, segments: u32) -> Word {
@@ -183,7 +188,7 @@ pub fn row<T, const N: usize>(rows: &[T; N], index: Word) -> &T {
     &rows[index.0 as usize & (N - 1)]
 }
 
-/// `then` where the condition holds, else `otherwise`; both are evaluated.
+/// `then` if the condition holds, else `otherwise`; both are evaluated.
 #[inline(always)]
 #[must_use]
 pub fn select<T>(condition: bool, then: T, otherwise: T) -> T {

@@ -1,25 +1,25 @@
-//! The bus voltage that a drive goes by: its specification's, or one that it is told.
+//! The bus voltage of a drive: fixed by its specification, or measured.
 
 use crate::arith::Word;
 use crate::bus_watch::BusWatch;
 use crate::double_buffer::DoubleBuffer;
 use core::fmt::Debug;
 
-/// Where a drive has its bus voltage from.
+/// Source of a drive's bus voltage.
 pub trait Bus: Debug + Send + Sync + 'static {
-    /// What a step reads of it.
+    /// Words of the voltage.
     type Words: Copy;
-    /// The words last told.
+    /// Words of the last call.
     fn read(&self) -> Self::Words;
-    /// Replaces them together; false where the call interrupts another one, and does nothing.
+    /// Replaces them together; false, without effect, if the call interrupts another one.
     fn tell(&self, words: Self::Words) -> bool;
-    /// A control period has passed.
+    /// Ages the voltage by a control period.
     fn pass_period(&self);
-    /// Whether no call took effect for long.
+    /// Whether the last call that took effect is too old.
     fn is_stale(&self) -> bool;
 }
 
-/// A voltage that the specification fixes: no word at all.
+/// A voltage fixed by the specification: no words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedBus;
 
@@ -43,8 +43,8 @@ impl Bus for FixedBus {
     }
 }
 
-/// A voltage that is told by `set_bus`, as `N` words that belong together; stale where `PERIODS`
-/// control periods pass without a call that takes effect, and until the first.
+/// A voltage set by `set_bus`, as `N` words that belong together; stale before the first call, and
+/// after `PERIODS` control periods without a call that takes effect.
 #[derive(Debug)]
 pub struct ToldBus<const N: usize, const PERIODS: i32> {
     words: DoubleBuffer<N>,
@@ -52,7 +52,7 @@ pub struct ToldBus<const N: usize, const PERIODS: i32> {
 }
 
 impl<const N: usize, const PERIODS: i32> ToldBus<N, PERIODS> {
-    /// A voltage that was not told yet, with the nominal one's words.
+    /// Initial state, with the words of the nominal voltage.
     #[must_use]
     pub const fn new(words: [Word; N]) -> Self {
         Self {

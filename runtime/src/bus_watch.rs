@@ -1,18 +1,18 @@
-//! Whether the bus voltage goes on being told.
+//! Age of the measured bus voltage.
 
 use crate::arith::Word;
 use crate::double_buffer::Place;
 use core::sync::atomic::AtomicI32;
 
-/// Counts control periods since `set_bus` last took effect, of a drive that is told its bus voltage.
+/// Counts control periods since `set_bus` last took effect.
 ///
-/// [`told`](Self::told) from any context; [`pass_period`](Self::pass_period) from the control loop
-/// alone, once a period. Nothing of it is lost to an interrupt of either by the other.
+/// [`told`](Self::told) may be called from any context; [`pass_period`](Self::pass_period) by the
+/// control loop only, once a period. An interrupt between the two loses neither.
 #[derive(Debug)]
 pub(crate) struct BusWatch(Watch<AtomicI32>);
 
 impl BusWatch {
-    /// The watch of a drive that was never told: stale.
+    /// Initial state: stale.
     #[must_use]
     pub(crate) const fn new() -> Self {
         Self(Watch {
@@ -27,7 +27,7 @@ impl BusWatch {
         self.0.told();
     }
 
-    /// A control period has passed; the voltage is stale where `periods` of them have since it was told.
+    /// A control period has passed; the voltage is stale after `periods` of them without a call.
     #[inline]
     pub(crate) fn pass_period(&self, periods: Word) {
         self.0.pass_period(periods.0);
@@ -45,13 +45,13 @@ impl BusWatch {
 pub(crate) const NO: i32 = 0;
 const YES: i32 = 1;
 
-/// The watch over any kind of place.
+/// The watch over any kind of memory cell.
 #[derive(Debug)]
 pub(crate) struct Watch<P> {
-    /// Set where the voltage is told, cleared where that is seen: a count that both sides write would
-    /// lose what is told between its load and its store.
+    /// Set by `set_bus`, cleared by the control loop: a count that both sides write would lose a
+    /// call between the control loop's load and store.
     pub(crate) told: P,
-    /// Periods until the voltage is stale; the control loop's own.
+    /// Periods until the voltage is stale; written by the control loop only.
     pub(crate) left: P,
 }
 

@@ -1,6 +1,6 @@
-//! What a control period commands the inverter to do.
+//! Commands of a control period to the inverter.
 
-/// What a leg of the inverter does.
+/// State of an inverter leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
@@ -15,7 +15,7 @@ pub enum LegState {
 }
 
 impl LegState {
-    /// The state of a number: 0 pulsed, 1 low, else off.
+    /// The state with this number: 0 pulsed, 1 low, else off.
     #[inline]
     #[must_use]
     pub const fn from_number(number: i32) -> Self {
@@ -27,19 +27,19 @@ impl LegState {
     }
 }
 
-/// A command of one control period. A drive at rest commands all legs alike.
+/// Command of one control period. At rest, all legs are in the same state.
 pub trait Command: Copy + 'static {
-    /// The command of a whole period in which all legs are in one state, without pulses.
+    /// The command that keeps all legs in one state for the whole period, without pulses.
     fn at_rest(state: LegState) -> Self;
-    /// Timer counts for which the upper switches of legs a, b, c are on; none of a leg that is off
-    /// for the whole period.
+    /// Timer counts for which the upper switches of legs a, b, c are on; `None` for a leg that is
+    /// off for the whole period.
     fn on(self) -> [Option<u16>; 3];
 }
 
 /// Compare values for a centre-aligned timer and a state per leg.
 ///
 /// A compare value is the time for which the upper switch is on, timer counts from 0 to the timer's
-/// period. It is 0 for a leg that is not pulsed. All of it is one word of 64 bits, which functions
+/// period; 0 for a leg that is not pulsed. The whole command is one 64-bit word, which functions
 /// return in two registers of a small core.
 ///
 /// ```
@@ -70,7 +70,7 @@ impl Legs {
         Self(low as u64 | (high as u64) << 32)
     }
 
-    /// All legs alike, without pulses.
+    /// All legs in the same state, without pulses.
     #[inline]
     #[must_use]
     pub const fn all(state: LegState) -> Self {
@@ -96,8 +96,8 @@ impl Legs {
         ]
     }
 
-    /// States of legs a, b, c in two bits each, a's lowest: the place in a table of what a timer's
-    /// output enables take.
+    /// States of legs a, b, c in two bits each, a's lowest: an index for a table of the timer's
+    /// output enables.
     #[inline]
     #[must_use]
     pub const fn states(self) -> u16 {
@@ -111,7 +111,7 @@ impl Legs {
         self.0
     }
 
-    /// The legs of a word as [`to_bits`](Self::to_bits) gives it; of other words, what they read as.
+    /// The legs with the bits of [`to_bits`](Self::to_bits).
     #[inline]
     #[must_use]
     pub const fn from_bits(bits: u64) -> Self {
@@ -167,7 +167,7 @@ impl defmt::Format for Legs {
 /// Up to three intervals of one period with a state per leg each, for modulators that turn legs off
 /// and on within a period. Inverters need output enables that change by a compare event.
 ///
-/// Instants are timer counts from the begin of the period, none before the last. A pulsed leg has
+/// Instants are timer counts from the beginning of the period, in ascending order. A pulsed leg has
 /// its upper switch on for the whole interval.
 ///
 /// ```
@@ -177,7 +177,7 @@ impl defmt::Format for Legs {
 /// let two = Intervals::new([900, 1500, 1800], [[Pulsed, Low, Off], [Low; 3], [Pulsed, Off, Off]]);
 /// assert_eq!(two.state()[0], [Pulsed, Low, Off]);
 /// assert_eq!(two.on(), [Some(1200), Some(0), Some(0)]);
-/// // An instant before the last one counts as that.
+/// A descending instant counts as the one before.
 /// assert_eq!(Intervals::new([900, 100, 0], [[Off; 3]; 3]).ends(), [900; 3]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,7 +191,8 @@ impl Intervals {
     /// All legs off for the whole period: the safe command of a tripped drive.
     pub const OFF: Self = Self::new([0, 0, u16::MAX], [[LegState::Off; 3]; 3]);
 
-    /// Where the intervals end, the third with the period (or later, which is the same), and the states of legs a, b, c in each.
+    /// Ends of the intervals (the third at or after the end of the period), and states of legs a,
+    /// b, c in each.
     #[inline]
     #[must_use]
     pub const fn new([first, second, third]: [u16; 3], state: [[LegState; 3]; 3]) -> Self {
@@ -203,7 +204,7 @@ impl Intervals {
         }
     }
 
-    /// Where the intervals end, timer counts from the begin of the period.
+    /// Ends of the intervals, timer counts from the beginning of the period.
     #[inline]
     #[must_use]
     pub const fn ends(self) -> [u16; 3] {
@@ -237,7 +238,7 @@ impl Command for Intervals {
             let is_off = states.iter().all(|&state| state == LegState::Off);
             let pulsed = states.iter().zip(lengths);
             let pulsed = pulsed.filter(|(state, _)| **state == LegState::Pulsed);
-            // At most the third instant together.
+            // The sum is at most the third instant.
             let sum = pulsed.fold(0_u16, |sum, (_, length)| sum.wrapping_add(length));
             (!is_off).then_some(sum)
         };

@@ -1,8 +1,8 @@
-//! Tables of numbers among the constants of a drive.
+//! Constructors for tables of constants.
 
 use fixed::FixedI32;
 
-/// Pairs of fixed-point numbers from their bits; their type says the fraction bits.
+/// Pairs of fixed-point numbers from their bits; the type gives the fraction bits.
 ///
 /// ```
 /// use hexagen::fixed::types::I8F24;

@@ -1,17 +1,17 @@
-//! What a generated controller gives to the runtime: its constants, and the entries of its law.
+//! Interface of a generated controller to the runtime: constants and functions of its law.
 //!
-//! `hexagen::controller!` implements [`Control`] for the type that it emits; [`Drive`](crate::Drive)
-//! runs it. Options of the specification that bring calls of their own bring a trait each.
+//! `hexagen::controller!` implements [`Control`] for the type that it emits;
+//! [`Drive`](crate::Drive) runs it. Options that add calls have a trait each.
 
 use crate::arith::Word;
 use crate::bus::Bus;
 use crate::{Checked, Command, Format, Limits};
 
-/// The words that a law keeps from one control period to the next.
+/// State of a law: the words kept from one control period to the next.
 ///
 /// Derived for emitted code by `#[derive(hexagen::State)]`.
 pub trait State: Send + 'static {
-    /// The words of a drive that begins.
+    /// Initial state.
     const INITIAL: Self;
     /// Names of the words, in the order of [`words`](Self::words).
     const NAMES: &'static [&'static str];
@@ -26,12 +26,12 @@ pub trait State: Send + 'static {
 /// ```
 /// use hexagen::{Control, ControlLoop, DynLoop, Fault, Legs, Sample, SetPoint};
 ///
-/// /// What the PWM interrupt does, for any drive.
+/// The PWM interrupt, for any drive.
 /// fn interrupt<C: Control<Command = Legs>>(control: &mut ControlLoop<'_, C>, adc: [u16; 2], hall: u8) -> Legs {
 ///     control.step(&Sample::with_hall(adc, hall))
 /// }
 ///
-/// /// What the main program does meanwhile.
+/// The main program, for any drive.
 /// fn main_program<C: Control>(set_point: &SetPoint<C>) -> Result<(), Fault> {
 ///     set_point.set_current_ma(5_000);
 ///     set_point.status().fault.map_or(Ok(()), Err)
@@ -43,18 +43,18 @@ pub trait State: Send + 'static {
 /// }
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no controller",
-    label = "a type that `hexagen::controller!` makes is wanted here",
-    note = "`Drive<C>`, `SetPoint<C>` and `ControlLoop<C>` take the type that the macro emits as `C`"
+    message = "`{Self}` is not a controller",
+    label = "expected a type emitted by `hexagen::controller!`",
+    note = "`Drive<C>`, `SetPoint<C>` and `ControlLoop<C>` take the emitted type as `C`"
 )]
 pub trait Control: Sized + 'static {
-    /// What outlives a control period.
+    /// State of the law.
     type State: State;
-    /// What the law's tracking tells its step of the rotor.
+    /// The rotor's state that tracking passes to the step.
     type Rotor: Copy;
-    /// What a step commands: [`Legs`](crate::Legs), or [`Intervals`](crate::Intervals).
+    /// The command of a step: [`Legs`](crate::Legs), or [`Intervals`](crate::Intervals).
     type Command: Command;
-    /// The words of the bus voltage: [`FixedBus`](crate::FixedBus), or with `v_bus: measured`
+    /// Storage of the bus voltage: [`FixedBus`](crate::FixedBus), or with `v_bus: measured`
     /// [`ToldBus`](crate::ToldBus).
     type Bus: Bus;
 
@@ -62,34 +62,34 @@ pub trait Control: Sized + 'static {
     const NAME: &'static str;
     /// The specification with every default filled in: TOML, SI units.
     const SPEC: &'static str;
-    /// The fixed-point format of every kind of signals, coefficient and table.
+    /// Fixed-point formats of signals, coefficients and tables.
     const FORMATS: &'static [Format];
-    /// What samples are judged by, and how the drive starts up.
+    /// Limits of samples, and start-up times.
     const LIMITS: Limits;
-    /// Units of the words of an [`Observation`] and of commands.
+    /// Units of an [`Observation`] and of commands.
     const UNITS: Units;
-    /// The set-point word of a drive that begins: 0, or with `speed_loop: on` the greatest current.
+    /// Initial set-point word: 0, or with `speed_loop: on` the greatest current.
     const SET_POINT: Word;
-    /// The bus voltage of a drive that begins.
+    /// Initial bus voltage.
     const BUS: Self::Bus;
-    /// [`SpeedLoop::speed`] of a drive whose speed loop asks for the current; none of others. The macro
-    /// sets it wherever it implements `SpeedLoop`.
+    /// [`SpeedLoop::speed`] of a drive with a speed loop, else `None`. The macro sets it wherever
+    /// it implements `SpeedLoop`.
     const SPEED: Option<fn(Word) -> Word> = None;
-    /// [`MeasuredBus::bus`] of a drive that is told its bus voltage; none of others. The macro sets it
+    /// [`MeasuredBus::bus`] of a drive with a measured bus voltage, else `None`. The macro sets it
     /// wherever it implements `MeasuredBus`.
     const TOLD_BUS: Option<fn(Word) -> BusWords<Self>> = None;
 
-    /// The set-point word of a current: bits of a number with 16 fraction bits, ampere.
+    /// Set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;
-    /// The set-point word of a torque: bits of a number with 16 fraction bits, newton metres.
+    /// Set-point word of a torque: bits of a number with 16 fraction bits, newton metres.
     fn torque(bits: Word) -> Word;
 
-    /// Follows the rotor; every period, at rest too.
+    /// Tracks the rotor; called every period, also at rest.
     fn track(state: &mut Self::State, sample: &Checked) -> Self::Rotor;
-    /// A period without control: forgets what was commanded.
+    /// A period without control: clears the state of past commands.
     fn rest(state: &mut Self::State, sample: &Checked, rotor: Self::Rotor);
-    /// A controlled period. `observation` is for people and begins empty: what the law knows of the
-    /// motor it tells there, and where nobody asks nothing of it is left once this is inlined.
+    /// A controlled period. `observation`, initially empty, receives the law's estimates; unused
+    /// parts of it vanish once this is inlined.
     fn step(
         state: &mut Self::State,
         set_point: &Words<Self>,
@@ -102,29 +102,29 @@ pub trait Control: Sized + 'static {
 /// The words of a drive's bus voltage.
 pub type BusWords<C> = <<C as Control>::Bus as Bus>::Words;
 
-/// A drive whose current is asked for by a speed loop: `speed_loop: on`.
+/// A drive with a speed loop: `speed_loop: on`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no speed loop",
-    label = "`set_speed` wants a drive with `speed_loop: on`",
+    label = "`set_speed` needs a drive with `speed_loop: on`",
     note = "add `speed_loop: on` to the controller's options, or set a current or a torque"
 )]
 pub trait SpeedLoop: Control {
-    /// The set-point word of a speed: bits of a number with 16 fraction bits, rpm.
+    /// Set-point word of a speed: bits of a number with 16 fraction bits, rpm.
     fn speed(bits: Word) -> Word;
 }
 
-/// A drive that is told its bus voltage: `v_bus: measured`.
+/// A drive with a measured bus voltage: `v_bus: measured`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not told its bus voltage",
-    label = "`set_bus` wants a drive with `v_bus: measured`",
-    note = "add `v_bus: measured` and the ADC of the bus to the inverter, or leave the call out: this drive goes by the nominal voltage"
+    message = "`{Self}` has a fixed bus voltage",
+    label = "`set_bus` needs a drive with `v_bus: measured`",
+    note = "add `v_bus: measured` and the ADC of the bus to the inverter, or remove the call: this drive uses the nominal voltage"
 )]
 pub trait MeasuredBus: Control {
-    /// The words of a voltage, an ADC count.
+    /// Words of a voltage, from an ADC count.
     fn bus(counts: Word) -> BusWords<Self>;
 }
 
-/// What the main program last asked for, in words, as a step takes it.
+/// The main program's requests, as words for a step.
 #[derive(Debug)]
 pub struct Words<C: Control> {
     pub(crate) current: crate::shared::SharedWord,
@@ -133,14 +133,14 @@ pub struct Words<C: Control> {
 }
 
 impl<C: Control> Words<C> {
-    /// The current or torque that is asked for; with a speed loop the greatest that it may ask for.
+    /// Current or torque set-point; with a speed loop, the limit of its current.
     #[inline]
     #[must_use]
     pub fn current(&self) -> Word {
         self.current.load()
     }
 
-    /// The speed that is asked for.
+    /// Speed set-point.
     #[inline]
     #[must_use]
     pub fn speed(&self) -> Word
@@ -150,7 +150,7 @@ impl<C: Control> Words<C> {
         self.speed.load()
     }
 
-    /// The bus voltage that was told.
+    /// Words of the bus voltage.
     #[inline]
     #[must_use]
     pub fn bus(&self) -> BusWords<C> {
@@ -158,7 +158,7 @@ impl<C: Control> Words<C> {
     }
 }
 
-/// What a word of a law stands for: a factor in bits of a number with 16 fraction bits, shifted left.
+/// Unit of a word: a factor in bits of a number with 16 fraction bits, shifted left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
     /// The factor times 2^`shift`.
@@ -167,7 +167,7 @@ pub struct Unit {
     pub shift: u32,
 }
 
-/// Units of what a drive tells of itself.
+/// Units of a drive's signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
     /// Ampere per word of current.
@@ -178,15 +178,15 @@ pub struct Units {
     pub volt_per_count: Unit,
     /// Revolutions per minute per word of speed.
     pub rpm: Unit,
-    /// Sector 1 to 6 by Hall code; 0 for codes that cannot be.
+    /// Sector 1 to 6 by Hall code; 0 for invalid codes.
     pub sectors: [u8; 8],
 }
 
-/// What a law knows of the motor in one control period, in its own words.
+/// Estimates of a law in one control period, in its own words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Observation {
-    /// EMF of phases a and b, words of voltage, of a law that works one out.
+    /// EMF of phases a and b, words of voltage, if the law estimates it.
     pub emf: Option<[Word; 2]>,
-    /// Speed, forward positive, of a law that times the Hall edges; 0 while it is unknown.
+    /// Speed, forward positive, if the law measures it; 0 while unknown.
     pub speed: Option<Word>,
 }

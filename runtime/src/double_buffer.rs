@@ -1,7 +1,7 @@
-//! The double buffer through which words that belong together are handed to the control interrupt.
+//! Double buffer that passes words that belong together to the control interrupt.
 //!
-//! On one core an interrupt runs from its begin to its end between two accesses of what it
-//! interrupts. The tests put every operation between every two accesses of every other.
+//! On one core an interrupt runs to completion between two accesses of the context it interrupts.
+//! The tests run every operation between every two accesses of every other.
 
 #[cfg(test)]
 mod tests;
@@ -9,27 +9,27 @@ mod tests;
 use crate::arith::Word;
 use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
 
-/// `N` words that are replaced as one, seen from other contexts of the same core.
+/// `N` words that are replaced together, while other contexts of the same core may read.
 ///
-/// A store fills the bank that is not in use and then publishes it, so a read that interrupts it
-/// gets the old words whole. Order is kept by the compiler alone, which costs no barrier.
+/// A store fills the unused bank and then publishes it, so a read that interrupts it gets the old
+/// words. A compiler fence keeps the order, at no cost at run time.
 ///
-/// - Reads: from anywhere.
-/// - Stores: from anywhere; one that interrupts another store of the same buffer has no effect, and
-///   says so. One that was interrupted for good, as that of a task that was ended, keeps later ones
-///   from having an effect for [`GIVEN_UP`](Self::GIVEN_UP) control periods; if it does go on behind
-///   them, a read meanwhile may get words of two stores.
-/// - A store may interrupt a read, which gets the old or the new words whole. The next store fills
+/// - Reads: from any context.
+/// - Stores: from any context; one that interrupts another store of the same buffer has no effect,
+///   and returns false. A store that never resumes, as in a task that was killed, blocks later ones
+///   for [`GIVEN_UP`](Self::GIVEN_UP) control periods; if it does resume after them, a concurrent
+///   read may get words of two stores.
+/// - A store may interrupt a read, which gets either all old or all new words. The next store fills
 ///   the bank that the read began with: contexts that can interrupt the reader may store once per
 ///   read.
 #[derive(Debug)]
 pub struct DoubleBuffer<const N: usize>(Banks<AtomicI32, N>);
 
 impl<const N: usize> DoubleBuffer<N> {
-    /// Control periods after which a store that has not ended counts as given up.
+    /// Control periods after which an unfinished store is given up.
     pub const GIVEN_UP: i32 = 1 << 16;
 
-    /// A buffer that holds `words`.
+    /// A buffer with these words.
     #[must_use]
     pub const fn new(words: [Word; N]) -> Self {
         const { assert!(N > 0) };
@@ -49,20 +49,20 @@ impl<const N: usize> DoubleBuffer<N> {
         })
     }
 
-    /// The words last published.
+    /// The published words.
     #[inline]
     #[must_use]
     pub fn read(&self) -> [Word; N] {
         self.0.read()
     }
 
-    /// Replaces all words together; false where it interrupts another store, and does nothing.
+    /// Replaces all words together; false, without effect, if it interrupts another store.
     #[inline]
     pub fn store(&self, words: [Word; N]) -> bool {
         self.0.store(words, Self::GIVEN_UP)
     }
 
-    /// A control period has passed; called by the control loop.
+    /// Ages a store in progress by a control period; called by the control loop.
     #[inline]
     pub fn pass_period(&self) {
         self.0.pass_period();
@@ -72,10 +72,10 @@ impl<const N: usize> DoubleBuffer<N> {
 /// `published`: the first bank. Any other number is the second.
 const FIRST: i32 = 0;
 const SECOND: i32 = 1;
-/// `storing`: nobody is. Any other number: somebody is, and has so many periods left.
+/// `storing`: no store in progress. Any other number: periods left of one.
 const NO: i32 = 0;
 
-/// A place of a word that several contexts see.
+/// A memory cell that several contexts access.
 pub(crate) trait Place {
     fn load(&self) -> i32;
     fn store(&self, value: i32);
@@ -93,7 +93,7 @@ impl Place for AtomicI32 {
     }
 }
 
-/// The buffer over any kind of place.
+/// The buffer over any kind of memory cell.
 #[derive(Debug)]
 struct Banks<P, const N: usize> {
     first: [P; N],
@@ -112,8 +112,7 @@ impl<P: Place, const N: usize> Banks<P, N> {
         };
         compiler_fence(Ordering::Acquire);
         let mut words = [Word(0); N];
-        // Without iterators, here and below: they keep checks of their own where code is optimised for
-        // size.
+        // Without iterators, here and below: they keep bounds checks at `opt-level = "s"`.
         let mut index = 0;
         while let (Some(word), Some(place)) = (words.get_mut(index), bank.get(index)) {
             *word = Word(place.load());
@@ -124,7 +123,7 @@ impl<P: Place, const N: usize> Banks<P, N> {
 
     #[inline]
     fn store(&self, words: [Word; N], periods: i32) -> bool {
-        // An interrupted store would go on filling the bank that this one publishes.
+        // The interrupted store would go on filling the bank that this one publishes.
         if self.storing.load() != NO {
             return false;
         }

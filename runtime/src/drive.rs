@@ -1,4 +1,4 @@
-//! A drive: a controller with its supervisor and its set-point, whole or split into two halves.
+//! A drive: controller, supervisor and set-point, whole or split into two halves.
 
 use crate::arith::Word;
 use crate::bus::Bus;
@@ -7,10 +7,10 @@ use crate::{Command, Control, Legs, Observation, Sample, SetPoint, State, Status
 use core::fmt;
 use core::ops::Deref;
 
-/// A drive of the controller `C`, which `hexagen::controller!` has emitted.
+/// A drive with the controller `C`, emitted by `hexagen::controller!`.
 ///
-/// Firmware keeps it in a static and splits it: the main program has the [`SetPoint`], the control
-/// interrupt the [`ControlLoop`]. Kept whole it has the calls of both.
+/// Firmware keeps it in a static and splits it: the main program gets the [`SetPoint`], the control
+/// interrupt the [`ControlLoop`]. An unsplit drive has the calls of both.
 ///
 /// ```
 /// use hexagen::{Control, ControlLoop, Drive, SetPoint};
@@ -31,14 +31,14 @@ pub struct Drive<C: Control> {
     core: Core<C>,
 }
 
-/// What the control interrupt owns.
+/// The control interrupt's part.
 struct Core<C: Control> {
     supervisor: Supervisor,
     law: C::State,
 }
 
 impl<C: Control> Drive<C> {
-    /// A drive that was not run yet.
+    /// A drive in its initial state.
     #[must_use]
     pub const fn new() -> Self {
         const {
@@ -56,20 +56,20 @@ impl<C: Control> Drive<C> {
         }
     }
 
-    /// The two halves: the main program has the set-point, an interrupt the control loop.
+    /// The two halves: the set-point for the main program, the control loop for an interrupt.
     pub const fn split(&mut self) -> (&SetPoint<C>, ControlLoop<'_, C>) {
         let set_point = &self.set_point;
         let core = &mut self.core;
         (set_point, ControlLoop { set_point, core })
     }
 
-    /// The set-point of a drive that is not split.
+    /// The set-point of an unsplit drive.
     #[must_use]
     pub const fn set_point(&self) -> &SetPoint<C> {
         &self.set_point
     }
 
-    /// The control loop of a drive that is not split.
+    /// The control loop of an unsplit drive.
     pub const fn control(&mut self) -> ControlLoop<'_, C> {
         self.split().1
     }
@@ -95,8 +95,8 @@ impl<C: Control> Drive<C> {
         self.control().precharge();
     }
 
-    /// Sets the speed, bits of an `I16F16` in rpm; does nothing without a speed loop. For
-    /// verification, which treats all drives alike; firmware has [`SetPoint::set_speed`].
+    /// Sets the speed, bits of an `I16F16` in rpm; no effect without a speed loop. For verification
+    /// of any drive; firmware uses [`SetPoint::set_speed`].
     #[doc(hidden)]
     pub fn set_speed_bits(&self, bits: i32) {
         if let Some(speed) = C::SPEED {
@@ -104,8 +104,8 @@ impl<C: Control> Drive<C> {
         }
     }
 
-    /// Tells the bus voltage as an ADC count; does nothing with a fixed bus. For verification, which
-    /// treats all drives alike; firmware has [`SetPoint::set_bus`].
+    /// Sets the bus voltage as an ADC count; no effect with a fixed bus. For verification of any
+    /// drive; firmware uses [`SetPoint::set_bus`].
     #[doc(hidden)]
     pub fn set_bus_counts(&self, counts: u16) {
         if let Some(words) = C::TOLD_BUS {
@@ -113,14 +113,13 @@ impl<C: Control> Drive<C> {
         }
     }
 
-    /// Names of the words that outlive a control period: the supervisor's, then the law's. For
-    /// verification.
+    /// Names of the state words: the supervisor's, then the law's. For verification.
     pub fn state_names() -> impl Iterator<Item = &'static str> {
         let supervisor = Supervisor::NAMES.iter().copied();
         supervisor.chain(C::State::NAMES.iter().copied())
     }
 
-    /// Copies those words to the front of `words`, as many as fit. For verification.
+    /// Copies the state words to the front of `words`, as many as fit. For verification.
     #[inline]
     pub fn state_words(&self, words: &mut [i32]) {
         let Some((supervisor, law)) = words.split_first_chunk_mut() else {
@@ -130,7 +129,8 @@ impl<C: Control> Drive<C> {
         self.core.law.words(law);
     }
 
-    /// Overwrites those words with values inside their ranges; further ones stay. For verification.
+    /// Overwrites the state words with values inside their ranges; missing ones are kept. For
+    /// verification.
     pub fn set_state_words(&mut self, words: &[i32]) {
         let Some((supervisor, law)) = words.split_first_chunk() else {
             return;
@@ -143,7 +143,7 @@ impl<C: Control> Drive<C> {
     }
 }
 
-/// The calls of the set-point's half.
+/// The calls of the set-point.
 impl<C: Control> Deref for Drive<C> {
     type Target = SetPoint<C>;
 
@@ -164,17 +164,17 @@ impl<C: Control> fmt::Debug for Drive<C> {
     }
 }
 
-/// The half of a drive that the control interrupt owns.
+/// The control interrupt's half of a drive.
 pub struct ControlLoop<'drive, C: Control> {
     set_point: &'drive SetPoint<C>,
     core: &'drive mut Core<C>,
 }
 
 impl<C: Control> ControlLoop<'_, C> {
-    /// Runs one control period: takes the measurements of its start, returns the inverter's command.
+    /// Runs one control period: takes the measurements of its beginning, returns the inverter's
+    /// command.
     ///
-    /// With `delay: 1` the command takes effect with the next period, while its own step computes
-    /// the one after; with `delay: 0` at once.
+    /// With `delay: 1` the command takes effect in the next period; with `delay: 0` at once.
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> C::Command {
         let Self { set_point, core } = self;
@@ -197,9 +197,9 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.
     /// Ignored while calibrating and pre-charging.
     ///
-    /// What follows is control, not start-up: where the bootstrap capacitors need it, call
-    /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and speed 0
-    /// brakes a rotor that turns, with up to the current that is set.
+    /// Control follows directly, without start-up: if the bootstrap capacitors need it, call
+    /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and
+    /// speed 0 brakes a turning rotor with up to the current limit.
     pub fn reset(&mut self) {
         if self.core.supervisor.reset(&C::LIMITS) {
             self.core.law = C::State::INITIAL;
@@ -208,23 +208,23 @@ impl<C: Control> ControlLoop<'_, C> {
         self.publish();
     }
 
-    /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the
-    /// specification has one, and control at the set-point that stands follow by themselves.
-    /// Ignored when tripped.
+    /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if
+    /// specified, and control with the present set-point follow automatically. Ignored when
+    /// tripped.
     pub fn calibrate(&mut self) {
         self.core.supervisor.calibrate(&C::LIMITS);
         self.publish();
     }
 
-    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns;
-    /// control follows by itself. Accepted from control, too: call it at rest only. Ignored when
-    /// tripped, while calibrating, and where the specification has no pre-charge.
+    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor;
+    /// control follows automatically. Accepted during control, too: call it only at rest. Ignored
+    /// when tripped, while calibrating, and if the specification has no pre-charge.
     pub fn precharge(&mut self) {
         self.core.supervisor.precharge(&C::LIMITS);
         self.publish();
     }
 
-    /// What the drive is doing, and what tripped it.
+    /// Mode and fault of the drive.
     #[must_use]
     pub fn status(&self) -> Status {
         Status::from_bits(
@@ -233,15 +233,15 @@ impl<C: Control> ControlLoop<'_, C> {
         )
     }
 
-    /// Says what the drive is doing to those who hold the set-point.
+    /// Publishes the status for the set-point's half.
     fn publish(&self) {
         let bits = self.core.supervisor.status_bits();
         self.set_point.status.store(bits.into());
     }
 }
 
-/// A period without control, in start-up or with a fault. Of all periods these alone change mode and
-/// fault, so they are published here. The sample goes by value, so that it stands in memory on this path alone.
+/// A period without control, in start-up or with a fault. Only these change mode and fault, so they
+/// are published here. The sample is passed by value, so that it uses memory on this path only.
 #[cold]
 #[inline(never)]
 fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> C::Command {
@@ -258,7 +258,7 @@ impl<C: Control> fmt::Debug for ControlLoop<'_, C> {
     }
 }
 
-/// The control loop of any drive, for firmware that chooses among several at run time.
+/// The control loop of any drive, for firmware that selects one of several at run time.
 pub trait DynLoop<Out: Command = Legs>: Send {
     /// See [`ControlLoop::step`].
     fn step(&mut self, sample: &Sample) -> Out;

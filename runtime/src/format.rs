@@ -1,6 +1,6 @@
-//! The fixed-point formats of a drive, for those who verify or read it.
+//! Fixed-point formats of a drive, for verification and documentation.
 
-/// How a result is rounded to its format.
+/// Rounding of results to a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -11,22 +11,22 @@ pub enum Rounding {
     RoundHalfUp,
 }
 
-/// The fixed-point format of a kind of signals (`current`, `voltage`, …), a coefficient or a table of
-/// a drive.
+/// Fixed-point format of a drive's signals of one kind (`current`, `voltage`, …), of a coefficient
+/// or of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Format {
     /// Name of the signals, coefficient or table.
     pub name: &'static str,
-    /// Bits of two's complement that hold it: of signals, every one that outlives a call (within a
-    /// step all are 32-bit words); of a coefficient or table, its values.
+    /// Bits of the stored two's complement number: of signals, in the state (within a step all are
+    /// 32-bit words); of a coefficient or table, of its values.
     pub storage_bits: u8,
-    /// Fraction bits relative to the signals' base (negative: the ulp is larger than the base); of a
-    /// coefficient, the bits that its products are shifted by.
+    /// Fraction bits relative to the signals' base (negative: the ulp is larger than the base); of
+    /// a coefficient, the bits that its products are shifted by.
     pub frac_bits: i8,
     /// Rounding of results into this format.
     pub rounding: Rounding,
-    /// Equal parts of a turn that the table has; 0 for what is no table.
+    /// Equal parts of a turn that a table covers; 0 if it is no table.
     pub segments: u8,
 }
 
@@ -48,7 +48,7 @@ impl Format {
         }
     }
 
-    /// The same for a table over so many equal parts of a turn.
+    /// The same for a table over this number of equal parts of a turn.
     #[must_use]
     pub const fn over(self, segments: u8) -> Self {
         Self { segments, ..self }

@@ -1,11 +1,9 @@
-//! What firmware depends on: the runtime of generated current controllers.
+//! Runtime of generated current controllers: the dependency of firmware.
 //!
-//! `hexagen::controller!` emits a type per motor and controller: constants, tables and the law. This
-//! crate has all that is the same for every drive: the [`Drive`] and its two halves, the
-//! [`Supervisor`] (faults, calibration, start-up), what goes in ([`Sample`]) and what comes out
-//! ([`Legs`]).
-//! Signs, sectors and wiring are in [`conventions`]; what the paper prints and is not so, in
-//! [`errata`].
+//! `hexagen::controller!` emits a type per motor and controller: constants, tables and the law.
+//! This crate has the parts that all drives share: the [`Drive`] and its two halves, the
+//! [`Supervisor`] (faults, calibration, start-up), inputs ([`Sample`]) and outputs ([`Legs`]).
+//! Signs, sectors and wiring are in [`conventions`]; errors of the paper in [`errata`].
 #![no_std]
 
 pub mod arith;
@@ -20,7 +18,7 @@ mod control;
 pub mod conventions {}
 mod double_buffer;
 mod drive;
-/// What the paper prints and is not so.
+/// Errors in the paper.
 ///
 #[cfg_attr(doc, doc = include_str!("errata.md"))]
 pub mod errata {}

@@ -1,9 +1,9 @@
-//! Without the feature `signals` nobody asks for any.
+//! Stand-in for `signals` without that feature: never requested.
 
 use crate::Checked;
 use crate::control::Observation;
 
-/// Nothing.
+/// No words.
 #[derive(Debug)]
 pub(crate) struct Port;
 

@@ -1,8 +1,8 @@
-//! What a control period reads.
+//! Inputs of a control period.
 
 use crate::arith::Word;
 
-/// The measurements at the begin of a control period, as the hardware gives them.
+/// Measurements at the beginning of a control period, as the hardware gives them.
 ///
 /// ADC counts of the phase currents, and the rotor's position: a Hall code or an electrical angle.
 ///
@@ -28,7 +28,7 @@ impl Sample {
     /// ADC counts of the currents of phases a and b, which rise with the current into the motor
     /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2.
     ///
-    /// Any code may be given: one that Hall sensors cannot have (0, 7 and above) trips the drive.
+    /// Any code is accepted: one that Hall sensors cannot give (0, 7 and above) trips the drive.
     #[inline]
     #[must_use]
     pub const fn with_hall([adc_a, adc_b]: [u16; 2], hall: u8) -> Self {
@@ -40,8 +40,9 @@ impl Sample {
         }
     }
 
-    /// The same with an electrical angle in place of a Hall code, 2^32 a turn, 0 where the EMF of
-    /// phase a rises through 0. It has no Hall code: a drive that needs one, as all do so far, trips.
+    /// The same with an electrical angle in place of a Hall code, 2^32 per turn, 0 where the EMF of
+    /// phase a rises through 0. It has no Hall code: a drive that needs one, as all do so far,
+    /// trips.
     #[inline]
     #[must_use]
     pub const fn with_angle([adc_a, adc_b]: [u16; 2], angle: u32) -> Self {
@@ -53,12 +54,11 @@ impl Sample {
         }
     }
 
-    /// Timer ticks from the last Hall edge to this sample, rounded down, stopping at 65535, for
-    /// drives with `hall_capture: timer`; their clock is `HALL_TIMER_HZ`.
+    /// Timer ticks from the last Hall edge to this sample, rounded down, at most 65535, for drives
+    /// with `hall_capture: timer`; the clock is `HALL_TIMER_HZ`.
     ///
-    /// Code and ticks are one snapshot, which no edge may tear apart: latch both in the capture
-    /// interrupt, or read the ticks, the code, and the ticks again, until the second count is not
-    /// below the first.
+    /// Code and ticks must belong together: latch both in the capture interrupt, or read the ticks,
+    /// the code, and the ticks again, until the second count is not below the first.
     #[inline]
     #[must_use]
     pub const fn hall_ticks(self, ticks: u16) -> Self {
@@ -68,7 +68,7 @@ impl Sample {
         }
     }
 
-    /// The ADC count of the current of phase c, for drives with three sensors; none reads it so far.
+    /// The ADC count of phase c, for drives with three current sensors; not used so far.
     #[inline]
     #[must_use]
     pub const fn third_current(self, adc_c: u16) -> Self {
@@ -79,14 +79,14 @@ impl Sample {
         }
     }
 
-    /// ADC counts of phases a, b, c; 0 where there is no sensor.
+    /// ADC counts of phases a, b, c; 0 if there is no sensor.
     #[inline]
     #[must_use]
     pub const fn adc(&self) -> [u16; 3] {
         self.adc
     }
 
-    /// The Hall code; 0 where there is an angle.
+    /// The Hall code; 0 if the sample has an angle.
     #[inline]
     #[must_use]
     pub const fn hall(&self) -> u8 {
@@ -100,7 +100,7 @@ impl Sample {
         self.hall_ticks
     }
 
-    /// The electrical angle, 2^32 a turn; 0 where there is a Hall code.
+    /// The electrical angle, 2^32 per turn; 0 if the sample has a Hall code.
     #[inline]
     #[must_use]
     pub const fn angle(&self) -> u32 {
@@ -108,9 +108,9 @@ impl Sample {
     }
 }
 
-/// A sample that the [`Supervisor`](crate::Supervisor) has looked at; nothing else makes one.
+/// A sample that has passed the [`Supervisor`](crate::Supervisor), which alone makes one.
 ///
-/// The currents lie in [`Limits::currents`](crate::Limits::currents) for whatever was sampled.
+/// For any ADC counts, the currents lie in [`Limits::currents`](crate::Limits::currents).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checked {
     pub(crate) i: [Word; 2],
@@ -133,7 +133,7 @@ impl Checked {
         self.i[1]
     }
 
-    /// The Hall code, 1 to 6; at rest 0 where the sensors gave none.
+    /// The Hall code, 1 to 6; 0 only at rest, if it was invalid.
     #[inline]
     #[must_use]
     pub const fn hall(&self) -> Word {

@@ -1,4 +1,4 @@
-//! The half of a drive that the main program has.
+//! The main program's half of a drive.
 
 use crate::arith::{Word, mul_round};
 use crate::bus::Bus;
@@ -11,12 +11,12 @@ use crate::{Control, MeasuredBus, SpeedLoop, Status};
 use core::fmt;
 use fixed::types::I16F16;
 
-/// The half of a drive that the main program shares with the control interrupt, which may interrupt
-/// it at any place. All on one core.
+/// The main program's half of a drive, shared with the control interrupt, which may interrupt it
+/// anywhere. Both run on one core.
 ///
 /// Setters of current, torque and speed may be called from anywhere, interrupts included: the last
-/// call wins, and none disturbs another setter. What an option of the specification brings, such as
-/// [`set_speed`](Self::set_speed), exists only for drives that have the option.
+/// call wins, and none disturbs another setter. Setters of an option, such as
+/// [`set_speed`](Self::set_speed), exist only for drives with that option.
 pub struct SetPoint<C: Control> {
     pub(crate) words: Words<C>,
     pub(crate) status: SharedWord,
@@ -36,13 +36,13 @@ impl<C: Control> SetPoint<C> {
         }
     }
 
-    /// Sets the current in amperes, peak of the quasi-square wave; saturates at the specification's
-    /// `max_current` to both sides.
+    /// Sets the current in amperes, peak of the quasi-square wave; saturates at +-`max_current` of
+    /// the specification.
     ///
-    /// A positive one makes torque forward, a negative one backward, whichever way the rotor turns;
-    /// against the rotation it brakes into the bus ([`conventions`](crate::conventions)). With a
-    /// speed loop it is the greatest current that the loop asks for to either side; its sign plays
-    /// no part.
+    /// A positive current makes forward torque, a negative one backward torque, in either direction
+    /// of rotation; against the rotation it brakes into the bus
+    /// ([`conventions`](crate::conventions)). With a speed loop it limits the loop's current in
+    /// both directions, whatever its sign.
     #[inline]
     pub fn set_current(&self, current: I16F16) {
         self.words
@@ -69,9 +69,9 @@ impl<C: Control> SetPoint<C> {
         self.set_torque(thousandths(torque));
     }
 
-    /// Sets the speed in rpm, forward positive; saturates at the specification's `max_speed` to both
-    /// sides. Speed 0 brakes a rotor that turns, and holds it, with up to the current that is set;
-    /// for no current set that to 0.
+    /// Sets the speed in rpm, forward positive; saturates at +-`max_speed` of the specification.
+    /// Speed 0 brakes a turning rotor, and holds it, with up to the current limit; for no current
+    /// set that to 0.
     #[inline]
     pub fn set_speed(&self, speed: I16F16)
     where
@@ -89,14 +89,14 @@ impl<C: Control> SetPoint<C> {
         self.set_speed(I16F16::saturating_from_num(speed));
     }
 
-    /// Tells the bus voltage as an ADC count.
+    /// Sets the bus voltage as an ADC count.
     ///
-    /// A voltage outside `bus_min` to `bus_max` of the specification counts as the nearer of these,
-    /// without a fault; until the first call the nominal voltage holds. Where calls cease, the
-    /// status says so from 100 ms on ([`Status::bus_is_stale`]).
+    /// A voltage outside `bus_min` to `bus_max` of the specification is clamped to that range,
+    /// without a fault; before the first call the nominal voltage is used. The status reports 100
+    /// ms without a call ([`Status::bus_is_stale`]).
     ///
-    /// A call that interrupts another one has no effect; one that was interrupted for good keeps
-    /// later calls from having an effect for 65,536 control periods. From an interrupt that can
+    /// A call that interrupts another one has no effect; one that never resumes after an
+    /// interruption blocks later calls for 65,536 control periods. From an interrupt that can
     /// interrupt the control loop: at most once per control period.
     #[inline]
     pub fn set_bus(&self, counts: u16)
@@ -106,15 +106,15 @@ impl<C: Control> SetPoint<C> {
         self.words.bus.tell(C::bus(counts.into()));
     }
 
-    /// What the drive is doing and what tripped it, as of the last control period: from anywhere,
-    /// while the control loop goes on.
+    /// Mode and fault as of the last control period; may be called from anywhere while the control
+    /// loop runs.
     #[inline]
     #[must_use]
     pub fn status(&self) -> Status {
         Status::from_bits(self.status.load().0, self.words.bus.is_stale())
     }
 
-    /// Whether the set-point is not 0: the speed of a drive with a speed loop, else the current.
+    /// Whether the set-point (speed with a speed loop, else current) is not 0.
     #[inline]
     pub(crate) fn is_demanded(&self) -> bool {
         let set_point = if C::SPEED.is_some() {
@@ -135,11 +135,11 @@ impl<C: Control> SetPoint<C> {
         set_point.store(Word(0));
     }
 
-    /// The signals of one controlled period, which belong together; asks for those of the next one
-    /// where none are at hand, and gives none then.
+    /// The signals of one controlled period; `None`, and a request for those of the next one, if
+    /// there are none yet.
     ///
-    /// The control loop answers in its next controlled period. So a program that asks until it gets
-    /// an answer has signals of a period that began after it first asked:
+    /// The control loop answers in its next controlled period. So a program that polls gets signals
+    /// of a period that began after its first call:
     ///
     /// ```
     /// # use hexagen::{Control, SetPoint, Signals};
@@ -151,8 +151,9 @@ impl<C: Control> SetPoint<C> {
     /// }
     /// ```
     ///
-    /// Neither side ever waits for the other. Several contexts may ask: each gets words of one period, or
-    /// none. Feature `signals`, which takes about ten instructions of every control period.
+    /// Neither side waits for the other. Several contexts may ask: each gets all words of one
+    /// period, or none. Feature `signals`, which takes about ten instructions of every control
+    /// period.
     #[cfg(feature = "signals")]
     #[must_use]
     pub fn signals(&self) -> Option<Signals> {
@@ -160,11 +161,11 @@ impl<C: Control> SetPoint<C> {
     }
 }
 
-/// A number of thousandths as a number with 16 fraction bits, rounded to the nearest; saturates.
+/// Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates.
 fn thousandths(number: i32) -> I16F16 {
     const MOST: i32 = 32_767_999;
-    // 2^16/1000 = 65.536: the whole, and the rest with 31 fraction bits, which one coefficient of 32
-    // bits is too short for.
+    // 2^16/1000 = 65.536: the integer part, and the fraction with 31 bits, for which one 32-bit
+    // coefficient is too short.
     const WHOLE: i32 = 65;
     const REST: Word = Word(1_151_051_235);
     let number = Word(number).clamp(-MOST, MOST);
@@ -177,7 +178,7 @@ impl<C: Control> fmt::Debug for SetPoint<C> {
     }
 }
 
-/// A drive or one of its halves: the controller's name and the status.
+/// A drive or one of its halves: controller's name and status.
 pub(crate) fn debug<C: Control>(
     part: &str,
     status: Status,

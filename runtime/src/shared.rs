@@ -1,10 +1,10 @@
-//! A word that one part of the firmware writes and another reads.
+//! A word shared by contexts of one core.
 
 use crate::arith::Word;
 use core::sync::atomic::{AtomicI32, Ordering};
 
-/// A word that may be stored and loaded from the main program and from interrupts alike, in one
-/// instruction each: a load sees one store whole, and the last store stays.
+/// A word that the main program and interrupts may store and load in one instruction each: a load
+/// gets one whole store, and the last store wins.
 #[derive(Debug)]
 pub(crate) struct SharedWord(AtomicI32);
 

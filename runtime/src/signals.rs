@@ -1,6 +1,5 @@
-//! Signals of one control period for people: handed over on demand, so that periods in which nobody
-//! asks do no more than look whether somebody does. That, too, takes instructions: without the
-//! feature `signals` there is none of it.
+//! Signals of one control period, on request. The test for a request takes instructions in every
+//! period; without the feature `signals` there is none of it.
 
 use crate::Checked;
 use crate::arith::Word;
@@ -8,25 +7,25 @@ use crate::control::{Observation, Unit, Units};
 use core::sync::atomic::{AtomicI32, Ordering, compiler_fence};
 use fixed::types::I16F16;
 
-/// What a drive saw, believed and commanded in one control period, in SI units and rpm.
+/// Measurements, estimates and command of one control period, in SI units and rpm.
 ///
-/// Numbers saturate at 32768 to both sides.
+/// Numbers saturate at +-32768.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Signals {
-    /// Currents of phases a, b, c into the motor at the begin of the period, ampere.
+    /// Currents of phases a, b, c into the motor at the beginning of the period, ampere.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub currents: [I16F16; 3],
-    /// Mean terminal voltages that the period commands, for the next one with `delay: 1`, volt against
-    /// the negative rail at the nominal bus; none of a leg that is off.
+    /// Mean terminal voltages of the command (with `delay: 1` in effect in the next period), volt
+    /// against the negative rail at the nominal bus; `None` for a leg that is off.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub voltages: [Option<I16F16>; 3],
-    /// EMF of phases a, b, c that the law expects in the period in which the command takes effect
-    /// (PHCC: in the one that begins), volt; none of a law that works none out.
+    /// Estimated EMF of phases a, b, c in the period in which the command takes effect (PHCC: in
+    /// the current one), volt; `None` if the law estimates none.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub emf: Option<[I16F16; 3]>,
-    /// Speed in rpm, forward positive, 0 while it is unknown; none of a law that does not time the Hall edges.
+    /// Speed in rpm, forward positive, 0 while unknown; `None` if the law does not measure it.
     #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub speed: Option<I16F16>,
     /// Sector 1 to 6.
@@ -43,18 +42,18 @@ impl Unit {
         I16F16::from_bits(bits as i32)
     }
 
-    /// Three values of zero sum, of which two are given.
+    /// Three phase values of zero sum, from those of phases a and b.
     fn of_phases(self, [a, b]: [Word; 2]) -> [I16F16; 3] {
         [a, b, -(a + b)].map(|word| self.of(word))
     }
 }
 
-/// A period's signals in words, as the control loop hands them over.
+/// Words of a period's signals, as passed by the control loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PeriodWords {
     pub currents: [Word; 2],
     pub hall: Word,
-    /// Timer counts for which the upper switches are on; none of a leg that is off.
+    /// Timer counts for which the upper switches are on; `None` for a leg that is off.
     pub on: [Option<u16>; 3],
     pub observation: Observation,
 }
@@ -104,20 +103,20 @@ impl PeriodWords {
     }
 }
 
-/// Words that go over.
+/// Number of words passed.
 const WORDS: usize = 9;
 
-/// Nobody has asked.
+/// No request.
 const IDLE: i32 = 0;
-/// Somebody waits for the next controlled period's words.
+/// Words of the next controlled period are requested.
 const ASKED: i32 = 1;
-/// The words are there.
+/// The words are available.
 const ANSWERED: i32 = 2;
-/// Somebody takes them; who interrupts that finds nothing to take.
+/// A context is reading the words; one that interrupts it finds nothing to take.
 const TAKING: i32 = 3;
 
-/// Where the words go over. The control loop writes while it is asked, and at no other time; the
-/// main program writes while it is not, and reads while it is answered.
+/// Passes the words. The control loop writes only while they are requested; the main program writes
+/// only while they are not, and reads only after the answer.
 #[derive(Debug)]
 pub(crate) struct Port {
     turn: AtomicI32,
@@ -132,13 +131,13 @@ impl Port {
         }
     }
 
-    /// Whether the words of this period are wanted.
+    /// Whether the words of this period are requested.
     #[inline]
     pub(crate) fn is_asked(&self) -> bool {
         self.turn.load(Ordering::Relaxed) == ASKED
     }
 
-    /// What this period saw, commanded and observed, where it is wanted.
+    /// Answers a request with the words of this period.
     #[cold]
     #[inline(never)]
     pub(crate) fn answer(&self, seen: Checked, on: [Option<u16>; 3], observation: Observation) {
@@ -155,7 +154,7 @@ impl Port {
         self.turn.store(ANSWERED, Ordering::Relaxed);
     }
 
-    /// The words that are there; else asks for them.
+    /// The words, if available; else requests them.
     pub(crate) fn take(&self) -> Option<PeriodWords> {
         match self.turn.load(Ordering::Relaxed) {
             ANSWERED => self.turn.store(TAKING, Ordering::Relaxed),
@@ -194,7 +193,7 @@ mod tests {
     };
 
     #[test]
-    fn words_go_over_whole_where_they_are_asked_for() {
+    fn requested_words_are_passed_together() {
         let port = Port::new();
         assert!(!port.is_asked());
         assert_eq!(port.take(), None);

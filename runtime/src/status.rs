@@ -1,8 +1,8 @@
-//! What a drive is doing, and what tripped it.
+//! Mode and fault of a drive.
 
 use core::fmt;
 
-/// What a drive is doing.
+/// Operating mode of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// The mode of a number; one that stands for none counts as [`Mode::Tripped`].
+    /// The mode with this number; [`Mode::Tripped`] for any other.
     #[inline]
     #[must_use]
     pub const fn from_number(number: i32) -> Self {
@@ -33,7 +33,7 @@ impl Mode {
     }
 }
 
-/// Why a drive tripped. Where one sample has several causes, the first of this list is told.
+/// Cause of a trip. If one sample has several, the first of this list is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -41,18 +41,18 @@ impl Mode {
 pub enum Fault {
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,
-    /// The Hall code was none that three sensors can have: 000, 111 or above.
+    /// The Hall code was invalid: 000, 111 or above.
     Hall = 3,
     /// A phase current was above the trip level.
     OverCurrent = 2,
-    /// No Hall edge within the stall time-out while a set-point was not 0.
+    /// No Hall edge within the stall time-out while the set-point was not 0.
     Stall = 4,
     /// A calibrated current offset was too far from its nominal value.
     Offset = 5,
 }
 
 impl Fault {
-    /// The fault of a number; none of one that stands for none.
+    /// The fault with this number.
     #[inline]
     #[must_use]
     pub const fn from_number(number: i32) -> Option<Self> {
@@ -73,7 +73,7 @@ impl fmt::Display for Fault {
             Self::AdcRange => "a current ADC is at an end of its range",
             Self::OverCurrent => "a phase current is above the trip level",
             Self::Hall => "the Hall code is invalid",
-            Self::Stall => "the rotor stands under demand",
+            Self::Stall => "the rotor is stalled",
             Self::Offset => "a calibrated current offset is too far from its nominal value",
         })
     }
@@ -81,24 +81,24 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// What a drive is doing and what tripped it: mode and fault of one instant, the end of the last
-/// control period or of the last call of its control loop, and staleness as of the last period.
+/// Status of a drive: mode and fault as of the end of the last control period or call of its
+/// control loop, staleness as of the last period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Status {
-    /// What it is doing.
+    /// Operating mode.
     pub mode: Mode,
-    /// What tripped it, until `reset()`.
+    /// Cause of the trip, until `reset()`.
     pub fault: Option<Fault>,
-    /// `v_bus: measured`: for 100 ms no call of `set_bus` took effect, so the controller goes by an
-    /// old voltage; from the start to the first call by the nominal one. A warning, which trips
-    /// nothing. Never with `v_bus: fixed`.
+    /// `v_bus: measured`: no call of `set_bus` took effect for 100 ms, so the controller uses an
+    /// old voltage; before the first call, the nominal one. A warning, which trips nothing. Never
+    /// set with `v_bus: fixed`.
     pub bus_is_stale: bool,
 }
 
 impl Status {
-    /// Whether currents are controlled: neither calibrating, pre-charging nor tripped.
+    /// Whether currents are controlled: not calibrating, pre-charging or tripped.
     #[inline]
     #[must_use]
     pub const fn is_running(self) -> bool {
@@ -111,7 +111,7 @@ impl Status {
         mode as i32 | number(fault) << 8
     }
 
-    /// What [`Status::to_bits`] made one word of.
+    /// Inverse of [`Status::to_bits`].
     #[inline]
     pub(crate) const fn from_bits(bits: i32, bus_is_stale: bool) -> Self {
         Self {
@@ -122,7 +122,7 @@ impl Status {
     }
 }
 
-/// The number of a fault; 0 of none.
+/// The number of a fault; 0 for none.
 #[inline]
 pub(crate) const fn number(fault: Option<Fault>) -> i32 {
     match fault {
@@ -136,7 +136,7 @@ mod tests {
     use super::{Fault, Mode, Status};
 
     #[test]
-    fn every_status_survives_its_word() {
+    fn every_status_round_trips_through_its_word() {
         for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
             for number in 0..8 {
                 let fault = Fault::from_number(number);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_is_an_error_with_a_sentence() {
+    fn a_fault_has_an_error_message() {
         let error: &dyn core::error::Error = &Fault::Hall;
         assert!(error.source().is_none());
         for number in 1..=5 {

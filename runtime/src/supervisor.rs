@@ -1,5 +1,5 @@
-//! Supervision of a drive: which samples are fit to control by, faults, start-up. One code for all
-//! drives; what differs between them is in [`Limits`].
+//! Supervision of a drive: faults, calibration, start-up. The same code for all drives; [`Limits`]
+//! has the differences.
 
 #[cfg(test)]
 mod tests;
@@ -8,7 +8,7 @@ use crate::arith::Word;
 use crate::status::{Fault, Mode, Status, number};
 use crate::{Checked, LegState, Sample};
 
-/// What a drive's samples are judged by, and how it starts up.
+/// Limits of a drive's samples, and its start-up times.
 ///
 /// Words of current are ADC counts with [`current_bits`](Self::current_bits) fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,28 +17,27 @@ pub struct Limits {
     pub adc_max: u16,
     /// Whether counts fall with the current into the motor.
     pub adc_inverted: bool,
-    /// Fraction bits of currents.
+    /// Fraction bits of words of current.
     pub current_bits: u32,
-    /// ADC count at zero current, where calibration has not told another.
+    /// ADC count at zero current before calibration.
     pub offset: u16,
     /// Least and greatest offset that calibration accepts, counts.
     pub offsets: [u16; 2],
-    /// Largest phase current, words of current: one above it trips.
+    /// Trip level, words of current: a phase current above it trips.
     pub trip: i32,
-    /// Least and greatest current of any count at any accepted offset, words of current.
+    /// Least and greatest current over all counts and accepted offsets, words of current.
     pub currents: [i32; 2],
-    /// Base-2 logarithm of the samples of a calibration.
+    /// Base-2 logarithm of the number of calibration samples.
     pub calibration_log2: u32,
-    /// Control periods of bootstrap pre-charge; 0 where there is none.
+    /// Control periods of bootstrap pre-charge; 0 for none.
     pub precharge_periods: u16,
-    /// Control periods without a Hall edge under demand that count as a stall; 0 where none are
-    /// counted.
+    /// Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
     pub stall_periods: i32,
 }
 
 impl Limits {
     /// Whether sums and words of these limits fit 32 bits and [`currents`](Self::currents) holds
-    /// every current, so that nothing the supervisor computes can overflow.
+    /// every current, so that no computation of the supervisor can overflow.
     #[must_use]
     pub const fn hold(&self) -> bool {
         let [least, most] = self.offsets;
@@ -69,7 +68,7 @@ impl Limits {
             && sum <= word
     }
 
-    /// A phase current in words of current: `count` less `offset`, a word of current.
+    /// A phase current in words of current; `offset` is a word of current, too.
     #[inline]
     fn current(&self, count: Word, offset: Word) -> Word {
         let count = count << self.current_bits;
@@ -96,36 +95,36 @@ impl Limits {
     }
 }
 
-/// Whether three Hall sensors can give the code: 001 to 110.
+/// Whether the Hall code is valid: 001 to 110.
 #[inline]
 const fn is_hall_code(hall: u8) -> bool {
     matches!(hall, 1..=6)
 }
 
-/// The supervisor of a drive: its mode, its first fault, the offsets of its current ADCs.
+/// The supervisor of a drive: mode, first fault, offsets of the current ADCs.
 ///
-/// Each control period is either [`check`](Self::check)ed, and then controlled, or goes by
+/// Each control period is either [`check`](Self::check)ed and controlled, or handled by
 /// [`rest`](Self::rest).
 ///
 /// # Start-up
 ///
-/// A new drive runs: its first period controls currents, at set-point 0, with nominal current
-/// offsets and nothing charged. Where offsets or the bootstrap capacitors of the inverter need it,
-/// calibration comes first. Then follow by themselves:
+/// A new drive controls currents from its first period on, with set-point 0, nominal current
+/// offsets and bootstrap capacitors not charged. If the inverter needs either, call calibration
+/// first; the steps follow each other automatically:
 ///
-/// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor rests
-///    meanwhile. An offset too far from its nominal value trips the drive.
-/// 2. Pre-charge, where the specification has one: periods with all lower switches on, which
-///    charge the bootstrap capacitors, and short-circuit a motor that turns.
-/// 3. Control, at the set-point that stands.
+/// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor must be at
+/// rest. An offset too far from its nominal value trips the drive.
+/// 2. Pre-charge, if specified: periods with all lower switches on, which charge the bootstrap
+/// capacitors, and short-circuit a turning motor.
+/// 3. Control with the present set-point.
 ///
-/// A fault ends start-up, and what it had gathered counts for nothing; a reset leads to control, not
-/// back into start-up.
+/// A fault ends start-up and discards its results; a reset leads to control, not back into
+/// start-up.
 ///
 /// # Safe states
 ///
-/// Each [`Fault`] turns all legs off until a reset. A Hall code that skips sectors is no fault: it is
-/// taken as it reads. Nor is any bus voltage.
+/// Each [`Fault`] turns all legs off until a reset. Neither a Hall code that skips sectors nor any
+/// bus voltage is a fault.
 ///
 /// # What the supervisor cannot see
 ///
@@ -149,9 +148,9 @@ pub struct Supervisor {
     fault: Option<Fault>,
     /// Periods left in calibration or pre-charge.
     countdown: u16,
-    /// Hall code of the last sample that had one, where a stall is watched for; 0 before the first.
+    /// Last valid Hall code, if stalls are detected; 0 before the first.
     hall_prev: u8,
-    /// Periods without a Hall edge under demand.
+    /// Periods under demand since the last Hall edge.
     stall_count: Word,
     /// Sums of calibration samples, counts.
     sums: [Word; 2],
@@ -160,7 +159,7 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// Names of its words, in the order of [`Self::words`].
+    /// Names of the state words, in the order of [`Self::words`].
     pub const NAMES: [&'static str; 9] = [
         "mode",
         "fault",
@@ -173,8 +172,7 @@ impl Supervisor {
         "hall_prev",
     ];
 
-    /// The supervisor of a drive that controls currents from its first period on, with nominal
-    /// offsets.
+    /// A supervisor that allows control from the first period on, with nominal offsets.
     #[must_use]
     pub const fn new(limits: &Limits) -> Self {
         let offset = Word((limits.offset as i32).wrapping_shl(limits.current_bits));
@@ -189,9 +187,9 @@ impl Supervisor {
         }
     }
 
-    /// The sample for a controlled period; none where the drive rests in this period: it is
-    /// starting up or tripped, or the sample has a fault. Then [`rest`](Self::rest) is to be called
-    /// with the same sample. `is_demanded` says whether the set-point is not 0.
+    /// The sample for a controlled period; `None` if the drive rests in this period: it is starting
+    /// up or tripped, or the sample has a fault. Then call [`rest`](Self::rest) with the same
+    /// sample. `is_demanded` tells whether the set-point is not 0.
     #[inline]
     #[must_use]
     pub fn check(
@@ -220,7 +218,7 @@ impl Supervisor {
         })
     }
 
-    /// Counts periods without a Hall edge under demand; true where they are a stall.
+    /// Counts periods without a Hall edge under demand; true on a stall.
     #[inline]
     fn watch_stall(
         &mut self,
@@ -251,9 +249,9 @@ impl Supervisor {
         limits.stall_periods != 0 && self.stall_count == limits.stall_periods
     }
 
-    /// A period without control, behind a [`check`](Self::check) that gave no sample: goes on with
-    /// start-up, trips where there is a fault, and says what all legs do. The sample has its counts
-    /// held within the ADC's range, and no Hall code where there was none.
+    /// A period without control, after a [`check`](Self::check) that gave no sample: continues
+    /// start-up, trips on a fault, and returns the state of all legs. In the sample, counts are
+    /// clamped to the ADC's range, and an invalid Hall code is 0.
     pub fn rest(&mut self, limits: &Limits, sample: &Sample) -> (Checked, LegState) {
         let [adc_a, adc_b, _] = sample.adc;
         let counts = [adc_a, adc_b].map(|count| Word::from(count).min(limits.adc_max));
@@ -295,14 +293,14 @@ impl Supervisor {
         (checked, leg)
     }
 
-    /// Calibration averages the counts of all its samples, then pre-charge counts its periods down.
+    /// Calibration averages the counts of all its samples; then pre-charge counts its periods down.
     fn start_up(&mut self, limits: &Limits, [count_a, count_b]: [Word; 2]) {
         match self.mode {
             Mode::Run | Mode::Tripped => {}
             Mode::Calibrate => {
                 let most = Word::from(limits.adc_max) << limits.calibration_log2;
                 let [sum_a, sum_b] = self.sums;
-                // The countdown ends the sums before this limit, whatever state they began in.
+                // The countdown ends the sums before this limit, whatever the initial state.
                 self.sums = [(sum_a + count_a).min(most), (sum_b + count_b).min(most)];
                 self.countdown = self.countdown.saturating_sub(1);
                 if self.countdown == 0 {
@@ -344,7 +342,7 @@ impl Supervisor {
         };
     }
 
-    /// Turns all legs off until a reset. The first cause stays.
+    /// Turns all legs off until a reset. The first fault is kept.
     fn trip(&mut self, fault: Fault) {
         if self.mode != Mode::Tripped {
             self.fault = Some(fault);
@@ -352,8 +350,8 @@ impl Supervisor {
         self.mode = Mode::Tripped;
     }
 
-    /// Clears a trip; keeps calibrated offsets. What follows is control, not start-up. False, and nothing done, while calibrating and
-    /// pre-charging.
+    /// Clears a trip; keeps calibrated offsets. Control follows, without start-up. False, without
+    /// effect, during calibration and pre-charge.
     pub fn reset(&mut self, limits: &Limits) -> bool {
         let may_reset = matches!(self.mode, Mode::Run | Mode::Tripped);
         if may_reset {
@@ -374,7 +372,8 @@ impl Supervisor {
         }
     }
 
-    /// Starts pre-charge; ignored when tripped, while calibrating, and where there is none.
+    /// Starts pre-charge; ignored when tripped, while calibrating, and if the specification has
+    /// none.
     pub fn precharge(&mut self, limits: &Limits) {
         if matches!(self.mode, Mode::Run | Mode::Precharge) && limits.precharge_periods != 0 {
             self.mode = Mode::Precharge;
@@ -382,7 +381,7 @@ impl Supervisor {
         }
     }
 
-    /// What the drive is doing, and what tripped it.
+    /// Mode and fault of the drive.
     #[inline]
     #[must_use]
     pub const fn status(&self) -> Status {
@@ -394,7 +393,7 @@ impl Supervisor {
         Status::to_bits(self.mode, self.fault)
     }
 
-    /// Its words, in the order of [`Self::NAMES`]. For verification.
+    /// The state words, in the order of [`Self::NAMES`]. For verification.
     #[must_use]
     pub fn words(&self) -> [i32; Self::NAMES.len()] {
         let [sum_a, sum_b] = self.sums;
@@ -412,7 +411,7 @@ impl Supervisor {
         ]
     }
 
-    /// Overwrites all words with those of [`Self::words`]. For verification.
+    /// Overwrites all state words with those of [`Self::words`]. For verification.
     pub fn set_words(&mut self, words: [i32; Self::NAMES.len()]) {
         let [
             mode,

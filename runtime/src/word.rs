@@ -1,12 +1,12 @@
-//! The word of emitted code: a 32-bit two's complement number with plain operators.
+//! The word of emitted code: a 32-bit two's complement number with operators.
 //!
-//! Generated code is proven, value by value, never to leave its word, so the operators need no
-//! checks: they wrap whatever the compiler's overflow checks, and cost one instruction each. Small
-//! numbers stand beside a word as they are: `countdown - 1`, `sector == 3`.
+//! The generator proves for each value that it fits its word, so the operators have no checks: they
+//! wrap whatever the compiler's overflow checks, and cost one instruction each. Small numbers need
+//! no conversion: `countdown - 1`, `sector == 3`.
 //!
-//! From `opt-level = 1` on, with overflow checks and debug assertions too, no panic path is left in
-//! an emitted step or setter. Unoptimised, `core` keeps checks inside its own functions (orderings of
-//! atomics; with debug assertions, lengths of shifts); none of them can fail.
+//! From `opt-level = 1` on, with overflow checks and debug assertions too, an emitted step or
+//! setter has no panic path. Unoptimised, `core` keeps checks inside its own functions (orderings
+//! of atomics; with debug assertions, lengths of shifts); none of them can fail.
 #![expect(
     clippy::inline_always,
     reason = "each is one instruction, and firmware is debugged unoptimised, too"
@@ -28,43 +28,43 @@ use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};
 pub struct Word(pub i32);
 
 impl Word {
-    /// The lesser of the two.
+    /// Minimum.
     #[inline(always)]
     #[must_use]
     pub fn min(self, other: impl Into<Self>) -> Self {
         Self(self.0.min(other.into().0))
     }
 
-    /// The greater of the two.
+    /// Maximum.
     #[inline(always)]
     #[must_use]
     pub fn max(self, other: impl Into<Self>) -> Self {
         Self(self.0.max(other.into().0))
     }
 
-    /// The lesser of two words whose difference fits a word: without a comparison, and with [`greater`](Self::greater) of
-    /// the same words by one difference.
+    /// Minimum of two words whose difference fits a word: without a comparison, and sharing the
+    /// difference with [`greater`](Self::greater).
     #[inline(always)]
     #[must_use]
     pub fn lesser(self, other: Self) -> Self {
         other + (self - other).negative_part()
     }
 
-    /// The greater of two words whose difference fits a word.
+    /// Maximum of two words whose difference fits a word.
     #[inline(always)]
     #[must_use]
     pub fn greater(self, other: Self) -> Self {
         self - (self - other).negative_part()
     }
 
-    /// The word where it is negative, else 0.
+    /// min(word, 0).
     #[inline(always)]
     pub(crate) fn negative_part(self) -> Self {
         Self(self.0 & self.0 >> 31)
     }
 
-    /// `low` below `low`, `high` above `high`. Unlike [`i32::clamp`] it has no panic path: limits
-    /// in the wrong order give `high`.
+    /// Clamps to `low` to `high`. Unlike [`i32::clamp`] it has no panic path: limits in the wrong
+    /// order give `high`.
     #[inline(always)]
     #[must_use]
     pub fn clamp(self, low: impl Into<Self>, high: impl Into<Self>) -> Self {
@@ -78,7 +78,8 @@ impl Word {
         Self(self.0.wrapping_abs())
     }
 
-    /// Whether the magnitude is more than `limit`, which is not negative: one comparison, of the distance from `-limit`.
+    /// Whether the magnitude exceeds `limit`, which is not negative: one comparison, of the
+    /// distance from `-limit`.
     #[inline(always)]
     #[must_use]
     pub fn exceeds(self, limit: impl Into<Self>) -> bool {
@@ -86,7 +87,7 @@ impl Word {
         self.0.wrapping_add(limit) as u32 > (limit as u32).wrapping_mul(2)
     }
 
-    /// The lower half, for words that are known to lie in 0..=65535.
+    /// The lower half, for words in 0..=65535.
     #[inline(always)]
     #[must_use]
     pub const fn to_u16(self) -> u16 {
@@ -146,7 +147,7 @@ impl Shl<u32> for Word {
 impl Shr<u32> for Word {
     type Output = Self;
 
-    /// Divided by 2^`bits`, towards minus infinity.
+    /// Divided by 2^`bits`, rounded towards minus infinity.
     #[inline(always)]
     fn shr(self, bits: u32) -> Self {
         Self(self.0.wrapping_shr(bits))
@@ -166,7 +167,7 @@ impl PartialOrd<i32> for Word {
         self.0.partial_cmp(other)
     }
 
-    // Spelled out, so that unoptimised firmware does not build an `Ordering` first.
+    // Written out, so that unoptimised firmware does not build an `Ordering` first.
     #[inline(always)]
     fn lt(&self, other: &i32) -> bool {
         self.0 < *other

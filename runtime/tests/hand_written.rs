@@ -1,5 +1,5 @@
-//! A controller that is written by hand: what the runtime asks of one, with commands of several intervals, and what
-//! samples with an angle come to.
+//! A hand-written controller: the runtime's interface, with commands of several intervals, and
+//! samples with an angle.
 
 use hexagen::arith::Word;
 use hexagen::{
@@ -7,15 +7,16 @@ use hexagen::{
     Limits, Mode, Observation, Sample, State, Unit, Units, Words,
 };
 
-/// Six-step voltage control: the set-point is a share of the period, and between two codes the motor coasts for one.
+/// Six-step voltage control: the set-point is the duty cycle, and after a code change the motor
+/// coasts for a period.
 struct SixStep;
 
-/// What it keeps.
+/// State.
 #[derive(State)]
 struct Kept {
-    /// Hall code of the last period; 0 behind a rest.
+    /// Hall code of the last period; 0 after a rest.
     hall_prev: Word,
-    /// Controlled periods, as a law counts its edges.
+    /// Controlled periods.
     #[initial(-1)]
     periods: Word,
 }
@@ -30,7 +31,7 @@ const UNIT: Unit = Unit {
 
 impl Control for SixStep {
     type State = Kept;
-    /// Whether the code is that of the last period.
+    /// Whether the code is unchanged.
     type Rotor = bool;
     type Command = Intervals;
     type Bus = FixedBus;
@@ -119,7 +120,7 @@ fn sample(hall: u8) -> Sample {
 }
 
 #[test]
-fn a_law_by_hand_has_all_that_a_drive_has() {
+fn a_hand_written_law_runs_in_a_drive() {
     let mut drive = Drive::<SixStep>::new();
     let (set_point, mut control) = drive.split();
     let control: &mut dyn DynLoop<Intervals> = &mut control;
@@ -135,7 +136,7 @@ fn a_law_by_hand_has_all_that_a_drive_has() {
         );
     }
     set_point.set_current_ma(25_000);
-    // The first code behind a rest is a new one.
+    // The first code after a rest is a new one.
     assert_eq!(control.step(&sample(HALL)), Intervals::OFF);
     let command = control.step(&sample(HALL));
     assert_eq!(command.ends(), [450, PERIOD, PERIOD]);
@@ -147,7 +148,7 @@ fn a_law_by_hand_has_all_that_a_drive_has() {
     assert_eq!(control.status().fault, Some(Fault::OverCurrent));
     control.reset();
     control.step(&sample(HALL));
-    // The reset took the set-point with it.
+    // The reset has cleared the set-point.
     assert_eq!(control.step(&sample(HALL)).on(), [Some(0), Some(0), None]);
 }
 
@@ -164,7 +165,7 @@ fn its_words_stand_behind_the_supervisors() {
     assert_eq!(words.last_chunk(), Some(&[i32::from(HALL), 0]));
 }
 
-/// An angle is no Hall code: a drive that goes by codes, as all do, trips rather than take it for one.
+/// An angle is no Hall code: a drive that needs codes, as all do, trips on it.
 #[test]
 fn an_angle_is_not_taken_for_a_hall_code() {
     let turned = Sample::with_angle([2048; 2], 0x4000_0000).third_current(2048);

@@ -1,14 +1,14 @@
-//! The runtime of emitted drives in C99: `hexagen.h` and `hexagen.c`, which the generator writes
-//! beside the drives of a program, once for all of them.
+//! The C99 runtime of emitted drives: `hexagen.h` and `hexagen.c`, which the generator writes once,
+//! next to the drives of a program.
 
-/// Text of `hexagen.h`: types, arithmetic, and what a controlled period takes of the supervisor.
+/// Text of `hexagen.h`: types, arithmetic, and the supervisor's part of a controlled period.
 pub const HEADER: &str = include_str!("../hexagen.h");
 
 /// Text of `hexagen.c`: everything off the normal path.
 pub const SOURCE: &str = include_str!("../hexagen.c");
 
-/// Both files under their names.
+/// Both files by name.
 pub const FILES: [(&str, &str); 2] = [("hexagen.h", HEADER), ("hexagen.c", SOURCE)];
 
-/// `HEXAGEN_ABI` of the header, which emitted drives ask for.
+/// `HEXAGEN_ABI` of the header, which emitted drives check.
 pub const ABI: u32 = 1;

@@ -1,5 +1,5 @@
-/* Compares the arithmetic of the runtime with that in 128 bits, over words at the ends of their
- * range, small ones, and any others. */
+/* Compares the arithmetic of the runtime with 128-bit arithmetic, for words at the ends of their
+ * range, small ones, and random ones. */
 #include "hexagen.h"
 
 #include <stdio.h>
@@ -47,14 +47,14 @@ static int fits(wide x)
     return x >= INT32_MIN && x <= INT32_MAX;
 }
 
-/* The word of these bits. */
+/* The word with these bits. */
 static wide word_of(wide x)
 {
     const wide below = x - over(x, TURN) * TURN;
     return (below >= TURN / 2) ? below - TURN : below;
 }
 
-/* An end of the range or a neighbour of one, or a number of any length. */
+/* An end of the range or a neighbour of one, or a number of random length. */
 static int32_t any(void)
 {
     static const int32_t ends[] = { INT32_MIN, INT32_MIN + 1, -65536, -65535, -2, -1, 0, 1, 2, 3,
@@ -72,7 +72,7 @@ static int32_t natural(void)
     return (word < 0) ? -(word + 1) : word;
 }
 
-/* A primitive and what it should be. */
+/* Compares a primitive with its expected value. */
 #define EXPECT(primitive, expected)                                                          \
     do {                                                                                     \
         const wide is = (hexagen_##primitive), should = (expected);                          \
@@ -121,7 +121,7 @@ int main(void)
             EXPECT(mul_add_floor(x, y, z, w, shift), over(both, power(shift)));
         }
         {
-            /* Any limit, and those about a magnitude. */
+            /* Any limit, or one next to a magnitude. */
             const int32_t near = (int32_t)(bits() % 3U) - 1;
             const wide about = greatest(0, least(size(x) + near, INT32_MAX));
             const wide limit = (bits() % 2U == 0U) ? natural() : about;
@@ -152,7 +152,7 @@ int main(void)
         {
             const wide limited = least(greatest(w, -32767999), 32767999);
             const wide made = hexagen_thousandths(w);
-            /* To the nearest, but for what a coefficient of 32 bits is short of. */
+            /* To the nearest, within the precision of a 32-bit coefficient. */
             EXPECT(thousandths(w), (size(made * 1000 - limited * 65536) <= 508) ? made : made + 1);
         }
         EXPECT(whole(w), least(greatest(w * power(16), INT32_MIN), INT32_MAX));

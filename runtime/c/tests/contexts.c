@@ -1,6 +1,6 @@
-/* A bus voltage and signals that pass between contexts of one core: interrupts strike before every
- * access, nest, and end calls for good, which count as given up after HEXAGEN_GIVEN_UP periods.
- * Every failed check prints its line; the program ends with their number. */
+/* Bus voltage and signals shared by contexts of one core: interrupts before every access, nested
+ * interrupts, and calls that never resume, which are given up after HEXAGEN_GIVEN_UP periods. Every
+ * failed check prints its line; the exit code is their number. */
 #include "hexagen.h"
 
 #include <setjmp.h>
@@ -16,7 +16,7 @@ static int failures;
 static int accesses;
 static jmp_buf killed;
 
-/* What strikes before an access, counted over all contexts; none where it is -1. */
+/* The interrupts, each before an access, counted over all contexts; none if -1. */
 static int kill_at = -1;
 static struct {
     int at;
@@ -72,7 +72,7 @@ static void start(void)
     none_pend();
 }
 
-/* The call whose words the control loop goes by; -1 where they are of two. */
+/* The call whose words the control loop uses; -1 if they are of two calls. */
 static int told(void)
 {
     const volatile int32_t *const words = hexagen_bus_words(&bus);
@@ -115,7 +115,7 @@ static void shows_that_calls_cease(void)
     }
 }
 
-/* Ends a call before an access; false where it has none there. */
+/* Abandons a call before an access; false if the call has no such access. */
 static bool kill_a_call(int access)
 {
     accesses = 0;
@@ -186,7 +186,7 @@ static void never_tears_words_that_belong_together(void)
 
 static int32_t now;
 
-/* A controlled period, whose words all say which it is. */
+/* A controlled period, whose words all contain its number. */
 static void answer(void)
 {
     const hexagen_checked checked = { now, -2 * now, now % 6 + 1, 0 };
@@ -269,7 +269,7 @@ static void no_answer_is_lost(void)
 
 static int taken;
 
-/* Who asks from a context that interrupts another one which asks; what is there it takes, and the next, too. */
+/* A request from a context that interrupts another request takes the answer, and the next one. */
 static void take_too(void)
 {
     hexagen_signals signals;

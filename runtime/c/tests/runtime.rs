@@ -1,12 +1,12 @@
-//! The runtime in C against arithmetic in more bits, against every count of an ADC, and against
-//! interrupts at every place; each also with faults planted, which must show.
+//! The C runtime against wider arithmetic, for every ADC count, and with interrupts at every
+//! access; each also with planted faults, which must be found.
 
 use hexagen_c99::{ABI, FILES, HEADER, SOURCE};
 use std::path::Path;
 use std::process::{Command, Output};
 use std::{env, fs};
 
-/// What the flags of users' own projects are at their strictest.
+/// Strict warning flags of users' projects.
 const STRICT: [&str; 8] = [
     "-std=c99",
     "-Wall",
@@ -18,10 +18,10 @@ const STRICT: [&str; 8] = [
     "-DHEXAGEN_SIGNALS",
 ];
 
-/// What makes compiled code stop at undefined behaviour.
+/// Makes the program stop at undefined behaviour.
 const CHECKED: [&str; 2] = ["-fsanitize=undefined", "-fno-sanitize-recover"];
 
-/// Compiles a file with a runtime, whose texts are given, into `program`.
+/// Compiles a file with the given texts of the runtime into `program`.
 fn compile(folder: &Path, [header, source]: [&str; 2], test: &str) -> Output {
     for (name, text) in [
         ("hexagen.h", header),
@@ -40,7 +40,7 @@ fn compile(folder: &Path, [header, source]: [&str; 2], test: &str) -> Output {
     cc.output().expect("a C compiler: `cc`, or what `CC` names")
 }
 
-/// What a test says with a runtime.
+/// Output of a test with a runtime.
 fn said(runtime: [&str; 2], test: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let built = compile(folder.path(), runtime, test);
@@ -52,14 +52,14 @@ fn said(runtime: [&str; 2], test: &str) -> String {
     String::from_utf8_lossy(&[run.stdout, run.stderr].concat()).into_owned()
 }
 
-/// The runtime with a text of it replaced.
+/// The runtime with a part of its text replaced.
 fn planted(old: &str, new: &str) -> [String; 2] {
     let [(_, header), (_, source)] = FILES;
     assert!(header.contains(old) || source.contains(old), "`{old}`");
     [header, source].map(|text| text.replacen(old, new, 1))
 }
 
-/// Of faults planted in the runtime those that the test does not notice, or names by another word.
+/// Those planted faults that the test does not find, or reports under another word.
 fn unnoticed<'f>(test: &str, faults: &[(&'f str, &str, &'f str)]) -> Vec<(&'f str, &'f str)> {
     let faults = faults.iter().filter(|(name, old, new)| {
         let [header, source] = planted(old, new);
@@ -70,7 +70,7 @@ fn unnoticed<'f>(test: &str, faults: &[(&'f str, &str, &'f str)]) -> Vec<(&'f st
 }
 
 #[test]
-fn the_number_of_the_interface_is_the_headers() {
+fn the_abi_number_matches_the_header() {
     assert!(HEADER.contains(&format!("\n#define HEXAGEN_ABI {ABI}\n")));
     assert!(SOURCE.contains(&format!("\n#if HEXAGEN_ABI != {ABI}\n")));
     let other = HEADER.replace("#define HEXAGEN_ABI ", "#define HEXAGEN_ABI 9");
@@ -85,7 +85,7 @@ fn the_number_of_the_interface_is_the_headers() {
 }
 
 #[test]
-fn primitives_compute_what_their_comments_say() {
+fn primitives_match_their_comments() {
     const TEST: &str = include_str!("arithmetic.c");
     assert_eq!(said([HEADER, SOURCE], TEST), "no difference\n");
     let faults = [
@@ -171,7 +171,7 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
     assert_eq!(unnoticed(TEST, &faults), []);
 }
 
-/// Arguments of `HEXAGEN_LIMITS` that hold, and one of them in place of another that does not.
+/// Valid arguments of `HEXAGEN_LIMITS`, each in turn replaced by an invalid one.
 #[test]
 fn limits_that_contradict_each_other_do_not_compile() {
     let sound = [
@@ -248,11 +248,11 @@ fn limits_that_contradict_each_other_do_not_compile() {
     assert!(compiles(sums));
 }
 
-/// What stands before each access.
+/// Inserted before each access.
 const HOOK: &str = "    hook();\n";
 
-/// The text with a hook before each line of these functions that reads or writes what contexts
-/// share, and their number.
+/// The text with a hook before each line of these functions that accesses shared state, and the
+/// number of hooks.
 fn hooked(text: &str, functions: &[&str], begin: &str) -> (String, usize) {
     let (mut hooked, mut hooks, mut is_inside) = (String::new(), 0, false);
     for line in text.lines() {
@@ -278,7 +278,7 @@ fn hooked(text: &str, functions: &[&str], begin: &str) -> (String, usize) {
 }
 
 #[test]
-fn what_contexts_share_is_whole_wherever_they_interrupt_each_other() {
+fn shared_state_is_consistent_under_every_interrupt() {
     const TEST: &str = include_str!("contexts.c");
     let functions = ["hexagen_pass_period", "hexagen_tell_bus", "hexagen_take"];
     let check = |[header, source]: [&str; 2]| {

@@ -1,5 +1,5 @@
-/* Walks every count of an ADC through the supervisor, at both ends of the offset, beside another in
- * 64 bits: what it lets pass, what trips and why, and that no current leaves its range. */
+/* Every ADC count through the supervisor, at both ends of the offset, compared with a 64-bit
+ * supervisor: samples passed, cause of each trip, and range of the currents. */
 #include "hexagen.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-//! Every interleaving of few operations: interrupts strike before every access, and nest.
+//! Every interleaving of a few operations: interrupts before every access, nested, too.
 
 extern crate std;
 
@@ -11,10 +11,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::rc::Rc;
 use std::vec::Vec;
 
-/// What interrupts, and before which access, counted over all contexts.
+/// The interrupts, each before an access, counted over all contexts.
 type Interrupt<'t> = (usize, Box<dyn Fn() + 't>);
 
-/// One core: counts accesses and lets interrupts in.
+/// One core: counts accesses and runs interrupts.
 #[derive(Default)]
 struct Core<'t> {
     accesses: Cell<usize>,
@@ -44,7 +44,7 @@ impl<'t> Core<'t> {
 }
 
 impl Core<'_> {
-    /// Lets in what would have struck later.
+    /// Runs the interrupts that are still pending.
     fn let_in_the_rest(&self) {
         let late: Vec<_> = self.pending.borrow_mut().drain(..).collect();
         for (_, interrupt) in late {
@@ -53,7 +53,7 @@ impl Core<'_> {
     }
 }
 
-/// A place whose accesses may be interrupted.
+/// A memory cell whose accesses may be interrupted.
 struct Watched<'t> {
     core: Rc<Core<'t>>,
     value: Cell<i32>,
@@ -87,7 +87,7 @@ fn buffer<'t>(core: &Rc<Core<'t>>, value: i32) -> Rc<Banks<Watched<'t>, 3>> {
     })
 }
 
-/// The number that all words have.
+/// The common value of all words.
 fn whole(words: [Word; 3]) -> i32 {
     assert!(
         words.iter().all(|word| *word == words[0]),
@@ -96,11 +96,11 @@ fn whole(words: [Word; 3]) -> i32 {
     words[0].0
 }
 
-/// Periods after which a store counts as given up, and periods after which a bus voltage is stale.
+/// Periods until a store is given up, and until a bus voltage is stale.
 const GIVEN_UP: i32 = 6;
 const STALE: i32 = 3;
 
-/// More accesses than any scenario makes: an interrupt then strikes nowhere.
+/// More accesses than any scenario makes: an interrupt at this place never runs.
 const BEHIND: usize = 40;
 
 /// Runs a scenario with interrupts before every access, and with none.
@@ -140,7 +140,7 @@ fn a_store_that_interrupts_a_read_is_seen_whole_or_not_at_all() {
 }
 
 #[test]
-fn stores_that_interrupt_each_other_never_tear_what_any_read_gets() {
+fn stores_that_interrupt_each_other_never_tear_a_read() {
     for second in 0..BEHIND {
         at_every_access(|core, access| {
             let buffer = buffer(core, 1);
@@ -155,14 +155,14 @@ fn stores_that_interrupt_each_other_never_tear_what_any_read_gets() {
             let end = whole(buffer.read());
             assert!(end == 2 || end == 3);
             core.let_in_the_rest();
-            // A later store is not held up by what went on before.
+            // A later store is not blocked by earlier ones.
             buffer.store([Word(4); 3], GIVEN_UP);
             assert_eq!(whole(buffer.read()), 4);
         });
     }
 }
 
-/// As a drive has them: the current's word and the words of the bus, each for itself.
+/// As in a drive: the word of the current and the words of the bus in separate cells.
 #[test]
 fn current_and_bus_told_from_two_contexts_both_arrive() {
     at_every_access(|core, access| {
@@ -186,7 +186,7 @@ fn current_and_bus_told_from_two_contexts_both_arrive() {
     });
 }
 
-/// The limit that the documentation names, and the proof that these tests see a torn read.
+/// The documented limit; also proves that these tests detect a torn read.
 #[test]
 fn two_stores_within_one_read_tear_it() {
     let mut torn = 0;
@@ -208,7 +208,7 @@ fn two_stores_within_one_read_tear_it() {
     assert!(torn > 0);
 }
 
-/// A drive that is told its bus voltage, as emitted code has one.
+/// A drive with a measured bus voltage, as emitted.
 struct Told<'t> {
     bus: Rc<Banks<Watched<'t>, 3>>,
     watch: Watch<Watched<'t>>,
@@ -231,7 +231,7 @@ impl<'t> Told<'t> {
         }
     }
 
-    /// The control interrupt; the voltage that it goes by.
+    /// The control interrupt; returns the voltage it uses.
     fn step(&self) -> i32 {
         self.bus.pass_period();
         self.watch.pass_period(STALE);
@@ -239,7 +239,7 @@ impl<'t> Told<'t> {
     }
 }
 
-/// Runs a call that ends for good before an access; whether that was before its own end.
+/// Abandons a call before an access; returns whether that was before its end.
 fn is_ended_at(core: &Core<'_>, access: usize, call: impl Fn()) -> bool {
     core.at(core.accesses.get() + access, || resume_unwind(Box::new(())));
     let ended = catch_unwind(AssertUnwindSafe(call)).is_err();
@@ -248,7 +248,7 @@ fn is_ended_at(core: &Core<'_>, access: usize, call: impl Fn()) -> bool {
 }
 
 #[test]
-fn a_bus_voltage_is_stale_before_the_first_call_and_where_calls_cease() {
+fn a_bus_voltage_is_stale_before_the_first_call_and_after_calls_cease() {
     let drive = Told::new(&Rc::new(Core::default()));
     assert!(drive.watch.is_stale());
     drive.step();
@@ -273,10 +273,10 @@ fn a_bus_voltage_is_stale_before_the_first_call_and_where_calls_cease() {
     }
 }
 
-/// A call that ends at any access leaves old or new words whole. Where later ones have no effect, the
-/// voltage becomes stale and stays so until they have.
+/// A call abandoned at any access leaves all old or all new words. While later calls have no
+/// effect, the voltage becomes stale and stays so.
 #[test]
-fn a_call_interrupted_for_good_shows_until_a_later_one_takes_effect() {
+fn an_abandoned_call_makes_the_voltage_stale_until_a_later_one_takes_effect() {
     let (mut ended, mut held_up) = (0, 0);
     for access in 0..BEHIND {
         let core = Rc::new(Core::default());
@@ -298,7 +298,7 @@ fn a_call_interrupted_for_good_shows_until_a_later_one_takes_effect() {
             told += i32::from(is_told);
         }
         assert!(told >= 3 * GIVEN_UP, "{access}: {told} periods");
-        // What was held up for longer than the voltage stays fresh showed as long as that.
+        // A block longer than the voltage's lifetime is reported as stale for the rest of it.
         let held = 4 * GIVEN_UP - told;
         assert_eq!(stale, (held + 1 - STALE).max(0), "{access}: {held} periods");
         held_up += i32::from(stale > 0);
@@ -306,8 +306,8 @@ fn a_call_interrupted_for_good_shows_until_a_later_one_takes_effect() {
     assert!(ended > 6 && held_up > 3, "{ended} ended, {held_up} held up");
 }
 
-/// The control interrupt between any two accesses of a call, and a call between any two of its own:
-/// every call that takes effect is seen.
+/// The control interrupt between any two accesses of a call, and a call between any two of the
+/// interrupt's: every call that takes effect is seen.
 #[test]
 fn no_call_is_lost_to_an_interrupt() {
     at_every_access(|core, access| {
@@ -338,7 +338,7 @@ fn no_call_is_lost_to_an_interrupt() {
     }
 }
 
-/// The control interrupt that runs a store's time down never undoes the begin or the end of one.
+/// The control interrupt that ages a store never overwrites its beginning or end.
 #[test]
 fn a_store_that_goes_on_is_not_given_up() {
     at_every_access(|core, access| {

@@ -1,21 +1,21 @@
-//! Every count of every converter at the ends and in the middle of the offsets, every Hall code, every
-//! order of faults, and limits that contradict each other.
+//! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
+//! order of faults, and contradictory limits.
 
 use super::{Limits, Supervisor};
 use crate::arith::Word;
 use crate::{Fault, LegState, Mode, Sample};
 
-/// A Hall code that is one.
+/// A valid Hall code.
 const HALL: u8 = 0b101;
 
-/// Limits of a converter with so many bits: offsets within a sixteenth of the middle, a trip level
-/// between two counts.
+/// Limits of an ADC with this number of bits: offsets within a sixteenth of the middle, a trip
+/// level between two counts.
 const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits {
     let middle = 1_u16 << (adc_bits - 1);
     let tolerance = middle / 16;
     let adc_max = (middle - 1) * 2 + 1;
     let one = 1_i32 << current_bits;
-    // The same to both sides but for the count that a converter has more below its middle.
+    // Symmetric, except that an ADC has one count more below its middle.
     let (least, most) = (middle - tolerance, middle + tolerance);
     let (below, above) = (-(most as i32) * one, (adc_max - least) as i32 * one);
     Limits {
@@ -36,7 +36,7 @@ const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits 
     }
 }
 
-/// Converters of 8, 12 and 16 bits, both ways round, with as many fraction bits as fit, and none.
+/// ADCs of 8, 12 and 16 bits, both polarities, with the most fraction bits that fit, and none.
 const ALL: [Limits; 12] = [
     limits(8, false, 22),
     limits(8, true, 22),
@@ -52,7 +52,7 @@ const ALL: [Limits; 12] = [
     limits(16, true, 0),
 ];
 
-/// A supervisor whose calibration has ended with these offsets, words of current.
+/// A supervisor calibrated to these offsets, words of current.
 fn calibrated(limits: &Limits, [offset_a, offset_b]: [i32; 2]) -> Supervisor {
     Supervisor {
         offsets: [Word(offset_a), Word(offset_b)],
@@ -60,7 +60,7 @@ fn calibrated(limits: &Limits, [offset_a, offset_b]: [i32; 2]) -> Supervisor {
     }
 }
 
-/// Ends and middle of the offsets, and between two counts.
+/// Ends and middle of the offsets, and one between two counts.
 fn offsets(limits: &Limits) -> [i32; 4] {
     let word = |count: u16| i32::from(count) << limits.current_bits;
     let [least, most] = limits.offsets.map(word);
@@ -68,8 +68,7 @@ fn offsets(limits: &Limits) -> [i32; 4] {
     [least, word(limits.offset), between.min(most), most]
 }
 
-/// A current as the documentation says it: the count less the offset, the other way round where the
-/// converter is.
+/// A current as documented: the count minus the offset, negated for an inverted ADC.
 fn current(limits: &Limits, count: u16, offset: i32) -> i64 {
     let current = (i64::from(count) << limits.current_bits) - i64::from(offset);
     if limits.adc_inverted {
@@ -79,7 +78,7 @@ fn current(limits: &Limits, count: u16, offset: i32) -> i64 {
     }
 }
 
-/// The fault of a sample in a drive that runs.
+/// The fault of a sample in a running drive.
 fn fault(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Option<Fault> {
     let [a, b] = [0, 1].map(|phase| current(limits, adc[phase], offsets[phase]));
     let most = a.abs().max(b.abs()).max((a + b).abs());
@@ -97,8 +96,8 @@ fn fault(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Option<
     }
 }
 
-/// Supervises one sample of a drive that runs: what passes, or what is found, is what is expected, and
-/// its currents lie within the limits.
+/// Supervises one sample of a running drive: the result is as expected, and its currents lie within
+/// the limits.
 fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Option<Fault> {
     let mut supervisor = calibrated(limits, offsets);
     let before = supervisor.clone();
@@ -140,7 +139,7 @@ fn every_count_at_the_ends_and_in_the_middle_of_the_offsets() {
         assert!(limits.hold(), "{limits:?}");
         let mut found = [0_u32; 3];
         for offset in offsets(limits) {
-            // Next to no current, for the phase that is not looked at.
+            // Almost no current, for the other phase.
             let zero = (offset >> limits.current_bits) as u16;
             for count in 0..=u16::MAX {
                 for adc in [[count, zero], [zero, count], [count, count]] {
@@ -203,7 +202,7 @@ fn the_trip_level_is_exact() {
                 assert!(limits.hold());
                 let adc = [count, limits.offset];
                 assert_eq!(supervise(&limits, adc, HALL, [offset; 2]), expected);
-                // Two phases with half of it each: the third one has it.
+                // Half of it in each of two phases: all of it in the third.
                 if is % (2 * one) == 0 {
                     let half = limits.offset.abs_diff(count) / 2;
                     let count = if count < limits.offset {
@@ -218,10 +217,10 @@ fn the_trip_level_is_exact() {
     }
 }
 
-/// The first fault of the documented list is told, whatever else a sample has, in every mode that is
-/// not tripped; a tripped drive keeps its own.
+/// The first fault of the documented list is reported, whatever else a sample has, in every mode
+/// except tripped; a tripped drive keeps its own.
 #[test]
-fn faults_are_told_in_their_order() {
+fn faults_are_reported_in_their_order() {
     let order = [
         (Fault::AdcRange, "range"),
         (Fault::Hall, "code"),
@@ -231,7 +230,7 @@ fn faults_are_told_in_their_order() {
     for limits in &ALL {
         for set in 0_u32..16 {
             let has = |index: usize| set >> index & 1 != 0;
-            // A count at the end is a current above the level, too: the other phase has the other cause.
+            // A count at the end is also an over-current: the other phase has the other cause.
             let adc_a = if has(0) {
                 limits.adc_max
             } else {
@@ -242,7 +241,7 @@ fn faults_are_told_in_their_order() {
             let sample = Sample::with_hall([adc_a, adc_b], hall);
             let expected = (0..4).find(|&index| has(index)).map(|index| order[index].0);
             for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
-                // The last sample of a calibration to an offset that is too far is the last of all faults.
+                // The last sample of a calibration with a wrong offset is the last of all faults.
                 let ends = mode == Mode::Calibrate;
                 let mut supervisor = Supervisor {
                     mode,
@@ -253,7 +252,7 @@ fn faults_are_told_in_their_order() {
                     ..Supervisor::new(limits)
                 };
                 let passed = supervisor.check(limits, &sample, || true);
-                // A stall is none out of control.
+                // There is no stall outside control.
                 let expected = expected.filter(|&fault| fault != Fault::Stall || mode == Mode::Run);
                 assert_eq!(passed.is_some(), mode == Mode::Run && expected.is_none());
                 if passed.is_some() {
@@ -278,7 +277,7 @@ fn faults_are_told_in_their_order() {
     assert_eq!(numbers, [1, 3, 2, 4]);
 }
 
-/// Runs start-up with constant counts to its end, through every period of it.
+/// Runs start-up with constant counts to its end.
 fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
     supervisor.calibrate(limits);
     let sample = Sample::with_hall(adc, HALL);
@@ -337,7 +336,7 @@ fn a_mean_between_two_counts_keeps_its_fraction() {
         limits.current_bits = current_bits;
         let mut supervisor = Supervisor::new(&limits);
         supervisor.calibrate(&limits);
-        // Three of sixteen samples are a count more.
+        // Three of sixteen samples are one count higher.
         for period in 0..16 {
             let count = 2048 + u16::from(period % 5 == 1);
             let sample = Sample::with_hall([count; 2], HALL);
@@ -347,8 +346,8 @@ fn a_mean_between_two_counts_keeps_its_fraction() {
     }
 }
 
-/// Without an edge under demand the last of the periods trips, and not the one before; an edge, no
-/// demand and start-up begin anew; samples without a code are no edges.
+/// Without an edge under demand the last period of the time-out trips, and not the one before; an
+/// edge, no demand, or start-up restarts the count; samples without a code are no edges.
 #[test]
 fn stalls_are_counted_between_codes() {
     let limits = limits(12, false, 17);
@@ -360,7 +359,7 @@ fn stalls_are_counted_between_codes() {
         })
     };
     let stall = Some(limits.stall_periods);
-    // The first code of all is no edge.
+    // The first code is no edge.
     let mut supervisor = Supervisor::new(&limits);
     assert_eq!(periods_until_stall(&mut supervisor, 1), stall);
     let begun = |periods: i32| {
@@ -375,7 +374,7 @@ fn stalls_are_counted_between_codes() {
         periods_until_stall(&mut supervisor, 1),
         Some(limits.stall_periods - 7)
     );
-    // An edge is the first period of none.
+    // A period with an edge does not count.
     let mut supervisor = begun(7);
     assert_eq!(
         periods_until_stall(&mut supervisor, 5),
@@ -394,7 +393,7 @@ fn stalls_are_counted_between_codes() {
     supervisor.calibrate(&limits);
     assert!(supervisor.check(&limits, &sample(1), || true).is_none());
     assert_eq!(supervisor.stall_count, 0);
-    // Nobody counts where no stall is watched for, whatever is asked for.
+    // Without a time-out no stall is detected, whatever the demand.
     let unwatched = Limits {
         stall_periods: 0,
         ..limits
@@ -411,7 +410,7 @@ fn stalls_are_counted_between_codes() {
 }
 
 #[test]
-fn commands_are_taken_in_their_modes_only() {
+fn commands_are_accepted_in_their_modes_only() {
     let limits = limits(12, false, 17);
     for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
         let begun = Supervisor {
@@ -469,7 +468,7 @@ fn commands_are_taken_in_their_modes_only() {
 }
 
 #[test]
-fn words_come_back_as_they_were() {
+fn words_round_trip() {
     let supervisor = Supervisor {
         mode: Mode::Precharge,
         fault: Some(Fault::Stall),
@@ -491,12 +490,12 @@ fn words_come_back_as_they_were() {
 /// A planted variant of limits.
 type Variant = fn(&mut Limits);
 
-/// Limits that contradict each other, or whose sums or words would not fit.
+/// Contradictory limits, and limits whose sums or words would not fit.
 const CONTRADICTIONS: [(&str, Variant); 21] = [
     ("no range", |limits| limits.adc_max = 0),
     ("a range without a middle", |limits| limits.adc_max = 1),
     ("a count more", |limits| limits.adc_max -= 1),
-    ("the other way round", |limits| {
+    ("inverted", |limits| {
         limits.adc_inverted = !limits.adc_inverted;
     }),
     ("a fraction bit more", |limits| limits.current_bits += 1),
@@ -535,7 +534,7 @@ const CONTRADICTIONS: [(&str, Variant); 21] = [
 ];
 
 #[test]
-fn limits_that_contradict_each_other_do_not_hold() {
+fn contradictory_limits_do_not_hold() {
     for limits in &ALL[..4] {
         for (what, variant) in CONTRADICTIONS {
             let mut planted = *limits;
@@ -545,7 +544,7 @@ fn limits_that_contradict_each_other_do_not_hold() {
     }
 }
 
-/// As many fraction bits as fit, and one more with all that follows from it.
+/// The most fraction bits that fit, and one more with consistent limits.
 #[test]
 fn words_that_do_not_fit_do_not_hold() {
     for adc_bits in [8, 12, 16] {
