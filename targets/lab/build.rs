@@ -95,14 +95,16 @@ fn names() -> Result<Vec<String>, Box<dyn Error>> {
 /// Generates the drives of one motor. A motor that no controller can be made for is left out: the
 /// program says why when it is asked.
 fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box<dyn Error>> {
-    // Every controller is generated for every motor; the program gives the warnings of those that are asked for.
+    // Every controller is generated for every motor; the program gives the warnings of those that
+    // are asked for.
     let mut builder = ["HX0601", "HX0602", "HX0610", "HX0611"]
         .into_iter()
         .fold(hexagen_codegen::Builder::new(), |builder, code| {
             builder.allow(code)
         })
         .motor(file);
-    // The motor's own controller first, then every kind that it can have with all options at their defaults.
+    // The motor's own controller first, then every kind that it can have with all options at their
+    // defaults.
     builder = builder.controller("pdcc");
     for kind in KINDS.map(|kind| kind.name) {
         if kind != "pdcc" && has_controller(file, kind)? {
@@ -139,7 +141,8 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
     }
 }
 
-/// Whether a controller of this kind can be made for the motor; the program says why when it cannot.
+/// Whether a controller of this kind can be made for the motor; the program says why when it
+/// cannot.
 fn has_controller(file: &str, kind: &str) -> Result<bool, Box<dyn Error>> {
     use hexagen_codegen::pipeline::generate;
     use hexagen_codegen::spec::{apply_variant, check, parse_toml};
@@ -150,7 +153,8 @@ fn has_controller(file: &str, kind: &str) -> Result<bool, Box<dyn Error>> {
         && check(&ast).is_ok_and(|(spec, origins)| generate(&spec, &origins).is_ok()))
 }
 
-/// The normalised specification of a variant; its text where it has errors, which the builder reports.
+/// The normalised specification of a variant; its text where it has errors, which the builder
+/// reports.
 fn normalised(file: &str, variant: &str) -> Result<String, Box<dyn Error>> {
     use hexagen_codegen::spec::{apply_variant, check, parse_toml};
     let checked = parse_toml(&fs::read_to_string(file)?, file).and_then(|mut ast| {

@@ -163,7 +163,7 @@ fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
         .split_once("<section id=\"robustness\">")
         .expect("the section");
     let (sheet, _) = sheet.split_once("</section>").expect("its end");
-    // Five disturbances at two speeds; of three controllers one is not there.
+    // Five disturbances at two speeds; of three controllers one is missing.
     assert_eq!(sheet.matches("<td").count(), 5 * 2 * 2);
     for (class, count) in [
         ("number", 4),
@@ -184,7 +184,7 @@ fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
         "L \u{2212}30\u{a0}%",
         "dead time 1 \u{b5}s",
         "10-bit ADC, 200 mA off",
-        "<code>phcc</code> is not there: one vector moves the current too far",
+        "<code>phcc</code> is missing: one vector moves the current too far",
         "<code>pdcc</code>, dead time 1 \u{b5}s: the dead time is too long",
         "A run oscillates where",
     ] {

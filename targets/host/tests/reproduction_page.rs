@@ -99,7 +99,7 @@ fn printed_switching_row_trips_and_the_derived_one_does_not() {
     }
     assert_eq!(DATA.tables.printed[0], [0, 7, 12, 7, 0, 2, 1, 2]);
     assert_ne!(DATA.tables.derived[0], DATA.tables.printed[0]);
-    assert!(PAGE.contains("Nothing to show: the drive tripped"));
+    assert!(PAGE.contains("No plot: the drive tripped"));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! A second of closed loop on one core: the 660 W motor at 1500 rpm under rated torque, sampled every 50 us.
+//! A second of closed loop on one core: the 660 W motor at 1500 rpm under rated torque, sampled
+//! every 50 us.
 //!
 //! `cargo bench -p hexagen-lab`; a second of one controller should take less than 0.2 s.
 

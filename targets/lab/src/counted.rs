@@ -1,12 +1,12 @@
-//! What steps cost on a Cortex-M4: `cargo xtask cost` counts it, a file beside the target keeps it.
+//! Cost of steps on a Cortex-M4: counted by `cargo xtask cost`, kept in a file beside the target.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The figures of a target, as its `cost.toml` keeps them.
+/// The figures of a target, the content of its `cost.toml`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counted {
-    /// What compiled the steps.
+    /// The compiler.
     pub compiler: String,
     /// Figures by symbol of the step function.
     pub steps: BTreeMap<String, Figures>,
@@ -17,10 +17,10 @@ pub struct Counted {
 pub struct Figures {
     /// Instructions on the normal path.
     pub normal: u32,
-    /// Those of them that are supervision: the same of a drive with an empty law. Of drives in Rust alone.
+    /// Those of the supervisor: the same as of a drive with an empty law. Only for drives in Rust.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub supervision: Option<u32>,
-    /// Instructions of the worst step in closed loop; start-up and trips are none.
+    /// Instructions of the worst step in closed loop, except start-up and trips.
     pub worst: u32,
     /// Estimated cycles of the normal path.
     pub cycles: u32,
@@ -31,19 +31,20 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Estimated cycles of the worst step: its instructions, with the cycles per instruction of the normal path.
+    /// Estimated cycles of the worst step: its instructions times the cycles per instruction of the
+    /// normal path.
     pub fn worst_cycles(&self) -> u32 {
         (self.worst * self.cycles).div_ceil(self.normal.max(1))
     }
 }
 
-/// Figures that are not there.
+/// Error of reading figures.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CountedError {
-    /// The file is not one of figures.
+    /// The file is invalid.
     #[error("targets/cortex-m4/cost.toml: {0}")]
     File(#[from] toml::de::Error),
-    /// The file does not know the step.
+    /// The file has no such step.
     #[error(
         "targets/cortex-m4/cost.toml has no figures of {0}: count it with `cargo xtask cost --target cortex-m4 --accept`"
     )]
@@ -54,7 +55,7 @@ impl Counted {
     /// Reads the text of a `cost.toml`.
     ///
     /// # Errors
-    /// What is wrong in it, and where.
+    /// Errors of syntax, with their place.
     pub fn parse(text: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(text)
     }
@@ -62,7 +63,7 @@ impl Counted {
     /// The figures of the firmware for a Cortex-M4.
     ///
     /// # Errors
-    /// When the file beside the target is not one of figures.
+    /// If the file beside the target is invalid.
     pub fn on_cortex_m4() -> Result<Self, CountedError> {
         Ok(Self::parse(include_str!("../cortex-m4-cost.toml"))?)
     }
@@ -70,7 +71,7 @@ impl Counted {
     /// The figures of a step function.
     ///
     /// # Errors
-    /// When there are none.
+    /// If there are none.
     pub fn of_step(&self, symbol: &str) -> Result<Figures, CountedError> {
         let figures = self.steps.get(symbol).copied();
         figures.ok_or_else(|| CountedError::Step(symbol.to_owned()))
@@ -82,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknown_steps_are_named() {
+    fn an_error_names_the_unknown_step() {
         let counted = Counted::on_cortex_m4().expect("figures");
         assert!(counted.of_step("step_trivedi_keshri_660w_pdcc").is_ok());
         let error = counted.of_step("step_x").expect_err("there is none");

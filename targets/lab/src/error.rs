@@ -1,11 +1,11 @@
-//! Why the laboratory cannot do what it is asked for.
+//! Errors of the laboratory.
 
 use crate::counted::CountedError;
 use crate::engine::SourceError;
 use crate::plant::PlantError;
 use hexagen_codegen::diagnostics::Diagnostics;
 
-/// What is wrong with a motor, a controller, a plant or a question; the text is complete.
+/// An error in a motor, a controller, a plant or an argument; its text is complete.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum LabError {
     /// The specification, motor file or variant is wrong: all diagnostics, rendered.
@@ -17,13 +17,13 @@ pub enum LabError {
     /// A parameter of the plant is out of range.
     #[error("error: {0}")]
     Plant(#[from] PlantError),
-    /// What is asked for makes no sense.
+    /// An argument is invalid.
     #[error("error: {0}")]
     Argument(String),
-    /// A free shaft where fixed speeds are compared.
-    #[error("error: the sheet is about fixed speeds; leave the inertia out")]
+    /// A free shaft in a comparison of fixed speeds.
+    #[error("error: the sheet needs fixed speeds; remove the inertia")]
     FreeShaft,
-    /// There is no count of a step.
+    /// A step has not been counted.
     #[error("error: {0}")]
     Counted(#[from] CountedError),
 }

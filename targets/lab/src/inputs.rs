@@ -1,4 +1,4 @@
-//! What the supervisor has let pass, as the inputs of a step.
+//! Inputs of a step from the supervisor's checked sample.
 
 use hexagen::Checked;
 use hexagen_codegen::ir::Program;
@@ -16,7 +16,7 @@ enum Input {
 }
 
 impl Inputs {
-    /// Those of a drive's program; none where it has others.
+    /// Those of a drive's program; `None` if it has others.
     pub fn of(program: &Program) -> Option<Self> {
         let inputs = program.step.inputs.iter();
         let inputs = inputs.map(|input| {
@@ -31,7 +31,7 @@ impl Inputs {
         inputs.collect::<Option<_>>().map(Self)
     }
 
-    /// The words of a period.
+    /// The input words of a period.
     pub fn words(&self, checked: &Checked) -> Vec<i32> {
         let word = |input: &Input| match input {
             Input::CurrentA => checked.i_a().0,

@@ -7,10 +7,10 @@ use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Sette
 use hexagen_reference::verify::Subject;
 use std::sync::{Arc, OnceLock};
 
-/// A drive whose law is interpreted; its supervisor is that of every emitted drive.
+/// A drive with an interpreted law and the common supervisor.
 ///
-/// A value outside its proven interval, which would be a bug of the generator, trips nothing: it is
-/// kept for [`Interpreted::escape`], and all legs go off.
+/// A value outside its proven interval, a bug of the generator, trips nothing: it is kept for
+/// [`Interpreted::escape`], and all legs are switched off.
 #[derive(Clone, Debug)]
 pub struct Interpreted<'g> {
     program: &'g Program,
@@ -22,7 +22,7 @@ pub struct Interpreted<'g> {
     escape: Arc<OnceLock<Escape>>,
 }
 
-/// The watch over a bus voltage that is told.
+/// Age of a measured bus voltage.
 #[derive(Clone, Copy, Debug)]
 struct BusWatch {
     /// Since the last period.
@@ -44,13 +44,13 @@ impl BusWatch {
     }
 }
 
-/// Places of the words that a drive gives and takes.
+/// Indices of a drive's input and output words.
 #[derive(Clone, Debug)]
 struct Places {
     inputs: Inputs,
     compare: [usize; 3],
     legs: [usize; 3],
-    /// The set-point that a reset sets to 0, among the set-point words.
+    /// Index of the set-point that a reset clears.
     set_point: usize,
 }
 
@@ -75,15 +75,15 @@ impl Places {
 }
 
 impl<'g> Interpreted<'g> {
-    /// The drive before its first period. The program need not pass verification: planted faults are
+    /// The drive in its initial state. The program need not pass verification: planted faults are
     /// run as well.
     ///
     /// # Panics
-    /// When the program is none of a drive (inputs, outputs or words are missing), or its limits
-    /// contradict each other.
+    /// If the program is not of a drive (inputs, outputs or words are missing), or its limits are
+    /// contradictory.
     pub fn new(program: &'g Program, interface: &Interface) -> Self {
         let limits = limits(&interface.limits);
-        assert!(limits.hold(), "limits contradict each other: {limits:?}");
+        assert!(limits.hold(), "contradictory limits: {limits:?}");
         Self {
             program,
             machine: Machine::of_program(program),
@@ -99,8 +99,8 @@ impl<'g> Interpreted<'g> {
         }
     }
 
-    /// The same, with the first value that leaves its interval told to `place`, which several drives
-    /// may share.
+    /// The same, reporting the first value that leaves its interval to `place`, which several
+    /// drives may share.
     #[must_use]
     pub fn telling(self, place: &Arc<OnceLock<Escape>>) -> Self {
         Self {
@@ -109,12 +109,12 @@ impl<'g> Interpreted<'g> {
         }
     }
 
-    /// The first value that left its proven interval, if any did.
+    /// The first value outside its proven interval.
     pub fn escape(&self) -> Option<&Escape> {
         self.escape.get()
     }
 
-    /// What the supervisor says.
+    /// The supervisor's result.
     pub fn supervisor(&self) -> &Supervisor {
         &self.supervisor
     }

@@ -1,8 +1,8 @@
-//! The laboratory, a library without a command line: a simulated plant, closed loops of any model of
-//! a controller, their figures of merit, all ways to run a generated drive, and reports as data.
+//! The laboratory, a library without a command line: simulated plant, closed loops with any model
+//! of a controller, figures of merit, engines of a generated drive, and reports as data.
 //!
-//! It alone knows both generator and runtime, so it also converts the generator's tables of formats
-//! and limits into the runtime's types.
+//! As the only crate with both generator and runtime, it also converts the generator's tables of
+//! formats and limits into the runtime's types.
 
 pub mod accuracy;
 pub mod closed_loop;

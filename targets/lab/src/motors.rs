@@ -1,4 +1,4 @@
-//! The library, and whether each motor's default drive holds its rating.
+//! The motor library, and whether each motor's default drive holds its rating.
 
 use crate::closed_loop::{Held, RunOptions, STARTS, Trip, mean_torque};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
@@ -6,7 +6,7 @@ use crate::{LabError, Progress};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The controller that is asked for the rating.
+/// The controller for the rating.
 const CONTROLLER: &str = "pdcc";
 
 /// One motor of the library; per phase of the star, SI units, speeds in rpm.
@@ -34,26 +34,26 @@ pub struct LibraryMotor {
     pub rated_rpm: Option<f64>,
     /// Control period, second.
     pub t_s: Option<f64>,
-    /// Whether the controller of its file generates.
+    /// Whether the controller of its file can be generated.
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
-    /// Whether PDCC with its defaults holds rated torque at rated speed from the nominal bus: within
-    /// 3 % on either side.
+    /// Whether PDCC with its defaults holds rated torque at rated speed and nominal bus voltage,
+    /// within 3 % on either side.
     pub holds_rating: Option<bool>,
-    /// Mean torque that it reaches there, in percent of the rated one; none of a drive that trips.
+    /// Mean torque there, in percent of the rated one; `None` for a drive that trips.
     pub rated_speed_torque_pct: Option<f64>,
-    /// What trips it there.
+    /// Trip there.
     pub tripped: Option<Trip>,
 }
 
 /// The library, by name.
 ///
 /// # Errors
-/// When a file of the library cannot be read.
+/// If a file of the library cannot be read.
 pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, LabError> {
     let motors = SelectedMotor::library(&PlantOptions::default())?;
-    // A motor that cannot have this controller holds nothing with it.
+    // A motor without this controller cannot hold its rating.
     let drives: Vec<Option<Prepared>> = motors
         .iter()
         .map(|motor| motor.prepare(Some(CONTROLLER)).ok())
@@ -71,8 +71,8 @@ pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, L
         .collect())
 }
 
-/// Runs a drive at rated speed with the set-point of rated torque, as far as that reaches, on the
-/// plant of its motor's file: the mean torque in newton metres, or what tripped it.
+/// Runs a drive at rated speed and rated torque, clamped to the set-point limit, on the plant of
+/// its motor's file: the mean torque in newton metres, or the trip.
 fn at_rating(drive: &Prepared) -> Result<Result<f64, Trip>, LabError> {
     let plant = plant_of(&drive.spec);
     let set_point = drive.set_point(drive.demand());

@@ -1,14 +1,14 @@
-//! Long work, watched.
+//! Progress of long computations.
 
-/// Whoever wants to know how far long work has come.
+/// Observer of a long computation.
 pub trait Progress: Sync {
-    /// Work of so many units begins.
+    /// A computation of this many units begins.
     fn begin(&self, what: &'static str, units: u64);
-    /// So many more units are done.
+    /// This many more units are done.
     fn advance(&self, units: u64);
 }
 
-/// Nobody.
+/// No observer.
 impl Progress for () {
     fn begin(&self, _: &'static str, _: u64) {}
     fn advance(&self, _: u64) {}

@@ -1,11 +1,11 @@
-//! The drives that `hexagen reproduce` runs, two readings of each controller of the paper.
+//! The drives of `hexagen reproduce`: two readings of each controller of the paper.
 //!
 //! The build script reads this list, too, and compiles them into the program.
 
 /// Readings of one controller of the paper, as variant texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Readings {
-    /// What the paper prints, as far as a drive can do it.
+    /// As printed, as far as a drive can implement it.
     pub literal: &'static str,
     /// The same with the errata of `hexagen::errata` applied.
     pub corrected: &'static str,

@@ -1,5 +1,5 @@
-//! Runs on both sides of the edges of a loop's stable range, and how they are judged: by the rule of the robustness
-//! sheet.
+//! Runs on both sides of the edges of a loop's stable range, judged by the criterion of the
+//! robustness sheet.
 
 use crate::LabError;
 use crate::closed_loop::RunOptions;
@@ -9,31 +9,31 @@ use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_codegen::spec::EmfSource;
 use rayon::prelude::*;
 
-/// Stable range as computed from the closed-loop poles, and what simulation says.
+/// Stable range computed from the closed-loop poles, and simulated runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
-    /// True over stated resistance and inductance; 0.1 and 10 are the ends of the search.
+    /// True over nominal resistance and inductance; 0.1 and 10 are the ends of the search.
     pub range: StableRange,
-    /// Simulated runs with one parameter off.
+    /// Simulated runs with one parameter varied.
     pub checks: Vec<StabilityCheck>,
 }
 
-/// A simulated run whose plant differs from the controller's model in one parameter.
+/// A simulated run on a plant with one varied parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityCheck {
     /// The parameter.
     pub parameter: Parameter,
-    /// Its true over its stated value.
+    /// Its true over its nominal value.
     pub factor: f64,
     /// Speed in rpm.
     pub rpm: f64,
     /// RMS torque ripple in percent of the mean.
     pub ripple_rms_pct: Option<f64>,
-    /// Whether the run counts as stable.
+    /// Whether the run is stable.
     pub stable: bool,
 }
 
-/// A motor parameter that the controller's model contains.
+/// A motor parameter in the controller's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// Phase inductance.
@@ -42,21 +42,21 @@ pub enum Parameter {
     Resistance,
 }
 
-/// Edges that are run, in true over stated value. Farther away there are no motors, and a loop with many times the
-/// inductance leaves its range by slow growth, which is not what the rule looks for; the search for the range itself
-/// ends at 0.1 and 10.
+/// Range of simulated edges, in true over nominal value. No motor is farther off, and a loop with
+/// many times the inductance diverges slowly, which the criterion does not detect; the search for
+/// the range itself ends at 0.1 and 10.
 pub const EDGES: (f64, f64) = (0.2, 4.0);
 
-/// How far inside or outside of an edge a loop is run, in parts of the edge.
+/// Relative distance of a run from an edge, inside and outside.
 pub const DISTANCE: f64 = 0.07;
 
-/// Speed in parts of the rated one: so low that a loop near its edge calms down between commutations.
+/// Speed relative to the rated one: so low that a loop near its edge settles between commutations.
 const SPEED: f64 = 0.1;
 
-/// Electrical angle in radians that the runs start at.
+/// Electrical start angle in radians.
 const START: f64 = 0.1;
 
-/// True over stated value just inside and just outside of each edge that is run.
+/// True over nominal value just inside and just outside of each simulated edge.
 pub fn sides((low, high): (f64, f64)) -> Vec<[f64; 2]> {
     [(low, 1.0 + DISTANCE), (high, 1.0 - DISTANCE)]
         .into_iter()
@@ -65,8 +65,8 @@ pub fn sides((low, high): (f64, f64)) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Where the page runs a loop: on both sides of its edges, and half-way (by ratio) from the stated value to each
-/// end of what is run.
+/// Runs of the page: on both sides of the edges, and half-way (by ratio) from the nominal value to
+/// each end of the simulated range.
 fn factors((low, high): (f64, f64)) -> Vec<f64> {
     let inside = [low.max(EDGES.0).sqrt(), high.min(EDGES.1).sqrt()];
     sides((low, high))
@@ -76,8 +76,7 @@ fn factors((low, high): (f64, f64)) -> Vec<f64> {
         .collect()
 }
 
-/// How a drive runs at its rated torque on a motor whose resistance and inductance are that many times the stated
-/// ones.
+/// Run of a drive at its rated torque on a motor with scaled resistance and inductance.
 ///
 /// # Errors
 /// A plant parameter out of range.
@@ -93,11 +92,12 @@ pub fn run_off(
     };
     let plant = plant_of(&drive.spec).scaled(resistance, inductance, 1.0);
     let found = measured(drive, &plant, &run, drive.set_point(torque), torque)?;
-    // A controller that modulates is judged by its own swing.
+    // A controller with a modulator is judged by its own swing.
     Ok(found.judged(&found))
 }
 
-/// The stable range of a loop whose EMF is estimated, and runs on both sides of its edges; none for other loops.
+/// The stable range of a loop with an estimated EMF, and runs on both sides of its edges; `None`
+/// for other loops.
 ///
 /// # Errors
 /// A plant parameter out of range.

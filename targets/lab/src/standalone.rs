@@ -1,16 +1,16 @@
-//! What stands in for crates where emitted code and the runtime are compiled by rustc alone.
+//! Stand-ins for crates, to compile emitted code and the runtime by rustc alone.
 
 use hexagen_codegen::derive_state;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use std::fmt::Write as _;
 
-/// The macros that the runtime re-exports; emitted code whose derives are written out calls none.
+/// The macros that the runtime re-exports; not called by emitted code with expanded derives.
 pub const MACROS: &str = "#![no_std]\n#![allow(non_snake_case)]\n\
     #[macro_export] macro_rules! controller { () => {} }\n\
     #[macro_export] macro_rules! verify { () => {} }\n\
     #[macro_export] macro_rules! State { () => {} }\n";
 
-/// The `fixed` crate's signed 32-bit types, with what emitted code and the runtime use of them.
+/// The `fixed` crate's signed 32-bit types, reduced to what emitted code and the runtime use.
 pub fn fixed() -> String {
     let mut text = String::from(
         "#![no_std]
@@ -43,8 +43,8 @@ pub mod types {
     text + "}\n"
 }
 
-/// Emitted code with every `#[derive(::hexagen::State)]` replaced by what it expands to: rustc alone
-/// has no macro of ours to call.
+/// Emitted code with every `#[derive(::hexagen::State)]` expanded, as rustc alone has no such
+/// macro.
 pub fn derived(code: TokenStream) -> TokenStream {
     let mut written = TokenStream::new();
     let mut tokens = code.into_iter().peekable();
@@ -68,7 +68,7 @@ pub fn derived(code: TokenStream) -> TokenStream {
     written
 }
 
-/// The structure without the attributes that only the derive knows.
+/// The structure without the attributes of the derive.
 fn without_initial(item: TokenStream) -> TokenStream {
     let mut written = TokenStream::new();
     let mut tokens = item.into_iter().peekable();
@@ -82,7 +82,7 @@ fn without_initial(item: TokenStream) -> TokenStream {
     written
 }
 
-/// The token; a group with what `change` makes of its inside.
+/// The token; a group with its content changed by `change`.
 fn inside(token: TokenTree, change: impl Fn(TokenStream) -> TokenStream) -> TokenTree {
     match token {
         TokenTree::Group(group) => Group::new(group.delimiter(), change(group.stream())).into(),
@@ -90,7 +90,7 @@ fn inside(token: TokenTree, change: impl Fn(TokenStream) -> TokenStream) -> Toke
     }
 }
 
-/// Whether two tokens are an attribute whose text, without blanks, begins so.
+/// Whether two tokens are an attribute whose text, without blanks, has this beginning.
 fn is_attribute(token: &TokenTree, next: Option<&TokenTree>, begin: &str) -> bool {
     let is_sign = matches!(token, TokenTree::Punct(sign) if sign.as_char() == '#');
     let text = |group: &Group| group.stream().to_string().replace(' ', "");
@@ -102,7 +102,7 @@ mod tests {
     use super::derived;
 
     #[test]
-    fn derives_are_written_out_wherever_they_stand() {
+    fn derives_are_expanded_everywhere() {
         let code = "const _: () = { #[derive(::hexagen::State)] pub struct State { \
                     #[doc = \"x\"] #[initial(-6)] x: Word, } fn f() {} };";
         let written = derived(code.parse().expect("Rust")).to_string();

@@ -6,14 +6,13 @@ use hexagen_codegen::ir::Program;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-/// Names of the words that outlive a control period, as `hexagen::Drive::state_names` has them: the
-/// supervisor's, then the law's.
+/// Names of the state words, as in `hexagen::Drive::state_names`: the supervisor's, then the law's.
 pub fn state_names(program: &Program) -> Vec<&str> {
     let law = program.states.iter().map(|word| word.name.as_str());
     Supervisor::NAMES.into_iter().chain(law).collect()
 }
 
-/// What the supervisor judges samples by.
+/// The supervisor's limits.
 pub fn limits(limits: &interface::Limits) -> Limits {
     let interface::Limits {
         adc_max,
@@ -56,7 +55,7 @@ pub fn formats(table: &[FormatEntry]) -> Vec<Format> {
     table.iter().map(convert).collect()
 }
 
-/// Names of formats live as long as the process, as those of compiled drives do; there are few.
+/// Names of formats are leaked, to be static as in compiled drives; there are few.
 fn interned(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -2,8 +2,8 @@
 
 use hexagen_codegen::diagnostics::engineering;
 
-/// A number with so many significant digits, without exponent where that is readable; a dash where
-/// there is none.
+/// A number with this many significant digits, without exponent where that is readable; a dash for
+/// `None`.
 pub fn significant(value: impl Into<Option<f64>>, digits: u32) -> String {
     let Some(value) = value.into() else {
         return "-".to_owned();
@@ -19,7 +19,7 @@ pub fn significant(value: impl Into<Option<f64>>, digits: u32) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A quantity with the signs of print: an engineer's prefix, ohm and micro as letters.
+/// A quantity in print: engineering prefix, ohm and micro as letters.
 pub fn quantity(value: f64, unit: &str) -> String {
     let text = engineering(value, unit);
     let Some((number, unit)) = text.split_once(' ') else {
@@ -32,7 +32,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     format!("{}\u{a0}{unit}", number.replace('-', "\u{2212}"))
 }
 
-/// A number with so many decimals and a true minus sign; a dash where there is none.
+/// A number with fixed decimals and a true minus sign; a dash for `None`.
 pub fn number(value: impl Into<Option<f64>>, decimals: usize) -> String {
     match value.into().filter(|value: &f64| value.is_finite()) {
         Some(value) => format!("{value:.decimals$}").replace('-', "\u{2212}"),
@@ -43,7 +43,7 @@ pub fn number(value: impl Into<Option<f64>>, decimals: usize) -> String {
 /// A percentage of ripple: two decimals below 1, one below 100.
 pub fn ripple(value: impl Into<Option<f64>>) -> String {
     let value = value.into();
-    // Where rounding decides, what is shown counts.
+    // The rounded value decides.
     let decimals = match value.map_or(0.0, f64::abs) {
         x if x < 0.995 => 2,
         x if x < 99.95 => 1,
@@ -65,7 +65,7 @@ pub fn grouped(count: u64) -> String {
     text
 }
 
-/// How torque is written: the unit that suits a demand.
+/// Unit of torque for a demand.
 #[derive(Clone, Copy, Debug)]
 pub struct TorqueScale {
     /// Name of the unit.
@@ -97,7 +97,7 @@ impl TorqueScale {
         }
     }
 
-    /// A torque in newton metres, with more decimals by so many.
+    /// A torque in newton metres, with this many more decimals.
     pub fn text(&self, torque: impl Into<Option<f64>>, more: usize) -> String {
         let torque = torque.into().map(|torque: f64| self.per_nm * torque);
         number(torque, self.decimals + more)
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_and_numbers_read_as_in_print() {
+    fn quantities_and_numbers_have_typographic_signs() {
         assert_eq!(quantity(0.135, "ohm"), "135\u{a0}m\u{3a9}");
         assert_eq!(quantity(22e-5, "H"), "220\u{a0}\u{b5}H");
         assert_eq!(quantity(-0.5, "A"), "\u{2212}500\u{a0}mA");

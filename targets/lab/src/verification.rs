@@ -7,34 +7,34 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Steps of one run from rest; a longer check is many runs with seeds of their own.
+/// Steps of one run from the initial state; a longer check is many runs with seeds of their own.
 const RUN: u64 = 1 << 19;
 
-/// The check of one drive.
+/// Bit-for-bit check of one drive.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checked {
     /// Motor.
     pub motor: String,
     /// Controller variant.
     pub controller: String,
-    /// What ran.
+    /// Engine.
     pub engine: EngineKind,
-    /// Why it was no compiled code, where it was none.
+    /// Why it was not compiled code, if so.
     #[serde(skip)]
     pub why_interpreted: Option<String>,
-    /// Steps that were compared.
+    /// Compared steps.
     pub steps: u64,
     /// Whether every output and state word was equal after every step.
     pub passed: bool,
     /// Steps per second and core.
     pub steps_per_second: f64,
-    /// What the steps covered.
+    /// Coverage of the steps.
     pub coverage: Coverage,
-    /// What differs.
+    /// The difference, if any.
     pub mismatch: Option<String>,
 }
 
-/// What differs, a line for each drive; none where nothing does.
+/// The differences, a line for each drive; `None` if there are none.
 pub fn mismatches(checked: &[Checked]) -> Option<String> {
     let differing = checked.iter().filter_map(|drive| {
         let mismatch = drive.mismatch.as_ref()?;
@@ -44,7 +44,7 @@ pub fn mismatches(checked: &[Checked]) -> Option<String> {
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
-/// How many steps went which way.
+/// Number of steps by kind.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Coverage {
     /// In control.
@@ -57,7 +57,7 @@ pub struct Coverage {
     pub tripped: u64,
     /// In control and limited to the hexagon.
     pub limited: u64,
-    /// Of these, past the reach along the EMF (torque priority).
+    /// Of these, beyond the limit along the EMF (torque priority).
     pub past_reach: u64,
     /// In control with a commutation under way (pair modulation).
     pub commutating: u64,
@@ -97,7 +97,7 @@ pub fn verify_drives(
     verify_with(drives, &verifiers, steps, seed, progress)
 }
 
-/// As [`verify_drives`], with what runs each drive.
+/// Like [`verify_drives`], with given engines.
 pub fn verify_with(
     drives: &[Prepared],
     verifiers: &[Verifier<'_>],

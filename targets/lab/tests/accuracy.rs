@@ -1,5 +1,5 @@
-//! Fixed point beside the ideal model over the whole library: single steps from the same state keep within what is proven
-//! of them, and the proofs promise what a drive is to reach.
+//! Fixed point beside the ideal model over the whole library: single steps from the same state keep
+//! within what is proven of them, and the proofs promise what a drive is to reach.
 
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::ir::{StatedError, stated_errors};

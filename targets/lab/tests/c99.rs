@@ -1,5 +1,6 @@
-//! Emitted C passes strict flags, computes what the bit-true model computes on every output and state bit, and has
-//! no undefined behaviour on the way, for the covering arrays of all kinds of controllers.
+//! Emitted C passes strict flags, computes what the bit-true model computes on every output and
+//! state bit, and has no undefined behaviour on the way, for the covering arrays of all kinds of
+//! controllers.
 
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::spec::parse_toml;
@@ -14,8 +15,8 @@ use std::{env, fs};
 /// Steps per drive.
 const STEPS: u64 = 20_000;
 
-/// Every so many drives are compiled with a check for undefined behaviour, the rest as firmware would be; all of them
-/// both ways where `HEXAGEN_WHOLE_PRODUCTS` is set.
+/// Every so many drives are compiled with a check for undefined behaviour, the rest as firmware
+/// would be; all of them both ways where `HEXAGEN_WHOLE_PRODUCTS` is set.
 const CHECKED: usize = 6;
 
 /// What makes the compiled code stop at undefined behaviour.
@@ -154,8 +155,8 @@ fn assert_has_none(text: &str, never: &[&str], what: &str) {
     }
 }
 
-/// Types' names that C keeps for itself, or C++, or a header, or the runtime; that of a function of every source; one that
-/// begins a stage's name, and one that begins a constant's.
+/// Types' names that C keeps for itself, or C++, or a header, or the runtime; that of a function of
+/// every source; one that begins a stage's name, and one that begins a constant's.
 #[test]
 fn names_that_c_does_not_take_are_changed() {
     let paper = motor(PAPER_MOTOR);
@@ -177,7 +178,8 @@ fn names_that_c_does_not_take_are_changed() {
     }
 }
 
-/// Compiles these files with a drive and the runtime beside them; what the program says, or the compiler where it refuses.
+/// Compiles these files with a drive and the runtime beside them; what the program says, or the
+/// compiler where it refuses.
 fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let own = [

@@ -1,21 +1,23 @@
-//! At 120 % of rated speed no controller reaches more than a tenth less torque than the nearest-point rule with
-//! the same options, which loses what it must and no more, but for one rule: listed with what it reaches.
+//! At 120 % of rated speed no controller reaches more than a tenth less torque than the
+//! nearest-point rule with the same options, which loses what it must and no more, but for one
+//! rule: listed with what it reaches.
 
 use hexagen_lab::closed_loop::{RunOptions, mean_torque};
 use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Part of the rated speed that every controller of this motor has lost its rated torque at, bar those with
-/// proportional reference.
+/// Part of the rated speed that every controller of this motor has lost its rated torque at, bar
+/// those with proportional reference.
 const SPEED: f64 = 1.2;
 
 /// Part of the nearest-point rule's torque that counts as no collapse.
 const KEPT: f64 = 0.9;
 
-/// The rule that falls short, by what its variants contain, and the part of the nearest-point rule's torque that it
-/// reaches. Scaling a voltage that points across the EMF, as it does in commutations, leaves too little along the
-/// EMF; quasi-square references ask for commutations all the time past the limit.
+/// The rule that falls short, by what its variants contain, and the part of the nearest-point
+/// rule's torque that it reaches. Scaling a voltage that points across the EMF, as it does in
+/// commutations, leaves too little along the EMF; quasi-square references ask for commutations all
+/// the time past the limit.
 const SHORT: [&str; 3] = [
     "modulation=three_phase",
     "saturation=keep_angle",

@@ -1,6 +1,6 @@
 //! A float64 reference experiment: an ideal deadbeat controller on the 660 W motor must give the
-//! PDCC rows of the reference study that it stands for (`report/expected.rs`). Nothing of the generator takes part, so a
-//! difference here is the plant's or the figures of merit'.
+//! PDCC rows of the reference study that it stands for (`report/expected.rs`). Nothing of the
+//! generator takes part, so a difference here is the plant's or the figures of merit'.
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_lab::closed_loop::{

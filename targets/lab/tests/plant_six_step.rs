@@ -136,7 +136,8 @@ fn the_current_of_the_pair_gives_the_ripple_of_the_generated_drive() {
     assert_near(Held::Pair, 1500.0, [3.45, 19.2, 5.17]);
 }
 
-/// The design's 89 % is met by neither: it is lower than the limit of the regulator whose ripple it comes with.
+/// The design's 89 % is met by neither: it is lower than the limit of the regulator whose ripple it
+/// comes with.
 #[test]
 fn the_current_of_the_pair_holds_the_torque_further() {
     let [largest, pair] = [Held::Largest, Held::Pair].map(limit);

@@ -1,9 +1,9 @@
-//! Fixed and ideal runs on the same ADC words: every figure of merit of every row of the result table that modulates,
-//! and, within 1 %, the mean torque of the others.
+//! Fixed and ideal runs on the same ADC words: every figure of merit of every row of the result
+//! table that modulates, and, within 1 %, the mean torque of the others.
 //!
-//! A controller that applies one of a few vectors may decide a near tie either way, and the patterns differ from
-//! there on. Their single decisions are compared, from the same state,
-//! in the tests of `hexagen-reference`.
+//! A controller that applies one of a few vectors may decide a near tie either way, and the
+//! patterns differ from there on. Their single decisions are compared, from the same state, in the
+//! tests of `hexagen-reference`.
 
 use hexagen_lab::accuracy::{differences, side_by_side};
 use hexagen_lab::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};

@@ -1,4 +1,5 @@
-//! An estimated sine keeps its length as it is moved on from period to period: the torque is the one that is asked for.
+//! An estimated sine keeps its length as it is moved on from period to period: the torque is the
+//! one that is asked for.
 
 use hexagen_lab::closed_loop::mean_torque;
 use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};

@@ -1,5 +1,5 @@
-//! The speed loop in closed loop, on motors of different size: run-up from standstill under load, reversal, steps of
-//! the load, the limit of the current, and what is said of slow turning.
+//! The speed loop in closed loop, on motors of different size: run-up from standstill under load,
+//! reversal, steps of the load, the limit of the current, and what is said of slow turning.
 
 use hexagen_lab::closed_loop::ClosedLoop;
 use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
@@ -7,8 +7,8 @@ use hexagen_lab::plant::{Mechanics, Plant};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Variants of every kind, and how far their phase currents go beyond the current that is asked for, in parts of the rated
-/// one: ripple, the more the fewer vectors they choose from.
+/// Variants of every kind, and how far their phase currents go beyond the current that is asked
+/// for, in parts of the rated one: ripple, the more the fewer vectors they choose from.
 const VARIANTS: [(&str, f64); 5] = [
     ("pdcc:speed_loop=on", 0.15),
     (
@@ -27,8 +27,8 @@ const RESTLESS: f64 = 0.7;
 /// move it by 1.5 times the rated current.
 const ROUGH: (&str, &str) = ("hurst-long", "phcc");
 
-/// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load that a run-up
-/// does not last long with.
+/// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load that
+/// a run-up does not last long with.
 const MOTORS: [(&str, &str); 3] = [
     ("anaheim-bly171d", "1.5e-5 kg m2"),
     ("hurst-long", "5e-5 kg m2"),

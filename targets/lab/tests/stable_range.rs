@@ -1,5 +1,5 @@
-//! The stable range of L and R that types and data sheets state, against simulation: loops stay calm inside of it
-//! and oscillate outside, by the rule of the robustness sheet.
+//! The stable range of L and R that types and data sheets state, against simulation: loops stay
+//! calm inside of it and oscillate outside, by the rule of the robustness sheet.
 
 use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_lab::engine::{MotorSource, prepare};

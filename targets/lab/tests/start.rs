@@ -15,7 +15,8 @@ const ANGLES: u32 = 12;
 /// Periods of a run: longer than the slowest filter below takes.
 const PERIODS: usize = 250;
 
-/// Every option that has a part in the current, with filters that follow at once, slowly and hardly at all.
+/// Every option that has a part in the current, with filters that follow at once, slowly and hardly
+/// at all.
 const VARIANTS: [&str; 49] = [
     "pdcc",
     "pdcc:emf_filter=1",
@@ -193,8 +194,8 @@ fn no_drive_trips_below_the_speed_that_it_states() {
         .map(|(name, ..)| name)
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
-    // The speed is stated for use: many drives do trip not far beyond it. (Others could at a lower bus only, or from
-    // another angle.)
+    // The speed is stated for use: many drives do trip not far beyond it. (Others could at a lower
+    // bus only, or from another angle.)
     let count = |n: usize| outcomes.iter().filter(|(_, flags)| flags[n]).count();
     let (judged, tripping) = (count(1), count(2));
     assert!(

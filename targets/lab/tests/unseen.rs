@@ -1,8 +1,10 @@
-//! What the documentation of every type says of its supervisor's limits: a current sensor that is frozen within its
-//! range lets the true current rise to several times the trip level, and nothing trips.
+//! What the documentation of every type says of its supervisor's limits: a current sensor that is
+//! frozen within its range lets the true current rise to several times the trip level, and nothing
+//! trips.
 //!
-//! Where this fails because a drive trips, the supervisor has learnt to see it: then the paragraph "What the supervisor
-//! cannot see" (`hexagen::Supervisor`, README) is to be changed with this test.
+//! Where this fails because a drive trips, the supervisor has learnt to see it: then the paragraph
+//! "What the supervisor cannot see" (`hexagen::Supervisor`, README) is to be changed with this
+//! test.
 
 use hexagen::{Fault, Sample};
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
@@ -12,8 +14,8 @@ use hexagen_lab::plant::Plant;
 /// Control periods, a tenth of a second.
 const PERIODS: usize = 2000;
 
-/// Kinds of controllers, each with parts of the rated speed and of the rated torque. (At most others PHCC trips, at 1.0 to
-/// 1.6 times the level.)
+/// Kinds of controllers, each with parts of the rated speed and of the rated torque. (At most
+/// others PHCC trips, at 1.0 to 1.6 times the level.)
 const RUNS: [(&str, f64, f64); 4] = [
     ("pdcc", 0.25, 1.0),
     ("fcs-mpc", 0.25, 1.0),
@@ -21,8 +23,8 @@ const RUNS: [(&str, f64, f64); 4] = [
     ("pi-pwm", 0.25, 1.0),
 ];
 
-/// The greatest true phase current over the trip level, and the fault, with sensor a as it is or frozen at the count of
-/// no current.
+/// The greatest true phase current over the trip level, and the fault, with sensor a as it is or
+/// frozen at the count of no current.
 fn greatest_current(
     (variant, speed, share): (&str, f64, f64),
     is_frozen: bool,

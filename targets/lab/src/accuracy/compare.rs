@@ -1,4 +1,4 @@
-//! Fixed against floating point, per controller and word length.
+//! Fixed point against floating point, per controller and word length.
 
 use super::{FigureDifference, OneStep, SideBySide, differences, one_step, side_by_side};
 use crate::LabError;
@@ -7,7 +7,7 @@ use crate::engine::{EngineKind, Model, PlantOptions, Prepared, SelectedMotor};
 use crate::results::SPEEDS;
 use serde::Serialize;
 
-/// Word lengths that are compared.
+/// Compared word lengths.
 pub const WORDS: [u32; 2] = [32, 16];
 
 /// One controller at one word length.
@@ -17,21 +17,21 @@ pub struct Row {
     pub controller: String,
     /// Word length in bits.
     pub word: u32,
-    /// Why it does not generate.
+    /// Why it cannot be generated.
     pub refused: Option<String>,
-    /// What it computes otherwise.
+    /// The comparison, if it can.
     #[serde(flatten)]
     pub accuracy: Option<Accuracy>,
 }
 
-/// Distances of fixed from floating point.
+/// Differences between fixed and floating point.
 #[derive(Clone, Debug, Serialize)]
 pub struct Accuracy {
-    /// What ran the fixed-point program in the closed loops.
+    /// Engine of the fixed-point program in closed loop.
     pub engine: EngineKind,
     /// One step from the same state.
     pub one_step: OneStep,
-    /// How often errors of which size were seen in phases a and b: equal parts of the range from the negative to the
+    /// Histogram of the errors of phases a and b: equal parts of the range from the negative to the
     /// positive bound.
     pub histogram: Vec<u64>,
     /// Closed loops, per speed.
@@ -39,7 +39,8 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The figure of merit of the closed loops that differs most, by what may differ, and its speed in rpm.
+    /// The figure of merit with the largest difference in closed loop, relative to the tolerance,
+    /// and its speed in rpm.
     pub fn furthest(&self) -> Option<(&FigureDifference, f64)> {
         let figures = self.closed_loop.iter();
         let figures = figures.flat_map(|at| at.figures.iter().map(move |figure| (figure, at.rpm)));
@@ -52,13 +53,14 @@ impl Accuracy {
 pub struct AtSpeed {
     /// Mechanical speed, rpm.
     pub rpm: f64,
-    /// What tripped the fixed-point drive; then it has no figures of merit.
+    /// Trip of the fixed-point drive, which then has no figures of merit.
     pub tripped: Option<Trip>,
     /// Every figure of merit.
     pub figures: Vec<FigureDifference>,
 }
 
-/// One drive beside the ideal model at rated torque, as far as its set-point reaches, and each of the speeds in rpm.
+/// One drive and its ideal model at rated torque (or the most that its set-point limit allows), and
+/// speeds in rpm.
 ///
 /// # Errors
 /// A plant option out of range.
@@ -76,7 +78,7 @@ pub fn at_speeds(
     measured.collect()
 }
 
-/// Accuracy of one drive at rated torque, as far as its set-point reaches.
+/// Accuracy of one drive at rated torque, or the most that its set-point limit allows.
 ///
 /// # Errors
 /// A plant option out of range.
@@ -104,18 +106,18 @@ pub fn accuracy(drive: &Prepared, plant: &PlantOptions) -> Result<Accuracy, LabE
     })
 }
 
-/// Compares every one of these controllers at every word length.
+/// Compares controllers at all word lengths.
 ///
 /// # Errors
-/// No such motor, an unreadable file, or a plant option out of range. A controller that does not
-/// generate is a row with the reason.
+/// No such motor, an unreadable file, or a plant option out of range. A controller that cannot be
+/// generated is a row with the reason.
 pub fn compare(
     motor: &str,
     variants: &[String],
     plant: &PlantOptions,
 ) -> Result<Vec<Row>, LabError> {
     let motor = SelectedMotor::find(motor, plant)?;
-    // What does not generate at any word length is no matter of accuracy.
+    // A variant that fails at every word length has no accuracy.
     match variants {
         [one] => motor.prepare_for_torque(Some(one))?,
         _ => motor.prepare(None)?,
@@ -144,7 +146,7 @@ pub fn compare(
     Ok(rows)
 }
 
-/// The variant with a word length; none where it names another one itself.
+/// The variant with a word length; `None` if it names another one itself.
 pub fn with_word(variant: &str, word: u32) -> Option<String> {
     let options = variant.split_once(':').map_or("", |(_, options)| options);
     let named = options

@@ -1,5 +1,5 @@
-//! Words of 16 bits over the library: the formats that the generator chooses for each motor, against one saturating
-//! format of SI units that holds them all.
+//! 16-bit words over the motor library: formats chosen per motor against one saturating format of
+//! SI units for all motors.
 
 use super::{OneStep, Uniform16, uniform_format, with_word};
 use crate::LabError;
@@ -8,7 +8,7 @@ use crate::results::SPEEDS;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The law that is compared: predictive deadbeat, which has the deadbeat voltage for its own.
+/// The compared law: predictive deadbeat, the only one with a deadbeat voltage.
 pub const LAW: &str = "pdcc";
 
 /// One motor.
@@ -16,20 +16,20 @@ pub const LAW: &str = "pdcc";
 pub struct LibraryRow {
     /// The motor.
     pub motor: String,
-    /// Why its drive of 16-bit words does not generate.
+    /// Why its 16-bit drive cannot be generated.
     pub refused: Option<String>,
-    /// What the formats of its own reach.
+    /// Results of its own formats.
     pub one_step: Option<OneStep>,
-    /// Signal over error in the one format, decibel.
+    /// Signal-to-noise ratio in the common format, decibel.
     pub uniform_snr_db: Option<f64>,
-    /// By how much its own formats are better, decibel.
+    /// Gain of its own formats, decibel.
     pub better_by_db: Option<f64>,
 }
 
 /// All motors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Library {
-    /// Fraction bits of the one format.
+    /// Fraction bits of the common format.
     pub uniform_frac_bits: i32,
     /// Mean of the rows' `better_by_db`.
     pub better_by_db: f64,
@@ -37,7 +37,8 @@ pub struct Library {
     pub rows: Vec<LibraryRow>,
 }
 
-/// Compares every motor of the library at rated torque, as far as its set-point reaches.
+/// Compares every motor of the library at rated torque, or the most that its set-point limit
+/// allows.
 ///
 /// # Errors
 /// A plant option out of range.

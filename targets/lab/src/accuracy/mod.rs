@@ -1,5 +1,5 @@
-//! How far fixed point is from floating point: in one step from the same state, and in the figures of merit
-//! of a closed loop.
+//! Accuracy of fixed against floating point: errors of single steps, and figures of merit in closed
+//! loop.
 
 mod compare;
 mod library;
@@ -24,8 +24,7 @@ use one_step::{Step, Sums};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The ideal model on the samples that the fixed-point drive read on its own plant, from the same
-/// state at every step.
+/// The ideal model on the fixed-point drive's samples, starting every step from the drive's state.
 struct SameWords {
     bit_true: BitTrue,
     ideal: Ideal,
@@ -46,13 +45,13 @@ impl CurrentLoop for SameWords {
         duties.to_legs(self.timer_period)
     }
 
-    /// It follows the drive that it is compared with, into a trip, too.
+    /// Follows the drive into a trip, too.
     fn fault(&self) -> Option<Fault> {
         self.bit_true.fault()
     }
 }
 
-/// A drive that notes what it reads.
+/// A drive that records its samples.
 struct Noting<'g> {
     engine: Engine<'g>,
     samples: Vec<Sample>,
@@ -69,18 +68,18 @@ impl CurrentLoop for Noting<'_> {
     }
 }
 
-/// The fixed-point drive and the ideal model on the words that it read.
+/// The fixed-point drive, and the ideal model on its samples.
 #[derive(Clone, Debug)]
 pub struct SideBySide {
-    /// The fixed-point drive in its own loop.
+    /// The fixed-point drive in its own closed loop.
     pub fixed: Measurement,
     /// The ideal model on its own plant, from the same starts.
     pub ideal: Measurement,
     sums: Sums,
 }
 
-/// The distance of single steps over measurements of a drive, start-up included, and how often errors of which size
-/// were seen: [`BINS`] equal parts of the range from the negative to the positive bound.
+/// Errors of single steps along a measured run, start-up included, and their histogram: [`BINS`]
+/// equal parts of the range from the negative to the positive bound.
 pub fn one_step<'a>(
     drive: &Prepared,
     measured: impl IntoIterator<Item = &'a SideBySide>,
@@ -91,10 +90,10 @@ pub fn one_step<'a>(
     (total.one_step(), total.histogram())
 }
 
-/// Measures the fixed-point drive, and the ideal model from the same starts, on the same ADC and
-/// Hall words and with the same last samples and applied voltages: what differs is arithmetic
-/// alone, not the course that the last bit of an ADC gives to a loop of its own. (Left to itself on
-/// foreign words, a model that estimates the EMF from its own voltages would drift away.)
+/// Measures the fixed-point drive, and the ideal model from the same starts, with the same ADC
+/// counts, Hall codes and applied voltages, so that only arithmetic differs: in a loop of its own,
+/// one ADC count can lead to another trajectory. (Without the applied voltages, a model with an EMF
+/// estimator would drift away.)
 ///
 /// # Errors
 /// A plant parameter out of range.
@@ -140,7 +139,7 @@ pub fn side_by_side(
     })
 }
 
-/// Settles a loop and records its measured window; gives its trip and the controller back.
+/// Settles a loop and records its measured window; returns the trip and the controller, too.
 fn settled<C: CurrentLoop>(
     motor: Plant,
     controller: C,
@@ -155,28 +154,28 @@ fn settled<C: CurrentLoop>(
     (trace, closed.tripped(), closed.into_controller())
 }
 
-/// A figure of merit of the fixed-point drive beside the ideal model's.
+/// A figure of merit of the fixed-point drive and of the ideal model.
 #[derive(Clone, Debug, Serialize)]
 pub struct FigureDifference {
     /// The figure of merit.
     pub figure: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Of the fixed-point drive; null where there is no such figure, as after a trip.
+    /// Of the fixed-point drive; null if undefined, as after a trip.
     pub fixed: Option<f64>,
-    /// Of the ideal model on the same words.
+    /// Of the ideal model on the same samples.
     pub ideal: Option<f64>,
-    /// Of the ideal model in a loop of its own.
+    /// Of the ideal model in its own closed loop.
     pub ideal_alone: Option<f64>,
-    /// How far `fixed` and `ideal` are apart, in parts of what still counts as close: 0.5 %, or 0.05 points where
-    /// the unit is %; infinite (in JSON null) where only one of them exists or `ideal` alone is zero.
+    /// Difference between `fixed` and `ideal`, relative to the tolerance: 0.5 %, or 0.05 points for
+    /// percentages; infinite (in JSON null) if only one exists or `ideal` alone is zero.
     pub of_allowance: f64,
-    /// Whether that is at most 1.
+    /// Whether the difference is at most 1.
     pub close: bool,
 }
 
 impl FigureDifference {
-    /// The difference with its unit: points of percentages, percent of everything else.
+    /// The difference with its unit: points for percentages, else percent.
     pub fn text(&self) -> String {
         let both = self.fixed.zip(self.ideal);
         let (value, unit) = match both.map(|(fixed, ideal)| ((fixed - ideal).abs(), ideal)) {

@@ -1,5 +1,5 @@
-//! One step of the bit-true and of the ideal model from the same state: how far their voltages and compare values
-//! are apart, and how far the proof says that they may be.
+//! One step of the bit-true and of the ideal model from the same state: measured errors of voltages
+//! and compare values, and their proven bounds.
 
 use crate::engine::Prepared;
 use hexagen::Legs;
@@ -7,27 +7,26 @@ use hexagen_codegen::ir::stated_errors;
 use hexagen_reference::{BitTrue, Duties, Ideal, PhysicalState, Reach, Trace};
 use serde::Serialize;
 
-/// Equal parts of the range between both ends of a proven bound, in which errors are counted. An odd number: zero
-/// lies in the middle of one.
+/// Number of histogram bins over the proven range; odd, so that zero is in the middle of one.
 pub const BINS: usize = 61;
 
-/// The signal of a step that is compared.
+/// The compared signal.
 #[derive(Clone, Debug)]
 pub struct Compared {
-    /// What it is: the voltage that the law asks for, or (PHCC) the predicted error as a voltage.
+    /// Name: the voltage before the limit, or (PHCC) the predicted current error as a voltage.
     pub quantity: String,
-    /// Its proven bound for phases a and b, volt; infinite where nothing is proven.
+    /// Proven bound for phases a and b, volt; infinite without a proof.
     pub bound: f64,
-    /// How far a compare value may be from the exact duty, timer counts: while no limit acts, and where one does. Infinite
-    /// where nothing is proven.
+    /// Proven bounds of a compare value's error, timer counts: without and with an active limit.
+    /// Infinite without a proof.
     duty: [f64; 2],
-    /// One current word, and the current at which an off leg's diode is taken to conduct, ampere; of drives that may
-    /// turn a leg off.
+    /// Current resolution, and diode threshold of an off leg, ampere; only for drives that switch
+    /// legs off.
     threshold: Option<[f64; 2]>,
 }
 
 impl Compared {
-    /// The signal of a drive's step.
+    /// The compared signal of a drive.
     pub fn of(drive: &Prepared) -> Self {
         let stated = stated_errors(drive.generated.graph.program());
         let named = |name: &str| stated.iter().find(|stated| stated.name == name);
@@ -36,11 +35,11 @@ impl Compared {
                 let rare = stated.rare_bound().unwrap_or(0.0);
                 (stated.doc.clone(), stated.normal_bound().max(rare))
             }
-            None => ("nothing that is bounded".to_owned(), f64::INFINITY),
+            None => ("no bounded signal".to_owned(), f64::INFINITY),
         };
         let duty = named("duty").map_or([f64::INFINITY; 2], |duty| {
             let limited = duty.rare_bound().unwrap_or(duty.normal_bound());
-            // The duty's own rounding makes half a count.
+            // Rounding of the duty adds half a count.
             [duty.normal_bound(), limited].map(|bound| bound + 0.5)
         });
         let formats = drive.generated.interface.formats.iter();
@@ -57,8 +56,8 @@ impl Compared {
         }
     }
 
-    /// Whether the current of a leg that is off, or was, lies at the diode's threshold to the last word, so that the
-    /// models may take it to conduct or not.
+    /// Whether the current of an off leg lies within one word of the diode threshold, so that the
+    /// models may disagree on conduction.
     fn is_at_threshold(&self, before: &PhysicalState, i: [f64; 2]) -> bool {
         let Some([word, threshold]) = self.threshold else {
             return false;
@@ -70,51 +69,52 @@ impl Compared {
     }
 }
 
-/// Distance of the bit-true from the ideal model after one step from the same state, sample and set-point word.
+/// Difference between the bit-true and the ideal model after one step from the same state, sample
+/// and set-point word.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct OneStep {
-    /// What `snr_db` and the voltages below are of.
+    /// The signal of `snr_db` and of the voltages below.
     pub quantity: String,
-    /// Steps that were compared: in control, and with the same decisions in both.
+    /// Compared steps: in control, with the same decisions in both models.
     pub steps: u64,
-    /// Steps on which the two decided differently (sector, commutation, reach, leg states, vector, an off leg's
-    /// diode): a tie that rounding broke.
+    /// Steps with different decisions (sector, commutation, reach, leg states, vector, an off leg's
+    /// diode): ties decided by rounding.
     pub other_decisions: u64,
-    /// Share of all steps in control on which they decided alike, percent.
+    /// Share of steps in control with the same decisions, percent.
     pub decisions_equal_pct: f64,
-    /// Signal over its error, all three phases, decibel.
+    /// Signal-to-noise ratio over all three phases, decibel.
     pub snr_db: f64,
-    /// Largest distance in phases a and b, volt.
+    /// Largest error in phases a and b, volt.
     pub largest_v: f64,
-    /// The proven bound of the same, volt.
+    /// Its proven bound, volt.
     pub bound_v: f64,
     /// `largest_v` over `bound_v`.
     pub seen_to_bound: f64,
-    /// Root mean square of the distance, all three phases, volt.
+    /// RMS error over all three phases, volt.
     pub rms_v: f64,
-    /// Largest distance of a compare value from the exact duty while no limit acts, timer counts; its own rounding
-    /// makes up to half a count.
+    /// Largest error of a compare value against the exact duty without an active limit, timer
+    /// counts; rounding contributes up to half a count.
     pub duty_largest_counts: f64,
-    /// The proven bound of the same, timer counts; infinite where no duty is computed.
+    /// Its proven bound, timer counts; infinite if no duty is computed.
     pub duty_bound_counts: f64,
-    /// Largest distance where a limit acts, timer counts.
+    /// Largest error with an active limit, timer counts.
     pub duty_limited_counts: f64,
-    /// The proven bound of the same, timer counts.
+    /// Its proven bound, timer counts.
     pub duty_limited_bound_counts: f64,
-    /// Root mean square of the same, timer counts.
+    /// RMS error of compare values, timer counts.
     pub duty_rms_counts: f64,
-    /// Share of compare values equal to the ideal ones after rounding, percent.
+    /// Share of compare values equal to the rounded ideal ones, percent.
     pub equal_compares_pct: f64,
-    /// Share of all steps in control whose leg states and compare values are those of the ideal model after rounding,
+    /// Share of steps in control with the leg states and rounded compare values of the ideal model,
     /// percent.
     pub equal_steps_pct: f64,
-    /// Largest distance of a compare value from the ideal one after rounding, timer counts; over all steps in control
-    /// with the same leg states and vector.
+    /// Largest difference of rounded compare values, timer counts; over all steps in control with
+    /// the same leg states and vector.
     pub compares_apart_counts: u16,
 }
 
 impl OneStep {
-    /// Whether no error was larger than what is proven of it.
+    /// Whether all errors are within their proven bounds.
     pub fn is_within_bounds(&self) -> bool {
         self.seen_to_bound <= 1.0
             && self.duty_largest_counts <= self.duty_bound_counts
@@ -132,7 +132,7 @@ pub(super) struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// What both models did in their last step.
+    /// Decisions of both models in their last step.
     pub fn of(
         before: &'a PhysicalState,
         (bit_true, legs): (&BitTrue, Legs),
@@ -157,7 +157,7 @@ pub(super) struct Sums {
     largest: f64,
     error: f64,
     signal: f64,
-    /// While no limit acts, and where one does.
+    /// Without and with an active limit.
     duty_largest: [f64; 2],
     duty_error: f64,
     equal_compares: u64,
@@ -184,7 +184,7 @@ impl Sums {
         }
     }
 
-    /// Takes in a step of both models.
+    /// Adds a step of both models.
     pub fn add(&mut self, step: &Step, period: u16) {
         let Step {
             before,
@@ -236,7 +236,7 @@ impl Sums {
         }
     }
 
-    /// Takes in the sums of other steps of the same drive.
+    /// Adds the sums of other steps of the same drive.
     pub fn and(mut self, other: &Self) -> Self {
         self.steps += other.steps;
         self.other_decisions += other.other_decisions;
@@ -256,12 +256,13 @@ impl Sums {
         self
     }
 
-    /// Errors of phases a and b, in [`BINS`] equal parts from the negative to the positive bound.
+    /// Histogram of the errors of phases a and b: [`BINS`] bins from the negative to the positive
+    /// bound.
     pub fn histogram(&self) -> Vec<u64> {
         self.histogram.clone()
     }
 
-    /// Figures of all steps.
+    /// Figures over all steps.
     pub fn one_step(&self) -> OneStep {
         let run = (self.steps + self.other_decisions) as f64;
         let values = 3.0 * self.steps as f64;
@@ -287,7 +288,7 @@ impl Sums {
     }
 }
 
-/// The part of the range from -1 to 1 that a share of the bound lies in; the outer ones hold what lies beyond.
+/// The bin of a share of the bound; the outer bins hold everything beyond -1 and 1.
 fn bin(share: f64) -> usize {
     let place = (share + 1.0) * (BINS as f64 / 2.0);
     place.clamp(0.0, BINS as f64 - 1.0) as usize
@@ -298,7 +299,7 @@ mod tests {
     use super::{BINS, bin};
 
     #[test]
-    fn errors_fall_into_the_part_that_they_lie_in() {
+    fn errors_fall_into_their_bins() {
         for (share, place) in [
             (-1.0, 0),
             (-3.0, 0),

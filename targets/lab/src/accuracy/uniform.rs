@@ -1,4 +1,4 @@
-//! A drive of 16-bit words beside the same law in one format that must serve every motor.
+//! A drive with 16-bit words against the same law in one common format for all motors.
 
 use super::one_step::{Compared, OneStep, Step, Sums};
 use crate::LabError;
@@ -8,8 +8,7 @@ use crate::plant::{Plant, PlantParams, Truth};
 use hexagen::{Legs, Sample};
 use hexagen_reference::{BitTrue, Ideal, Spec, Uniform};
 
-/// Fraction bits of the one saturating 16-bit format of SI units that holds what every one of these motors needs: as
-/// many as its largest number leaves.
+/// Fraction bits of the saturating 16-bit format of SI units that covers all of these motors.
 ///
 /// # Errors
 /// An inconsistent specification.
@@ -23,7 +22,8 @@ pub fn uniform_format<'a>(
     Ok((f64::from(i16::MAX) / largest).log2().floor() as i32)
 }
 
-/// A drive's bit-true model in closed loop; beside it, from the same states, the ideal one and the law in one format.
+/// A drive's bit-true model in closed loop, with the ideal model and the law in the common format
+/// from the same states.
 struct Shadowed {
     bit_true: BitTrue,
     ideal: Ideal,
@@ -54,17 +54,17 @@ impl CurrentLoop for Shadowed {
     }
 }
 
-/// What both forms of a law reach.
+/// Signal-to-noise ratios of both.
 #[derive(Clone, Debug)]
 pub struct Uniform16 {
     /// The generated formats.
     pub one_step: OneStep,
-    /// Signal over error of the deadbeat voltage in the one format, decibel.
+    /// Signal-to-noise ratio of the deadbeat voltage in the common format, decibel.
     pub uniform_snr_db: f64,
 }
 
 impl Uniform16 {
-    /// Runs a drive at each of the operating points, from its first start; none for a drive of another law than
+    /// Runs a drive at each operating point, from its first start; `None` for a law other than
     /// [`Uniform`]'s.
     ///
     /// # Errors

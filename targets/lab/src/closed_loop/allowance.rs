@@ -1,13 +1,14 @@
-//! When two figures of merit count as alike.
+//! Tolerances for comparing figures of merit.
 
-/// Greatest relative difference of figures of merit that count as alike.
+/// Relative tolerance.
 pub const RELATIVE: f64 = 0.005;
 
-/// Greatest difference of percentages that count as alike, whatever their ratio, in points.
+/// Tolerance of percentages, in points, whatever their ratio.
 pub const POINTS: f64 = 0.05;
 
-/// How far a figure of merit is from what it should be, in parts of the difference that still counts as alike. Figures of merit that
-/// do not exist (percent of a zero torque) are alike when both do not; where one does, it is infinitely far.
+/// Difference of a figure of merit from its expected value, relative to the tolerance. Two
+/// undefined figures (percent of a zero torque) are equal; one undefined figure is infinitely far
+/// off.
 pub fn share_of_allowance(found: Option<f64>, expected: Option<f64>, is_percentage: bool) -> f64 {
     let (found, expected) = match (found, expected) {
         (None, None) => return 0.0,
@@ -34,7 +35,7 @@ mod tests {
     use super::share_of_allowance;
 
     #[test]
-    fn percentages_may_differ_by_points_and_all_else_in_proportion() {
+    fn percentages_have_an_absolute_tolerance_too() {
         for (found, expected, is_percentage, share) in [
             (Some(100.5), Some(100.0), false, 1.0),
             (Some(0.1), Some(0.05), true, 1.0),

@@ -1,15 +1,15 @@
-//! The figures of merit of a run as its record shows them: means over bins of 2.5 us.
+//! The figures of merit of a run, from its record: means over bins of 2.5 us.
 
 use super::trace::{Trace, quasi_square};
 use super::{amplitudes, percent};
 use serde::Serialize;
 
-/// What a run is judged by; JSON shows what there is none of as null. A drive that tripped has no
-/// figures of merit at all ([`FiguresOfMerit::default`]).
+/// Figures of merit; undefined ones are null in JSON. A tripped drive has none
+/// ([`FiguresOfMerit::default`]).
 ///
-/// Percentages of mean torque and of the current's fundamental are none where that, or the current
-/// that was asked for, is below what the drive's converters resolve ([`Trace::current_floor`],
-/// [`Trace::torque_floor`]). Harmonics are none where the shaft made less than an electrical turn,
+/// Percentages of mean torque and of the current's fundamental are `None` if that, or the requested
+/// current, is below the resolution of the drive's ADCs ([`Trace::current_floor`],
+/// [`Trace::torque_floor`]). Harmonics are `None` if the shaft turned less than an electrical turn,
 /// as at standstill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FiguresOfMerit {
@@ -31,28 +31,28 @@ pub struct FiguresOfMerit {
     pub i11_pct: Option<f64>,
     /// 13th harmonic, likewise.
     pub i13_pct: Option<f64>,
-    /// Total harmonic distortion of the phase current: all that is neither mean nor fundamental,
-    /// switching ripple included, in percent of the fundamental; mean of the phases.
+    /// Total harmonic distortion of the phase current (everything except mean and fundamental,
+    /// switching ripple included) in percent of the fundamental; mean of the phases.
     pub thd_pct: Option<f64>,
     /// RMS distance of the current from the quasi-square reference of the true sector in the
-    /// alpha-beta plane, in amperes. The reference's amplitude is that of the current that the
-    /// drive may ask for: of the limited set-point ([`super::RunOptions::current`]).
+    /// alpha-beta plane, in amperes. The reference's amplitude is that of the limited set-point
+    /// ([`super::RunOptions::current`]).
     pub tracking_rms_a: Option<f64>,
-    /// Mean time from a change of the true sector until the outgoing phase's current has fallen
-    /// to the threshold, in microseconds; none where the sector never changes.
+    /// Mean time from a change of the true sector until the outgoing phase's current has fallen to
+    /// the threshold, in microseconds; `None` if the sector never changes.
     pub commutation_us: Option<f64>,
     /// Turn-ons per device and second, mean of the six switches, in hertz.
     pub switching_hz: Option<f64>,
-    /// Periods whose command lay on the edge of the hexagon, in percent.
+    /// Share of periods with the command on the edge of the hexagon, in percent.
     pub saturated_pct: Option<f64>,
 }
 
-/// The highest of all harmonics that are computed.
+/// The highest computed harmonic.
 const HIGHEST: usize = 13;
 
-/// The figures of merit of one record. `current` is the quasi-square reference's amplitude in amperes, with
-/// the torque's sign; `threshold` ends a commutation, in amperes. The record should span whole
-/// electrical periods.
+/// The figures of merit of one record. `current` is the quasi-square reference's amplitude in
+/// amperes, with the torque's sign; `threshold` ends a commutation, in amperes. The record should
+/// span whole electrical periods.
 pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresOfMerit {
     let mean = mean(&trace.torque);
     let is_asked = current.abs() > trace.current_floor;
@@ -137,8 +137,8 @@ impl FiguresOfMerit {
         ]
     }
 
-    /// The figures of merit of several starts: the worst peak-to-peak ripple, the mean of all else; none of
-    /// what one of them has none of.
+    /// Combines several starts: the worst peak-to-peak ripple, the mean of everything else; `None`
+    /// if any start has none.
     pub(super) fn of_starts(starts: &[Self]) -> Self {
         let all = |of: fn(&Self) -> Option<f64>| starts.iter().map(of).collect::<Option<Vec<_>>>();
         let mean = |of| all(of).map(|values| mean(&values));
@@ -171,14 +171,13 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Amplitude of all of a current that is neither mean nor fundamental; `harmonics` are its
-/// amplitudes by order.
+/// Amplitude of a current without mean and fundamental; `harmonics` are its amplitudes by order.
 fn distortion(current: &[f64], harmonics: &[f64]) -> f64 {
     let rest = deviation(current).powi(2) - 0.5 * harmonics[1].powi(2);
     (2.0 * rest.max(0.0)).sqrt()
 }
 
-/// Mean length of the commutations that begin within the record, in seconds; none where the sector
+/// Mean length of the commutations that begin within the record, in seconds; `None` if the sector
 /// never changes.
 fn commutation_time(trace: &Trace, current: f64, threshold: f64) -> Option<f64> {
     let sectors: Vec<usize> = trace
@@ -272,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn ripple_is_taken_after_a_moving_mean_over_the_period() {
+    fn ripple_is_measured_after_a_moving_mean_over_the_period() {
         // A ripple at the PWM frequency (20 bins) vanishes, a slow one of 10 % remains.
         let torque = |theta: f64| 2.0 + 0.5 * (40.0 * theta).sin() + 0.1 * theta.sin();
         let figures = figures_of_merit(&synthetic(torque, square), 20.0, 0.5);
@@ -281,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn commutation_lasts_until_the_outgoing_current_is_gone() {
+    fn commutation_lasts_until_the_outgoing_current_is_zero() {
         // Every edge of the wave decays linearly from 20 A to zero within 16 degrees; 0.5 A are
         // reached after 15.6 degrees, which is 34.67 bins of 0.45 degrees. Phase c follows from a
         // and b and stops at once, so two commutations of three last.
@@ -309,7 +308,7 @@ mod tests {
             17.78 * 2.5 * 2.0 / 3.0,
             1.7,
         );
-        // Against the torque's sign the outgoing current counts as gone at once.
+        // Against the torque's sign the outgoing current counts as zero at once.
         assert_close(
             figures_of_merit(&trace, -20.0, 0.5).commutation_us,
             0.0,
@@ -318,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn starts_combine_to_the_worst_peak_and_the_mean_of_all_else() {
+    fn starts_combine_to_the_worst_peak_and_the_mean_of_everything_else() {
         let quiet = figures_of_merit(
             &synthetic(|theta| 2.0 + 0.01 * theta.sin(), square),
             20.0,
@@ -337,7 +336,7 @@ mod tests {
             (2.0 * quiet.ripple_rms_pct.unwrap() + loud.ripple_rms_pct.unwrap()) / 3.0,
             1e-12,
         );
-        // What a start has none of, all of them have none of.
+        // A figure that one start lacks is undefined.
         let still = figures_of_merit(&synthetic(|_| 0.0, square), 20.0, 0.5);
         let some = FiguresOfMerit::of_starts(&[quiet, still]);
         assert_eq!((some.ripple_pp_pct, some.ripple_rms_pct), (None, None));
@@ -364,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_converters_cannot_tell_from_zero_has_no_percentages() {
+    fn values_below_the_adc_resolution_have_no_percentages() {
         // One count of 12 bits over +-40 A, and its torque at 0.1 V s/rad per phase.
         let (count, torque) = (40.0 / 2048.0, 2.0 * 0.1 * 40.0 / 2048.0);
         for share in [0.0, 0.9] {
@@ -387,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_that_makes_no_electrical_turn_has_no_harmonics() {
+    fn less_than_an_electrical_turn_has_no_harmonics() {
         let mut trace = synthetic(|theta| 3.0 + 0.1 * theta.sin(), square);
         assert!((trace.turns() - 6.0).abs() < 0.01, "{}", trace.turns());
         trace.theta_e.iter_mut().for_each(|theta| *theta = 0.2);

@@ -14,7 +14,7 @@ pub fn amplitudes<const N: usize>(
     let means = signals.map(|signal| signal.iter().sum::<f64>() / count);
     let mut sums = vec![[(0.0, 0.0); N]; highest + 1];
     for (k, theta) in theta_e.iter().enumerate() {
-        // Without the mean nothing leaks when the record is not quite a whole number of turns.
+        // Without the mean nothing leaks if the record is not quite a whole number of turns.
         let values: [f64; N] = std::array::from_fn(|n| signals[n][k] - means[n]);
         // One sine per bin: those of the multiples follow by rotation.
         let (sin, cos) = theta.sin_cos();

@@ -1,8 +1,8 @@
-//! The constant-torque speed limit: where the mean torque is first no longer the demanded one.
+//! The constant-torque speed limit: the lowest speed at which the mean torque differs from the
+//! demand.
 //!
-//! Every speed of the grid is simulated from the lowest upward, in blocks that run in parallel;
-//! the scan stops after the first block with a crossing. No speed below the crossing is skipped,
-//! so it is the first one of the grid.
+//! Simulates the grid's speeds from the lowest upward, in blocks that run in parallel; stops after
+//! the first block with a crossing.
 
 use super::measure::mean_torque;
 use super::{CurrentLoop, RunOptions, Trip};
@@ -11,21 +11,21 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Distance from the demanded torque that still counts as held, in parts of it.
+/// Tolerance of the torque, relative to the demand.
 pub const TOLERANCE: f64 = 0.03;
 
-/// Which mean torques count as held.
+/// Criterion for a mean torque that is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Held {
-    /// Those within [`TOLERANCE`] of the demand, on either side.
+    /// Within [`TOLERANCE`] of the demand, on either side.
     Within,
-    /// Those of at least the demand less [`TOLERANCE`], however much more: the limit of the paper and
-    /// of the design document's table, where the torque falls off.
+    /// At least the demand minus [`TOLERANCE`], however much more: the criterion of the paper and
+    /// of the design document's table.
     AtLeast,
 }
 
-/// The side of the demand on which a torque is not held.
+/// The side of the demand on which the torque is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -36,7 +36,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// What readers are told.
+    /// Text for reports.
     pub fn text(self) -> &'static str {
         match self {
             Self::Below => "torque below the demand",
@@ -44,7 +44,7 @@ impl Side {
         }
     }
 
-    /// The end of what is held on this side, in parts of the demand.
+    /// The tolerance's limit on this side, relative to the demand.
     pub fn edge(self) -> f64 {
         match self {
             Self::Below => 1.0 - TOLERANCE,
@@ -54,7 +54,7 @@ impl Side {
 }
 
 impl Held {
-    /// The sides on which a torque can be lost.
+    /// The sides on which the torque can be lost.
     pub fn sides(self) -> &'static [Side] {
         match self {
             Self::Within => &[Side::Below, Side::Above],
@@ -62,12 +62,12 @@ impl Held {
         }
     }
 
-    /// The side on which a mean torque is not held; none where it is. Both torques in the same
+    /// The side on which a mean torque is lost; `None` if it is held. Both torques in the same
     /// unit, with their signs.
     pub fn lost(self, torque: f64, demand: f64) -> Option<Side> {
         let share = torque / demand;
         let is_lost = |side: &&Side| match side {
-            // What is no number is not held, either.
+            // NaN is not held.
             Side::Below => share.is_nan() || share < side.edge(),
             Side::Above => share > side.edge(),
         };
@@ -82,10 +82,10 @@ pub struct LimitOptions {
     pub rated_rpm: f64,
     /// Demanded torque in newton metres, with its sign.
     pub torque: f64,
-    /// Which mean torques count as held.
+    /// Criterion for a mean torque that is held.
     pub held: Held,
-    /// First speed of the grid in rpm. The default is 20 % of rated speed: below it the EMF is far
-    /// from the bus voltage, so a controller that fails there fails at the first point too.
+    /// First speed of the grid in rpm. The default is 20 % of rated speed: a controller that fails
+    /// below it, where the EMF is far below the bus voltage, fails at 20 %, too.
     pub from_rpm: f64,
     /// Last speed in rpm; the default is 160 % of rated speed.
     pub to_rpm: f64,
@@ -107,41 +107,40 @@ impl LimitOptions {
     }
 }
 
-/// How a scan ended.
+/// Outcome of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitOutcome {
-    /// The torque was held up to `limit_rpm`.
+    /// The torque is held up to `limit_rpm`.
     Found,
-    /// The torque was not held at the first speed of the grid: there is no limit to report.
+    /// The torque is not held at the first speed of the grid: no limit is reported.
     NeverHeld,
-    /// The torque was held up to the last speed, which `limit_rpm` reports as a lower bound.
+    /// The torque is held up to the last speed, which `limit_rpm` reports as a lower bound.
     NotReached,
 }
 
 /// The constant-torque speed limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedLimit {
-    /// First crossing of the end of what is held in rpm (a magnitude), linearly interpolated; where
-    /// the drive tripped, the last speed at which the torque was held; none if never held.
+    /// First crossing of the tolerance's limit in rpm (a magnitude), linearly interpolated; for a
+    /// drive that tripped, the last speed at which the torque was held; `None` if never held.
     pub limit_rpm: Option<f64>,
     /// The same in percent of rated speed.
     pub limit_pct: Option<f64>,
-    /// How the scan ended.
+    /// Outcome of the scan.
     pub outcome: LimitOutcome,
-    /// The side of the demand on which the torque left it at the speed that ended the scan; none if
-    /// it was held to the end, or the drive tripped.
+    /// The side on which the torque was lost at the last speed; `None` if it was held, or the drive
+    /// tripped.
     pub lost: Option<Side>,
-    /// What tripped the drive at the speed that ended the scan.
+    /// Trip of the drive at the last speed.
     pub tripped: Option<Trip>,
-    /// The torque-speed curve as far as it was scanned: rpm and mean torque in newton metres. A
-    /// speed at which the drive tripped is not on it.
+    /// The scanned torque-speed curve: rpm and mean torque in newton metres, without speeds at
+    /// which the drive tripped.
     pub curve: Vec<(f64, f64)>,
 }
 
 impl SpeedLimit {
-    /// How the torque was lost at the speed that ended the scan, for readers; none if it was held to
-    /// the end.
+    /// Text for reports: how the torque was lost at the last speed; `None` if it was held.
     pub fn why(&self) -> Option<String> {
         let trip = self.tripped;
         let trips = trip.map(|trip| format!("the drive trips at {:.0} rpm", trip.rpm.abs()));
@@ -168,8 +167,8 @@ where
     speed_limit_knowing(params, run, options, &[], make)
 }
 
-/// As [`speed_limit`], with the mean torque (rpm, newton metres) of speeds that were measured
-/// already from the same starts: they are not simulated again.
+/// Like [`speed_limit`], with known mean torques (rpm, newton metres) from the same starts, which
+/// are not simulated again.
 ///
 /// # Errors
 /// As [`speed_limit`].

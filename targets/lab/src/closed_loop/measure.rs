@@ -1,4 +1,4 @@
-//! Runs that are measured: settling, the measured window, and the three starts.
+//! Measured runs: settling, the measured window, and the three starts.
 
 use super::{ClosedLoop, CurrentLoop, Delay, FiguresOfMerit, Trace, Trip, figures_of_merit};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
@@ -9,44 +9,44 @@ use std::f64::consts::TAU;
 /// Electrical start angles in radians, so that Hall edges fall differently between the samples.
 pub const STARTS: [f64; 3] = [0.1, 0.117, 0.134];
 
-/// Settling time in seconds, at least.
+/// Minimum settling time in seconds.
 const SETTLING: f64 = 15e-3;
 
-/// Electrical periods of settling, at least, and of measurement, at most.
+/// Electrical periods: minimum of settling, maximum of measurement.
 const SETTLING_TURNS: f64 = 2.0;
 const MEASURED_TURNS: f64 = 6.0;
 
-/// Control periods of a record whose electrical periods are that long: it has fewer of them, but
-/// one at least. (A record of so many takes 200 megabytes at 20 kHz, and there is one per start.)
+/// Maximum control periods of a record with long electrical periods, of which it then has fewer,
+/// but at least one. (Such a record takes 200 megabytes at 20 kHz, and there is one per start.)
 pub const MOST_RECORDED: usize = 250_000;
 
-/// Measured time at standstill, where no electrical period ends, in seconds.
+/// Measured time at standstill, without electrical periods, in seconds.
 const STANDSTILL: f64 = 50e-3;
 
-/// What to run. Negative speed and torque are meaningful in any combination.
+/// Options of a run. Speed and torque may have either sign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunOptions {
-    /// Mechanical speed in rad/s; the initial one when the speed is free.
+    /// Mechanical speed in rad/s; the initial one if the speed is free.
     pub omega_m: f64,
-    /// Amplitude in amperes of the quasi-square reference that tracking and commutation are
-    /// judged against: that of the torque that the drive may ask for. Its sign is the torque's.
+    /// Amplitude in amperes of the quasi-square reference for tracking and commutation: that of the
+    /// limited set-point. Its sign is the torque's.
     pub current: f64,
-    /// When commands reach the inverter.
+    /// Delay of commands.
     pub delay: Delay,
-    /// Current in amperes at which the figures of merit count a commutation as ended.
+    /// Current in amperes that ends a commutation in the figures of merit.
     pub commutation_threshold: f64,
     /// Electrical start angles in radians; each is a run of its own.
     pub starts: Vec<f64>,
-    /// What a speed loop is to reach; none where the speed is held or free.
+    /// Target of a speed loop; `None` if the speed is held or free.
     pub aim: Option<Aim>,
 }
 
-/// What a speed loop is to reach before anything is measured.
+/// Speed to be reached before the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aim {
     /// Mechanical speed in rad/s.
     pub omega_m: f64,
-    /// Time in seconds that it is given.
+    /// Settling time in seconds.
     pub within: f64,
 }
 
@@ -82,10 +82,11 @@ impl RunOptions {
     }
 }
 
-/// The figures of merit over all starts and the records behind them.
+/// The figures of merit over all starts and their records.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// Worst peak-to-peak ripple of the starts, mean of all else; none of a drive that tripped.
+    /// Worst peak-to-peak ripple of the starts, mean of everything else; empty for a drive that
+    /// tripped.
     pub figures: FiguresOfMerit,
     /// Record of each start's measured window.
     pub traces: Vec<Trace>,
@@ -109,9 +110,11 @@ fn run_start<C: CurrentLoop>(
     Ok((trace, closed.tripped()))
 }
 
-/// Measures a controller from every start: the first 15 ms, and at least two electrical periods, settle the loop; the figures of merit are those
-/// of the next six periods (fewer where they exceed [`MOST_RECORDED`]), the worst peak-to-peak ripple of all starts and the mean of everything else. `make` builds a fresh controller with its
-/// set-point for each start, told the plant's initial state; starts run in parallel.
+/// Measures a controller from every start. The loop settles for 15 ms and at least two electrical
+/// periods; the figures of merit are those of the next six periods (fewer if they exceed
+/// [`MOST_RECORDED`]): the worst peak-to-peak ripple of all starts and the mean of everything else.
+/// `make` builds a controller with its set-point for each start from the plant's initial state;
+/// starts run in parallel.
 ///
 /// # Errors
 /// A plant parameter outside its range.
@@ -138,7 +141,8 @@ where
 }
 
 impl Measurement {
-    /// The figures of merit of the records of all starts of a run, of which none may have `tripped`.
+    /// The figures of merit of a run from the records of all starts, none of which may have
+    /// `tripped`.
     pub fn of(traces: Vec<Trace>, tripped: Option<Trip>, options: &RunOptions) -> Self {
         let starts: Vec<FiguresOfMerit> = traces
             .iter()
@@ -174,8 +178,8 @@ pub fn record<C: CurrentLoop>(
     Ok(trace)
 }
 
-/// Mean torque over the measured window, mean of the starts, in newton metres, or the trip of the first
-/// start whose controller tripped, without a record: what the speed limit's scan needs.
+/// Mean torque over the measured window, mean of the starts, in newton metres, or the first start's
+/// trip; without a record, for the speed limit's scan.
 ///
 /// # Errors
 /// A plant parameter outside its range.

@@ -1,8 +1,8 @@
-//! The closed loop: a controller, the plant, and what is measured on them.
+//! The closed loop: controller, plant and measurements.
 //!
-//! Any controller joins through [`CurrentLoop`]: a compiled drive, an interpreted graph, the
-//! bit-true or the ideal model. Sampling is at the start of each period; the command computed in
-//! period k drives the inverter in period k + 1, or, without delay, in period k.
+//! [`CurrentLoop`] is the interface of a controller: a compiled drive, an interpreted graph, the
+//! bit-true or the ideal model. Samples are taken at the start of each period; the command computed
+//! in period k takes effect in period k + 1, or, without delay, in period k.
 
 mod allowance;
 mod figures_of_merit;
@@ -37,13 +37,13 @@ use hexagen::{Control, Drive, Fault, Legs, Sample};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A current controller, seen from the plant: one call per control period.
+/// A current controller, as seen by the plant: one call per control period.
 pub trait CurrentLoop {
     /// Reads the sample and returns the command. `truth` is the plant's exact state at the same
-    /// instant, for models that do without converters and sensors; real drives ignore it.
+    /// instant, for models without ADCs and sensors; real drives ignore it.
     fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs;
 
-    /// What tripped the controller, where it has a supervision that does.
+    /// The trip, if the controller has a supervisor and it tripped.
     fn fault(&self) -> Option<Fault> {
         None
     }
@@ -69,7 +69,7 @@ impl<C: Control<Command = Legs>> CurrentLoop for DriveLoop<C> {
     }
 }
 
-/// When a command reaches the inverter.
+/// Delay of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Delay {
     /// In the period whose sample it was computed from (`delay: 0`).
@@ -79,20 +79,20 @@ pub enum Delay {
     OnePeriod,
 }
 
-/// One control period as the loop saw it.
+/// One control period in the loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// What the controller read.
+    /// The controller's sample.
     pub sample: &'a Sample,
     /// The plant's state at the sample.
     pub truth: &'a Truth,
-    /// What the inverter did in this period.
+    /// The applied command.
     pub applied: Legs,
     /// The plant at the end of the period.
     pub plant: &'a Plant,
 }
 
-/// Sees the solution's segments and, after each period, the period as a whole.
+/// Observes the solution's segments and, after each period, the period as a whole.
 pub trait Recorder: Observer {
     /// Called after the period's segments.
     fn period(&mut self, step: &Step<'_>);
@@ -119,7 +119,7 @@ impl<T: Recorder + ?Sized> Recorder for &mut T {
     }
 }
 
-/// A plant under a controller, ready to be continued.
+/// A plant under a controller; can be continued.
 #[derive(Debug)]
 pub struct ClosedLoop<C> {
     plant: Plant,
@@ -130,7 +130,7 @@ pub struct ClosedLoop<C> {
 }
 
 impl<C: CurrentLoop> ClosedLoop<C> {
-    /// Closes the loop; until the first command arrives all legs are off.
+    /// Closes the loop; all legs are off until the first command.
     pub fn new(plant: Plant, controller: C, delay: Delay) -> Self {
         Self {
             plant,
@@ -161,7 +161,7 @@ impl<C: CurrentLoop> ClosedLoop<C> {
         self.tripped
     }
 
-    /// Ends the loop and gives the controller back.
+    /// Ends the loop and returns the controller.
     pub fn into_controller(self) -> C {
         self.controller
     }

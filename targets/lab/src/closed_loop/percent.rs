@@ -1,11 +1,11 @@
-//! Percentages of what was measured, and when there are none.
+//! Percentages of measured values, and when they are undefined.
 //!
-//! A torque or current that the drive's converters cannot tell from zero is nothing to refer to:
-//! its ripple and harmonics are many times as large whatever the controller does.
+//! A torque or current below the resolution of the drive's ADCs is no reference: its ripple and
+//! harmonics exceed it whatever the controller does.
 
-/// A part in percent of the magnitude of a whole. None where that is not above `floor`
-/// ([`super::Trace::current_floor`], [`super::Trace::torque_floor`]) in the same unit, or where
-/// either is no finite number.
+/// A part in percent of the magnitude of a whole. `None` if that is not above `floor`
+/// ([`super::Trace::current_floor`], [`super::Trace::torque_floor`]) in the same unit, or if either
+/// is not finite.
 pub fn percent(part: f64, whole: f64, floor: f64) -> Option<f64> {
     let percent = 100.0 * part / whole.abs();
     (whole.abs() > floor && percent.is_finite()).then_some(percent)
@@ -16,7 +16,7 @@ mod tests {
     use super::percent;
 
     #[test]
-    fn nothing_has_no_percentages() {
+    fn a_whole_below_the_floor_has_no_percentages() {
         assert_eq!(percent(0.5, -2.0, 0.1), Some(25.0));
         for (part, whole, floor) in [
             (1.0, 0.0, 0.0),

@@ -1,4 +1,4 @@
-//! Speed of a free shaft, and the time that a speed loop needs to reach its set-point.
+//! Speed of a free shaft, and settling time of a speed loop.
 
 use super::{Aim, Measurement, PeriodRow};
 use crate::plant::Mechanics;
@@ -6,27 +6,27 @@ use hexagen_codegen::spec::SpeedLoop;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Speed of a free shaft, with or without a speed loop; nothing for a drive that tripped.
+/// Speed of a free shaft, with or without a speed loop; undefined for a drive that tripped.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Speed {
-    /// Set-point of the speed loop, rpm; none without one.
+    /// Set-point of the speed loop, rpm; `None` without one.
     pub set_rpm: Option<f64>,
     /// Mean speed over the measured window, rpm; mean over all start angles.
     pub mean_rpm: Option<f64>,
     /// Speed at the end of the measured window, rpm; mean over all start angles.
     pub final_rpm: Option<f64>,
     /// Whether the speed loop has settled: the mean speed of each of the last three sixths of the
-    /// measured window is within 2 % of the set-point, at every start angle. (Below the least speed
-    /// that the drive tells from standstill: within 2 % of that speed.) None without a speed loop.
+    /// measured window is within 2 % of the set-point, at every start angle. (Below the lowest
+    /// measurable speed: within 2 % of that speed.) `None` without a speed loop.
     pub settled: Option<bool>,
 }
 
-/// Distance of a settled speed from the set one, in parts of it.
+/// Relative tolerance of a settled speed.
 pub const SETTLED: f64 = 0.02;
 
 impl Speed {
-    /// The speed of a run. `set_rpm` is the speed loop's, `least_rpm` the least speed
-    /// that the drive tells from standstill.
+    /// The speed of a run. `set_rpm` is the speed loop's set-point, `least_rpm` the lowest
+    /// measurable speed.
     pub fn of(measured: &Measurement, set_rpm: Option<f64>, least_rpm: f64) -> Self {
         let traces = match measured.tripped {
             None => &measured.traces[..],
@@ -59,12 +59,13 @@ fn mean_rpm(rows: &[PeriodRow]) -> f64 {
     rows.iter().map(|row| row.omega_m).sum::<f64>() / rows.len() as f64 * 60.0 / TAU
 }
 
-/// Time constants of the speed loop's bandwidth in which it settles.
+/// Settling time in time constants of the speed loop's bandwidth.
 const SETTLING_OF_SPEED: f64 = 6.0;
 
 impl Aim {
-    /// A mechanical speed in rad/s to be reached from another, and the time for it: until the loop's integral bears the
-    /// load, that of the run-up at the torque that the load leaves, and that of the loop.
+    /// A target speed in rad/s from another one, and the time to settle there: until the loop's
+    /// integral carries the load, that of the run-up with the torque left by the load, and that of
+    /// the loop.
     pub fn of(
         speed: &SpeedLoop,
         mechanics: &Mechanics,
@@ -72,7 +73,8 @@ impl Aim {
         (from, to): (f64, f64),
     ) -> Self {
         let torque = torque.abs();
-        // A load that takes all of the torque leaves a tenth: such a run shows that the speed is not reached.
+        // A load that takes all of the torque leaves a tenth: such a run shows that the speed is
+        // not reached.
         let free = (torque - mechanics.opposing_torque).max(torque / 10.0);
         let bandwidth = TAU * speed.bandwidth;
         let bearing = if to == 0.0 {

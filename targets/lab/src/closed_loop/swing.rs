@@ -1,27 +1,27 @@
-//! How far a loop swings from period to period, which tells an unstable loop from a disturbed one.
+//! Swing of a loop from period to period, which distinguishes an unstable loop from a disturbed
+//! one.
 //!
-//! With R and L that are not too far from the stated ones, poles of a sampled current loop leave the
-//! unit circle where they turn by a quarter to a half of a turn per period: an unstable loop swings
-//! within two to four periods. Commutations, speed and load change its signals far more slowly, or
-//! seldom. The second difference takes the swing out of the rest, and the median leaves single
-//! disturbances out.
+//! If R and L are near their nominal values, unstable poles of a sampled current loop lie at a
+//! quarter to half a turn per period: an unstable loop oscillates with a period of two to four
+//! samples. Commutations, speed and load change the signals more slowly, or rarely. The second
+//! difference extracts the oscillation, and the median rejects single disturbances.
 
 use super::{PeriodRow, quasi_square};
 use serde::Serialize;
 
 /// Medians, over the periods of a record, of the second difference of vectors: four times the
-/// amplitude of what changes its sign every period.
+/// amplitude of an oscillation that alternates every period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Swing {
-    /// Of the current at the sampling instants, in percent of the quasi-square reference's length.
+    /// Of the sampled current, in percent of the quasi-square reference's length.
     pub current_pct: f64,
     /// Of the mean terminal voltage, in percent of the bus voltage.
     pub voltage_pct: f64,
 }
 
 impl Swing {
-    /// The swing of a record's periods; `current` is the quasi-square reference's amplitude and
-    /// `v_bus` the true bus voltage. Nothing swings in records of fewer than three periods.
+    /// The swing of a record; `current` is the quasi-square reference's amplitude and `v_bus` the
+    /// true bus voltage. Zero for records of fewer than three periods.
     pub fn of(periods: &[PeriodRow], current: f64, v_bus: f64) -> Self {
         let (alpha, beta) = quasi_square(0.0, current);
         let length = alpha.hypot(beta);
@@ -35,7 +35,7 @@ impl Swing {
         }
     }
 
-    /// The larger of two records' swings, each by itself.
+    /// The larger swing of two records, of current and voltage separately.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self {
@@ -62,7 +62,8 @@ fn median_second_difference(vectors: impl Iterator<Item = (f64, f64)>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Currents that follow a slowly turning vector, jump once a sector, and alternate by so much.
+    /// Currents that follow a slowly turning vector, jump once a sector, and alternate by a given
+    /// amplitude.
     fn record(alternating: f64) -> Vec<PeriodRow> {
         let row = |k: usize| {
             let angle = 0.01 * k as f64 + if k.is_multiple_of(33) { 0.8 } else { 0.0 };
@@ -79,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn alternation_is_seen_and_what_is_slow_or_rare_is_not() {
+    fn alternation_is_detected_and_slow_or_rare_changes_are_not() {
         let of = |rows: &[PeriodRow]| Swing::of(rows, 10.0 * 0.75_f64.sqrt(), 48.0);
         let calm = of(&record(0.0));
         assert!(

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use std::io;
 
-/// Length that bins aim at, in seconds.
+/// Target length of bins, in seconds.
 const BIN: f64 = 2.5e-6;
 
 /// Phase that is off in sectors S1 to S6.
@@ -43,9 +43,9 @@ pub struct PeriodRow {
     pub adc: [u16; 2],
     /// Phase currents in amperes.
     pub currents: [f64; 3],
-    /// Compare values at work in the period.
+    /// Compare values in effect.
     pub compare: [u16; 3],
-    /// Leg states at work: 0 pulsed, 1 low, 2 off.
+    /// Leg states in effect: 0 pulsed, 1 low, 2 off.
     pub state: [u8; 3],
     /// Mean torque in newton metres.
     pub torque_mean: f64,
@@ -53,8 +53,8 @@ pub struct PeriodRow {
     pub v_alpha_mean: f64,
     /// Mean terminal voltage, beta axis, in volts.
     pub v_beta_mean: f64,
-    /// Whether the command reached the hexagon's edge: over the legs not off, compare values
-    /// spread from 0 to the full period.
+    /// Whether the command is on the hexagon's edge: compare values of the driven legs span the
+    /// full period.
     pub saturated: bool,
     /// Turn-ons of all six switches during the period.
     pub turn_ons: u32,
@@ -79,8 +79,7 @@ pub struct Trace {
     pub i_b: Vec<f64>,
     /// One row per control period.
     pub periods: Vec<PeriodRow>,
-    /// One count of the current converters in amperes, the coarser one's: a smaller current is
-    /// none that the drive could tell from zero.
+    /// One ADC count in amperes, the larger of both channels: the resolution of currents.
     pub current_floor: f64,
     /// Greatest torque of that current through a pair of phases, in newton metres.
     pub torque_floor: f64,
@@ -100,8 +99,7 @@ pub fn hexagon(current: f64) -> Vec<(f64, f64)> {
 }
 
 impl Trace {
-    /// An empty record that continues from the plant's present state; `periods` is the expected
-    /// length.
+    /// An empty record from the plant's present state on; `periods` is the expected length.
     pub fn new(plant: &crate::plant::Plant, periods: usize) -> Self {
         let params = plant.params();
         let t_s = params.t_s;
@@ -159,7 +157,7 @@ impl Trace {
     /// record by one period less one bin.
     pub fn smoothed_torque(&self) -> Vec<f64> {
         let n = self.bins_per_period;
-        // A sum per window keeps rounding errors from piling up along the record.
+        // A sum per window avoids accumulating rounding errors along the record.
         self.torque
             .windows(n)
             .map(|window| window.iter().sum::<f64>() / n as f64)
@@ -197,11 +195,10 @@ impl Trace {
 
     /// Writes the period rows as CSV with the columns t, theta_e, sector, hall, comm, ia, ib, ic,
     /// ialpha_ref, ibeta_ref, torque_mean, valpha_mean, vbeta_mean; SI units. References are the
-    /// quasi-square of the true sector with amplitude `current`, that of the limited set-point
-    /// where it is [`super::RunOptions::current`]; comm as [`Self::commutating`].
+    /// quasi-square of the true sector with amplitude `current`; comm as [`Self::commutating`].
     ///
     /// # Errors
-    /// The writer's own.
+    /// An error of the writer.
     pub fn write_csv(
         &self,
         out: impl io::Write,
@@ -300,7 +297,7 @@ impl Observer for Trace {
     }
 }
 
-/// Whether a command reaches the edge of the voltage hexagon.
+/// Whether a command is on the edge of the voltage hexagon.
 fn saturated(legs: Legs, timer_period: u16) -> bool {
     let driven = (0..3).filter(|&x| legs.state()[x] != LegState::Off);
     let values = driven.map(|x| {

@@ -1,10 +1,10 @@
-//! Drives that trip: which fault, and when.
+//! Trips of drives: fault and time.
 
 use hexagen::Fault;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What tripped a drive in a run.
+/// Trip of a drive in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trip {
     /// The fault.
@@ -15,7 +15,7 @@ pub struct Trip {
     pub rpm: f64,
 }
 
-/// A fault, as reports name it.
+/// A fault by its name in reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -32,10 +32,10 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// The cause of a fault.
+    /// Converts a fault.
     ///
     /// # Panics
-    /// Of a fault that this program does not know.
+    /// On a fault that this program does not know.
     pub fn of(fault: Fault) -> Self {
         match fault {
             Fault::AdcRange => Self::AdcRange,
@@ -43,7 +43,7 @@ impl Cause {
             Fault::Hall => Self::Hall,
             Fault::Stall => Self::Stall,
             Fault::Offset => Self::Offset,
-            other => unreachable!("a fault that no drive told yet: {other:?}"),
+            other => unreachable!("unknown fault: {other:?}"),
         }
     }
 }
@@ -51,9 +51,9 @@ impl Cause {
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::AdcRange => "a current converter was at an end of its range",
+            Self::AdcRange => "a current ADC was at an end of its range",
             Self::OverCurrent => "a phase current exceeded the trip level",
-            Self::Hall => "a Hall code was impossible",
+            Self::Hall => "a Hall code was invalid",
             Self::Stall => "no Hall edge came within the stall time-out",
             Self::Offset => "a current offset was too far from its nominal value",
         })

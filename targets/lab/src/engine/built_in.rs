@@ -1,4 +1,4 @@
-//! The motor library and the drives that are compiled into this program by its build script.
+//! The motor library and the drives compiled into this program by its build script.
 
 use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
 use hexagen_reference::verify::{Compiled, Subject};
@@ -60,7 +60,7 @@ pub fn built_in(spec: &str) -> Option<&'static BuiltIn> {
         .find(|drive| nameless(drive.spec) == nameless(spec))
 }
 
-/// A normalised specification without its first line, the name.
+/// A normalised specification without its first line, the name, as key.
 fn nameless(spec: &str) -> &str {
     spec.split_once('\n').map_or(spec, |(_, rest)| rest)
 }

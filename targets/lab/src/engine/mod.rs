@@ -1,8 +1,8 @@
-//! What runs a controller in the closed loop and in the bit-for-bit test.
+//! Engines that run a controller in the closed loop and in the bit-for-bit test.
 //!
-//! A [`Prepared`] drive is a specification taken through the whole generator. From it come the
-//! fixed-point code (compiled into this program where the drive is built in, else interpreted),
-//! the bit-true model and the ideal model, all behind [`CurrentLoop`].
+//! A [`Prepared`] drive is a specification taken through the whole generator. It provides the
+//! fixed-point code (compiled if the drive is built in, else interpreted), the bit-true model and
+//! the ideal model, all as [`CurrentLoop`].
 
 mod built_in;
 mod external;
@@ -28,7 +28,7 @@ use hexagen_reference::verify::Subject;
 use hexagen_reference::{BitTrue, Ideal};
 use serde::Serialize;
 
-/// Which model of a controller runs.
+/// Model of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
@@ -41,7 +41,7 @@ pub enum Model {
     Ideal,
 }
 
-/// What ran the fixed-point program.
+/// Engine of the fixed-point program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineKind {
@@ -52,7 +52,7 @@ pub enum EngineKind {
 }
 
 impl EngineKind {
-    /// As tables and JSON say it.
+    /// Its name in tables and JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Compiled => "compiled",
@@ -61,7 +61,7 @@ impl EngineKind {
     }
 }
 
-/// A controller ready for the loop, whatever computes it.
+/// A controller for the loop, by any engine.
 #[derive(Debug)]
 pub enum Engine<'g> {
     /// Emitted code.
@@ -75,7 +75,7 @@ pub enum Engine<'g> {
 }
 
 impl Engine<'_> {
-    /// Sets the set-point, in amperes: exact for the ideal model, the nearest word for all others.
+    /// Sets the set-point, in amperes: exact for the ideal model, else the nearest word.
     pub fn set_current(&mut self, amperes: f64) {
         let bits = (amperes * f64::from(1 << 16)).round() as i32;
         match self {
@@ -97,7 +97,7 @@ impl Engine<'_> {
         }
     }
 
-    /// Tells the bus voltage as an ADC count; drives with a fixed bus ignore it.
+    /// Sets the measured bus voltage as an ADC count; drives with a fixed bus ignore it.
     pub fn set_bus(&mut self, counts: u16) {
         match self {
             Self::Compiled(drive) => drive.set_bus(counts),

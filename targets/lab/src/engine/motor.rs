@@ -1,10 +1,10 @@
-//! Motors as the user names them: a TOML file or a motor of the library.
+//! Motors by name: a TOML file or a motor of the library.
 
 use super::built_in::{Library, library};
 use hexagen_codegen::spec::motor_text;
 use std::path::{Path, PathBuf};
 
-/// The TOML text of a motor, and what to call it.
+/// The TOML text of a motor, with its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MotorSource {
     /// Short name: the library's, or the file's without ending.
@@ -15,7 +15,7 @@ pub struct MotorSource {
     pub text: String,
 }
 
-/// Why a motor cannot be read.
+/// Error of reading a motor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SourceError {
     /// Neither a file nor a motor of the library.
@@ -28,16 +28,16 @@ pub enum SourceError {
         /// The most similar name of the library.
         nearest: Option<String>,
     },
-    /// A file that is not UTF-8: the diagnostic, rendered.
+    /// A file that is not UTF-8, with a rendered diagnostic.
     #[error("{0}")]
     Encoding(String),
 }
 
 impl MotorSource {
-    /// The motor of a path or of a name of the library. A file of the name wins.
+    /// The motor of a path or of a name of the library. A file takes precedence.
     ///
     /// # Errors
-    /// When there is none of either, or the file is no text.
+    /// If neither exists, or the file is not text.
     pub fn find(given: &str) -> Result<Self, SourceError> {
         let path = PathBuf::from(given);
         match std::fs::read(&path) {

@@ -1,4 +1,4 @@
-//! The plant that a specification describes.
+//! The plant of a specification.
 
 use crate::closed_loop::{Delay, RunOptions};
 use crate::plant::{AdcChannel, EmfShape, PlantParams};
@@ -34,14 +34,13 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
     }
 }
 
-/// Largest torque in newton metres that a drive's limited set-point asks for.
+/// Largest torque in newton metres that a drive's set-point limit allows.
 pub fn reach_of(spec: &Spec) -> f64 {
     spec.inverter.max_current * spec.torque_constant()
 }
 
 /// The standard measurement of a drive at a mechanical speed in rad/s and a torque in newton
-/// metres: judged against the quasi-square reference that gives this torque, as far as the limited
-/// set-point reaches.
+/// metres: compared with the quasi-square reference of this torque, clamped to the set-point limit.
 pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
     let controller = spec.controller.common();
     let reach = reach_of(spec);

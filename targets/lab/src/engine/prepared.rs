@@ -1,4 +1,4 @@
-//! A drive taken through the generator, with the models that go with it.
+//! A drive taken through the generator, with its models.
 
 use super::{
     AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, reach_of,
@@ -20,7 +20,7 @@ use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 pub struct Prepared {
     /// Short name of the motor.
     pub motor: String,
-    /// The controller with the options that were written, in the variant or in the motor's file.
+    /// The controller with its written options, from the variant or the motor's file.
     pub variant: String,
     /// The checked specification.
     pub spec: Spec,
@@ -28,9 +28,9 @@ pub struct Prepared {
     pub generated: Generated,
     /// The generator's warnings.
     pub warnings: Vec<String>,
-    /// The specification as the reference reads it.
+    /// The specification as read by the reference.
     pub reference: hexagen_reference::Spec,
-    /// Formats in the types of the hardware's boundary.
+    /// Formats in the types of the runtime.
     pub formats: Vec<Format>,
     /// The emitted source text's `[source]` fields, for data sheets.
     pub source: Vec<(String, String)>,
@@ -39,18 +39,18 @@ pub struct Prepared {
     built_in: Option<&'static BuiltIn>,
 }
 
-/// A set-point and the bus that the drive is told of.
+/// Set-point and measured bus voltage of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetPoint {
     /// Current in amperes, with the torque's sign.
     pub current: f64,
-    /// True bus voltage in volts; drives that measure it are told.
+    /// True bus voltage in volts, for drives that measure it.
     pub v_bus: f64,
-    /// Speed in rpm, for drives with a speed loop; the current is then the greatest that it asks for.
+    /// Speed in rpm, for drives with a speed loop; the current is then its limit.
     pub rpm: Option<f64>,
 }
 
-/// Takes a motor and a variant (none: the controller of the motor's file) through the generator.
+/// Takes a motor and a variant (`None`: the controller of the motor's file) through the generator.
 ///
 /// # Errors
 /// All diagnostics of specification, design and scaling.
@@ -59,7 +59,7 @@ pub fn prepare(motor: &MotorSource, variant: Option<&str>) -> Result<Prepared, D
     prepare_ast(ast, &motor.name, variant)
 }
 
-/// As [`prepare`], from a syntax tree.
+/// Like [`prepare`], from a syntax tree.
 ///
 /// # Errors
 /// As [`prepare`].
@@ -77,7 +77,7 @@ pub fn prepare_ast(
     let formats = formats(&generated.interface.formats);
     let models = models(&generated.interface.spec_toml, &formats);
     let (reference, bit_true, ideal) = models.map_err(|error| {
-        // Both sides read the same normalised text: a disagreement is a bug of one of them.
+        // Both read the same normalised text: a disagreement is a bug.
         let at = origins.at("controller.kind");
         hexagen_codegen::diagnostics::catalogue::internal(at, &error.to_string())
     })?;
@@ -107,7 +107,7 @@ fn models(
 }
 
 impl Prepared {
-    /// What runs the fixed-point program.
+    /// Engine of the fixed-point program.
     pub fn engine_kind(&self) -> EngineKind {
         if self.built_in.is_some() {
             EngineKind::Compiled
@@ -116,22 +116,22 @@ impl Prepared {
         }
     }
 
-    /// Emitted code at rest, if this drive is compiled in.
+    /// Emitted code in its initial state, if this drive is compiled in.
     pub fn compiled(&self) -> Option<AnySubject> {
         self.built_in.map(|drive| AnySubject((drive.new)()))
     }
 
-    /// The interpreted program at rest.
+    /// The interpreted program in its initial state.
     pub fn interpreted(&self) -> Interpreted<'_> {
         Interpreted::new(self.generated.graph.program(), &self.generated.interface)
     }
 
-    /// The bit-true model at rest.
+    /// The bit-true model in its initial state.
     pub fn bit_true(&self) -> BitTrue {
         self.bit_true.clone()
     }
 
-    /// The ideal model at rest.
+    /// The ideal model in its initial state.
     pub fn ideal(&self) -> Ideal {
         self.ideal.clone()
     }
@@ -156,7 +156,7 @@ impl Prepared {
         engine
     }
 
-    /// What the ADC of a measured bus reads at a voltage; none where the bus is not measured.
+    /// ADC count of a measured bus at a voltage; `None` if the bus is not measured.
     pub fn bus_counts(&self, v_bus: f64) -> Option<u16> {
         match self.spec.inverter.bus {
             BusSource::Fixed => None,
@@ -167,7 +167,7 @@ impl Prepared {
         }
     }
 
-    /// The bit-true and the ideal model with a set-point: that which the bit-true one's word stands for.
+    /// The bit-true and the ideal model with a set-point, that of the bit-true model's word.
     pub fn references(&self, set_point: SetPoint) -> (BitTrue, Ideal) {
         let (mut bit_true, mut ideal) = (self.bit_true(), self.ideal());
         if let Some(counts) = self.bus_counts(set_point.v_bus) {
@@ -180,7 +180,8 @@ impl Prepared {
         (bit_true, ideal)
     }
 
-    /// What measurements of closed loops take: a controller for a plant's initial state.
+    /// A constructor of controllers for measurements in closed loop, called with the plant's
+    /// initial state.
     pub fn maker<'g>(
         &'g self,
         model: Model,
@@ -216,7 +217,7 @@ impl Prepared {
         emit_datasheet(&self.generated.graph, &self.generated.interface)
     }
 
-    /// Rated torque in newton metres: as stated, else that of the rated current.
+    /// Rated torque in newton metres: as specified, else that of the rated current.
     pub fn rated_torque(&self) -> f64 {
         let motor = &self.spec.motor;
         let per_ampere = motor.emf_constant * motor.emf_shape.quasi_square_factor();
@@ -234,14 +235,14 @@ impl Prepared {
         }
     }
 
-    /// Largest torque in newton metres that the limited set-point asks for.
+    /// Largest torque in newton metres that the set-point limit allows.
     pub fn reach(&self) -> f64 {
         reach_of(&self.spec)
     }
 
-    /// The torque in newton metres that the drive is measured at unless another is asked for: the
-    /// rated one, or its reach where that is less. (A sine of the rated peak current gives 9 %
-    /// less than a quasi-square of it, which ratings refer to.)
+    /// The default torque of measurements in newton metres: the rated one, clamped to the set-point
+    /// limit. (A sine of the rated peak current gives 9 % less than a quasi-square of it, which
+    /// ratings refer to.)
     pub fn demand(&self) -> f64 {
         self.rated_torque().min(self.reach())
     }

@@ -1,4 +1,4 @@
-//! Motors with their plants: what is simulated may differ from what the motor's file says.
+//! Motors with their plants: simulation may deviate from the motor's file.
 
 use super::{MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of};
 use crate::LabError;
@@ -7,16 +7,16 @@ use crate::plant::{Mechanics, PlantError, PlantParams};
 use hexagen_codegen::spec::{SpecAst, parse_toml};
 use std::f64::consts::TAU;
 
-/// What a simulated plant differs in from the motor's file; nothing by default.
+/// Deviations of a simulated plant from the motor's file; none by default.
 #[derive(Clone, Debug, Default)]
 pub struct PlantOptions {
     /// Dead time of the inverter's legs in seconds.
     pub dead_time: Option<f64>,
-    /// Bits of the current ADCs, of plant and controller alike: the specification changes.
+    /// Bits of the current ADCs, of plant and controller: the specification changes.
     pub adc_bits: Option<u32>,
-    /// Range of the current ADCs with its unit, of plant and controller alike: the specification changes.
+    /// Range of the current ADCs with its unit, of plant and controller: the specification changes.
     pub adc_range: Option<String>,
-    /// Error in amperes of the current ADCs' zero, which the controller does not know of.
+    /// Zero error of the current ADCs in amperes, unknown to the controller.
     pub adc_offset: Option<[f64; 2]>,
     /// True bus voltage in volts.
     pub v_bus: Option<f64>,
@@ -26,7 +26,8 @@ pub struct PlantOptions {
     pub scale_l: Option<f64>,
     /// True over stated EMF constant.
     pub scale_kb: Option<f64>,
-    /// Placement errors of the Hall sensors in electrical degrees; positive is late in forward rotation.
+    /// Placement errors of the Hall sensors in electrical degrees; positive is late in forward
+    /// rotation.
     pub hall_error: Option<[f64; 3]>,
     /// Inertia of rotor and load in kg m2: the speed is free.
     pub inertia: Option<f64>,
@@ -36,7 +37,7 @@ pub struct PlantOptions {
     pub start_angle: Option<f64>,
 }
 
-/// A motor, its specification changed as the plant options say.
+/// A motor with its specification, changed by the plant options.
 #[derive(Clone, Debug)]
 pub struct SelectedMotor {
     /// The motor.
@@ -49,7 +50,7 @@ impl SelectedMotor {
     /// Finds and reads a motor.
     ///
     /// # Errors
-    /// When there is none, or its file is no TOML.
+    /// If there is none, or its file is not TOML.
     pub fn find(given: &str, plant: &PlantOptions) -> Result<Self, LabError> {
         let source = MotorSource::find(given)?;
         Self::read(source, plant)
@@ -70,7 +71,7 @@ impl SelectedMotor {
         Ok(Self { source, ast })
     }
 
-    /// Takes a variant through the generator; none: the controller of the motor's file.
+    /// Takes a variant through the generator; `None`: the controller of the motor's file.
     ///
     /// # Errors
     /// All diagnostics.
@@ -78,15 +79,15 @@ impl SelectedMotor {
         Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
     }
 
-    /// As [`Self::prepare`], for commands that measure the torque that is set.
+    /// Like [`Self::prepare`], for commands with a torque set-point.
     ///
     /// # Errors
-    /// All diagnostics, or a drive that regulates its speed.
+    /// All diagnostics, or a drive with a speed loop.
     pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
         let drive = self.prepare(variant)?;
         if drive.spec.controller.common().speed.is_some() {
             return Err(LabError::Argument(
-                "`speed_loop: on`: the drive regulates its speed, and here the torque is set; give the controller `speed_loop=off`"
+                "`speed_loop: on`: the drive has a speed set-point, this command sets the torque; use `speed_loop=off`"
                     .to_owned(),
             ));
         }
@@ -95,7 +96,7 @@ impl SelectedMotor {
 }
 
 impl PlantOptions {
-    /// ADC bits and range are the controller's, too: they are laid over the specification.
+    /// ADC bits and range apply to the controller, too: they override the specification.
     fn change_specification(&self, ast: &mut SpecAst) -> Result<(), LabError> {
         let bits = self.adc_bits.map(|bits| format!("adc_bits = {bits}"));
         let range = self
@@ -103,14 +104,14 @@ impl PlantOptions {
             .as_ref()
             .map(|range| format!("adc_range = \"{range}\""));
         if range.is_some() {
-            // Another way to say the range.
+            // The other field for the same quantity.
             ast.inverter.fields.retain(|field| field.name != "adc_gain");
         }
         let lines: Vec<String> = bits.into_iter().chain(range).collect();
         if lines.is_empty() {
             return Ok(());
         }
-        // An offset counts in the bits of before; the middle of the new range takes its place.
+        // An offset is a count of the previous bits; the middle of the new range replaces it.
         ast.inverter
             .fields
             .retain(|field| field.name != "adc_offset");

@@ -1,4 +1,4 @@
-//! The bit-for-bit test of one drive, with the best there is to run its fixed-point program.
+//! The bit-for-bit test of one drive, by the best available engine of its fixed-point program.
 
 use super::external::{Binding, BuildError, External, Terms, compile, compile_c99, verify};
 use super::{AnySubject, BuiltIn, EngineKind, Prepared};
@@ -8,7 +8,7 @@ use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::ir::Demand;
 use hexagen_reference::verify::{Report, verify_subject};
 
-/// A drive and what runs it.
+/// A drive and its engine.
 #[derive(Debug)]
 pub struct Verifier<'p> {
     drive: &'p Prepared,
@@ -23,7 +23,7 @@ enum Runner {
 }
 
 impl<'p> Verifier<'p> {
-    /// Finds the compiled drive, else compiles it, else makes do with the interpreter.
+    /// Uses the compiled drive, else compiles it, else uses the interpreter.
     pub(super) fn new(drive: &'p Prepared) -> Self {
         let runner = drive.built_in().map_or_else(
             || match compile_emitted(drive) {
@@ -35,10 +35,10 @@ impl<'p> Verifier<'p> {
         Self { drive, runner }
     }
 
-    /// Compiles the drive's C, by `CC` with these flags behind strict ones.
+    /// Compiles the drive's C, by `CC` with these flags after strict ones.
     ///
     /// # Errors
-    /// No C compiler, or what it said.
+    /// No C compiler, or its messages.
     pub fn of_c99(drive: &'p Prepared, flags: &str) -> Result<Self, BuildError> {
         let generated = &drive.generated;
         let (interface, program) = (&generated.interface, generated.graph.program());
@@ -55,7 +55,7 @@ impl<'p> Verifier<'p> {
         })
     }
 
-    /// What runs.
+    /// The engine.
     pub fn kind(&self) -> EngineKind {
         match self.runner {
             Runner::BuiltIn(_) | Runner::External(_) => EngineKind::Compiled,
@@ -63,7 +63,7 @@ impl<'p> Verifier<'p> {
         }
     }
 
-    /// Why no compiled code runs, where none does.
+    /// Why no compiled code runs, if so.
     pub fn why_interpreted(&self) -> Option<&BuildError> {
         match &self.runner {
             Runner::Interpreter(error) => Some(error),
@@ -74,7 +74,7 @@ impl<'p> Verifier<'p> {
     /// Compares with the bit-true model over `steps` steps.
     ///
     /// # Errors
-    /// What differs, as a table.
+    /// The differences, as a table.
     pub fn verify(&self, steps: u64, seed: u64) -> Result<Report, String> {
         let Self { drive, runner } = self;
         let spec = &drive.generated.interface.spec_toml;

@@ -1,13 +1,13 @@
-//! The current converters: rounding, offset, sign and saturation.
+//! The current ADCs: rounding, offset, sign and saturation.
 
 use super::AdcChannel;
 
-/// The largest count of a converter with `bits` bits.
+/// The largest count of an ADC with `bits` bits.
 pub(super) fn full_scale(bits: u32) -> f64 {
     f64::from((1_u32 << bits) - 1)
 }
 
-/// Count that a channel reads at a current in amperes; limited to the converter's range.
+/// Count of a channel at a current in amperes; clamped to the ADC's range.
 pub(super) fn convert(channel: &AdcChannel, current: f64) -> u16 {
     let count = (current / channel.amperes_per_count + channel.offset).round();
     count.clamp(0.0, full_scale(channel.bits)) as u16

@@ -4,8 +4,8 @@ use super::segment::{Series, TERMS};
 use super::{EmfShape, floor, wrap};
 use std::f64::consts::{PI, TAU};
 
-/// Angle by which the shape is probed ahead of the present one, so that a corner that was just
-/// reached counts as passed in spite of rounding.
+/// Angle ahead of the present one at which the shape is evaluated, so that a corner just reached
+/// counts as passed in spite of rounding.
 const AHEAD: f64 = 1e-9;
 
 /// Electrical angle by which phases a, b, c lag phase a.

@@ -1,27 +1,27 @@
-//! The energy account of a run, integrated exactly on each segment.
+//! The energy balance of a run, integrated exactly on each segment.
 
 use super::machine::Observer;
 use super::segment::{Segment, TERMS, Terminal, integral};
 use super::{Plant, PlantParams};
 use serde::Serialize;
 
-/// Where the energy of a run went, in joules.
+/// Energy balance of a run, in joules.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EnergyBalance {
-    /// Taken from the bus (negative: given back).
+    /// Taken from the bus (negative: returned).
     pub bus: f64,
     /// Copper loss.
     pub copper: f64,
     /// Loss in the diodes' forward drop.
     pub diodes: f64,
-    /// Given to the shaft by the air gap, EMF times current.
+    /// Given to the shaft (EMF times current).
     pub shaft: f64,
     /// Increase of the magnetic energy.
     pub magnetic: f64,
 }
 
 impl EnergyBalance {
-    /// What the account leaves unexplained, in joules.
+    /// The balance's error, in joules.
     pub fn error(&self) -> f64 {
         self.bus - self.copper - self.diodes - self.shaft - self.magnetic
     }
@@ -44,7 +44,7 @@ impl EnergyBalance {
     }
 }
 
-/// An observer that keeps the energy account.
+/// An observer that computes the energy balance.
 #[derive(Clone, Debug)]
 pub struct EnergyMeter {
     resistance: [f64; 3],
@@ -84,7 +84,7 @@ impl EnergyMeter {
             .sum()
     }
 
-    /// The account up to the plant's present state.
+    /// The balance up to the plant's present state.
     pub fn balance(&self, plant: &Plant) -> EnergyBalance {
         EnergyBalance {
             magnetic: self.magnetic(plant) - self.initial,

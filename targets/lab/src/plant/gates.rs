@@ -6,7 +6,7 @@
 
 use hexagen::{LegState, Legs};
 
-/// Which switch of a leg conducts.
+/// The conducting switch of a leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Gate {
     Upper,
@@ -15,7 +15,7 @@ pub(super) enum Gate {
     Off,
 }
 
-/// One leg's switches: what is on, and what is wanted once the dead time is over.
+/// One leg's switches: the present gate, and the one after the dead time.
 #[derive(Clone, Copy, Debug, Default)]
 struct LegGate {
     gate: Gate,
@@ -104,7 +104,7 @@ impl Gates {
         }
     }
 
-    /// Carries out all that is due at or before `t` and returns the time of the next change.
+    /// Applies all changes due at or before `t` and returns the time of the next one.
     pub(super) fn advance_to(&mut self, t: f64) -> f64 {
         while let Some(&(at, leg, gate)) = self.requests.get(self.next).filter(|r| r.0 <= t) {
             self.next += 1;

@@ -37,8 +37,8 @@ impl Sensors {
         self.rise.map(|rise| floor((theta_e - rise) / PI))
     }
 
-    /// Hall code at an electrical angle, in the motor's wiring. A combination of sensors that the
-    /// ideal placement never shows is passed on as it is.
+    /// Hall code at an electrical angle, in the motor's wiring. A sensor combination that ideal
+    /// placement never shows is returned as it is.
     pub(super) fn code(&self, theta_e: f64) -> u8 {
         let raw = self.half_turns(theta_e).iter().fold(0_u8, |code, n| {
             code << 1 | u8::from(n.rem_euclid(2.0) == 0.0)
@@ -49,7 +49,7 @@ impl Sensors {
             .map_or(raw, |sector| self.codes[sector])
     }
 
-    /// Notes edges while the angle moves linearly from `from` to `to` during `[t, t + h]`.
+    /// Records edges while the angle moves linearly from `from` to `to` during `[t, t + h]`.
     pub(super) fn sweep(&mut self, from: f64, to: f64, t: f64, h: f64) {
         let (before, after) = (self.half_turns(from), self.half_turns(to));
         for x in 0..3 {
@@ -67,7 +67,7 @@ mod tests {
     use crate::plant::sector_of;
 
     #[test]
-    fn ideal_codes_tell_the_sector() {
+    fn ideal_codes_match_the_sector() {
         let sensors = Sensors::new([0.0; 3], IDEAL_CODES);
         for step in 0..720 {
             let theta = (f64::from(step) * 0.5 + 0.25).to_radians();

@@ -7,11 +7,11 @@ use super::segment::{Segment, Series, TERMS, integral};
 use super::{EmfShape, Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::{Legs, Sample};
 
-/// Steps per period at least, when the speed is free: it is constant within a step.
+/// Minimum steps per period with a free speed, which is constant within a step.
 const MECHANICAL_STEPS: f64 = 20.0;
 
-/// Segments in a period beyond which events are no longer resolved finer than a thousandth of
-/// it: a period always ends. No known circuit comes near.
+/// Segments in a period beyond which events are resolved to a thousandth of it only, so that a
+/// period always ends. No known circuit comes near.
 const MAX_SEGMENTS: u32 = 1000;
 
 /// The plant's true state at a sampling instant, for ideal controllers and for records.
@@ -36,13 +36,13 @@ pub struct Truth {
     pub mean_torque: f64,
 }
 
-/// Sees every segment of the solution; integrates or records what it needs.
+/// Observes every segment of the solution.
 pub trait Observer {
     /// Called once per segment, in order of time.
     fn segment(&mut self, segment: &Segment);
 }
 
-/// The observer that looks away.
+/// An observer that does nothing.
 impl Observer for () {
     fn segment(&mut self, _: &Segment) {}
 }
@@ -61,7 +61,7 @@ impl<T: Observer + ?Sized> Observer for &mut T {
     }
 }
 
-/// A simulated motor with its inverter and sensors.
+/// A motor with inverter and sensors.
 #[derive(Clone, Debug)]
 pub struct Plant {
     params: PlantParams,
@@ -142,7 +142,7 @@ impl Plant {
         }
     }
 
-    /// What the controller's hardware reads now.
+    /// The controller's sample now.
     pub fn sample(&self) -> Sample {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
@@ -247,7 +247,7 @@ fn speed_after(mechanics: &Mechanics, omega_m: f64, impulse: f64, h: f64) -> f64
     let driving = (impulse + mechanics.external_torque * h) / mechanics.inertia;
     let free = (omega_m * (1.0 - decay) + driving) / (1.0 + decay);
     let friction = mechanics.opposing_torque * h;
-    // Dry friction takes speed away in the direction of motion, but never reverses it.
+    // Dry friction decelerates, but never reverses the rotation.
     let slowed = free.abs() - friction / mechanics.inertia;
     if slowed > 0.0 {
         slowed.copysign(free)

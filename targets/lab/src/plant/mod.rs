@@ -1,4 +1,4 @@
-//! The simulated plant: motor, inverter, Hall sensors and current converters (`hexagen::conventions`).
+//! The simulated plant: motor, inverter, Hall sensors and current ADCs (`hexagen::conventions`).
 //!
 //! The electrical network is piecewise linear; between two events it is solved by its Taylor
 //! series, which is exact to rounding. Events are switching edges, ends of dead times, corners of
@@ -38,7 +38,7 @@ pub fn clarke([a, b, c]: [f64; 3]) -> (f64, f64) {
 
 /// Wraps an angle to `[0, 2 pi)`.
 fn wrap(angle: f64) -> f64 {
-    // Angles move by less than a turn; the remainder of a division gives the same, more slowly.
+    // Angles move by less than a turn; a remainder gives the same, more slowly.
     let wrapped = if (0.0..TAU).contains(&angle) {
         angle
     } else if (-TAU..0.0).contains(&angle) {
@@ -51,8 +51,8 @@ fn wrap(angle: f64) -> f64 {
     if wrapped < TAU { wrapped } else { 0.0 }
 }
 
-/// The greatest whole number that is not above `x`; `|x|` below 2^52. The standard function is a
-/// call into the C library on processors without an instruction for it.
+/// The greatest integer not above `x`; `|x|` below 2^52. The standard function is a call into the C
+/// library on processors without an instruction for it.
 fn floor(x: f64) -> f64 {
     let whole = x as i64 as f64;
     if whole > x { whole - 1.0 } else { whole }

@@ -108,7 +108,7 @@ impl Network {
         }
     }
 
-    /// Decides the terminals' state for the present gates and currents.
+    /// Determines the terminals' state from the present gates and currents.
     fn connect(&self, gates: [Gate; 3], currents: &[f64; 3], segment: &mut Segment) {
         let mut undecided = [0_usize; 3];
         let mut count = 0;
@@ -157,8 +157,8 @@ impl Network {
         segment.terminal = best.1;
     }
 
-    /// By how many volts a choice for the `undecided` legs contradicts itself; at most 0 if it
-    /// does not.
+    /// Largest contradiction of a choice for the `undecided` legs, volt; at most 0 for a consistent
+    /// one.
     fn violation(
         &self,
         terminal: &[Terminal; 3],
@@ -189,8 +189,9 @@ impl Network {
             let violation = match terminal[x] {
                 Terminal::Floating => (e(x) + neutral - high).max(low - e(x) - neutral),
                 Terminal::Rail { volts, upper, .. } => {
-                    // The inductance's voltage must drive the current the diode's way. Its
-                    // current is zero, so R does not enter; a single conducting leg has no drive.
+                    // The inductance's voltage must drive current in the diode's direction. The
+                    // current is zero, so R has no effect; a single conducting leg has no driving
+                    // voltage.
                     let drive = volts - e(x) - neutral;
                     let wanted = if upper { -drive } else { drive };
                     if wanted > 0.0 {
@@ -219,8 +220,8 @@ impl Network {
             }
         }
         if weight == 0.0 {
-            // Nothing conducts: by symmetry the star point sits where the terminals' mean is in
-            // the middle between the rails. Only the differences matter.
+            // Nothing conducts: by symmetry the star point is where the terminals' mean is midway
+            // between the rails. Only differences matter.
             for k in 0..segment.terms {
                 let sum: f64 = segment.shape.iter().map(|shape| shape[k]).sum();
                 segment.neutral[k] = -segment.omega_m * sum / 3.0;
@@ -232,8 +233,8 @@ impl Network {
             return;
         }
         let scale = 1.0 / weight;
-        // Beyond the EMF's terms, currents of equal phases decay each for itself: what they drop
-        // in R sums to zero, so the star point does not move.
+        // Beyond the EMF's terms, currents of equal phases decay independently: their voltages
+        // across R sum to zero, so the star point is constant.
         let general = match self.common_rate {
             Some(_) => segment.terms.min(segment.shape_terms.max(1)),
             None => segment.terms,
@@ -319,8 +320,8 @@ impl Network {
     }
 }
 
-/// Removes the rounding error of the currents' sum from the largest one, and all current when
-/// only one leg is left to carry it.
+/// Removes the rounding error of the currents' sum from the largest one, and all current if only
+/// one leg is left to carry it.
 pub(super) fn balance(currents: &mut [f64; 3], gates: [Gate; 3]) {
     let carrying = (0..3)
         .filter(|&x| gates[x] != Gate::Off || currents[x] != 0.0)

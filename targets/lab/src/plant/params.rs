@@ -1,4 +1,4 @@
-//! What the plant needs to know, as plain SI numbers, and the check that they make sense.
+//! Parameters of the plant in SI units, and their check.
 
 use super::adc::full_scale;
 use hexagen_codegen::diagnostics::engineering;
@@ -95,7 +95,7 @@ pub struct PlantParams {
     pub mechanics: Option<Mechanics>,
 }
 
-/// Why a set of plant parameters cannot be simulated.
+/// Error of plant parameters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A quantity is not a finite number in its range.

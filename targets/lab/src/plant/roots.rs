@@ -1,4 +1,4 @@
-//! Where a polynomial first turns negative: the plant's event times.
+//! First sign change of a polynomial: the plant's event times.
 
 /// Depth of subdivision after which a touching point counts as no crossing.
 const MAX_DEPTH: u32 = 40;
@@ -35,7 +35,7 @@ pub(super) fn first_crossing(p: &[f64], h: f64) -> Option<f64> {
     if first > reach {
         return None;
     }
-    // A root at 0 is where the polynomial starts from, not a crossing.
+    // A root at 0 is the start, not a crossing.
     if first <= 0.0 {
         return if rest.is_empty() {
             None
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn ignores_the_zero_it_starts_from() {
+    fn ignores_a_root_at_the_start() {
         assert_eq!(first_crossing(&[0.0, 1.0], 1.0), None);
         let t = first_crossing(&[0.0, 1.0, -2.0], 1.0).unwrap();
         assert!((t - 0.5).abs() < 1e-15, "{t}");

@@ -1,4 +1,4 @@
-//! One stretch of time between two events, with the exact solution on it.
+//! A time interval between two events, with the exact solution on it.
 
 use super::roots::evaluate;
 
@@ -8,7 +8,7 @@ pub const TERMS: usize = 16;
 /// Taylor coefficients in time from the segment's start, lowest first.
 pub type Series = [f64; TERMS];
 
-/// What fixes a leg's terminal voltage during a segment.
+/// Connection of a leg's terminal during a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Terminal {
     /// A switch or a diode connects the leg to a rail.
@@ -45,7 +45,7 @@ pub struct Segment {
     pub shape_terms: usize,
     /// Voltage of the star point against the negative rail in volts.
     pub neutral: Series,
-    /// What the three terminals are connected to.
+    /// Connections of the three terminals.
     pub terminal: [Terminal; 3],
     /// Electrical angle at the start in radians.
     pub theta_e: f64,
@@ -77,7 +77,7 @@ impl Default for Segment {
 impl Segment {
     /// Phase currents in amperes at `t` seconds after the start.
     pub fn currents_at(&self, t: f64) -> [f64; 3] {
-        // Three Horner schemes side by side: none waits for another.
+        // Three Horner schemes in parallel: none waits for another.
         let [a, b, c] = self.current.each_ref().map(|series| &series[..self.terms]);
         let mut sums = [0.0; 3];
         for ((a, b), c) in a.iter().zip(b).zip(c).rev() {
@@ -113,7 +113,7 @@ impl Segment {
     /// Formed from the shape, so that nothing divides by the speed.
     pub fn torque(&self, out: &mut Series) {
         let terms = self.terms;
-        // A trapezoid's two coefficients, as nearly always, in one pass over all phases.
+        // A trapezoid's two coefficients, the usual case, in one pass over all phases.
         let [a, b, c] = self.current.each_ref().map(|series| &series[..terms]);
         let [f_a, f_b, f_c] = &self.shape;
         let out = &mut out[..terms];

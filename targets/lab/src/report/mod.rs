@@ -1,8 +1,8 @@
-//! Reports as data: pages of prose, tables and figures. Renderers show them on a terminal, as HTML
-//! or as JSON.
+//! Reports as data: pages of prose, tables and figures, rendered for a terminal, as HTML or as
+//! JSON.
 //!
-//! Text has a little markup: `` `code` ``, `**strong**` and `_{subscript}`; a line feed ends a line
-//! within a cell.
+//! Texts have a little markup: `` `code` ``, `**strong**` and `_{subscript}`; a line feed is a line
+//! break within a cell.
 
 mod pages;
 mod palette;
@@ -18,31 +18,31 @@ pub use table::{Cell, Column, Group, Label, Table, Tone};
 
 use serde::Serialize;
 
-/// A page: what it is called, what stands at its beginning, and its sections in their order.
+/// A page: title, introduction and sections.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Page {
     /// Name of its file, without ending.
     pub file: String,
     /// Title.
     pub title: String,
-    /// Heading of the page, where it is another one than the title.
+    /// Heading of the page, if different from the title.
     pub heading: String,
-    /// What stands below the heading.
+    /// Introduction below the heading.
     pub opening: Vec<Block>,
     /// The sections.
     pub sections: Vec<Section>,
-    /// Program and version that it is from.
+    /// Program and version.
     pub generator: String,
 }
 
 /// One section of a page.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Section {
-    /// Name of its link, unique on the page.
+    /// Anchor, unique on the page.
     pub id: &'static str,
     /// Title.
     pub title: &'static str,
-    /// What it says.
+    /// Content.
     pub blocks: Vec<Block>,
 }
 
@@ -59,28 +59,28 @@ impl Section {
 pub enum Block {
     /// A heading within the section.
     Heading(String),
-    /// A sentence that leads in.
+    /// A leading sentence.
     Lead(String),
     /// A paragraph.
     Prose(String),
-    /// A paragraph on how to read what follows.
+    /// A note on how to read the following.
     Note(String),
     /// A table.
     Table(Table),
     /// Small tables side by side.
     Tables(Vec<Table>),
-    /// What the signs of the figures below mean.
+    /// Key of the figures below.
     Legend(Vec<Key>),
     /// Figures side by side.
     Figures {
-        /// How many of them stand in a row.
+        /// Number of figures in a row.
         columns: usize,
         /// The figures.
         figures: Vec<Figure>,
     },
-    /// What is folded until somebody asks for it.
+    /// Folded content.
     Details {
-        /// What is in it.
+        /// Summary.
         summary: String,
         /// Whether it is unfolded at first.
         is_open: bool,
@@ -89,9 +89,9 @@ pub enum Block {
     },
     /// A text in Markdown.
     Markdown(String),
-    /// A text in a language of machines.
+    /// A text in a programming language.
     Code {
-        /// Ending of its files: "rs", "toml".
+        /// File extension: "rs", "toml".
         language: &'static str,
         /// The text.
         text: String,
@@ -99,7 +99,7 @@ pub enum Block {
 }
 
 impl Block {
-    /// Said instead of a part that has nothing to show.
+    /// Replaces a part without content.
     pub fn nothing(what: &str) -> Vec<Self> {
         vec![Self::Note(format!("This report has no {what}."))]
     }
@@ -108,13 +108,13 @@ impl Block {
 /// A plot below its caption.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Sign of what is plotted, before the caption.
+    /// Symbol before the caption.
     pub sign: Option<Sign>,
     /// Caption.
     pub caption: String,
-    /// The plot; none where there is nothing to show.
+    /// The plot; `None` if there is no data.
     pub plot: Option<Plot>,
-    /// What is said below.
+    /// Note below.
     pub note: Option<String>,
 }
 
@@ -130,16 +130,16 @@ impl Figure {
     }
 }
 
-/// A sign and what it means.
+/// A symbol with its meaning.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Key {
-    /// The sign.
+    /// The symbol.
     pub sign: Sign,
     /// Its meaning.
     pub text: String,
 }
 
-/// How something is drawn.
+/// Symbol of a plot element.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sign {
@@ -161,7 +161,7 @@ impl Sign {
         Self::Line(color, width, (0.0, 0.0))
     }
 
-    /// The sign with its meaning.
+    /// The symbol with a meaning.
     pub fn means(self, text: impl Into<String>) -> Key {
         Key {
             sign: self,
@@ -170,7 +170,7 @@ impl Sign {
     }
 }
 
-/// A stretch of text that is set alike.
+/// A span of text with one style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span<'t> {
     /// As the text around it.
@@ -183,7 +183,7 @@ pub enum Span<'t> {
     Subscript(&'t str),
 }
 
-/// The stretches of a text with markup. A mark without its end is text.
+/// The spans of a text with markup. A mark without its counterpart is text.
 pub fn spans(text: &str) -> Vec<Span<'_>> {
     let marks = [("`", "`"), ("**", "**"), ("_{", "}")];
     let (mut spans, mut rest) = (vec![], text);
@@ -217,7 +217,7 @@ pub fn spans(text: &str) -> Vec<Span<'_>> {
     spans
 }
 
-/// A text for readers of plain text: code keeps its marks, subscripts stand behind a low line.
+/// A plain text: code keeps its marks, a subscript follows an underscore.
 pub fn plain(text: &str) -> String {
     let spans = spans(text).into_iter();
     spans
@@ -234,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_part_a_text_and_lone_ones_stay() {
+    fn paired_marks_make_spans_and_single_ones_are_text() {
         assert_eq!(
             spans("T_{s} of `a*b`, **not** 2 ** 3"),
             [

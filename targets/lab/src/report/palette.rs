@@ -2,7 +2,7 @@
 //!
 //! Variants use the palette of Okabe and Ito, then three colours of Paul Tol's muted one; phases
 //! Tol's high-contrast one. All are safe for colour-blind readers. Variants and phases share no
-//! colour, so a line is either.
+//! colour, so that a colour is unambiguous.
 
 use serde::Serialize;
 
@@ -41,7 +41,7 @@ pub const VARIANTS: [Color; 11] = [
     Color(0x88, 0x22, 0x55),
 ];
 
-/// Colour of the variant at a place in the table; places beyond the palette begin anew.
+/// Colour of the variant with this index in the table; repeats beyond the palette.
 pub fn variant(index: usize) -> Color {
     VARIANTS[index % VARIANTS.len()]
 }

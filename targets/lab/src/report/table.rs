@@ -6,7 +6,7 @@ use serde::Serialize;
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Table {
-    /// What kind of table it is, for style sheets; empty for a plain one.
+    /// Class of the table for style sheets; empty for a plain one.
     pub kind: &'static str,
     /// Title, for small tables side by side.
     pub title: String,
@@ -26,7 +26,7 @@ impl Table {
         }
     }
 
-    /// A table without rows of named columns: first texts, then numbers.
+    /// A table without rows, of named columns: first texts, then numbers.
     pub fn listed<const T: usize, const N: usize>(texts: [&str; T], numbers: [&str; N]) -> Self {
         let texts = texts.into_iter().map(Column::text);
         let numbers = numbers.into_iter().map(|name| Column::number(name, ""));
@@ -43,7 +43,7 @@ impl Table {
         }
     }
 
-    /// Begins a group of rows that belong together.
+    /// Begins a group of rows.
     pub fn group(&mut self, label: Label) {
         self.groups.push(Group {
             label,
@@ -55,11 +55,11 @@ impl Table {
 /// A column.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Column {
-    /// What is in it.
+    /// Heading.
     pub name: String,
     /// Unit of its numbers.
     pub unit: String,
-    /// What it has in common with its neighbours.
+    /// Heading shared with its neighbours.
     pub group: String,
     /// Whether it holds numbers.
     pub is_number: bool,
@@ -84,7 +84,7 @@ impl Column {
         }
     }
 
-    /// The column, with what it has in common with its neighbours.
+    /// The column with a heading shared with its neighbours.
     #[must_use]
     pub fn of(mut self, group: impl Into<String>) -> Self {
         self.group = group.into();
@@ -92,16 +92,16 @@ impl Column {
     }
 }
 
-/// Rows that belong together.
+/// A group of rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Group {
-    /// What they have in common.
+    /// Heading of the group.
     pub label: Label,
     /// The rows.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// Where a group says what its rows have in common.
+/// Position of a group's heading.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Label {
@@ -110,22 +110,22 @@ pub enum Label {
     None,
     /// In a row above them.
     Above(Cell),
-    /// In the first column, beside all of them.
+    /// In the first column, next to all rows.
     Beside(Cell),
 }
 
 /// A cell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Cell {
-    /// Sign of what it is about.
+    /// Symbol before the text.
     pub sign: Option<Sign>,
-    /// What it says.
+    /// Text.
     pub text: String,
-    /// What it says besides, less loud.
+    /// Secondary text, less prominent.
     pub detail: String,
-    /// How it is meant.
+    /// Rating of the cell.
     pub tone: Tone,
-    /// How many columns it takes; 0 and 1 are one.
+    /// Number of columns that it spans; 0 and 1 are one.
     pub columns: usize,
 }
 
@@ -139,22 +139,21 @@ impl<T: Into<String>> From<T> for Cell {
 }
 
 impl Cell {
-    /// The cell, with what it says besides.
+    /// The cell with a secondary text.
     #[must_use]
     pub fn detail(mut self, detail: impl Into<String>) -> Self {
         self.detail = detail.into();
         self
     }
 
-    /// The cell in a tone.
+    /// The cell with a tone.
     #[must_use]
     pub fn toned(mut self, tone: Tone) -> Self {
         self.tone = tone;
         self
     }
 
-    /// The cell as one that is not as it should be, where it is not; the mark says so without
-    /// colours.
+    /// The cell, marked as wrong if it is; the mark is visible without colours.
     #[must_use]
     pub fn missed_if(mut self, is_missed: bool) -> Self {
         if is_missed {
@@ -171,7 +170,7 @@ impl Cell {
         self
     }
 
-    /// The cell behind a sign.
+    /// The cell with a symbol before it.
     #[must_use]
     pub fn signed(mut self, sign: Option<Sign>) -> Self {
         self.sign = sign;
@@ -179,31 +178,31 @@ impl Cell {
     }
 }
 
-/// How a cell is meant.
+/// Tone of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tone {
-    /// As any other.
+    /// Neutral.
     #[default]
     None,
-    /// As it should be.
+    /// Right.
     Good,
-    /// Not as it should be.
+    /// Wrong.
     Missed,
-    /// Of less interest.
+    /// Minor.
     Muted,
-    /// A little off.
+    /// Slight deviation.
     Slight,
-    /// Clearly off.
+    /// Clear deviation.
     Marked,
-    /// Far off.
+    /// Large deviation.
     Strong,
-    /// Beyond use.
+    /// Unusable.
     Broken,
 }
 
 impl Tone {
-    /// Its name, as style sheets have it.
+    /// Its name in style sheets.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "",

@@ -1,33 +1,33 @@
 //! The paper's claims (a) to (h), each as statements over the measured figures of both readings.
 //!
-//! What the paper says in words has a limit here: "about" a share of rated speed is within
-//! [`ABOUT`] points, "equal" and "keeps the spectrum" within the tolerances below.
+//! Words of the paper as limits: "about" a share of rated speed is within [`ABOUT`] points, "equal"
+//! and "keeps the spectrum" within the tolerances below.
 
 use super::data::Method::{self, FcsMpc, Pdcc, Phcc, PiPwm};
 use super::experiment::{AtSpeed, Experiment, Extreme, Of, lost, number, short};
 use super::judge::{Claim, Finding, Statement};
 use crate::closed_loop::harmonic_of_quasi_square;
 
-/// Points of rated speed within which a speed limit is the claimed one.
+/// Tolerance of a claimed speed limit, in points of rated speed.
 const ABOUT: f64 = 5.0;
 
-/// Torque harmonics are equal within this share of the larger one or [`EQUAL_POINTS`].
+/// Tolerance of equal torque harmonics, relative to the larger one, or [`EQUAL_POINTS`].
 const EQUAL_SHARE: f64 = 0.15;
 const EQUAL_POINTS: f64 = 0.5;
 
-/// Points of the fundamental within which a current harmonic is the ideal wave's.
+/// Tolerance of an ideal current harmonic, in points of the fundamental.
 const SPECTRUM: f64 = 1.5;
 
-/// Points of the fundamental by which a harmonic counts as lowered.
+/// Reduction of a harmonic that counts as lowered, in points of the fundamental.
 const LOWERED: f64 = 0.5;
 
-/// Distance from the ideal hexagon, as a share of the current, up to which tracking is fine.
+/// Maximum distance from the ideal hexagon for precise tracking, relative to the current.
 const FINE: f64 = 0.05;
 
-/// Ratio of switching frequencies up to which they are about the same.
+/// Maximum ratio of switching frequencies that are about the same.
 const SAME_SWITCHING: f64 = 1.25;
 
-/// Places of the two speeds.
+/// Indices of the two speeds.
 const LOW: usize = 0;
 const HIGH: usize = 1;
 
@@ -65,13 +65,13 @@ pub fn claims(readings: [Experiment; 2]) -> Vec<Claim> {
     ]
 }
 
-/// The methods but one.
+/// All methods except one.
 fn others(method: Method) -> Vec<Method> {
     let all = Method::ALL.into_iter();
     all.filter(|&other| other != method).collect()
 }
 
-/// Both readings, judged alike.
+/// Both readings.
 struct Both {
     readings: [Experiment; 2],
 }
@@ -101,7 +101,7 @@ impl Both {
         self.readings[0].setting.torque
     }
 
-    /// A statement that one method's harmonic is beyond those of others.
+    /// Statement that one method's harmonic is above or below those of others.
     fn extreme(
         &self,
         text: &str,
@@ -402,7 +402,7 @@ impl Both {
     }
 }
 
-/// Whether a torque harmonic of PDCC and PHCC is the same at high speed.
+/// Whether a torque harmonic of PDCC and PHCC is equal at high speed.
 fn equal(x: &Experiment, of: Of) -> Finding {
     let (Some(pdcc), Some(phcc)) = (x.at(Pdcc, HIGH, of), x.at(Phcc, HIGH, of)) else {
         let is_pdcc_lost = x.at(Pdcc, HIGH, of).is_none();
@@ -456,7 +456,7 @@ fn keep_spectrum(x: &Experiment, methods: &[Method], speed: usize) -> Finding {
             outcome: Some(!is_off),
             why: format!("{} up to {off:.1} points off", method.name()),
         },
-        // One drive off refutes it whatever the lost one would have done.
+        // One deviating drive refutes it, whatever the lost one would have done.
         (Some((method, off)), Some(_)) if is_off => Finding {
             outcome: Some(false),
             why: format!("{} {off:.1} points off", method.name()),

@@ -1,4 +1,4 @@
-//! What was run, as plain data: four methods, each in two readings of the paper.
+//! The experiment as data: four methods, each in two readings of the paper.
 
 use super::experiment::{AtSpeed, Experiment, Figures, Setting};
 use super::timing::{CLOCK_HZ, Times};
@@ -43,23 +43,23 @@ impl Method {
         }
     }
 
-    /// Its place in [`Self::ALL`].
+    /// Its index in [`Self::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 }
 
-/// How the paper is read.
+/// Reading of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// As it prints its equations and tables, as far as a drive can do it.
+    /// Equations and tables as printed, as far as a drive can implement them.
     Literal,
-    /// With its errata corrected.
+    /// With the errata corrected.
     Corrected,
 }
 
 impl Reading {
-    /// Both.
+    /// Both readings.
     pub const ALL: [Self; 2] = [Self::Literal, Self::Corrected];
 
     /// Its name.
@@ -71,7 +71,7 @@ impl Reading {
     }
 }
 
-/// Everything on the page.
+/// Contents of the page.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     /// Program and version: "hexagen 0.1.0".
@@ -111,12 +111,12 @@ impl BothReadings {
     }
 }
 
-/// One drive and what it did.
+/// One drive with its results.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The variant text that selects it.
     pub variant: String,
-    /// What ran it: "compiled" or "interpreter".
+    /// Its engine: "compiled" or "interpreter".
     pub engine: &'static str,
     /// At each of [`Reproduction::speeds_rpm`].
     pub points: [Point; 2],
@@ -124,13 +124,13 @@ pub struct Run {
     pub curve: Vec<(f64, f64)>,
     /// Constant-torque speed limit.
     pub limit: SpeedLimit,
-    /// What a step costs on a Cortex-M4.
+    /// Cost of a step on a Cortex-M4.
     pub cost: StepCost,
 }
 
 impl Run {
-    /// What a usual step costs; none of a drive that trips, since most of the steps that were counted for it are no
-    /// control.
+    /// Cost of a usual step; `None` for a drive that trips, as most of its counted steps are
+    /// without control.
     fn usual(&self) -> Option<StepCost> {
         let has_tripped = self.points.iter().any(|point| point.trip.is_some());
         (!has_tripped).then_some(self.cost)
@@ -152,7 +152,7 @@ impl Run {
     }
 }
 
-/// What a drive did at one speed.
+/// Results of a drive at one speed.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Speed in rpm.
@@ -179,7 +179,7 @@ pub struct SwitchingTables {
 }
 
 impl Reproduction {
-    /// What the claims are judged under.
+    /// Settings of the claims.
     pub fn setting(&self) -> Setting {
         Setting {
             torque: self.torque,
@@ -189,7 +189,7 @@ impl Reproduction {
         }
     }
 
-    /// The figures of a reading that the claims are judged by.
+    /// Figures of a reading for the claims.
     pub fn experiment(&self, reading: Reading) -> Experiment {
         Experiment {
             setting: self.setting(),
@@ -224,7 +224,7 @@ fn figures(run: &Run) -> Figures {
     Figures {
         limit_pct: match run.limit.outcome {
             LimitOutcome::NeverHeld => 0.0,
-            // Where the scan ended without a limit, its end is a lower bound.
+            // If the scan ended without a limit, its end is a lower bound.
             LimitOutcome::Found | LimitOutcome::NotReached => run.limit.limit_pct.unwrap_or(0.0),
         },
         speeds: [low, high],

@@ -1,7 +1,7 @@
-//! The figures of one reading, and the comparisons that the claims are made of.
+//! The figures of one reading, and the comparisons of which claims consist.
 //!
-//! A drive whose mean torque at a speed is below half of the demand has lost its current; its
-//! other figures there tell nothing, and comparisons that need them have no outcome.
+//! A drive with a mean torque below half of the demand at a speed has lost its current; its other
+//! figures there are meaningless, and comparisons with them have no outcome.
 
 use super::data::Method;
 use super::judge::Finding;
@@ -10,7 +10,7 @@ use crate::closed_loop::{Held, Side};
 /// Fraction of the demand below which a drive has lost its current.
 const LOST: f64 = 0.5;
 
-/// What all runs have in common.
+/// Settings of all runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Demanded torque in newton metres.
@@ -23,7 +23,7 @@ pub struct Setting {
     pub period_cycles: f64,
 }
 
-/// Figures of a drive at one speed; none of a drive that tripped.
+/// Figures of a drive at one speed; empty for a drive that tripped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtSpeed {
     /// Mean torque in newton metres.
@@ -45,20 +45,20 @@ pub struct AtSpeed {
 /// Figures of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// Constant-torque speed limit in percent of rated speed; 0 where the torque is never held.
+    /// Constant-torque speed limit in percent of rated speed; 0 if the torque is never held.
     pub limit_pct: f64,
     /// At the two speeds.
     pub speeds: [AtSpeed; 2],
-    /// Cycles of a step at worst.
+    /// Cycles of the worst step.
     pub cycles: u32,
-    /// Cycles of a usual step; none of a drive that trips.
+    /// Cycles of a usual step; `None` for a drive that trips.
     pub usual_cycles: Option<u32>,
 }
 
 /// The figures of one reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Experiment {
-    /// What all runs have in common.
+    /// Settings of all runs.
     pub setting: Setting,
     /// The drives, methods in the paper's order.
     pub methods: [Figures; 4],
@@ -77,13 +77,13 @@ impl Experiment {
         !torque.is_some_and(|torque| torque / self.setting.torque >= LOST)
     }
 
-    /// A figure at a speed; none for a drive that has lost its current.
+    /// A figure at a speed; `None` for a drive that has lost its current.
     pub fn at(&self, method: Method, speed: usize, of: Of) -> Option<f64> {
         let figure = of(&self.drive(method).speeds[speed]);
         figure.filter(|_| !self.is_lost(method, speed))
     }
 
-    /// The speed limit in percent; none for a drive that has lost its current at both speeds.
+    /// The speed limit in percent; `None` for a drive that has lost its current at both speeds.
     pub fn limit(&self, method: Method) -> Option<f64> {
         let is_lost = self.is_lost(method, 0) && self.is_lost(method, 1);
         (!is_lost).then(|| self.drive(method).limit_pct)
@@ -115,7 +115,7 @@ impl Experiment {
         }
     }
 
-    /// Whether a method's figure is above those of all others, or below.
+    /// Whether a method's figure is above, or below, those of all others.
     pub fn is_extreme(
         &self,
         which: Extreme,
@@ -147,7 +147,7 @@ impl Experiment {
                 }
             }
         }
-        // One drive beyond it refutes the statement whatever the lost ones would have done.
+        // One contrary drive refutes the statement, whatever the lost ones would have done.
         let is_refuted = farthest.is_some_and(|(_, value)| beyond(value));
         if let (false, Some(unknown)) = (is_refuted, unknown) {
             return lost(unknown);
@@ -162,7 +162,7 @@ impl Experiment {
     }
 }
 
-/// Which end of a comparison.
+/// Direction of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extreme {
     /// Above all others.
@@ -179,7 +179,7 @@ pub fn lost(method: Method) -> Finding {
     }
 }
 
-/// A number with so many decimals; a dash where there is none.
+/// A number with fixed decimals; a dash for `None`.
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(
         || "\u{2013}".to_owned(),

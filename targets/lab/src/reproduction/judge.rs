@@ -1,11 +1,11 @@
-//! Claims, the statements that they consist of, and what follows from their findings.
+//! Claims, their statements, and verdicts.
 
 use super::data::Reading;
 
-/// What a reading says about a statement.
+/// Finding of a reading on a statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// Whether the statement is true; none where the figures do not tell.
+    /// Whether the statement is true; `None` if undecidable.
     pub outcome: Option<bool>,
     /// The figures that decide it.
     pub why: String,
@@ -14,9 +14,9 @@ pub struct Finding {
 /// One checkable part of a claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Statement {
-    /// The part, in few words.
+    /// The statement, in few words.
     pub text: String,
-    /// Under the literal and the corrected reading.
+    /// Findings of the literal and of the corrected reading.
     pub findings: [Finding; 2],
 }
 
@@ -27,16 +27,16 @@ pub struct Claim {
     pub letter: char,
     /// What the paper claims.
     pub text: String,
-    /// Our figures under the literal and the corrected reading, parts parted by semicolons.
+    /// Measured figures of the literal and of the corrected reading, separated by semicolons.
     pub figures: [String; 2],
-    /// Its parts.
+    /// Its statements.
     pub statements: Vec<Statement>,
 }
 
-/// What becomes of a claim.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every statement is true under every reading that tells, and told by at least one.
+    /// Every statement is true under every reading with an outcome, and has at least one.
     Holds,
     /// Every statement that can be judged is false.
     DoesNotHold,
@@ -47,7 +47,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// In words.
+    /// Text for reports.
     pub fn text(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -102,7 +102,7 @@ impl Claim {
         counts.join("; ")
     }
 
-    /// Why: the summary, and what is false with the figures that decide it.
+    /// The reason: the summary, and the false statements with their figures.
     pub fn reason(&self) -> String {
         let against: Vec<String> = self
             .statements
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn reason_counts_and_names_what_is_not_true() {
+    fn reason_counts_statements_and_names_false_ones() {
         let (yes, no) = (Some(true), Some(false));
         let reason = claim(&[[yes, yes], [no, yes], [no, no], [None, no]]).reason();
         assert_eq!(

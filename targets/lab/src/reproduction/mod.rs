@@ -1,6 +1,7 @@
-//! The paper's experiment, and its claims judged by it.
+//! The paper's experiment, and the verdicts on its claims.
 //!
-//! [`reproduce`] runs it; [`Reproduction`] says what was run, [`claims`] judges the paper's claims by it.
+//! [`reproduce`] runs it; [`Reproduction`] has the results, [`claims`] judges the paper's claims by
+//! them.
 
 mod claims;
 mod data;

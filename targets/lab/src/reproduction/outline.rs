@@ -1,4 +1,4 @@
-//! How far a current is from the ideal hexagon, whatever its place on it.
+//! Distance of a current from the ideal hexagon's outline.
 
 use crate::closed_loop::Trace;
 use crate::closed_loop::hexagon;

@@ -1,4 +1,5 @@
-//! The paper's experiment: both readings of each controller are generated drives in closed loop on the paper's motor.
+//! The paper's experiment: both readings of each controller are generated drives in closed loop on
+//! the paper's motor.
 
 use super::{
     BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables, distance_rms,
@@ -21,7 +22,7 @@ const SPEEDS: [f64; 2] = [400.0, 1500.0];
 /// The demanded torque in newton metres.
 const TORQUE: f64 = 3.3;
 
-/// How much is run.
+/// Extent of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effort {
     /// Electrical start angles in radians.
@@ -43,8 +44,8 @@ impl Effort {
     }
 }
 
-/// Symbol of the step function that `cargo xtask cost` counts for each reading of each method, and its variant; in the
-/// order of [`READINGS`], literal before corrected.
+/// Symbol of the step function that `cargo xtask cost` counts for each reading of each method, and
+/// its variant; in the order of [`READINGS`], literal before corrected.
 pub fn counted_readings() -> impl Iterator<Item = (String, &'static str)> {
     let methods = Method::ALL.into_iter().zip(READINGS);
     methods.flat_map(|(method, readings)| {
@@ -87,7 +88,7 @@ pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproductio
             corrected: runs.next()?,
         })
     }) else {
-        return Err(LabError::Argument("not every reading ran".to_owned()));
+        return Err(LabError::Argument("a reading is missing".to_owned()));
     };
     let phcc_drives = &drives[2 * Method::Phcc.index()..];
     let spec = &drives[0].spec;
@@ -106,14 +107,14 @@ pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproductio
     })
 }
 
-/// The forward motoring rows of a drive's switching table; zeros for a drive that has none.
+/// The forward motoring rows of a drive's switching table; zeros for a drive without one.
 fn forward_rows(drive: &Prepared) -> [[u8; 8]; 6] {
     let constants = &drive.generated.interface.constants;
     let table = constants.iter().find_map(|constant| match &constant.value {
         PublicValue::Integers { values, .. } if constant.name == "SWITCHING_TABLE" => Some(values),
         _ => None,
     });
-    // Eight entries per sector; the first eight are those of an unknown sector.
+    // Eight entries per sector; the first eight are for an unknown sector.
     std::array::from_fn(|k| {
         std::array::from_fn(|entry| {
             let value = table.and_then(|table| table.get(8 * (k + 1) + entry));
@@ -142,8 +143,7 @@ impl<'p> Bench<'p> {
         }
     }
 
-    /// The rig computes a command in one period and applies it in the next, whatever delay the
-    /// drive reckons with.
+    /// The loop has a delay of one period, whatever the drive assumes.
     fn at(&self, rpm: f64) -> RunOptions {
         RunOptions {
             delay: Delay::OnePeriod,
@@ -174,10 +174,10 @@ impl<'p> Bench<'p> {
                 Ok(torque.map(|torque| (rpm, torque)))
             })
             .collect::<Result<Vec<_>, LabError>>()?;
-        // A drive that tripped has no torque there.
+        // A tripped drive has no torque there.
         let mut curve: Vec<(f64, f64)> = curve.into_iter().flatten().collect();
         let (from_rpm, step_rpm) = effort.limit_rpm;
-        // The paper asks where the torque falls off: more than the demand counts as held.
+        // The paper's criterion is a falling torque: more than the demand counts as held.
         let scan = LimitOptions {
             held: Held::AtLeast,
             from_rpm,
@@ -186,7 +186,7 @@ impl<'p> Bench<'p> {
         };
         let limit = speed_limit_knowing(&self.plant, &self.at(1.0), &scan, &curve, maker())?;
         progress.advance(1);
-        // The search's speeds lie closer: with them the limit lies on the curve.
+        // The search has a finer grid: with it the limit lies on the curve.
         curve.extend_from_slice(&limit.curve);
         curve.sort_by(|a, b| a.0.total_cmp(&b.0));
         curve.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-6);

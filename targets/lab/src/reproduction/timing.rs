@@ -1,24 +1,24 @@
-//! Table 5's times: the counted instructions of a Cortex-M4 at a stated clock.
+//! Computation times of Table 5: counted instructions of a Cortex-M4 at a given clock.
 
 use crate::counted::Figures;
 
 /// Clock of the processor in hertz: that of the motor file's timer.
 pub const CLOCK_HZ: f64 = 72e6;
 
-/// Where the times come from.
+/// Source of the times.
 pub const TIMES_TEXT: &str = "Instructions of one step on a Cortex-M4, from the function's entry to its return, as cargo xtask cost \
-     counts them: usual is the median of settled steps (none of a drive that trips), worst is any step, start and overspeed \
+     counts them: usual is the median of settled steps (none for a drive that trips), worst is the maximum, start and overspeed \
      included. Computation times are estimated cycles without wait states (load, store 2, taken branch 3, division 12, all else 1; \
-     at worst with the cycles per instruction of the usual step); free is what the worst step leaves of the period";
+     for the worst step with the cycles per instruction of the usual one); free is the rest of the period after the worst step";
 
 /// Times of a step in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// Of a usual step; none of a drive that trips.
+    /// Of a usual step; `None` for a drive that trips.
     pub usual: Option<f64>,
     /// Of the worst step.
     pub worst: f64,
-    /// What the worst step leaves of the period.
+    /// Remainder of the period after the worst step.
     pub free: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Everything about one motor: its result table, its proofs and all that the page shows of it.
+//! All results of one motor: its table, its proofs and the contents of the page.
 
 use super::{
     Capture, ErrorsSeen, PAPER_MOTOR, Planned, Results, SPEEDS, SpeedMark, Verification,
@@ -13,7 +13,7 @@ use crate::{LabError, Progress};
 use hexagen_codegen::spec::KINDS;
 use rayon::prelude::*;
 
-/// A motor with the rows of its table, before anything runs.
+/// A motor with the rows of its table, before the runs.
 #[derive(Debug)]
 pub struct Plan {
     given: String,
@@ -101,11 +101,11 @@ impl Plan {
     }
 }
 
-/// That a row is measured at less than the demand, where it is.
+/// A note for a row that is measured below the demand.
 fn limited(row: &Planned) -> Option<String> {
     let (torque, rated) = (row.reach()?, row.best().rated_torque());
     Some(format!(
-        "{}: its set-point is limited to max_current = {} A, which gives {} Nm with this reference, {:.0} % of the demand; it is measured at that torque, its limit, too.",
+        "{}: max_current = {} A limits the torque to {} Nm with this reference, {:.0} % of the demand; the row and its limit are measured at that torque.",
         row.row.label,
         significant(row.best().spec.inverter.max_current, 3),
         significant(torque, 3),
@@ -116,24 +116,24 @@ fn limited(row: &Planned) -> Option<String> {
 /// Steps of the bit-for-bit check per variant.
 const VERIFY_STEPS: u64 = 1_000_000;
 
-/// The row whose code and data sheet are shown: the best of three pulsed legs.
+/// The row whose code and data sheet are shown: the best with three pulsed legs.
 const SHOWN: &str = "PDCC three_phase, torque_priority, advance 2, model EMF";
 
-/// The rows of the table, each prepared with the captures that the motor's file allows; what does
-/// not generate is a note.
+/// The rows of the table, each prepared with the captures that the motor's file allows; a variant
+/// that cannot be generated is a note.
 ///
 /// # Errors
-/// When nothing generates: all reasons.
+/// If no variant can be generated: all reasons.
 fn plan(
     motor: &SelectedMotor,
     is_paper: bool,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Planned>, LabError> {
     let (mut planned, mut refused) = (Vec::new(), Vec::new());
-    // Reasons why a capture is left out, and the rows that they are about.
+    // Reasons for left-out captures, with their rows.
     let mut left_out: Vec<(&str, String, Vec<&str>)> = Vec::new();
     for row in design_table() {
-        // The paper's Euler steps suit its motor; the exact discretisation suits all.
+        // The paper's Euler discretisation suits its motor; the exact one suits all.
         let timer = if is_paper {
             row.variant.to_owned()
         } else {
@@ -160,7 +160,7 @@ fn plan(
                         None => left_out.push((word, reason, vec![row.label])),
                     }
                 }
-                // One reason suffices, of the capture that asks for less.
+                // One reason suffices, that of the capture with fewer requirements.
                 Err(error) if capture == Capture::Sampled => {
                     refused.push(format!("{}: {error}", row.label));
                 }
@@ -190,7 +190,7 @@ fn plan(
     Ok(planned)
 }
 
-/// A diagnostic without the variant that it is about and its column.
+/// A diagnostic without its variant and column.
 fn without_place(diagnostic: &str) -> String {
     match diagnostic.find("error[") {
         Some(start) => diagnostic[start..].to_owned(),
@@ -198,12 +198,13 @@ fn without_place(diagnostic: &str) -> String {
     }
 }
 
-/// Errors of single steps of every kind of controller at every word length; a word length that is refused is a note.
+/// Errors of single steps of every kind of controller at every word length; a refused word length
+/// is a note.
 fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSeen>, LabError> {
     let mut drives = vec![];
     for kind in KINDS.map(|kind| kind.name) {
         let made = WORDS.map(|word| (word, motor.prepare(with_word(kind, word).as_deref())));
-        // Why a controller is refused altogether, the rows of the table have said.
+        // A refused controller has a note of the table's rows already.
         if made.iter().all(|(_, drive)| drive.is_err()) {
             continue;
         }
@@ -263,21 +264,21 @@ fn paper_marks() -> Vec<SpeedMark> {
     SpeedMark::of_paper().into_iter().chain([bound]).collect()
 }
 
-/// What is known about differences from the design document's table.
+/// Known differences from the design document's table.
 const PAPER_NOTES: [&str; 5] = [
-    "Pair, torque_priority: the expected ripple is that of the nominal reckoning, which takes a pair's vector for \
-     Table 2's whatever the third leg does. What runs here reckons with the leg as it is, clamped by its diode or \
-     floating, and has less.",
-    "Estimated EMF: the expected figures are those of an estimate that takes the last period's EMF for that of the \
-     target, two periods late. Here the motor's shape moves the estimate on, which leaves less ripple and a higher limit.",
-    "FCS-MPC, nominal (literal): the expected figures lie between two readings. With the delay predicted, as here, \
-     the torque is lost as well, from the limit on and at less ripple; with the delay left out of the prediction the \
+    "Pair, torque_priority: the expected ripple is that of the nominal prediction, which uses Table 2's vector of a \
+     pair whatever the state of its third leg. Here the prediction includes that leg, clamped by its diode or \
+     floating, and the ripple is lower.",
+    "Estimated EMF: the expected figures are those of an estimate that uses the last period's EMF as that of the \
+     target period, two periods late. Here the estimate is extrapolated with the EMF shape, which gives less ripple and a higher limit.",
+    "FCS-MPC, nominal (literal): the expected figures lie between two readings. With the delay in the prediction, as here, \
+     the torque is also lost, above the limit and with less ripple; without it the \
      ripple is larger than expected (`hexagen reproduce` shows that reading).",
     "PI-PWM three_phase: the expected figures are those of the paper's modulation over neighbouring pair vectors \
-     (`modulation=table2`), which one state per leg and period cannot give. Three pulsed legs hold the torque to higher speeds.",
-    "PI-PWM six_step: the expected mean and ripple are those of a regulator that holds the largest of the three currents, \
-     (|ia| + |ib| + |ic|)/2. Here it holds the mean of the conducting pair's, which sees the incoming phase from the \
-     first period of a commutation on (`cargo test -p hexagen-lab --test plant_six_step` runs both; neither has the expected limit).",
+     (`modulation=table2`), which is impossible with one state per leg and period. Three pulsed legs hold the torque up to higher speeds.",
+    "PI-PWM six_step: the expected mean and ripple are those of a controller of the largest of the three currents, \
+     (|ia| + |ib| + |ic|)/2. Here the controlled current is the mean of the conducting pair, which includes the incoming phase from the \
+     first period of a commutation on (both: `cargo test -p hexagen-lab --test plant_six_step`; neither has the expected limit).",
 ];
 
 #[cfg(test)]
@@ -313,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_that_nothing_generates_for_is_an_error_and_no_empty_page() {
+    fn a_motor_without_any_valid_variant_is_an_error_and_no_empty_page() {
         let mut motor = paper_motor();
         motor.ast.motor.fields.clear();
         let error = plan(&motor, false, &mut Vec::new()).expect_err("no rows");

@@ -1,8 +1,7 @@
-//! What a report shows, as plain data. Units stand in names or comments; speeds are mechanical.
+//! Contents of a report as plain data. Units are in names or comments; speeds are mechanical.
 //!
-//! The caller fills a [`Results`] from the checked specification, measured runs and emitted
-//! texts. The page derives nothing from them but plots, harmonics and differences; what is left
-//! empty leaves its part of the page out.
+//! [`Results`] comes from the checked specification, measured runs and emitted texts. The page
+//! computes only plots, harmonics and differences; empty parts are left out of the page.
 
 use super::expected::Expected;
 use crate::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
@@ -12,36 +11,36 @@ use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 
-/// Everything on one page.
+/// Contents of one page.
 #[derive(Clone, Debug)]
 pub struct Results {
     /// Program and version: "hexagen 0.1.0".
     pub generator: String,
     /// Name of the motor's type, `UpperCamelCase`.
     pub name: String,
-    /// The motor file's own name, without ending; names the page's file.
+    /// The motor file's name, without extension; names the page's file.
     pub file: String,
     /// The motor.
     pub motor: MotorSpec,
     /// Inverter, timer and sensors.
     pub inverter: InverterSpec,
-    /// Where the motor's data come from, one paragraph.
+    /// Source of the motor's data, one paragraph.
     pub source: Option<String>,
     /// Demanded torque in newton metres.
     pub torque: f64,
     /// Amplitude in amperes of the quasi-square reference that gives this torque.
     pub current: f64,
-    /// Which mean torques count as held in the speed limits.
+    /// Criterion for a mean torque that is held, for the speed limits.
     pub held: Held,
     /// Speeds in rpm of the table's columns and of the plots, ascending.
     pub speeds_rpm: Vec<f64>,
-    /// What the bit-for-bit check found.
+    /// Result of the bit-for-bit check.
     pub verification: Option<Verification>,
     /// The variants in the table's order.
     pub variants: Vec<Variant>,
     /// Errors of single steps of the default controllers, per word length, in the plots' order.
     pub errors: Vec<ErrorsSeen>,
-    /// The default controllers on plants that differ from the motor file, where they were run.
+    /// The default controllers on plants that differ from the motor file.
     pub robustness: Option<Robustness>,
     /// Marks along the speed axis of the torque-speed plot (the paper's claims, the bound).
     pub marks: Vec<SpeedMark>,
@@ -52,7 +51,7 @@ pub struct Results {
 /// Result of the bit-for-bit check of emitted against bit-true code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verification {
-    /// Which code ran: "compiled" or "interpreted".
+    /// Engine: "compiled" or "interpreted".
     pub engine: String,
     /// Steps compared, all variants together.
     pub steps: u64,
@@ -63,25 +62,24 @@ pub struct Verification {
 /// One controller variant: its runs, records, formats and texts.
 #[derive(Clone, Debug, Default)]
 pub struct Variant {
-    /// What readers call it, short enough for a legend: "PDCC three_phase, nearest".
+    /// Short name for legends: "PDCC three_phase, nearest".
     pub label: String,
     /// The variant text that selects it: "pdcc:saturation=nearest,emf=model".
     pub variant: String,
     /// Whether it applies one of a few whole vectors in each period, instead of modulating.
     pub chooses_vectors: bool,
-    /// Runs that were measured: one row each in the result table, best known first.
+    /// Measured runs: one row each in the result table, best known first.
     pub runs: Vec<Run>,
-    /// Records of the first run, one per speed of [`Results::speeds_rpm`] at which it did not
-    /// trip; empty for a variant that is not plotted.
+    /// Records of the first run, one per speed of [`Results::speeds_rpm`] without a trip; empty for
+    /// a variant that is not plotted.
     pub records: Vec<Record>,
     /// Torque-speed curve of the first run: rpm and mean torque in newton metres, ascending.
     pub torque_speed: Vec<(f64, f64)>,
-    /// The torque in newton metres that it is measured at, where its limited set-point cannot ask
-    /// for the demanded one.
+    /// Torque of the measurement in newton metres, if the set-point limit is below the demand.
     pub reach: Option<f64>,
     /// Fixed point beside the ideal model on the same ADC and Hall words.
     pub same_words: Vec<SameWords>,
-    /// Largest and typical distance of the fixed-point signals from the ideal ones.
+    /// Largest and RMS error of fixed-point signals against ideal ones.
     pub signal_errors: Vec<SignalError>,
     /// Range of the true parameters in which the loop is stable.
     pub stability: Option<Stability>,
@@ -89,7 +87,7 @@ pub struct Variant {
     pub generated: Option<GeneratedTexts>,
 }
 
-/// How Hall edges reached the controller.
+/// Capture of Hall edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Capture {
     /// Seen at sampling instants.
@@ -109,7 +107,7 @@ pub struct Run {
     pub points: Vec<RunPoint>,
     /// Constant-torque speed limit, where it was searched.
     pub limit: Option<SpeedLimit>,
-    /// What the design document expects of this run.
+    /// Expected figures of the design document.
     pub expected: Option<Expected>,
 }
 
@@ -120,12 +118,12 @@ pub struct RunPoint {
     pub rpm: f64,
     /// What was measured.
     pub figures: FiguresOfMerit,
-    /// What tripped the drive; then it has no figures of merit.
+    /// Trip of the drive, which then has no figures of merit.
     pub tripped: Option<Trip>,
 }
 
-/// Figures of merit of the fixed-point code at one speed, and of the ideal model on its own plant from the
-/// same start, fed the ADC and Hall words that the fixed-point code read.
+/// Figures of merit of the fixed-point code at one speed, and of the ideal model from the same
+/// start, with the same ADC counts and Hall codes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SameWords {
     /// Hall capture.
@@ -147,7 +145,7 @@ pub struct Record {
     pub trace: Trace,
 }
 
-/// Distance of a fixed-point signal from the ideal model's, from the same state and samples.
+/// Error of a fixed-point signal against the ideal model's, from the same state and samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalError {
     /// Signal as named in the format table.
@@ -158,11 +156,12 @@ pub struct SignalError {
     pub largest: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Proven bound, where there is one.
+    /// Proven bound, if any.
     pub bound: Option<f64>,
 }
 
-/// Errors of single steps of one controller at one word length, from the same state as the ideal model's.
+/// Errors of single steps of one controller at one word length, from the same state as the ideal
+/// model's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorsSeen {
     /// The variant, without its word length.
@@ -175,23 +174,23 @@ pub struct ErrorsSeen {
     pub largest_v: f64,
     /// Proven bound, volt.
     pub bound_v: f64,
-    /// Share of steps on which both decided alike, percent.
+    /// Share of steps with the same decisions, percent.
     pub decisions_equal_pct: f64,
-    /// How many errors lie in each of equal parts of the range from the negative to the positive bound.
+    /// Histogram of errors over equal parts of the range from the negative to the positive bound.
     pub counts: Vec<u64>,
 }
 
 /// A mark on the speed axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedMark {
-    /// Text beside it, a few words: "PI-PWM (paper)".
+    /// Its text, a few words: "PI-PWM (paper)".
     pub label: String,
     /// Position in percent of rated speed.
     pub percent: f64,
 }
 
 impl SpeedMark {
-    /// A mark at so many percent of rated speed.
+    /// A mark at a percentage of rated speed.
     pub fn new(label: &str, percent: f64) -> Self {
         Self {
             label: label.to_owned(),
@@ -199,7 +198,7 @@ impl SpeedMark {
         }
     }
 
-    /// Speeds up to which the paper's controllers hold their torque, as it claims.
+    /// Speed limits of the paper's controllers, as claimed.
     pub fn of_paper() -> [Self; 3] {
         [
             Self::new("PI-PWM (paper)", 67.0),

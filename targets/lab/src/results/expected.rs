@@ -1,11 +1,11 @@
-//! Expected figures of a run, and when a measured figure counts as met.
+//! Expected figures of a run, and their comparison with measured ones.
 //!
 //! Tolerances: mean torque within 1 %, ripple within 15 % of its value or 0.5 points, speed limit
 //! within 2 points of rated speed.
 
 use crate::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit};
 
-/// A figure that is expected to lie in a band; one value is a band of no width.
+/// An expected range; a single value has zero width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     /// Lower end.
@@ -22,7 +22,7 @@ impl Band {
 
     /// Whether a figure is within a distance of the band; NaN never is.
     fn holds(self, measured: f64, tolerance: f64) -> bool {
-        // The hair's breadth keeps a figure on the limit from failing by its last bit.
+        // The margin covers rounding at the limit.
         self.distance(measured) <= tolerance + 1e-9 && !measured.is_nan()
     }
 }
@@ -42,17 +42,17 @@ impl From<(f64, f64)> for Band {
     }
 }
 
-/// What is expected of a figure.
+/// Expectation of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expectation {
-    /// That it lies in a band.
+    /// A range.
     In(Band),
-    /// That there is none: a speed limit of a drive that never holds the torque.
+    /// No value: a speed limit of a drive that never holds the torque.
     Never,
 }
 
 impl Expectation {
-    /// A band as one value or from-to, each value as `show` writes it.
+    /// A range as one value or from-to, each value formatted by `show`.
     pub fn text(self, separator: &str, show: impl Fn(f64) -> String) -> String {
         let Self::In(band) = self else {
             return "never".to_owned();
@@ -91,11 +91,11 @@ pub struct Expected {
 /// A measured figure beside the expected one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// What was measured; `None` where there is no such figure.
+    /// Measured value; `None` if undefined.
     pub measured: Option<f64>,
-    /// What was expected; `None` where nothing was.
+    /// Expected value, if any.
     pub expected: Option<Expectation>,
-    /// Whether the two agree within the tolerance; true where nothing was expected.
+    /// Whether the two agree within the tolerance; true without an expectation.
     pub met: bool,
 }
 
@@ -148,8 +148,8 @@ fn ripple_tolerance(band: Band) -> f64 {
 }
 
 impl Expected {
-    /// What is expected at a speed in rpm, to half a turn per minute: speeds that come from rad/s
-    /// are not whole.
+    /// The expectation at a speed in rpm, with a tolerance of half an rpm: speeds that come from
+    /// rad/s are not integers.
     pub fn at(&self, rpm: f64) -> Option<&ExpectedPoint> {
         self.points
             .iter()
@@ -162,7 +162,7 @@ impl Expected {
 pub struct DesignRow {
     /// Short name.
     pub label: &'static str,
-    /// The variant that the row is about; Hall capture by timer.
+    /// Its variant; Hall capture by timer.
     pub variant: &'static str,
     /// Figures with Hall edges captured by a timer.
     pub timer: Expected,
@@ -172,8 +172,8 @@ pub struct DesignRow {
     pub is_plotted: bool,
 }
 
-/// The rows of the design document's table, with the variant nearest to each where that one does not exist: the
-/// 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
+/// The rows of the design document's table, with the nearest variant for each that does not exist:
+/// the 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
 pub fn design_table() -> Vec<DesignRow> {
     vec![
         DesignRow {
@@ -330,7 +330,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_hold_what_is_near_enough() {
+    fn bands_contain_values_within_the_tolerance() {
         let band = Band::from((106.0, 109.0));
         for (measured, holds) in [
             (104.0, true),
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn never_is_met_by_a_torque_that_is_never_held_alone() {
+    fn only_a_torque_that_is_never_held_meets_never() {
         let expected = Expected {
             limit: Some(Expectation::Never),
             ..Expected::default()
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn speeds_that_were_angular_find_their_expectation() {
+    fn speeds_converted_from_angular_ones_find_their_expectation() {
         let row = &design_table()[1].timer;
         let rated = 209.439_510_239_319_5 * 30.0 / std::f64::consts::PI;
         for rpm in [0.75 * rated, 1500.0, 1_499.999_999] {

@@ -1,4 +1,4 @@
-//! The result table of a motor, and what else is found out about its controllers.
+//! The result table of a motor, and other results of its controllers.
 
 mod collect;
 mod data;
@@ -19,5 +19,5 @@ pub use planned::{Planned, held};
 /// The motor of the paper.
 pub const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
-/// Speeds of the result table, in parts of rated speed.
+/// Speeds of the result table, relative to rated speed.
 pub const SPEEDS: [f64; 2] = [0.2, 0.75];

@@ -1,7 +1,7 @@
-//! The variants of the result table: what is run for each of them.
+//! The variants of the result table, with their runs.
 //!
-//! The rows are those of the design document; for other motors than the paper's the same variants
-//! run with the generator's own discretisation, and nothing is expected of them.
+//! The rows are those of the design document; for motors other than the paper's, the same variants
+//! run with the generator's default discretisation, without expectations.
 
 use super::{
     Capture, DesignRow, Expected, GeneratedTexts, Record, Run, RunPoint, SPEEDS, SameWords,
@@ -18,19 +18,18 @@ use crate::stability;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// One row of the table before it runs: the same variant with each way of reading Hall edges.
+/// One row of the table before it runs: the same variant with each Hall capture.
 #[derive(Debug)]
 pub struct Planned {
     /// The row of the design document.
     pub row: DesignRow,
-    /// A drive for each way of reading Hall edges that the motor's file allows, the best first;
-    /// one at least.
+    /// A drive for each Hall capture that the motor's file allows, the best first; at least one.
     pub drives: Vec<(Capture, Prepared)>,
-    /// Whether the design document's figures are about this motor.
+    /// Whether the design document's figures are for this motor.
     pub is_expected: bool,
 }
 
-/// A model with a way of reading Hall edges: one line of the table.
+/// A model with a Hall capture: one line of the table.
 struct Line<'p> {
     drive: &'p Prepared,
     model: Model,
@@ -39,11 +38,11 @@ struct Line<'p> {
     held: Held,
 }
 
-/// What one way of reading Hall edges gave at the table's speeds.
+/// Results of one Hall capture at the table's speeds.
 struct AtSpeeds {
-    /// The fixed-point drive, and the ideal model on its words.
+    /// The fixed-point drive, and the ideal model on its samples.
     both: Vec<SideBySide>,
-    /// The ideal model in a loop of its own.
+    /// The ideal model in its own closed loop.
     alone: Vec<Measurement>,
 }
 
@@ -62,7 +61,7 @@ impl AtSpeeds {
         Ok(Self { both, alone })
     }
 
-    /// What a model in its own loop gave, at each speed.
+    /// Results of a model in its own closed loop, at each speed.
     fn points(&self, drive: &Prepared, model: Model) -> Vec<RunPoint> {
         let of_model: Vec<&Measurement> = match model {
             Model::Ideal => self.alone.iter().collect(),
@@ -80,7 +79,7 @@ impl AtSpeeds {
 }
 
 impl Planned {
-    /// Runs every line of the row at rated torque, and what the page shows of it besides.
+    /// Runs every line of the row at rated torque, and the further contents of the page.
     ///
     /// # Errors
     /// A plant parameter out of range.
@@ -143,13 +142,13 @@ impl Planned {
         })
     }
 
-    /// The torque that the row is measured at, where its set-point cannot ask for the rated one.
+    /// The torque of the row's measurement, if its set-point limit is below the rated one.
     pub fn reach(&self) -> Option<f64> {
         let (demand, rated) = (self.best().demand(), self.best().rated_torque());
         (demand < rated * (1.0 - 1e-9)).then_some(demand)
     }
 
-    /// The drive with the best way of reading Hall edges.
+    /// The drive with the best Hall capture.
     pub fn best(&self) -> &Prepared {
         &self.drives[0].1
     }
@@ -169,8 +168,8 @@ impl Planned {
     }
 }
 
-/// Which torque counts as held in the limits of a table: where it is held against the design
-/// document's, that document's.
+/// Criterion of a held torque for the limits of a table: the design document's, if compared with
+/// it.
 pub fn held(is_expected: bool) -> Held {
     if is_expected {
         Held::AtLeast
@@ -204,7 +203,7 @@ impl Line<'_> {
     }
 }
 
-/// Distances of single steps along the measured runs.
+/// Errors of single steps along the measured runs.
 fn signal_errors(drive: &Prepared, measured: &[SideBySide]) -> Vec<SignalError> {
     let (found, _) = one_step(drive, measured);
     let OneStep {
@@ -234,7 +233,7 @@ fn signal_errors(drive: &Prepared, measured: &[SideBySide]) -> Vec<SignalError> 
     ]
 }
 
-/// The plant as specified and the demand of rated torque.
+/// The nominal plant and the demand of rated torque.
 struct Conditions {
     plant: PlantParams,
     torque: f64,

@@ -3,7 +3,7 @@
 use super::{DisturbedFigures, Robustness};
 use serde::Serialize;
 
-/// A row; what a refused cell or a tripped drive does not have is empty.
+/// A row; fields that a refused cell or a tripped drive lacks are empty.
 #[derive(Serialize)]
 struct Row<'s>(
     &'s str,
@@ -35,7 +35,7 @@ const HEADER: [&str; 15] = [
 /// The sheet as CSV. A controller that does not generate has one row, with the reason.
 ///
 /// # Errors
-/// The writer's own.
+/// An error of the writer.
 pub fn csv(sheet: &Robustness) -> Result<Vec<u8>, csv::Error> {
     let mut bytes = Vec::new();
     {

@@ -14,10 +14,10 @@ const SCALES: [(&str, Scale); 3] = [
     ("k_b", |plant| &mut plant.scale_kb),
 ];
 
-/// Dead times in seconds; the motor file's own is the undisturbed plant's.
+/// Dead times in seconds; the nominal plant has the motor file's.
 const DEAD_TIMES: [f64; 4] = [0.0, 0.5e-6, 1e-6, 2e-6];
 
-/// Placement errors of the Hall sensors in electrical degrees: all alike, and each another.
+/// Placement errors of the Hall sensors in electrical degrees: all equal, and all different.
 const HALL_ERRORS: [(&str, [f64; 3]); 3] = [
     ("Hall -5 deg", [-5.0; 3]),
     ("Hall +5 deg", [5.0; 3]),
@@ -27,19 +27,19 @@ const HALL_ERRORS: [(&str, [f64; 3]); 3] = [
 /// Resolutions of the current ADCs in bits.
 const ADC_BITS: [u32; 2] = [10, 12];
 
-/// Error of the ADCs' zero, of both alike, in parts of the largest current they read.
+/// Zero error of the ADCs, the same for both, relative to the largest current.
 const ADC_OFFSET: f64 = 0.005;
 
 /// One disturbance.
 #[derive(Clone, Debug)]
 pub struct Disturbance {
-    /// What readers call it.
+    /// Its name in reports.
     pub name: String,
-    /// Plant options with it.
+    /// Plant options of the disturbed plant.
     pub plant: PlantOptions,
 }
 
-/// The undisturbed plant, then every disturbance of it. `inverter` is that of the drives on the
+/// The undisturbed plant, then every disturbance. `inverter` is that of the drives on the
 /// undisturbed plant.
 pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<Disturbance> {
     let mut all = Vec::new();

@@ -1,5 +1,5 @@
 //! The robustness sheet as data: controllers in closed loop on plants that differ from the motor
-//! file in one point each, and what such a run is called.
+//! file in one parameter, and the ratings of these runs.
 
 mod csv;
 mod disturbance;
@@ -12,33 +12,33 @@ use crate::closed_loop::{FiguresOfMerit, Swing, Trip};
 use crate::engine::EngineKind;
 use serde::Serialize;
 
-/// Swing of the current, in percent, above which the loop of a controller that modulates counts as
+/// Swing of the current, in percent, above which a controller with a modulator counts as
 /// oscillating. Stable loops of the library stay below 11 at every speed of the sheet.
 const SWINGING_CURRENT: f64 = 15.0;
 
-/// The same of the voltage: high inductances keep the current calm while the voltage goes from one
-/// limit to the other.
+/// The same for the voltage: with a high inductance the current is calm while the voltage
+/// alternates between its limits.
 const SWINGING_VOLTAGE: f64 = 40.0;
 
-/// Times of the undisturbed ripple above which a controller that chooses whole vectors counts as
-/// oscillating: it swings by a vector in every period whatever the plant.
+/// Ratio to the undisturbed ripple above which a controller of whole vectors counts as oscillating:
+/// it swings by a vector in every period on any plant.
 const SWINGING_RIPPLE: f64 = 2.5;
 
-/// Distances in points at which a deeper colour begins.
+/// Thresholds of the colours in points.
 const STEPS: [f64; 3] = [1.0, 3.0, 10.0];
 
-/// The rule by which a run is called oscillating, for readers.
-pub const SWING_RULE: &str = "A run oscillates where the median, over its control periods, of the second difference of the sampled \
-    current exceeds 15 % of the current's amplitude, or that of the mean voltage 40 % of the bus: so does a loop whose poles \
-    have left the unit circle, while commutations are too rare to show in a median. FCS-MPC and PHCC swing by a whole vector \
-    each period by nature; they oscillate where their RMS ripple exceeds 2.5 times that of the undisturbed plant at this speed.";
+/// The criterion of oscillation, for reports.
+pub const SWING_RULE: &str = "A run oscillates if the median, over its control periods, of the second difference of the sampled \
+    current exceeds 15 % of the current's amplitude, or that of the mean voltage 40 % of the bus: this detects poles outside \
+    the unit circle, while commutations are too rare to affect a median. FCS-MPC and PHCC swing by a whole vector \
+    each period by design; they oscillate if their RMS ripple exceeds 2.5 times that of the undisturbed plant at this speed.";
 
 /// Controllers over disturbances.
 #[derive(Clone, Debug, Serialize)]
 pub struct Robustness {
     /// Mechanical speeds in rpm, ascending.
     pub speeds_rpm: Vec<f64>,
-    /// Names of the disturbances; the first one is none.
+    /// Names of the disturbances; the first one is the undisturbed plant.
     pub disturbances: Vec<String>,
     /// One column of the sheet per controller.
     pub controllers: Vec<Column>,
@@ -49,7 +49,7 @@ pub struct Robustness {
 pub struct Column {
     /// Controller variant.
     pub controller: String,
-    /// Why it does not generate; then it has no cells.
+    /// Why it cannot be generated; then it has no cells.
     pub refused: Option<String>,
     /// One cell per disturbance and speed, in the order of the disturbances.
     pub cells: Vec<Cell>,
@@ -62,24 +62,24 @@ pub struct Cell {
     pub disturbance: String,
     /// Mechanical speed in rpm.
     pub rpm: f64,
-    /// Why this plant or its drive cannot be: a specification that is refused, a value out of range.
+    /// Why this plant or its drive is impossible: a refused specification, a value out of range.
     pub refused: Option<String>,
-    /// What was measured otherwise.
+    /// The result, if possible.
     #[serde(flatten)]
     pub figures: Option<DisturbedFigures>,
 }
 
-/// What a run gave.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DisturbedFigures {
-    /// What ran the fixed-point program.
+    /// Engine of the fixed-point program.
     pub engine: EngineKind,
     /// Torque in newton metres of the demanded current on this plant's EMF constant.
     pub expected_torque_nm: f64,
-    /// Mean torque in newton metres. This and what follows up to the outcome: none of a drive that
+    /// Mean torque in newton metres. This and the following figures are `None` for a drive that
     /// tripped.
     pub mean_torque_nm: Option<f64>,
-    /// Peak-to-peak ripple in percent of the mean; none of a mean that is nothing.
+    /// Peak-to-peak ripple in percent of the mean; `None` for a zero mean.
     pub ripple_pp_pct: Option<f64>,
     /// RMS ripple in percent of the mean, likewise.
     pub ripple_rms_pct: Option<f64>,
@@ -87,28 +87,28 @@ pub struct DisturbedFigures {
     pub swing_current_pct: Option<f64>,
     /// Swing of the mean voltage in percent of the bus voltage.
     pub swing_voltage_pct: Option<f64>,
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
-    /// What tripped the drive.
+    /// Trip of the drive.
     pub tripped: Option<Trip>,
-    /// How far it is from the undisturbed run.
+    /// Deviation from the undisturbed run.
     pub heat: Heat,
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// In control.
     Runs,
-    /// With a loop that oscillates: see [`SWING_RULE`].
+    /// Oscillating: see [`SWING_RULE`].
     Oscillates,
-    /// By a trip.
+    /// Tripped.
     Trips,
 }
 
 impl Outcome {
-    /// As files and cells say it.
+    /// Its name in files and cells.
     pub fn name(self) -> &'static str {
         match self {
             Self::Runs => "runs",
@@ -118,9 +118,9 @@ impl Outcome {
     }
 }
 
-/// Distance of a cell from the undisturbed run of the same controller at the same speed: the larger
-/// of the change of mean torque in percent of what the current should give, and of the RMS ripple
-/// that was added, in points.
+/// Deviation of a cell from the undisturbed run of the same controller at the same speed: the
+/// larger of the change of mean torque in percent of the plant's torque at this current, and of the
+/// added RMS ripple in points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Heat {
@@ -146,7 +146,7 @@ impl Heat {
         Self::Broken,
     ];
 
-    /// As files and style sheets say it.
+    /// Its name in files and style sheets.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -157,7 +157,7 @@ impl Heat {
         }
     }
 
-    /// What a legend says of it.
+    /// Its text in legends.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::None => "within 1 point of the undisturbed run",
@@ -169,12 +169,12 @@ impl Heat {
     }
 }
 
-/// A run before it is compared with the undisturbed one.
+/// A run before its comparison with the undisturbed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// What ran the fixed-point program.
+    /// Engine of the fixed-point program.
     pub engine: EngineKind,
-    /// Whether the controller modulates; else it chooses whole vectors.
+    /// Whether the controller has a modulator; else it chooses whole vectors.
     pub modulates: bool,
     /// Torque in newton metres of the demanded current on this plant's EMF constant.
     pub expected_torque: f64,
@@ -232,7 +232,7 @@ impl Measured {
             let torque = 100.0 * run.figures.mean_torque_nm? / run.expected_torque;
             Some((torque, run.figures.ripple_rms_pct?))
         };
-        // A run without torque has no ripple in percent of it: it is far away.
+        // A run without torque has no ripple in percent of it: the deviation is large.
         let Some((own, calm)) = figures(self).zip(figures(undisturbed)) else {
             return Heat::Strong;
         };
@@ -248,7 +248,7 @@ impl Measured {
 }
 
 impl Robustness {
-    /// The cell of a controller, by the places of its disturbance and speed.
+    /// The cell of a controller, by the indices of its disturbance and speed.
     pub fn cell<'c>(
         &self,
         column: &'c Column,
@@ -293,7 +293,7 @@ mod tests {
             (1.80, 1.0, Heat::Marked),
             (1.98, 12.0, Heat::Strong),
             (1.70, 1.0, Heat::Strong),
-            // Less ripple is no distance.
+            // Less ripple is no deviation.
             (1.98, 0.0, Heat::None),
         ] {
             assert_eq!(heat(run(torque, ripple)), expected, "{torque} {ripple}");
@@ -324,7 +324,7 @@ mod tests {
         for part in ["15 %", "40 % of the bus", "2.5 times"] {
             assert!(SWING_RULE.contains(part), "{part}");
         }
-        // Whole vectors swing by nature: only ripple counts.
+        // Whole vectors swing by design: only ripple counts.
         let chooses = |ripple| Measured {
             modulates: false,
             swing: swing(50.0, 90.0).swing,
@@ -346,7 +346,7 @@ mod tests {
             (figures.outcome, figures.heat),
             (Outcome::Trips, Heat::Broken)
         );
-        // A tripped drive has no figures of merit, of swing either.
+        // A tripped drive has no figures of merit, and no swing.
         assert_eq!(
             (figures.swing_current_pct, figures.swing_voltage_pct),
             (None, None)

@@ -1,7 +1,7 @@
-//! Every controller in closed loop on plants that are not as the motor file says.
+//! Every controller in closed loop on plants that deviate from the motor file.
 //!
-//! Drives are generated for the motor as given; only the plant changes. (Bits of the ADCs are the exception: they are
-//! the drive's, too.)
+//! Drives are generated for the motor file; only the plant changes. (The ADC resolution is an
+//! exception: it changes the drive, too.)
 
 use super::disturbance::{Disturbance, disturbances};
 use super::{Cell, Column, Measured, Robustness};
@@ -15,8 +15,8 @@ use rayon::prelude::*;
 /// Runs every variant under every disturbance.
 ///
 /// # Errors
-/// No such motor, no variant that generates, or a plant option out of range. A single disturbance
-/// that this motor cannot have is a cell with the reason.
+/// No such motor, no valid variant, or a plant option out of range. A single disturbance that is
+/// impossible for this motor is a cell with the reason.
 pub fn robustness(
     motor: &str,
     variants: &[String],
@@ -29,7 +29,7 @@ pub fn robustness(
     let drive = first_that_generates(&SelectedMotor::find(motor, undisturbed)?, variants)?;
     undisturbed.plant(&drive)?;
     let disturbances = disturbances(undisturbed, &drive.spec.inverter);
-    // Syntax trees do not go to other threads: drives are prepared here.
+    // Syntax trees cannot be sent to other threads: drives are prepared here.
     let motors = motors(motor, &disturbances)?;
     let drives: Vec<Drives> = variants
         .iter()
@@ -55,10 +55,10 @@ pub fn robustness(
     })
 }
 
-/// The drive of the first variant that generates.
+/// The drive of the first valid variant.
 ///
 /// # Errors
-/// All diagnostics of the first variant, where none does.
+/// All diagnostics of the first variant, if none is valid.
 fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Prepared, LabError> {
     let mut reason = None;
     for variant in variants {
@@ -70,7 +70,7 @@ fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Pr
     Err(reason.unwrap_or_else(|| LabError::Argument("no controller to compare".to_owned())))
 }
 
-/// The motor with each resolution of the converters that a disturbance has.
+/// The motor with each ADC resolution of the disturbances.
 fn motors(
     motor: &str,
     disturbances: &[Disturbance],
@@ -84,7 +84,7 @@ fn motors(
     Ok(motors)
 }
 
-/// One controller, by the resolution of the converters; the undisturbed one first.
+/// One controller by ADC resolution; the undisturbed one first.
 struct Drives<'v> {
     variant: &'v str,
     by_bits: Vec<(Option<u32>, Result<Prepared, String>)>,
@@ -115,7 +115,7 @@ impl<'v> Drives<'v> {
     }
 }
 
-/// What is run.
+/// Plan of the runs.
 struct Sheet<'p> {
     speeds_rpm: [f64; 2],
     disturbances: Vec<Disturbance>,
@@ -178,7 +178,7 @@ impl Sheet<'_> {
     }
 }
 
-/// Measures a drive at the torque that it is measured at elsewhere.
+/// Measures a drive at its default torque.
 fn run(drive: &Prepared, plant: &PlantOptions, rpm: f64) -> Result<Measured, LabError> {
     let params = plant.plant(drive)?;
     let torque = drive.demand();
@@ -186,10 +186,10 @@ fn run(drive: &Prepared, plant: &PlantOptions, rpm: f64) -> Result<Measured, Lab
     measured(drive, &params, &run, plant.set_point(drive, torque), torque)
 }
 
-/// A run of a drive with a set-point for a torque in newton metres, ready to be judged.
+/// A run of a drive with a set-point for a torque in newton metres, before its rating.
 ///
 /// # Errors
-/// A plant that cannot be.
+/// An impossible plant.
 pub fn measured(
     drive: &Prepared,
     params: &PlantParams,

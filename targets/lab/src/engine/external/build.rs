@@ -1,4 +1,4 @@
-//! Building emitted code with rustc, or with the C compiler of this machine.
+//! Building emitted code with rustc, or with the C compiler.
 
 use crate::standalone::{MACROS, fixed};
 use hexagen_codegen::emit::c99::{RUNTIME as RUNTIME_C, Sources};
@@ -8,33 +8,33 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::{env, fs, io};
 use tempfile::TempDir;
 
-/// A compiled program in a folder of its own, which goes with it.
+/// A compiled program in a folder of its own, which is removed with it.
 #[derive(Debug)]
 pub struct External {
     folder: TempDir,
-    /// Of Rust, kept so that programs compiled meanwhile find it built.
+    /// The Rust runtime, kept for programs compiled meanwhile.
     _runtime: Option<Arc<TempDir>>,
 }
 
-/// Why emitted code was not compiled.
+/// Error of compiling emitted code.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum BuildError {
-    /// No compiler, or no place to build.
+    /// The compiler cannot be started, or there is no folder to build in.
     #[error("{compiler} cannot run: {reason}")]
     NoCompiler {
         /// Its name.
         compiler: &'static str,
-        /// What the system said.
+        /// Message of the operating system.
         reason: String,
     },
-    /// The compiler refused.
-    #[error("{compiler} refuses the {what}:\n{messages}")]
+    /// The compiler reported errors.
+    #[error("{compiler} fails on the {what}:\n{messages}")]
     Refused {
         /// Its name.
         compiler: &'static str,
         /// What was compiled.
         what: &'static str,
-        /// What the compiler said.
+        /// Messages of the compiler.
         messages: String,
     },
 }
@@ -44,7 +44,7 @@ const RUSTC: &str = "rustc";
 const CC: &str = "the C compiler";
 
 impl BuildError {
-    /// The compiler, or a place for it, is missing.
+    /// Whether the compiler, or a folder for it, is missing.
     fn no_compiler(compiler: &'static str) -> impl Fn(io::Error) -> Self {
         move |error| Self::NoCompiler {
             compiler,
@@ -53,7 +53,7 @@ impl BuildError {
     }
 }
 
-/// The runtime's sources, by a link to their folder, which a package holds as a folder of its own.
+/// The runtime's sources, by a link to their folder, which a package contains as a folder.
 const RUNTIME: [(&str, &str); 18] = [
     ("lib.rs", include_str!("../../../runtime/lib.rs")),
     ("arith.rs", include_str!("../../../runtime/arith.rs")),
@@ -110,7 +110,7 @@ fn executable() -> String {
 /// Compiles an emitted module, whose type is `type_name`, together with the driver.
 ///
 /// # Errors
-/// No rustc, or what it said.
+/// No rustc, or its messages.
 pub fn compile(rust: &str, type_name: &str) -> Result<External, BuildError> {
     let runtime = runtime()?;
     let alias = format!("pub use super::emitted::{type_name} as TheDrive;\n");
@@ -134,7 +134,7 @@ pub fn compile(rust: &str, type_name: &str) -> Result<External, BuildError> {
     })
 }
 
-/// What the flags of users' own projects are at their strictest.
+/// Strict warning flags of users' projects.
 const C_FLAGS: [&str; 7] = [
     "-std=c99",
     "-Wall",
@@ -145,14 +145,14 @@ const C_FLAGS: [&str; 7] = [
     "-O2",
 ];
 
-/// What the driver must know of a drive in C.
+/// Properties of a C drive for the driver.
 #[derive(Clone, Copy, Debug)]
 pub struct Binding {
     /// State words.
     pub state_words: usize,
-    /// Whether it is told the bus voltage.
+    /// Whether it has a measured bus voltage.
     pub has_bus: bool,
-    /// Whether it regulates the speed.
+    /// Whether it has a speed loop.
     pub has_speed: bool,
 }
 
@@ -173,10 +173,11 @@ impl Binding {
     }
 }
 
-/// Compiles an emitted header and source together with the runtime and the driver, by `CC` with these flags behind the strict ones.
+/// Compiles an emitted header and source with the runtime and the driver, by `CC` with these flags
+/// after the strict ones.
 ///
 /// # Errors
-/// No C compiler, or what it said.
+/// No C compiler, or its messages.
 pub fn compile_c99(
     sources: &Sources,
     binding: &Binding,
@@ -211,7 +212,7 @@ pub fn compile_c99(
     })
 }
 
-/// The runtime as libraries: built once and shared while any program needs it.
+/// The runtime as libraries: built once and shared as long as a program needs it.
 fn runtime() -> Result<Arc<TempDir>, BuildError> {
     static RUNTIME_FOLDER: Mutex<Weak<TempDir>> = Mutex::new(Weak::new());
     let mut shared = RUNTIME_FOLDER

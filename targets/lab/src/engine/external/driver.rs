@@ -1,4 +1,4 @@
-//! Runs an emitted drive on calls from stdin; `link.rs` of the `hexagen` program is the other end.
+//! Runs an emitted drive on calls from stdin; the other end is `link.rs` of the `hexagen` program.
 
 mod emitted {
     include!("emitted.rs");
@@ -71,7 +71,7 @@ fn main() {
                 }
             }
         }
-        output.write_all(&answers).expect("the reader is there");
-        output.flush().expect("the reader is there");
+        output.write_all(&answers).expect("the reader is running");
+        output.flush().expect("the reader is running");
     }
 }

@@ -12,13 +12,13 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 /// Steps per batch.
 const BATCH: u64 = 4096;
 
-/// Why the pipe broke.
+/// Error of the pipe.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// It could not be opened, written or read.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The program did not end well.
+    /// The program failed.
     #[error("it ended with {0}")]
     Ended(std::process::ExitStatus),
 }
@@ -81,7 +81,8 @@ impl Link {
         })
     }
 
-    /// Bytes of a step's answer: compare values, leg states, fault, whether the bus voltage is stale, state words.
+    /// Bytes of a step's answer: compare values, leg states, fault, staleness of the bus voltage,
+    /// state words.
     fn answer_length(&self) -> usize {
         6 + 3 + 1 + 1 + 4 * self.state_words
     }
@@ -127,7 +128,7 @@ impl Link {
         self.pending += 1;
     }
 
-    /// Adds a step and the answer that is expected to it.
+    /// Adds a step and its expected answer.
     pub fn step(
         &mut self,
         sample: Sample,
@@ -151,7 +152,7 @@ impl Link {
         }
     }
 
-    /// Runs a step and waits for its answer; none when the program broke off.
+    /// Runs a step and waits for its answer; `None` if the program stopped.
     pub fn step_and_wait(
         &mut self,
         sample: Sample,
@@ -220,7 +221,7 @@ impl Link {
         self.pending = 0;
     }
 
-    /// Compares what is left and ends the program. Returns the first step that differed.
+    /// Compares the rest and ends the program. Returns the first step that differed.
     pub fn close(mut self) -> Result<Option<u64>, LinkError> {
         if self.pending > 0 {
             self.compare();
@@ -238,7 +239,7 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // After an early return: ends with its input, and is waited for.
+        // After an early return: closing the input ends the program.
         if self.input.take().is_some() {
             let _ = self.child.wait();
         }

@@ -1,8 +1,8 @@
-//! Emitted code that is not built in, in Rust or C: compiled and run as a process of its own.
+//! Emitted code that is not built in, in Rust or C: compiled and run as a process.
 //!
-//! The runtime's sources are part of this program, so the compiler is all that is needed. Of the `fixed`
-//! crate, emitted code and runtime use type names, `from_bits` and `to_bits` only; a stand-in with
-//! just these takes its place, which changes no arithmetic.
+//! The runtime's sources are part of this program, so only a compiler is needed. Emitted code and
+//! runtime use only type names, `from_bits` and `to_bits` of the `fixed` crate, which a stand-in
+//! provides; it changes no arithmetic.
 
 mod build;
 mod link;
@@ -15,7 +15,7 @@ use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
 use link::{Call, Link, LinkError};
 use std::cell::RefCell;
 
-/// What a bit-for-bit test needs besides the process.
+/// Inputs of a bit-for-bit test besides the process.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Terms<'a> {
     pub spec: &'a str,
@@ -24,23 +24,23 @@ pub(super) struct Terms<'a> {
     pub model: &'a BitTrue,
 }
 
-/// Why the test of an external program did not pass.
+/// Failure of the test of an external program.
 #[derive(Debug, thiserror::Error)]
 pub enum ExternalError {
     /// It differs.
     #[error(transparent)]
     Verify(#[from] VerifyError),
-    /// The process broke off.
-    #[error("the compiled program broke off: {0}")]
+    /// The process stopped.
+    #[error("the compiled program stopped: {0}")]
     Link(#[from] LinkError),
     /// It differs in a batch, but not step by step: an error of the link.
     #[error("step {0} differs in a batch of steps only")]
     Batch(u64),
 }
 
-/// Compares an external program with the bit-true model. The calls go over in batches, answered in
-/// advance by a second model; only where a batch differs is the run repeated step by step, to
-/// tell what differs.
+/// Compares an external program with the bit-true model. Calls are sent in batches, and a second
+/// model predicts the answers; only if a batch differs is the run repeated step by step, to find
+/// the difference.
 pub(super) fn verify(
     external: &External,
     terms: Terms<'_>,
@@ -78,8 +78,8 @@ pub(super) fn verify(
     Err(ExternalError::Batch(step))
 }
 
-/// The external program as a subject of the test: with a model, the model answers and the
-/// program's answers are compared later; without one, every step waits for the program.
+/// The external program as the test's subject: with a model, the model answers and the program's
+/// answers are compared later; without one, every step waits for the program.
 struct Remote<'l> {
     link: &'l RefCell<Link>,
     model: Option<BitTrue>,
@@ -116,7 +116,7 @@ impl Subject for Remote<'_> {
                     self.bus_is_stale = bus_is_stale;
                     legs
                 }
-                // A broken process answers what no step does; the link knows why.
+                // After a broken pipe the answer is invalid; the link reports the cause.
                 None => Legs::new([u16::MAX; 3], [LegState::Off; 3]),
             },
         }

@@ -1,4 +1,4 @@
-//! Number formats of the emitted code, and its distance from floating point.
+//! Number formats of the emitted code, and its accuracy against floating point.
 
 use super::{capture_name, variant_sign};
 use crate::closed_loop::{FiguresOfMerit, POINTS, RELATIVE, share_of_allowance};
@@ -29,8 +29,8 @@ pub fn formats(data: &Results) -> Vec<Block> {
     if tables.is_empty() {
         return Block::nothing("formats");
     }
-    let note = "Chosen per signal from its interval. A word holds the value times two to the power of its fraction bits, \
-                in the base named last; coefficients name the shift of their product.";
+    let note = "Chosen per signal from its interval. A word is the value times 2 to the power of its fraction bits, in units \
+                of the base in the last column; for coefficients, the fraction bits are the shift of the product.";
     [Block::Note(note.to_owned())]
         .into_iter()
         .chain(tables)
@@ -62,7 +62,7 @@ fn format_table(formats: &[FormatEntry]) -> Table {
     table
 }
 
-/// A figure of merit as the error table shows it.
+/// A figure of merit in the error table.
 struct Shown {
     name: &'static str,
     unit: &'static str,
@@ -91,7 +91,8 @@ impl Shown {
         number(value.map(|value| self.per_si * value), self.decimals)
     }
 
-    /// Whether fixed and ideal value count as equal; of percentages a few hundredths of a point do.
+    /// Whether fixed and ideal value count as equal, with a tolerance of a few hundredths of a
+    /// point for percentages.
     fn is_alike(&self, at: &SameWords) -> bool {
         let (fixed, ideal) = ((self.of)(&at.fixed), (self.of)(&at.ideal));
         share_of_allowance(fixed, ideal, self.unit == "%") <= 1.0
@@ -129,8 +130,7 @@ fn shown_figures(scale: &TorqueScale) -> [Shown; 14] {
     ]
 }
 
-/// Differences of figures of merit, of signals where they were measured, and errors of single
-/// steps.
+/// Differences of figures of merit, of signals if measured, and errors of single steps.
 pub fn errors(data: &Results) -> Vec<Block> {
     let has_figures = data.variants.iter().any(|of| !of.same_words.is_empty());
     let has_signals = data.variants.iter().any(|of| !of.signal_errors.is_empty());
@@ -163,14 +163,14 @@ fn figures_of_merit(data: &Results) -> Vec<Block> {
     let total = grouped((comparisons * shown.len()) as u64);
     let apart: usize = data.variants.iter().map(differing).sum();
     let verdict = match apart {
-        0 => format!("**All {total} pairs are alike:**"),
+        0 => format!("**All {total} pairs agree:**"),
         _ => format!("**{apart} of {total} pairs differ (marked \u{2260}):**"),
     };
     let how = format!(
-        "{verdict} same start, same plant, and the ideal model reads the ADC and Hall words that the fixed-point code read, so that \
-         arithmetic alone can make a difference. Alike means within {} %, or within {POINTS} points for percentages. Each cell shows \
-         fixed point above ideal float. (The result table above has the ideal model in a loop of its own, where a converter's last \
-         bit takes another course.)",
+        "{verdict} same start, same plant, and the same ADC counts and Hall codes for the ideal model, so that only arithmetic \
+         differs. The tolerance is {} %, or {POINTS} points for percentages. Each cell shows \
+         fixed point above ideal float. (In the result table above, the ideal model has a loop of its own, in which one ADC \
+         count can lead to another trajectory.)",
         100.0 * RELATIVE
     );
     let mut blocks = vec![Block::Prose(how), Block::Table(figure_table(data, &shown))];
@@ -182,9 +182,9 @@ fn figures_of_merit(data: &Results) -> Vec<Block> {
     let ties: Vec<&str> = ties.map(|variant| variant.label.as_str()).collect();
     if !ties.is_empty() {
         blocks.push(Block::Note(format!(
-            "{}: such a controller applies one of a few whole vectors. Where two of them are nearly as good, the last bit of a word \
-             may decide, and from such a near tie on the two runs apply other patterns: the mean torque stays, ripple, harmonics and \
-             switchings are those of another pattern. The single decisions agree, but for proven ties, from the same state.",
+            "{}: this controller applies one of a few whole vectors. If two of them are almost equal in cost, the last bit of a word \
+             may decide, and after such a tie the two runs have different switching patterns: the mean torque agrees, ripple, harmonics \
+             and switching frequency do not. From the same state, single decisions agree except for proven ties.",
             ties.join("; ")
         )));
     }
@@ -234,7 +234,7 @@ fn signals(data: &Results) -> [Block; 3] {
             ]);
         }
     }
-    let note = "Distance of the emitted code from the ideal model, step by step, from the same state and samples.";
+    let note = "Error of the emitted code against the ideal model in single steps from the same state and samples.";
     [
         Block::Heading("Signals".to_owned()),
         Block::Note(note.to_owned()),
@@ -242,17 +242,17 @@ fn signals(data: &Results) -> [Block; 3] {
     ]
 }
 
-/// Errors of single steps against their proven bounds, per controller and word length.
+/// Errors of single steps and their proven bounds, per controller and word length.
 fn histograms(errors: &[ErrorsSeen]) -> [Block; 4] {
-    let note = "Default variants at the speeds above, 32- and 16-bit words: the signal of one step less that of the ideal model from \
-                the same state, phases a and b. The signal is the voltage that the law asks for before the limit (PHCC: the predicted \
-                error of the current, times K). Steps on which a tie was decided otherwise are left out. `hexagen compare` prints the \
+    let note = "Default variants at the speeds above, 32- and 16-bit words: the signal of one step minus that of the ideal model from \
+                the same state, phases a and b. The signal is the voltage before the limit (PHCC: the predicted \
+                current error, times K). Steps in which a tie was decided differently are excluded. `hexagen compare` prints the \
                 figures.";
     [
         Block::Heading("Errors of single steps against the proven bound".to_owned()),
         Block::Note(note.to_owned()),
         Block::Legend(vec![
-            Sign::Field(PHASES[0], 1.0).means("errors seen, share on a scale of powers of ten"),
+            Sign::Field(PHASES[0], 1.0).means("measured errors, share on a logarithmic scale"),
             Sign::line(PHASES[2], 3.0).means("proven bound"),
         ]),
         Block::Figures {

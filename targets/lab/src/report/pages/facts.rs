@@ -1,4 +1,4 @@
-//! What the report is about: heading, motor, inverter, and what follows from them.
+//! Subject of the report: heading, motor, inverter, and derived quantities.
 
 use crate::report::{Block, Cell, Column, Table};
 use crate::results::Results;
@@ -11,7 +11,7 @@ pub fn title(data: &Results) -> String {
     format!("{}: current controllers in fixed point", motor_name(data))
 }
 
-/// What the motor is called.
+/// The motor's name.
 pub fn motor_name(data: &Results) -> &str {
     if data.motor.description.is_empty() {
         &data.name
@@ -46,7 +46,7 @@ pub fn opening(data: &Results) -> Vec<Block> {
     [Block::Lead(lead)].into_iter().chain(check).collect()
 }
 
-/// Tables of given and derived numbers.
+/// Tables of specified and derived quantities.
 pub fn facts(data: &Results) -> Vec<Block> {
     let tables = Block::Tables(vec![
         table("Motor, per phase of the star", motor(data)),
@@ -92,7 +92,7 @@ fn motor(data: &Results) -> Vec<(&'static str, String)> {
     let rpm = motor.rated_speed * 60.0 / TAU;
     rows.push(("Rated speed", format!("{}\u{a0}rpm", number(rpm, 0))));
     if let Some(inertia) = motor.inertia {
-        // Engineering prefixes do not go with squares of kilograms and metres.
+        // Engineering prefixes do not combine with squares of kilograms and metres.
         rows.push(("Inertia", format!("{inertia:.3e}\u{a0}kg\u{b7}m\u{b2}")));
     }
     rows
@@ -133,7 +133,7 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
 }
 
 /// Peak line-to-line EMF over peak phase EMF: twice the shape at 60 degrees, where two phases
-/// contribute alike.
+/// contribute equally.
 fn line_factor(shape: EmfShape) -> f64 {
     2.0 * match shape {
         EmfShape::Trapezoidal { flat_top_deg } => (60.0 / (90.0 - flat_top_deg / 2.0)).min(1.0),
@@ -157,7 +157,10 @@ fn derived(data: &Results) -> Vec<(&'static str, String)> {
             "Time constant L/R",
             quantity(motor.inductance / motor.resistance, "s"),
         ),
-        ("Current per volt and period", quantity(per_volt, "A")),
+        (
+            "Current change per volt and period",
+            quantity(per_volt, "A"),
+        ),
         (
             "Frequency at rated speed",
             quantity(motor.rated_speed * pole_pairs / TAU, "Hz"),

@@ -1,4 +1,4 @@
-//! The pages: what the report of a motor and the paper's experiment show, in which order.
+//! The pages: contents of the motor's report and of the paper's experiment, in order.
 
 mod accuracy;
 mod facts;
@@ -61,8 +61,8 @@ pub fn results_page(data: &Results) -> Page {
     }
 }
 
-/// A name as part of a file name: what is neither letter nor digit of any script, `-`, `_` nor `.`
-/// becomes `-`.
+/// A name as part of a file name: characters other than letters and digits of any script, `-`, `_`
+/// and `.` become `-`.
 fn file_stem(name: &str) -> String {
     let kept = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let stem: String = name
@@ -73,12 +73,12 @@ fn file_stem(name: &str) -> String {
     if stem.is_empty() { "motor" } else { stem }.to_owned()
 }
 
-/// The sign of the variant at a place in the table.
+/// The symbol of a variant by its index in the table.
 fn variant_sign(index: usize) -> Sign {
     Sign::line(variant(index), 3.0)
 }
 
-/// What the colours of phases mean.
+/// Key of the phases' colours.
 fn phase_keys(names: [&str; 3]) -> Vec<Key> {
     let phases = PHASES.into_iter().zip(names);
     phases
@@ -86,13 +86,13 @@ fn phase_keys(names: [&str; 3]) -> Vec<Key> {
         .collect()
 }
 
-/// The variants that have records, with their place in the table.
+/// The variants with records, with their index in the table.
 fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
     let variants = data.variants.iter().enumerate();
     variants.filter(|(_, variant)| !variant.records.is_empty())
 }
 
-/// A capture's name.
+/// Name of a capture.
 fn capture_name(capture: Capture) -> &'static str {
     match capture {
         Capture::Sampled => "sampled",
@@ -105,7 +105,7 @@ mod tests {
     use super::file_stem;
 
     #[test]
-    fn names_become_file_names() {
+    fn names_make_valid_file_names() {
         for (name, stem) in [
             ("trivedi-keshri-660w", "trivedi-keshri-660w"),
             ("Hub_2.1", "Hub_2.1"),

@@ -5,8 +5,7 @@ use crate::report::{Block, Cell, Column, Label, Sign, Table, Tone};
 use crate::robustness::{self, Heat, Outcome, Robustness, SWING_RULE};
 use crate::text::{TorqueScale, number, ripple};
 
-/// A table per speed, what its colours mean, the rule by which a run oscillates, and what was
-/// refused.
+/// A table per speed, the key of its colours, the criterion of oscillation, and the refused runs.
 pub fn robustness_blocks(sheet: &Robustness) -> Vec<Block> {
     let mut cells = sheet.controllers.iter().flat_map(|column| &column.cells);
     let torque = cells.find_map(|cell| cell.figures.as_ref()?.mean_torque_nm);
@@ -14,14 +13,14 @@ pub fn robustness_blocks(sheet: &Robustness) -> Vec<Block> {
     let keys = Heat::ALL.map(|heat| Sign::Cell(tone(heat)).means(heat.meaning()));
     let mut blocks = vec![
         Block::Note(format!(
-            "Controllers generated for the motor file, run as fixed-point code on plants that differ from it in one point: mean torque in \
+            "Controllers generated for the motor file, run as fixed-point code on plants that differ from it in one parameter: mean torque in \
              {}, and its ripple in percent of the mean, peak to peak / RMS.",
             scale.unit
         )),
         Block::Note(SWING_RULE.to_owned()),
         Block::Legend(keys.to_vec()),
         Block::Note(
-            "Points are percent of the torque that the current should give on this plant, or of RMS ripple added.".to_owned(),
+            "Points are percent of the plant's torque at the demanded current, or of added RMS ripple.".to_owned(),
         ),
     ];
     for (speed, rpm) in sheet.speeds_rpm.iter().enumerate() {
@@ -73,14 +72,14 @@ fn cell(cell: Option<&robustness::Cell>, scale: &TorqueScale) -> Cell {
     cell.toned(tone(figures.heat))
 }
 
-/// Why controllers or disturbances were refused, each reason once.
+/// Why controllers or disturbances were refused; each reason once.
 fn refused(sheet: &Robustness) -> Vec<String> {
     let speeds = sheet.speeds_rpm.len().max(1);
     let mut reasons = Vec::new();
     for column in &sheet.controllers {
         let name = &column.controller;
         if let Some(reason) = &column.refused {
-            reasons.push(format!("`{name}` is not there: {reason}"));
+            reasons.push(format!("`{name}` is missing: {reason}"));
         }
         for cell in column.cells.iter().step_by(speeds) {
             if let Some(reason) = &cell.refused {
@@ -94,7 +93,7 @@ fn refused(sheet: &Robustness) -> Vec<String> {
     reasons
 }
 
-/// A disturbance's name with the signs of print.
+/// A disturbance's name in typographic signs.
 fn printed(name: &str) -> String {
     name.replace('-', "\u{2212}")
         .replace("\u{2212}bit", "-bit")

@@ -1,4 +1,4 @@
-//! Harmonics of the phase current against the ideal wave, and of the torque.
+//! Harmonics of the phase current, with the ideal wave, and of the torque.
 
 use super::plotted;
 use crate::closed_loop::{
@@ -9,16 +9,16 @@ use crate::report::{Block, Figure, INK, Sign, variant};
 use crate::results::Results;
 use crate::text::number;
 
-/// Orders of the current's plot: those that the quasi-square wave has.
+/// Orders of the current's plot: those of the quasi-square wave.
 pub const CURRENT_ORDERS: [usize; 8] = [5, 7, 11, 13, 17, 19, 23, 25];
 
 /// Orders of the torque's plot.
 const TORQUE_ORDERS: [usize; 4] = [6, 12, 18, 24];
 
-/// Highest order that is computed.
+/// Highest computed order.
 pub const HIGHEST: usize = 25;
 
-/// A spectrum: one value per order, where there is one.
+/// A spectrum: one value per order, if defined.
 pub type Spectrum = Vec<Option<f64>>;
 
 /// A kind of spectrum.
@@ -26,7 +26,7 @@ struct Kind {
     name: &'static str,
     y_title: &'static str,
     orders: &'static [usize],
-    /// The vertical axis' end at least.
+    /// Minimum of the vertical axis' end.
     least: f64,
     of: fn(&Trace, usize) -> Spectrum,
     ideal: fn(usize) -> Option<f64>,
@@ -113,7 +113,7 @@ pub fn groups(
     orders.iter().map(group).collect()
 }
 
-/// The vertical axis' end: the greatest harmonic, between both ends, with a little room.
+/// The vertical axis' end: the greatest harmonic, within both limits, with a margin.
 pub fn top<'a>(
     spectra: impl Iterator<Item = &'a Spectrum>,
     orders: &[usize],

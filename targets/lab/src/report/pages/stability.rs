@@ -20,8 +20,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         "",
         [
             Column::text("Variant"),
-            Column::number("Inductance", "% of stated"),
-            Column::number("Resistance", "% of stated"),
+            Column::number("Inductance", "% of nominal"),
+            Column::number("Resistance", "% of nominal"),
         ],
     );
     for (index, variant, known) in &known {
@@ -33,8 +33,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     }
     let mut blocks = vec![
         Block::Note(
-            "True over stated value within which the closed loop's poles, with the emitted coefficients, lie inside the unit circle; one \
-             parameter off at a time, searched from 10 % to 1000 %."
+            "Range of true over nominal value in which the closed loop's poles, with the emitted coefficients, lie inside the unit circle; one \
+             parameter varied at a time, searched from 10 % to 1000 %."
                 .to_owned(),
         ),
         Block::Table(table),
@@ -54,17 +54,17 @@ pub fn blocks(data: &Results) -> Vec<Block> {
 
 fn simulated(figures: Vec<Figure>) -> [Block; 4] {
     [
-        Block::Heading("Simulated with one parameter off".to_owned()),
+        Block::Heading("Simulation with one parameter varied".to_owned()),
         Block::Note(
-            "Runs just inside and just outside of each edge and one well inside of it, judged by the rule of the robustness sheet. \
-             Resistances beyond those shown leave the bus too little voltage for the current."
+            "Runs just inside, just outside and well inside each edge, judged by the criterion of the robustness sheet. \
+             Higher resistances would leave too little bus voltage for the current."
                 .to_owned(),
         ),
         Block::Legend(vec![
             Sign::line(PHASES[0], 3.0).means("edges of the computed stable range, tinted"),
-            Sign::Dot(PHASES[0]).means("run that stays stable"),
+            Sign::Dot(PHASES[0]).means("stable run"),
             Sign::Cross(PHASES[2])
-                .means("run that does not (ripple beyond the axis is drawn at its end)"),
+                .means("unstable run (ripple beyond the axis is drawn at its end)"),
         ]),
         Block::Figures {
             columns: 2,
@@ -90,7 +90,7 @@ fn plots(index: usize, variant: &Variant, known: &Stability, parameter: Paramete
             let rpm = number(checks[0].rpm, 0);
             let label = &variant.label;
             let description = format!("Ripple of {label} over {name} at {rpm} rpm");
-            let title = format!("true over stated {name}");
+            let title = format!("true over nominal {name}");
             let plot = stability(description, checks, range, title);
             let caption = format!("{label}, {name}, **{rpm}\u{a0}rpm**");
             Figure::new(Some(variant_sign(index)), caption, plot)

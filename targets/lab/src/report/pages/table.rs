@@ -1,5 +1,5 @@
-//! The result table: every run, its figures of merit at each speed, its limit, and what was
-//! expected.
+//! The result table: every run, its figures of merit at each speed, its limit, and the expected
+//! figures.
 
 use super::{capture_name, variant_sign};
 use crate::closed_loop::{Held, LimitOutcome, Side};
@@ -14,7 +14,7 @@ use crate::text::{TorqueScale, number, ripple};
 pub fn results_blocks(data: &Results) -> Vec<Block> {
     let held = match data.held {
         Held::AtLeast => {
-            "falls below 97 % of the demand, as in the design document's table: more than the demand counts as held."
+            "falls below 97 % of the demand, as in the design document's table (more than the demand counts as held)."
         }
         Held::Within => "is no longer within 3 % of the demand, on either side.",
     };
@@ -29,7 +29,7 @@ pub fn results_blocks(data: &Results) -> Vec<Block> {
         .collect()
 }
 
-/// How many of the expected figures are met; none where nothing is expected.
+/// How many of the expected figures are met; `None` if there are none.
 fn met(data: &Results) -> Option<String> {
     let judged: Vec<Judged> = data
         .variants
@@ -47,7 +47,7 @@ fn met(data: &Results) -> Option<String> {
         }
     };
     Some(format!(
-        "{count} Expected figures stand beside the measured ones; they count as met within 1 % of mean torque, \
+        "{count} Expected figures are next to the measured ones; the tolerances are 1 % of mean torque, \
          15 % or 0.5 points of ripple, and 2 points of the speed limit."
     ))
 }
@@ -77,7 +77,7 @@ fn table(data: &Results) -> Table {
 
 fn label(index: usize, variant: &Variant) -> Cell {
     let is_plotted = !variant.records.is_empty();
-    // How Hall edges are read stands in a column of its own.
+    // Hall capture has a column of its own.
     let text = variant.variant.replace(",hall_capture=timer", "");
     let text = text.replace(",hall_capture=sampled", "");
     let detail = if text.is_empty() {

@@ -33,7 +33,7 @@ fn code_block(language: &'static str, text: &str) -> Block {
     }
 }
 
-/// A text of each variant that shows them, with what stands behind its name.
+/// A text of each variant that shows them, with a suffix of its name.
 fn folded(
     data: &Results,
     what: &str,

@@ -44,8 +44,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         Held::Within => "is no longer within 3 %",
     };
     let note = format!(
-        "Dots and the speeds in the legend mark where mean torque {held} of the demand (of the torque given in the legend, where a limited \
-         set-point cannot ask for more). Curves end where the search for this limit ended."
+        "Dots, and speeds in the legend, are those at which mean torque {held} of the demand (or of the torque in the legend, for a limited \
+         set-point). Curves end where the search for this limit ended."
     );
     vec![
         Block::Legend(keys.collect()),
@@ -62,7 +62,7 @@ fn limit_rpm(variant: &Variant) -> Option<f64> {
     run.limit.as_ref()?.limit_rpm
 }
 
-/// The limit as the legend has it, with the space before it.
+/// The limit in the legend, with a leading space.
 fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
     let Some(limit) = variant.runs.first().and_then(|run| run.limit.as_ref()) else {
         return String::new();
@@ -75,9 +75,9 @@ fn limit_text(variant: &Variant, scale: &TorqueScale) -> String {
     };
     let at = variant.reach.map_or_else(String::new, |torque| {
         let torque = scale.text(torque, 0);
-        format!(" at {torque}\u{a0}{}, its most", scale.unit)
+        format!(" at {torque}\u{a0}{} (maximum)", scale.unit)
     });
-    // That it falls off is the rule, and what the note below says.
+    // Falling below is the usual case, which the note covers.
     let why = limit.why().filter(|_| limit.lost != Some(Side::Below));
     let why = why.map_or_else(String::new, |why| format!(": {why}"));
     format!(" ({speed}{at}{why})")

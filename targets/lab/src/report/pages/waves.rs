@@ -1,4 +1,4 @@
-//! What happens over one electrical turn: phase currents, trajectory, torque.
+//! Phase currents, trajectory and torque over one electrical turn.
 
 use super::{phase_keys, plotted};
 use crate::closed_loop::Trace;
@@ -10,29 +10,29 @@ use crate::text::{TorqueScale, number};
 /// Columns of a plot over one turn.
 const COLUMNS: usize = 480;
 
-/// A record that is plotted.
+/// A plotted record.
 pub struct Panel<'a> {
     /// Colour of its lines.
     pub color: Color,
-    /// What it is of, for screen readers: "PDCC at 400 rpm".
+    /// Subject, for screen readers: "PDCC at 400 rpm".
     pub of: String,
     /// Caption.
     pub caption: String,
     /// The record.
     pub trace: &'a Trace,
-    /// Why there is nothing to show, where that is so.
+    /// Why there is no record.
     pub nothing: Option<String>,
 }
 
 impl Panel<'_> {
-    /// A plot with the panel's caption; where there is nothing to show, why.
+    /// A plot with the panel's caption, or the reason why there is none.
     pub fn figure(&self, plot: impl FnOnce() -> Plot) -> Figure {
         let nothing = self.nothing.as_ref();
         Figure {
             sign: Some(Sign::line(self.color, 3.0)),
             caption: self.caption.clone(),
             plot: nothing.is_none().then(plot),
-            note: nothing.map(|why| format!("Nothing to show: {why}.")),
+            note: nothing.map(|why| format!("No plot: {why}.")),
         }
     }
 }
@@ -115,7 +115,7 @@ pub fn trajectory_figures(panels: &[Panel<'_>], current: f64) -> Vec<Figure> {
         .fold(0.0_f64, |most, (alpha, beta)| {
             most.max(alpha.abs()).max(beta.abs())
         });
-    // The corners lie 2/sqrt(3) of the current from the centre, their names outside of them.
+    // The corners lie 2/sqrt(3) of the current from the centre, their names outside.
     let reach = (1.04 * most).max(1.53 * current.abs());
     let figures = panels.iter().map(|panel| {
         panel.figure(|| {
@@ -147,17 +147,17 @@ fn panels<'a>(data: &'a Results, separator: &str) -> Vec<Panel<'a>> {
     panels.collect()
 }
 
-/// What the ripple's field means.
+/// Key of the ripple's band.
 pub fn ripple_key(color: Color) -> Key {
-    Sign::Field(color, 0.22).means("ripple of the PWM")
+    Sign::Field(color, 0.22).means("PWM ripple")
 }
 
-/// What the ideal wave's line means.
+/// Key of the ideal wave.
 pub fn ideal_key(text: &str) -> Key {
     Sign::line(IDEAL, 5.0).means(text)
 }
 
-/// What the demand's line means.
+/// Key of the demand.
 pub fn demand_key() -> Key {
     Sign::Line(DEMAND, 1.5, (6.0, 4.0)).means("demand")
 }
@@ -178,8 +178,8 @@ pub fn currents(data: &Results) -> Vec<Block> {
     let names = ("Phase currents", "phase current in A");
     let mut keys = phase_keys(["phase a", "phase b", "phase c"]);
     keys.extend([ripple_key(PHASES[0]), ideal_key("ideal quasi-square wave")]);
-    let note = "Lines are means over one control period. Sectors S1 to S6 are those of the true rotor angle; the pair that conducts \
-                changes at their borders.";
+    let note = "Lines are means over one control period. Sectors S1 to S6 are those of the true rotor angle; the conducting pair \
+                changes at their boundaries.";
     vec![
         Block::Legend(keys),
         Block::Note(note.to_owned()),
@@ -201,7 +201,7 @@ pub fn trajectories(data: &Results) -> Vec<Block> {
         Block::Legend(vec![
             ideal_key("ideal hexagon between the reference corners (circles) of sectors S1 to S6"),
             Sign::line(color, 2.5).means("mean over one control period"),
-            Sign::line(color, 1.0).means("with the ripple of the PWM, pale"),
+            Sign::line(color, 1.0).means("with PWM ripple, pale"),
         ]),
         Block::Figures {
             columns: 4,
@@ -216,7 +216,7 @@ pub fn torque(data: &Results) -> Vec<Block> {
     if panels.is_empty() {
         return Block::nothing("records");
     }
-    let mean = "mean over one control period, which the ripple figures judge";
+    let mean = "mean over one control period, the basis of the ripple figures";
     vec![
         Block::Legend(vec![
             Sign::line(variant(0), 2.5).means(mean),

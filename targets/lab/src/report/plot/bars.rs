@@ -1,4 +1,4 @@
-//! Bars: harmonics in groups, and how often errors of which size were seen.
+//! Bar charts: groups of harmonics, and histograms of errors.
 
 use super::super::palette::{AXIS, Color, DEMAND, INK, PHASES};
 use super::{Axis, Plot, Stroke, multiples, tick_text};
@@ -9,7 +9,7 @@ const FILLED: f64 = 0.8;
 /// Groups of bars.
 #[derive(Debug)]
 pub struct Bars<'a> {
-    /// What a screen reader says.
+    /// Description for screen readers.
     pub description: String,
     /// Name of the horizontal axis.
     pub x_title: &'a str,
@@ -19,13 +19,11 @@ pub struct Bars<'a> {
     pub top: f64,
     /// Colour of each bar in a group.
     pub colors: Vec<Color>,
-    /// The groups: text below, a value per bar where there is one, and the ideal value, marked
-    /// across.
+    /// The groups: text below, a value per bar, and the ideal value, marked across.
     pub groups: Vec<(String, Vec<Option<f64>>, Option<f64>)>,
 }
 
-/// Groups of bars side by side. A bar that would be taller than the plot ends at its edge with its
-/// value above.
+/// Groups of bars side by side. A bar taller than the plot ends at its edge with its value above.
 pub fn bars(bars: Bars<'_>) -> Plot {
     let top = bars.top;
     let names = bars.groups.iter().enumerate();
@@ -65,18 +63,18 @@ pub fn bars(bars: Bars<'_>) -> Plot {
     plot
 }
 
-/// Room of a histogram beyond the bound at either side, in parts of it.
+/// Margin of a histogram beyond the bound on either side, relative to the bound.
 const BEYOND: f64 = 0.12;
 
-/// Powers of ten by which engineers write small numbers, and what they put before the unit.
+/// Powers of ten with their SI prefixes.
 const PREFIXES: [(f64, &str); 4] = [(1.0, ""), (1e-3, "m"), (1e-6, "\u{b5}"), (1e-9, "n")];
 
-/// Errors of equal parts of the range from the negative to the positive bound, in volts: the share
-/// of each part on a scale of powers of ten, so that rare errors show, too.
+/// Histogram of errors in volts over the range from the negative to the positive bound, on a
+/// logarithmic scale, so that rare errors are visible.
 pub fn histogram(description: String, bound: f64, counts: &[u64]) -> Plot {
     let total: u64 = counts.iter().sum();
     let percent = |count: u64| 100.0 * count as f64 / total.max(1) as f64;
-    // Down to half of what a single error makes.
+    // Down to half the share of a single error.
     let floor = percent(1).log10() - 0.3;
     let of_prefix = |&&(power, _): &&(f64, &str)| bound >= power;
     let &(power, prefix) = PREFIXES.iter().find(of_prefix).unwrap_or(&PREFIXES[3]);
@@ -104,7 +102,7 @@ pub fn histogram(description: String, bound: f64, counts: &[u64]) -> Plot {
     plot
 }
 
-/// Ten to a whole power, in words that fit beside an axis: "100", "0.01".
+/// A power of ten as plain text: "100", "0.01".
 fn power_text(power: f64) -> String {
     tick_text(10.0_f64.powf(power), (-power).max(0.0) as usize)
 }

@@ -1,4 +1,4 @@
-//! Plots: two axes and what is drawn between them. Lengths are those of CSS pixels.
+//! Plots: two axes and the elements between them. Lengths are in CSS pixels.
 
 mod bars;
 mod plane;
@@ -18,7 +18,7 @@ use super::palette::{AXIS, Color};
 use serde::Serialize;
 use std::ops::Range;
 
-/// Width of a label's character, rather too wide than too narrow.
+/// Estimated width of a label's character, rather too wide than too narrow.
 pub const CHARACTER: f64 = 7.2;
 
 /// A point of the plotted plane.
@@ -27,22 +27,22 @@ pub type Point = (f64, f64);
 /// A plot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plot {
-    /// What a screen reader says.
+    /// Description for screen readers.
     pub description: String,
     /// Width and height.
     pub size: (f64, f64),
-    /// Room around the plotted area.
+    /// Margins of the plotted area.
     pub margins: Margins,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// What is drawn, the lowest first.
+    /// The elements, the lowest first.
     pub elements: Vec<Element>,
 }
 
 impl Plot {
-    /// A plot without content, with the room that its vertical axis needs.
+    /// A plot without content, with margins for its vertical axis.
     pub fn new(description: impl Into<String>, size: (f64, f64), x: Axis, y: Axis) -> Self {
         Self {
             description: description.into(),
@@ -54,7 +54,7 @@ impl Plot {
         }
     }
 
-    /// Draws something above all else.
+    /// Adds an element on top.
     pub fn add(&mut self, element: Element) {
         self.elements.push(element);
     }
@@ -75,7 +75,7 @@ impl Plot {
         });
     }
 
-    /// Writes above a point, in the middle.
+    /// Adds a text above a point, centred.
     pub fn write_above(&mut self, text: impl Into<String>, at: Point, (color, size): (Color, f64)) {
         self.add(Element::Label(Label {
             at,
@@ -101,7 +101,7 @@ impl Plot {
     }
 }
 
-/// Room around the plotted area.
+/// Margins of the plotted area.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margins {
     /// Above.
@@ -115,7 +115,7 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// Room that fits the labels of a vertical axis, and beside the longest its title.
+    /// Margins for the labels of a vertical axis and its title.
     fn fitting(y: &Axis) -> Self {
         let longest = y.ticks.iter().map(|(_, label)| label.chars().count());
         let labels = CHARACTER * longest.max().unwrap_or(0) as f64;
@@ -140,7 +140,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis with ticks that part its range into at most so many pieces.
+    /// An axis with ticks that divide its range into at most this many parts.
     pub fn new(title: impl Into<String>, range: &Range<f64>, pieces: usize) -> Self {
         Self::stepped(title, range, step(range, pieces))
     }
@@ -157,7 +157,7 @@ impl Axis {
     }
 }
 
-/// What is drawn.
+/// Element of a plot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Element {
@@ -185,7 +185,7 @@ pub enum Element {
         radius: f64,
         /// Its colour.
         color: Color,
-        /// Width of its line; none for a filled one.
+        /// Width of its line; `None` for a filled one.
         width: Option<f64>,
     },
     /// A cross.
@@ -195,23 +195,23 @@ pub enum Element {
         /// Its colour.
         color: Color,
     },
-    /// An upright line from a point upwards, which may leave the plotted area.
+    /// A vertical line from a point upwards, which may leave the plotted area.
     Rule {
         /// Its foot.
         at: Point,
         /// Its length.
         length: f64,
     },
-    /// A few words.
+    /// A short text.
     Label(Label),
 }
 
-/// A few words at a point.
+/// A short text at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Label {
     /// The point.
     pub at: Point,
-    /// How far to the right and down of it.
+    /// Offset to the right and down.
     pub offset: (f64, f64),
     /// The words.
     pub text: String,
@@ -219,11 +219,11 @@ pub struct Label {
     pub color: Color,
     /// Their size relative to that of ticks.
     pub size: f64,
-    /// Which sides of the words are at the place, across and upright.
+    /// The text's anchor, horizontal and vertical.
     pub anchor: (Side, Side),
 }
 
-/// A side of a text: left or top, the middle, right or bottom.
+/// Anchor of a text: left or top, the middle, right or bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -265,7 +265,7 @@ impl Stroke {
     }
 }
 
-/// Steps of 1, 2 or 5 times a power of ten that part a range into at most so many pieces.
+/// Steps of 1, 2 or 5 times a power of ten that divide a range into at most this many parts.
 fn step(range: &Range<f64>, most: usize) -> f64 {
     let least = (range.end - range.start) / most as f64;
     let power = 10_f64.powf(least.log10().floor());
@@ -283,7 +283,7 @@ fn multiples(range: &Range<f64>, step: f64) -> Vec<f64> {
     (first..=last).map(|k| k as f64 * step).collect()
 }
 
-/// A number for a tick: so many decimals, a true minus sign, no negative zero.
+/// A number for a tick: fixed decimals, a true minus sign, no negative zero.
 fn tick_text(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let is_zero = text.chars().all(|c| c == '0' || c == '.');

@@ -5,10 +5,10 @@ use super::window::{means, with_ripple};
 use super::{Axis, Element, Label, Margins, Plot, Point, Side, Stroke};
 use crate::closed_loop::{Trace, hexagon};
 
-/// Distance of points' names from the points.
+/// Distance of names from their points.
 const NAMES: f64 = 14.0;
 
-/// Width of the picture of a trajectory.
+/// Width of a trajectory's plot.
 const WIDTH: f64 = 281.0;
 
 /// A point with its name.
@@ -18,19 +18,19 @@ pub struct Named {
     pub at: Point,
     /// Its name.
     pub name: String,
-    /// Whether it is marked by a circle, with its name outside of it as seen from the origin; else
-    /// its name stands at the place itself.
+    /// Whether it is marked by a circle with its name outside, as seen from the origin; else its
+    /// name is at the point itself.
     pub is_marked: bool,
 }
 
 /// What is drawn.
 #[derive(Debug)]
 pub struct Plane<'a> {
-    /// What a screen reader says.
+    /// Description for screen readers.
     pub description: String,
     /// Names and units of the two axes.
     pub titles: [&'a str; 2],
-    /// Both axes reach from minus to plus this value.
+    /// Both axes range from minus to plus this value.
     pub reach: f64,
     /// Width of the picture.
     pub width: f64,
@@ -88,9 +88,9 @@ pub fn plane(plane: Plane<'_>) -> Plot {
     plot
 }
 
-/// One turn of a record, ripple pale and mean over one control period solid, over the hexagon
-/// between the corners of the quasi-square reference of amplitude `current`. Both axes reach to
-/// `reach` amperes on either side.
+/// One turn of a record, with ripple pale and the mean over one control period solid, over the
+/// hexagon between the corners of the quasi-square reference of amplitude `current`. Both axes
+/// range to `reach` amperes on either side.
 pub fn trajectory(
     description: String,
     trace: &Trace,
@@ -101,7 +101,7 @@ pub fn trajectory(
         opacity: 0.3,
         ..Stroke::solid(color, 0.8)
     };
-    // The names of the corners stand outside of them, where no commutation passes.
+    // Names of the corners are outside, where no commutation passes.
     plane(Plane {
         description,
         titles: ["i_alpha in A", "i_beta in A"],
@@ -116,7 +116,7 @@ pub fn trajectory(
     })
 }
 
-/// Corners of the hexagon of a current, named by their sectors behind `prefix`.
+/// Corners of the hexagon of a current, named by `prefix` and sector.
 pub fn corners(current: f64, prefix: &str) -> Vec<Named> {
     let corners = hexagon(current).into_iter().take(6).enumerate();
     corners

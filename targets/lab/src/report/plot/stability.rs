@@ -1,15 +1,14 @@
-//! Ripple over a parameter that is off, with the range in which the loop should be stable.
+//! Ripple over a varied parameter, with the computed stable range.
 
 use super::super::palette::PHASES;
 use super::{Axis, Element, Plot, Stroke, step};
 use crate::stability::StabilityCheck;
 
-/// Ends of the search for the range's edges: beyond them nothing is known to be unstable, so they
-/// are no edges.
+/// Ends of the search for the range's edges: a range that reaches them has no edge there.
 pub const SEARCH: (f64, f64) = (0.1001, 9.9);
 
 /// Simulated runs of one parameter at one speed: dots are stable, crosses not. `range` is the
-/// computed stable range of true over stated value.
+/// computed stable range of true over nominal value.
 pub fn stability(
     description: String,
     checks: &[&StabilityCheck],
@@ -24,7 +23,7 @@ pub fn stability(
         let asked = checks.iter().filter(|check| is_asked(check));
         asked.filter_map(|c| c.ripple_rms_pct).fold(0.0, f64::max)
     };
-    // Far outside the range the ripple says no more than that the loop is unstable.
+    // Far outside the range, the ripple only shows that the loop is unstable.
     let calm = greatest(&|check| check.stable);
     let end = greatest(&|_| true).min(4.0 * calm).max(1.0);
     let y_step = step(&(0.0..end), 6);

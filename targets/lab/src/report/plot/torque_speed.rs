@@ -1,4 +1,4 @@
-//! Mean torque over speed, all variants in one plot, with the demand and marks of interest.
+//! Mean torque over speed, all variants in one plot, with the demand and marks.
 
 use super::super::palette::{AXIS, Color, DEMAND, INK};
 use super::{Axis, CHARACTER, Element, Label, Plot, Point, Side, Stroke, step};
@@ -9,11 +9,11 @@ use std::ops::Range;
 /// Height of a row of marks in CSS pixels.
 const ROW: f64 = 17.0;
 
-/// Share of the demand below which curves are cut off: how they fall further tells nothing.
+/// Share of the demand at which curves are cut off.
 const LEAST: f64 = 0.8;
 
-/// Dash patterns of the variants in CSS pixels, so that curves on top of each other and prints
-/// without colour can be told apart.
+/// Dash patterns of the variants in CSS pixels, to distinguish coinciding curves and prints without
+/// colour.
 const DASHES: [(f64, f64); 4] = [(0.0, 0.0), (9.0, 3.0), (4.0, 3.0), (1.5, 2.5)];
 
 /// One variant's curve.
@@ -21,7 +21,7 @@ const DASHES: [(f64, f64); 4] = [(0.0, 0.0), (9.0, 3.0), (4.0, 3.0), (1.5, 2.5)]
 pub struct Curve {
     /// Colour.
     pub color: Color,
-    /// Place in the legend; chooses the dash pattern.
+    /// Index in the legend, which selects the dash pattern.
     pub index: usize,
     /// Speed in rpm and mean torque, ascending.
     pub points: Vec<Point>,
@@ -42,16 +42,17 @@ pub struct TorqueSpeed<'a> {
     pub curves: Vec<Curve>,
     /// Marks along the speed axis.
     pub marks: &'a [SpeedMark],
-    /// Which mean torques count as held.
+    /// Criterion for a mean torque that is held.
     pub held: Held,
 }
 
-/// Dash and gap of the curve at a place in the legend, in CSS pixels; no gap means a solid line.
+/// Dash and gap of the curve with this index in the legend, in CSS pixels; no gap means a solid
+/// line.
 pub fn dash(index: usize) -> (f64, f64) {
     DASHES[index % DASHES.len()]
 }
 
-/// The curves, the demand, what counts as held, and the marks.
+/// The curves, the demand, its tolerance, and the marks.
 pub fn torque_speed(plan: &TorqueSpeed<'_>) -> Plot {
     let (x_range, y_range) = (speed_range(plan), torque_range(plan));
     let x = Axis::new("speed in rpm", &x_range, 12);
@@ -73,7 +74,7 @@ pub fn torque_speed(plan: &TorqueSpeed<'_>) -> Plot {
     plot
 }
 
-/// The demand, and the ends of what counts as held.
+/// The demand and its tolerance.
 fn draw_demand(plot: &mut Plot, plan: &TorqueSpeed<'_>, x_range: &Range<f64>) {
     let demand = [(x_range.start, plan.torque), (x_range.end, plan.torque)];
     plot.line(demand, Stroke::solid(DEMAND, 1.0));
@@ -97,7 +98,7 @@ fn draw_demand(plot: &mut Plot, plan: &TorqueSpeed<'_>, x_range: &Range<f64>) {
         let held = demand.map(|(rpm, torque)| (rpm, side.edge() * torque));
         plot.line(held, Stroke::dashed(DEMAND, 1.0, (6.0, 4.0)));
         let percent = format!("{:.0} % of demand", 100.0 * side.edge());
-        // Beside the name of the demand, however near its line is.
+        // Next to the name of the demand, however near its line is.
         let (offset, upright) = match side {
             closed_loop::Side::Below => ((6.0, 3.0), Side::Start),
             closed_loop::Side::Above => ((66.0, -3.0), Side::End),
@@ -126,7 +127,7 @@ fn draw_curve(plot: &mut Plot, curve: &Curve, floor: f64) {
     }
 }
 
-/// A mark above the plot: its text ends at its line, in a row that no other text or line meets.
+/// A mark above the plot: its text ends at its line, in a row without any other text or line.
 struct Placed {
     rpm: f64,
     text: String,
@@ -149,7 +150,7 @@ fn place_marks(plot: &TorqueSpeed<'_>, x_range: &Range<f64>, per_rpm: f64) -> Ve
         }
         let text = format!("{} {:.0} %", mark.label, mark.percent);
         let text_from = rpm - text.chars().count() as f64 * CHARACTER / per_rpm;
-        // Above all earlier marks whose line stands where the text shall be.
+        // Above all earlier marks whose lines cross the text.
         let row = placed
             .iter()
             .filter(|earlier| earlier.rpm > text_from)
@@ -183,7 +184,7 @@ fn draw_mark(plot: &mut Plot, mark: &Placed, y_range: &Range<f64>) {
     }));
 }
 
-/// A curve down to where it first falls below a torque.
+/// A curve down to its first value below a torque.
 fn above(points: &[(f64, f64)], floor: f64) -> Vec<Point> {
     let mut kept = Vec::new();
     for &(x, y) in points {
@@ -228,7 +229,7 @@ fn speed_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     least..most + pad
 }
 
-/// Holds every curve as far down as [`LEAST`] of the demand; at least 12 % of the demand high.
+/// Contains every curve down to [`LEAST`] of the demand; at least 12 % of the demand high.
 fn torque_range(plot: &TorqueSpeed<'_>) -> Range<f64> {
     let torques = plot
         .curves

@@ -6,10 +6,10 @@ use super::{Axis, CHARACTER, Element, Plot, Point, Stroke};
 use crate::closed_loop::quasi_square;
 use std::ops::Range;
 
-/// Signals to draw over the electrical angle.
+/// Signals to plot over the electrical angle.
 #[derive(Debug)]
 pub struct Wave {
-    /// What a screen reader says.
+    /// Description for screen readers.
     pub description: String,
     /// Name and unit of the vertical axis.
     pub title: String,
@@ -17,9 +17,9 @@ pub struct Wave {
     pub range: Range<f64>,
     /// Each signal with its colour.
     pub signals: Vec<(Color, Columns)>,
-    /// Ideal waves, drawn broad below the signals: corners (angle in degrees, value).
+    /// Ideal waves, drawn wide below the signals: corners (angle in degrees, value).
     pub ideal: Vec<Vec<Point>>,
-    /// A demand, drawn dashed across.
+    /// A demand, drawn as a dashed line across.
     pub demand: Option<f64>,
 }
 
@@ -73,13 +73,13 @@ pub fn wave(wave: Wave) -> Plot {
     plot
 }
 
-/// Height of a two-valued signal's step; the signals are 1 apart.
+/// Step height of a two-valued signal; signals are 1 apart.
 const STEP: f64 = 0.6;
 
 /// A two-valued signal: its name, its colour, and its value in sectors S1 to S6.
 #[derive(Debug)]
 pub struct Level {
-    /// Name beside its line.
+    /// Name next to its line.
     pub name: &'static str,
     /// Colour.
     pub color: Color,
@@ -100,7 +100,7 @@ pub fn levels(description: String, signals: &[Level]) -> Plot {
             .collect(),
     };
     let mut plot = over_a_turn(description, 190.0, y);
-    // As wide as beside the labels of a signal from -1.0 to 1.0.
+    // As wide as with the labels of a signal from -1.0 to 1.0.
     plot.margins.left = 30.0 + 4.0 * CHARACTER;
     for (index, signal) in signals.iter().enumerate() {
         let points = (0..6).zip(signal.values).flat_map(|(sector, is_high)| {
@@ -131,7 +131,7 @@ pub fn ideal_phase(current: f64, phase: usize) -> Vec<Point> {
         .collect()
 }
 
-/// A range that holds the demand and every signal, with a little room.
+/// A range that contains the demand and every signal, with a margin.
 pub fn torque_range<'a>(demand: f64, signals: impl Iterator<Item = &'a Columns>) -> Range<f64> {
     let span = 0.1 * demand.abs().max(1e-9);
     let (least, most) = signals

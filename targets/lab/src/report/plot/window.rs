@@ -1,7 +1,7 @@
 //! One electrical turn of a record, from the start of sector S1, cut into plot columns.
 //!
-//! A column has the mean over one control period around its middle, which is what a controller
-//! can act on, and the least and greatest value in the same stretch, which is the PWM's ripple.
+//! A column has the mean over one control period around its middle, to which a controller can
+//! respond, and the least and greatest value in the same period, the PWM ripple.
 
 use super::Point;
 use crate::closed_loop::Trace;
@@ -28,8 +28,8 @@ fn angle(theta_e: f64) -> f64 {
     (theta_e.to_degrees() - FIRST_DEG).rem_euclid(360.0) + FIRST_DEG
 }
 
-/// Bins of the first whole turn in a record, or all of it where the shaft does not turn so far.
-/// Half a control period is left over at either end for means.
+/// Bins of the first whole turn in a record, or all of it if the shaft turns less. Half a control
+/// period is reserved at either end for means.
 fn first_turn(trace: &Trace) -> Range<usize> {
     let half = trace.bins_per_period;
     let bins = trace.theta_e.len();
@@ -43,7 +43,7 @@ fn first_turn(trace: &Trace) -> Range<usize> {
     }
 }
 
-/// A signal of the record over its first turn in at most `columns` columns; `of` tells the signal
+/// A signal of the record over its first turn in at most `columns` columns; `of` gives the signal
 /// at a bin.
 pub fn columns(trace: &Trace, columns: usize, of: impl Fn(usize) -> f64) -> Columns {
     let turn = first_turn(trace);
@@ -85,7 +85,7 @@ pub fn columns(trace: &Trace, columns: usize, of: impl Fn(usize) -> f64) -> Colu
     result
 }
 
-/// Points drawn of a turn, at most.
+/// Maximum number of points of a turn.
 const POINTS: usize = 2400;
 
 fn stride(turn: &Range<usize>) -> usize {

@@ -1,4 +1,4 @@
-//! Every claim both ways: with figures as the paper claims them, and with contrary ones.
+//! Every claim with figures as the paper claims them, and with contrary ones.
 
 use super::*;
 use crate::reproduction::experiment::{Figures, Setting};
@@ -125,7 +125,7 @@ fn no_claim_holds_with_contrary_figures() {
 }
 
 #[test]
-fn readings_that_disagree_leave_every_claim_in_part() {
+fn claims_hold_in_part_if_readings_disagree() {
     for readings in [[claimed(), contrary()], [contrary(), claimed()]] {
         for (letter, verdict) in verdicts(&readings) {
             assert_eq!(verdict, Verdict::InPart, "{letter}");
@@ -146,7 +146,7 @@ fn without_current() -> Experiment {
 }
 
 #[test]
-fn lost_currents_tell_nothing_but_computation_times_do() {
+fn with_lost_currents_only_computation_times_are_judged() {
     for (letter, verdict) in verdicts(&[without_current(), without_current()]) {
         let expected = match letter {
             'f' => Verdict::Holds,
@@ -154,14 +154,14 @@ fn lost_currents_tell_nothing_but_computation_times_do() {
         };
         assert_eq!(verdict, expected, "{letter}");
     }
-    // The other reading still tells.
+    // The other reading can be judged.
     for (letter, verdict) in verdicts(&[without_current(), claimed()]) {
         assert_eq!(verdict, Verdict::Holds, "{letter}");
     }
 }
 
 #[test]
-fn one_lost_drive_leaves_open_only_what_depends_on_it() {
+fn one_lost_drive_leaves_only_its_statements_open() {
     let mut readings = claimed();
     readings.methods[Phcc.index()].speeds = without_current().methods[0].speeds;
     let claims = claims([readings, readings]);
@@ -182,7 +182,7 @@ fn one_lost_drive_leaves_open_only_what_depends_on_it() {
         None
     );
     assert_eq!(outcome('g', "alike at 400 rpm"), None);
-    // Another drive refutes it whatever the lost one would have done.
+    // Another drive refutes it, whatever the lost one would have done.
     let mut refuted = readings;
     refuted.methods[PiPwm.index()].speeds[LOW].h6_pct = Some(10.0);
     refuted.methods[PiPwm.index()].speeds[LOW].switching_hz = Some(2e3);
@@ -201,7 +201,7 @@ fn one_lost_drive_leaves_open_only_what_depends_on_it() {
 }
 
 #[test]
-fn tolerances_decide_at_their_edges() {
+fn statements_change_at_their_tolerances() {
     let judged = |change: &dyn Fn(&mut Experiment), claim: usize, statement: usize| {
         let mut readings = claimed();
         change(&mut readings);

@@ -1,4 +1,4 @@
-//! Figures that need no run: 2, 3, 9, 12 and 13.
+//! Figures without a run: 2, 3, 9, 12 and 13.
 
 use super::tables::{emf, emf_corner};
 use crate::closed_loop::{harmonic_of_quasi_square, hexagon};
@@ -99,9 +99,9 @@ pub fn figure_3(data: &Reproduction) -> Vec<Block> {
         lines: line(1, hexagon(1.0)),
         points: corners(1.0, "I"),
     });
-    let of_emf = "EMF: it runs along the edges; E1 to E6 at the entries of S1 to S6";
+    let of_emf = "The EMF moves along the edges; E1 to E6 are at the entries of S1 to S6";
     let of_current =
-        "Current: it stays on I1 to I6 in S1 to S6, and takes the edges in commutation";
+        "The current stays at I1 to I6 in S1 to S6, and moves along the edges in commutation";
     vec![Block::Figures {
         columns: 3,
         figures: vec![
@@ -111,7 +111,7 @@ pub fn figure_3(data: &Reproduction) -> Vec<Block> {
     }]
 }
 
-/// Figure 9: the plane in twelve sectors, with the vectors that bound them.
+/// Figure 9: the plane in twelve sectors, with the vectors at their boundaries.
 pub fn figure_9(data: &Reproduction) -> Vec<Block> {
     let v_bus = data.inverter.v_bus;
     let reach = 0.85 * v_bus;
@@ -156,13 +156,12 @@ pub fn figure_9(data: &Reproduction) -> Vec<Block> {
             .collect(),
         points: three_names.chain(two_names).chain(sectors).collect(),
     });
-    let caption =
-        "The vectors part the plane into twelve sectors of 30\u{b0}, numbered from the alpha axis";
+    let caption = "The vectors divide the plane into twelve sectors of 30\u{b0}, numbered from the alpha axis";
     vec![
         Block::Legend(vec![
             Sign::line(variant(0), 2.5).means("three-phase vectors V1 to V6"),
             Sign::line(variant(1), 2.5).means("two-phase vectors V12 to V61"),
-            Sign::line(IDEAL, 3.0).means("reach of three driven legs"),
+            Sign::line(IDEAL, 3.0).means("limit of three driven legs"),
         ]),
         Block::Figures {
             columns: 1,
@@ -204,8 +203,7 @@ pub fn figures_12_13(data: &Reproduction) -> Vec<Block> {
         "The fundamental is 2\u{221a}3/\u{3c0} I = {}; harmonic n is 1/n of it: 5th {fifth}\u{a0}%, 7th {seventh}\u{a0}%.",
         quantity(fundamental, "A")
     );
-    let of_spectrum =
-        "Figure 13: its spectrum; orders that are even or multiples of three are absent";
+    let of_spectrum = "Figure 13: its spectrum; without even orders and multiples of three";
     vec![
         Block::Figures {
             columns: 2,

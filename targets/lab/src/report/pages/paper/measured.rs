@@ -1,4 +1,4 @@
-//! Figures of runs: 4 and 14 to 20.
+//! Figures with runs: 4 and 14 to 20.
 
 use super::verdicts::lettered;
 use crate::closed_loop::{
@@ -51,7 +51,7 @@ fn panels(data: &Reproduction, speed: usize) -> (Vec<Panel<'_>>, Vec<&Point>) {
     panels.unzip()
 }
 
-/// What the colours of the readings mean, and what else is drawn.
+/// Key of the readings' colours and other lines.
 fn legend(sign: fn(Color) -> Sign, more: impl IntoIterator<Item = Key>) -> Block {
     let readings = Reading::ALL.map(|reading| {
         let text = format!("{} reading", reading.name());
@@ -90,8 +90,8 @@ pub fn figure_4(data: &Reproduction) -> Vec<Block> {
         points: corners(data.current, "S"),
     });
     let [low, high] = [low, high].map(|point| number(point.rpm, 0));
-    let note = "The figure is about commutation with little voltage to spare; shown is the drive that is nearest to a conventional one, \
-                PI-PWM in the literal reading. At high speed the incoming current rises too slowly, and the trajectory falls inside of \
+    let note = "The figure shows commutation with little voltage reserve, here of the drive nearest to a conventional one, \
+                PI-PWM in the literal reading. At high speed the incoming current rises too slowly, and the trajectory falls inside \
                 the hexagon.";
     let caption = "Trajectory of the current, means over one control period";
     vec![
@@ -264,8 +264,8 @@ pub fn trajectories(data: &Reproduction, speed: usize) -> Vec<Block> {
         rows[place % 2].push(figure);
     }
     let ideal = ideal_key("ideal hexagon between the reference corners of S1 to S6");
-    let note = "Solid: mean over one control period, whose RMS distance from the hexagon's outline stands below; pale: with the ripple of \
-                the PWM.";
+    let note = "Solid: mean over one control period, with its RMS distance from the hexagon's outline below; pale: with the PWM \
+                ripple.";
     let rows = rows.map(|figures| Block::Figures {
         columns: 4,
         figures,
@@ -276,8 +276,8 @@ pub fn trajectories(data: &Reproduction, speed: usize) -> Vec<Block> {
 
 /// Figure 20: torque over speed.
 pub fn figure_20(data: &Reproduction) -> Vec<Block> {
-    let note = "Dots, and the shares of rated speed in the legend, mark where mean torque first falls below 97 % of the demand. The marks \
-                above are the paper's figures.";
+    let note = "Dots, and percentages of rated speed in the legend, are the speeds at which mean torque falls below 97 % of the demand. Marks \
+                above are the paper's values.";
     let readings = Reading::ALL
         .into_iter()
         .flat_map(|reading| of_reading(data, reading));

@@ -12,12 +12,12 @@ use crate::text::{number, quantity};
 /// Title of the page.
 const TITLE: &str = "The paper's experiment, reproduced in fixed point";
 
-/// The paper that is reproduced.
+/// The reproduced paper.
 const PAPER: &str = "M. S. Trivedi, R. K. Keshri, \u{201c}Evaluation of Predictive Current Control Techniques for PM BLDC Motor in \
                      Stationary Plane\u{201d}, IEEE Access 2020, doi 10.1109/ACCESS.2020.2978695: its tables, figures and claims in \
                      its order, from generated controllers in closed loop.";
 
-/// Places of the two speeds.
+/// Indices of the two speeds.
 const LOW: usize = 0;
 const HIGH: usize = 1;
 
@@ -33,8 +33,7 @@ pub fn reproduction_page(data: &Reproduction) -> Page {
     }
 }
 
-/// What is said where there is no page: the claims with our verdicts and their reasons, and Table
-/// 5.
+/// Summary without a page: the claims with verdicts and reasons, and Table 5.
 pub fn reproduction_blocks(data: &Reproduction) -> Vec<Block> {
     let [_, setting] = opening(data);
     let verdicts = verdicts::summary(data);

@@ -19,7 +19,7 @@ fn range_text(k: usize) -> String {
     format!("{from}\u{b0} to {to}\u{b0}")
 }
 
-/// A multiple of the unit as a fraction where it is one of the plane's: thirds, or over root 3.
+/// A multiple of the unit as a fraction, if it is a multiple of a third or of 1/root 3.
 fn exact(value: f64) -> String {
     let root = 3.0_f64.sqrt();
     let known = [
@@ -82,7 +82,7 @@ pub fn table_1(data: &Reproduction) -> Vec<Block> {
             Column::number("in A", ""),
             Column::number("e_{\u{3b1}}/E", ""),
             Column::number("e_{\u{3b2}}/E", ""),
-            Column::text("Against the paper"),
+            Column::text("Compared with the paper"),
         ],
     );
     for (k, &signs) in SECTOR_CURRENT.iter().enumerate() {
@@ -99,13 +99,13 @@ pub fn table_1(data: &Reproduction) -> Vec<Block> {
             exact(e.0),
             exact(e.1),
             match k {
-                2 | 5 => format!("erratum: E_{{{}}} is printed otherwise", k + 1),
+                2 | 5 => format!("erratum: E_{{{}}} is printed differently", k + 1),
                 _ => "as printed".to_owned(),
             },
         ]);
     }
     let how = "Computed: the Clarke transform (2/3, amplitude-invariant) of (+I, \u{2212}I, 0) on the sector's pair, and of the three EMFs \
-               at the sector's entry. The current jumps from corner to corner; the EMF runs along the edges between its corners.";
+               at the sector's entry. The current jumps from corner to corner; the EMF moves along the edges between its corners.";
     vec![
         Block::Note(units),
         Block::Table(table),
@@ -113,7 +113,7 @@ pub fn table_1(data: &Reproduction) -> Vec<Block> {
     ]
 }
 
-/// Legs as the paper writes them: +, -, 0.
+/// Legs in the paper's notation: +, -, 0.
 fn legs_text(legs: LegSigns) -> String {
     let sign = |sign| match sign {
         1 => '+',
@@ -123,7 +123,7 @@ fn legs_text(legs: LegSigns) -> String {
     legs.map(sign).iter().collect()
 }
 
-/// The two halves of the paper's tables: what is done in commutation, and otherwise.
+/// The two parts of the paper's tables: during commutation, and otherwise.
 const HALVES: [&str; 2] = ["In commutation", "Otherwise"];
 
 /// Table 2: vectors per sector.
@@ -158,8 +158,8 @@ pub fn table_2(data: &Reproduction) -> Vec<Block> {
         table.row(first.into_iter().chain(three).chain(two));
     }
     let note = "Three-phase vectors are 2V_{d}/3 long, two-phase vectors V_{d}/\u{221a}3. The paper's column \u{201c}angle\u{201d} is the \
-                rotor angle \u{3b8}_{e}, not the vector's. A two-phase vector is what it says only while its third leg carries no current: \
-                with current that leg's diode conducts, and the vector is a three-phase one.";
+                rotor angle \u{3b8}_{e}, not the vector's. A two-phase vector needs a third leg without current: \
+                with current that leg's diode conducts, which makes a three-phase vector.";
     vec![Block::Table(table), Block::Note(note.to_owned())]
 }
 
@@ -172,7 +172,7 @@ fn vector_name(vector: u8) -> String {
     }
 }
 
-/// Table 3: the derived switching table beside the printed row.
+/// Table 3: the derived switching table and the printed row.
 pub fn table_3(data: &Reproduction) -> Vec<Block> {
     let (printed, derived) = (&data.tables.printed[0], &data.tables.derived);
     let halves = HALVES.into_iter().flat_map(|half| {
@@ -198,10 +198,10 @@ pub fn table_3(data: &Reproduction) -> Vec<Block> {
         .filter(|&place| printed[place] != derived[0][place])
         .count();
     let note = format!(
-        "Forward motoring; 0 is the zero vector of the sector's pair with its third leg off. The paper's table is lost but for its sector \
-         1, as printed in the text; {differing} of its 8 entries differ from the derived ones (marked). An entry is derived from the \
-         vectors' geometry at three quarters of full EMF: the allowed vector that moves both components as wanted best. The literal \
-         reading turns the printed row through the sectors."
+        "Forward motoring; 0 is the zero vector of the sector's pair with its third leg off. Only sector \
+         1 of the paper's table is available, from its text; {differing} of its 8 entries differ from the derived ones (marked). Entries are derived from the \
+         vectors' geometry at three quarters of full EMF: the allowed vector that best moves both components in the required direction. The literal \
+         reading rotates the printed row through the sectors."
     );
     vec![Block::Table(table), Block::Note(note)]
 }

@@ -1,4 +1,4 @@
-//! The paper's claims with our figures and verdicts, and what the two readings are.
+//! The paper's claims with measured figures and verdicts, and the two readings.
 
 use crate::report::{Block, Cell, Column, Label, Table, Tone};
 use crate::reproduction::{Claim, Finding, Method, Reading, Reproduction, Verdict};
@@ -14,7 +14,7 @@ fn table_of_claims() -> Table {
     Table::new("results claims", names.map(Column::text))
 }
 
-/// The claims with their verdicts, then the reasons.
+/// The claims with their verdicts, and the reasons.
 pub fn summary(data: &Reproduction) -> Vec<Block> {
     let (claims, mut table) = (data.claims(), table_of_claims());
     for claim in &claims {
@@ -42,9 +42,9 @@ pub fn claims(data: &Reproduction) -> Vec<Block> {
             table.row(cells.map(|text| Cell::from(text).toned(Tone::Muted)));
         }
     }
-    let note = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM, in this order; a dash stands for a drive that has lost its current, \
-                and what depends on it is not judged. A claim holds when each of its statements is true under every reading that can \
-                tell, does not hold when none is true, and else holds in part. Verdicts and reasons are computed from the figures.";
+    let note = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM, in this order; a dash is a drive that has lost its current, \
+                on which no statement is judged. A claim holds if each of its statements is true under every reading that can be judged, \
+                does not hold if none is true, and else holds in part. Verdicts and reasons are computed from the figures.";
     vec![Block::Note(note.to_owned()), Block::Table(table)]
 }
 
@@ -77,11 +77,11 @@ fn finding_text(finding: &Finding) -> String {
     format!("{outcome}: {}", finding.why)
 }
 
-/// What the readings are, and what cannot be had.
+/// The readings, and what cannot be implemented.
 pub fn readings(data: &Reproduction) -> Vec<Block> {
     let mut table = Table::new(
         "results readings",
-        ["Method", "Reading", "Drive", "What it is"].map(Column::text),
+        ["Method", "Reading", "Drive", "Description"].map(Column::text),
     );
     for method in Method::ALL {
         table.group(Label::Beside(lettered(method).into()));
@@ -97,14 +97,14 @@ pub fn readings(data: &Reproduction) -> Vec<Block> {
     }
     let how = format!(
         "Every drive is generated fixed-point code, fed by the simulated motor through {}-bit ADCs and a Hall timer. The literal reading \
-         takes the paper's equations and tables as they are printed; the corrected one takes them with the errata that the documentation \
-         of the crate hexagen lists (hexagen::errata).",
+         uses the paper's equations and tables as printed; the corrected one applies the errata in the documentation \
+         of the crate hexagen (hexagen::errata).",
         data.inverter.adc_bits
     );
     vec![Block::Prose(how), Block::Table(table)]
 }
 
-/// A method's name behind its letter.
+/// A method's name after its letter.
 pub fn lettered(method: Method) -> String {
     format!("({}) {}", method.letter(), method.name())
 }
@@ -112,25 +112,25 @@ pub fn lettered(method: Method) -> String {
 fn about(method: Method, reading: Reading) -> &'static str {
     match (method, reading) {
         (Method::FcsMpc, Reading::Literal) => {
-            "Predicts as if its command took effect at once; the loop has a period of delay. Table 2's vectors whatever the off leg does; EMF from the last period."
+            "Predicts without the loop's delay of one period. Table 2's vectors, the off leg's diode ignored; EMF of the last period."
         }
         (Method::FcsMpc, Reading::Corrected) => {
-            "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's shape."
+            "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's EMF shape."
         }
         (Method::Pdcc, Reading::Literal) => {
-            "Voltage scaled to the hexagon; EMF from the last period. The paper's own modulation over neighbouring pair vectors, (15), cannot be had from compare values with one state per leg and period: all three legs are pulsed."
+            "Voltage scaled to the hexagon; EMF from the last period. The paper's modulation over neighbouring pair vectors, (15), is impossible with one state per leg and period: all three legs are pulsed."
         }
         (Method::Pdcc, Reading::Corrected) => {
-            "Keeps the component along the EMF at the limit of voltage, commutates two periods ahead; EMF from the motor's shape."
+            "At the voltage limit keeps the component along the EMF; commutates two periods ahead; EMF from the motor's EMF shape."
         }
         (Method::Phcc, Reading::Literal) => {
-            "The printed row of sector 1, turned through the sectors; EMF from the last period."
+            "The printed row of sector 1, rotated through the sectors; EMF of the last period."
         }
         (Method::Phcc, Reading::Corrected) => {
             "Switching table derived from the vectors' geometry; EMF from the motor's shape."
         }
         (Method::PiPwm, Reading::Literal) => {
-            "800 Hz, integral time 0.5 ms, no EMF feed-forward. (15) cannot be had, as with PDCC: all three legs are pulsed."
+            "800 Hz, integral time 0.5 ms, no EMF feed-forward. (15) is impossible, as with PDCC: all three legs are pulsed."
         }
         (Method::PiPwm, Reading::Corrected) => {
             "1 kHz, integral time L/R, feed-forward of the motor's EMF."
