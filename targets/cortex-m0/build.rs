@@ -1,4 +1,4 @@
-//! Puts memory map and vectors where the linker finds it, and names the start-up's linker script.
+//! Makes memory map and vectors known to the linker, and names the start-up's linker script.
 
 use std::path::Path;
 use std::{env, fs, io};

@@ -1,5 +1,5 @@
-//! Emits the drives of `src/list.rs` as C99, compiles them for the target, and writes what Rust must know of each:
-//! `drives.rs`, a list of calls of the macro in `src/drive.rs`.
+//! Emits the drives of `src/list.rs` as C99, compiles them for the target, and writes their
+//! interface for Rust: `drives.rs`, a list of calls of the macro in `src/drive.rs`.
 
 use hexagen_codegen::emit::c99::{RUNTIME, emit_c99};
 use hexagen_codegen::ir::Program;
@@ -12,7 +12,7 @@ use std::{env, fs};
 #[path = "src/list.rs"]
 mod list;
 
-/// What emitted C is documented to pass.
+/// Flags that emitted C is documented to pass.
 const STRICT: [&str; 6] = [
     "-std=c99",
     "-Wall",
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let drives = list::DRIVES.iter().map(|drive| compile(drive, &out));
     let drives: Result<String, _> = drives.collect();
-    // Behind those that call it.
+    // After the libraries that call it.
     build(&out)
         .file(out.join("hexagen.c"))
         .try_compile("hexagen_c")?;
@@ -69,14 +69,14 @@ fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
     };
     write(".h", &sources.header)?;
     let source = write(".c", &sources.source)?;
-    // The room that Rust gives it is what it needs.
+    // Rust reserves exactly the size that C needs.
     let check = format!(
         "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}) == {size}) ? 1 : -1];\n"
     );
     let check = write("_size.c", &check)?;
     build(out)
         .files([source, check])
-        // The public function itself is what the firmware calls and the bench counts.
+        // The firmware calls, and the bench counts, the public function itself.
         .define(&format!("{prefix}_step"), drive.symbol)
         .try_compile(&format!("{prefix}_c"))?;
 
@@ -112,20 +112,20 @@ fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
     ))
 }
 
-/// The compiler as it compiles all of it.
+/// The compiler, with the flags of all files.
 fn build(out: &Path) -> cc::Build {
     let mut build = cc::Build::new();
     build
         .include(out)
         .opt_level(2)
         .define("HEXAGEN_VERIFICATION", None)
-        // Enumerations as small as Rust has them, no start-up code or library of the compiler.
+        // Enumerations as small as in Rust, no start-up code or library of the compiler.
         .flags(["-fshort-enums", "-ffreestanding", "-fno-jump-tables"])
         .flags(STRICT);
     build
 }
 
-/// What chooses the words that suit the core.
+/// Options for the core's word length.
 fn word_choice() -> &'static str {
     let target = env::var("TARGET").unwrap_or_default();
     if target.starts_with("thumbv6m") {
@@ -138,7 +138,7 @@ fn word_choice() -> &'static str {
 /// Bytes of a supervisor.
 const SUPERVISOR: usize = 28;
 
-/// Bytes of a drive: its set-point words, each replaced alone, the status, its supervisor, and its state.
+/// Bytes of a drive: set-point words, status, supervisor, and state.
 fn size(program: &Program) -> usize {
     let before = 4 * (program.params.len() + 1) + SUPERVISOR;
     let end = program.states.iter().fold(before, |end, word| {

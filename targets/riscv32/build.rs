@@ -1,4 +1,4 @@
-//! Puts the memory map where the linker finds it, and names the start-up's linker script.
+//! Makes the memory map known to the linker, and names the start-up's linker script.
 
 use std::path::Path;
 use std::{env, fs, io};

@@ -11,10 +11,10 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// The programs of every firmware that hold drives: those in Rust, and those that are emitted as C.
+/// The programs of every firmware with drives: in Rust, and emitted as C.
 pub const PROGRAMS: [&str; 2] = ["bench", "c99"];
 
-/// Longest run of the emulator.
+/// Time-out of the emulator.
 const PATIENCE: Duration = Duration::from_mins(15);
 
 /// Built firmware.
@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_mins(15);
 pub struct Firmware {
     /// Its target.
     pub target: Target,
-    /// What compiled it.
+    /// The compiler.
     pub toolchain: Toolchain,
     built: PathBuf,
 }
@@ -31,7 +31,7 @@ impl Firmware {
     /// Builds all programs of a target's firmware crate.
     ///
     /// # Errors
-    /// When a tool is missing, or the build fails.
+    /// If a tool is missing, or the build fails.
     pub fn build(target: Target) -> Result<Self, BenchError> {
         let toolchain = find(target)?;
         let root = workspace();
@@ -47,10 +47,10 @@ impl Firmware {
         }
     }
 
-    /// Lints the firmware, where the compiler on the path has the target: Debian's comes without lints.
+    /// Lints the firmware, if the compiler on the path has the target: Debian's has no lints.
     ///
     /// # Errors
-    /// When there are findings.
+    /// If there are findings.
     pub fn lint(&self) -> Result<(), BenchError> {
         match self.toolchain {
             Toolchain::Installed { .. } => self.check(self.target.name(), &[]),
@@ -58,10 +58,10 @@ impl Firmware {
         }
     }
 
-    /// Checks the examples of `targets/frameworks`, which are of the Cortex-M4.
+    /// Checks the examples of `targets/frameworks`, which are for the Cortex-M4.
     ///
     /// # Errors
-    /// When they do not compile, or have findings.
+    /// If they do not compile, or have findings.
     pub fn check_frameworks(&self) -> Result<(), BenchError> {
         match self.target {
             Target::CortexM4 => self.check("frameworks", &["--examples"]),
@@ -69,7 +69,7 @@ impl Firmware {
         }
     }
 
-    /// Lints what a folder of `targets` holds; Debian's compiler checks that it compiles.
+    /// Lints a folder of `targets`; Debian's compiler only checks that it compiles.
     fn check(&self, folder: &str, arguments: &[&str]) -> Result<(), BenchError> {
         let (name, lints): (_, &[&str]) = match self.toolchain {
             Toolchain::Installed { .. } => ("clippy", &["--", "-D", "warnings"]),
@@ -96,7 +96,7 @@ impl Firmware {
         command
             .arg("--target-dir")
             .arg(&self.built)
-            // The crate's own `.cargo/config.toml` counts in its folder only.
+            // `.cargo/config.toml` of a crate applies in its folder only.
             .current_dir(workspace().join("targets").join(folder));
         command
     }
@@ -109,10 +109,11 @@ impl Firmware {
             .join(program)
     }
 
-    /// Builds the peers once more where that gives them a floating-point unit: the drives are built without.
+    /// Builds the peers again with a floating-point unit, if the target has one: the drives are
+    /// built without.
     ///
     /// # Errors
-    /// When the build fails.
+    /// If the build fails.
     pub fn build_peers(&self) -> Result<(), BenchError> {
         if self.target != Target::CortexM4 {
             return Ok(());
@@ -128,10 +129,10 @@ impl Firmware {
         }
     }
 
-    /// The drives that a program knows.
+    /// The drives of a program.
     ///
     /// # Errors
-    /// When the emulator fails.
+    /// If the emulator fails.
     pub fn drives(&self, program: &str) -> Result<Vec<Listed>, BenchError> {
         let task = Task {
             mode: Mode::List,
@@ -145,7 +146,7 @@ impl Firmware {
     /// Runs a task on a program; returns its answers.
     ///
     /// # Errors
-    /// When the emulator fails or hangs.
+    /// If the emulator fails or hangs.
     pub fn run_program(
         &self,
         program: &str,
@@ -164,17 +165,17 @@ impl Firmware {
     /// Runs a task on a program; returns the log of all instructions.
     ///
     /// # Errors
-    /// When the emulator fails or hangs.
+    /// If the emulator fails or hangs.
     pub fn trace(&self, program: &str, task: Task, records: &[u8]) -> Result<String, BenchError> {
         let folder = folder_of(task, records)?;
         self.emulate(program, Purpose::Trace, folder.path())?;
         Ok(fs::read_to_string(folder.path().join("log"))?)
     }
 
-    /// Runs a program on the emulated core, in a folder of the host; returns what it printed.
+    /// Runs a program on the emulated core, in a folder of the host; returns its output.
     ///
     /// # Errors
-    /// When it does not end well, or not in time.
+    /// If it fails, or does not end in time.
     pub fn emulate(
         &self,
         program: &str,
@@ -227,7 +228,7 @@ pub fn workspace() -> PathBuf {
     here.ancestors().nth(2).unwrap_or(here).to_path_buf()
 }
 
-/// Where this workspace builds.
+/// Target folder of this workspace.
 fn root_of_builds(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR")
         .map_or_else(|| root.join("target"), |folder| root.join(folder))

@@ -1,15 +1,15 @@
-//! What the firmware says of its drives.
+//! The firmware's list of its drives.
 
 /// A drive of the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Listed {
-    /// Place in the firmware's list.
+    /// Index in the firmware's list.
     pub place: u16,
     /// Symbol of the step function.
     pub symbol: String,
     /// Name of the library's motor.
     pub motor: String,
-    /// Controller and options as the command line writes them.
+    /// Controller and options in the command line's notation.
     pub variant: String,
     /// Names of the state words.
     pub words: Vec<String>,
@@ -19,7 +19,7 @@ pub struct Listed {
     pub spec: String,
 }
 
-/// Reads the firmware's list; none where it is none.
+/// Parses the firmware's list; `None` if it is invalid.
 pub fn parse(text: &str) -> Option<Vec<Listed>> {
     let mut lines = text.lines();
     let mut drives = Vec::new();
@@ -60,12 +60,13 @@ pub fn parse(text: &str) -> Option<Vec<Listed>> {
     Some(drives)
 }
 
-/// The library's name of a motor's file; none where it is no such file.
+/// The library's name of a motor's file; `None` for any other file.
 pub fn motor(file: &str) -> Option<&str> {
     file.rsplit('/').next()?.strip_suffix(".toml")
 }
 
-/// Kind and options of a macro call (`pdcc`, `saturation : keep_angle, emf_filter : 1`) as the command line writes them.
+/// Kind and options of a macro call (`pdcc`, `saturation : keep_angle, emf_filter : 1`) in the
+/// command line's notation.
 pub fn variant(kind: &str, options: &str) -> String {
     let kind = kind.replace('_', "-");
     let dense: String = options.chars().filter(|c| !c.is_whitespace()).collect();
@@ -80,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reads_what_the_firmware_writes() {
+    fn the_firmwares_list_is_parsed() {
         let text = "drive step_x\nmotor ../motors/x-1.toml\nkind fcs_mpc\noptions emf : model,\nadvance : 1.5,\n\
                     words mode fault\nsize 000068\nname = \"X\"\n[motor]\nend\n";
         let drives = parse(text).expect("a list");

@@ -1,7 +1,9 @@
-//! The test bench: builds the firmware of every target, runs it on emulated cores, compares every word with the host,
-//! counts what a step costs; compares on the host what the drives command with what they did before; counts the house.
+//! The test bench: builds the firmware of every target, runs it on emulated cores, compares every
+//! word with the host, counts the cost of steps; compares the drives' commands on the host with
+//! those of earlier versions; measures the repository.
 //!
-//! `cargo xtask firmware`, `cargo xtask pil`, `cargo xtask cost` and `cargo xtask commands` come here.
+//! Called by `cargo xtask firmware`, `cargo xtask pil`, `cargo xtask cost` and
+//! `cargo xtask commands`.
 
 mod commands;
 mod cost;
@@ -25,29 +27,31 @@ use targets::Target;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Targets; all unless named
+    /// Targets; all by default
     #[arg(long, global = true, value_enum)]
     target: Vec<Target>,
-    /// Goes on without the targets whose tools are missing, and says so
+    /// Skips targets whose tools are missing, with a warning
     #[arg(long, global = true)]
     where_possible: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// Builds and lints the firmware of every target, and lets it run on the emulated board
+    /// Builds and lints the firmware of every target, and runs it on the emulated board
     Firmware,
-    /// Processor in the loop: replays closed-loop vectors on the emulated cores and compares every word
+    /// Processor in the loop: replays closed-loop vectors on the emulated cores and compares every
+    /// word
     Pil(pil::Options),
     /// Counts instructions, code, tables, state and stack of every step
     Cost(cost::Options),
-    /// Compares a million steps of commands of every counted drive, in closed loop on the host, with the expected ones
+    /// Compares a million commands of every counted drive, in closed loop on the host, with the
+    /// expected ones
     Commands(commands::Options),
-    /// How large the repository is, and which of its files lean on each other in circles
+    /// Size of the repository, and circles of files that use each other
     Marks,
 }
 
-/// Why the bench stopped.
+/// Error of the bench.
 #[derive(Debug, thiserror::Error)]
 enum BenchError {
     #[error(transparent)]
@@ -101,7 +105,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The targets, less those whose tools are missing, if that is allowed.
+/// The targets, without those whose tools are missing, if that is allowed.
 fn possible(mut targets: Vec<Target>, where_possible: bool) -> Vec<Target> {
     if where_possible {
         targets.retain(|&target| match toolchain::find(target) {
@@ -118,7 +122,7 @@ fn possible(mut targets: Vec<Target>, where_possible: bool) -> Vec<Target> {
     targets
 }
 
-/// Builds a target's firmware and lets its main program run on the emulated board.
+/// Builds a target's firmware and runs its main program on the emulated board.
 fn demonstrate(target: Target) -> Result<(), BenchError> {
     let built = firmware::Firmware::build(target)?;
     built.lint()?;

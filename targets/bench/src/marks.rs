@@ -1,8 +1,8 @@
-//! The marks of the house: how large it is, and how its files hang together.
+//! The marks of the repository: its size, and the dependencies of its files.
 //!
-//! Counted over the files that git knows. A file leans on another one of its crate where it names it
-//! by `use` or a path; what a module only hands on (`pub use`) is no leaning. Files that lean on each
-//! other in a circle cannot be read one after the other.
+//! Counts the files that git knows. A file depends on another one of its crate if it names it by
+//! `use` or a path; a re-export (`pub use`) is no dependency. Files that depend on each other in a
+//! circle cannot be read one after the other.
 
 use crate::BenchError;
 use comfy_table::Table;
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::Command;
 use syn::visit::{self, Visit};
 
-/// An option that counts how many files know one.
+/// An option for counting the files that name one.
 const OPTION: &str = "emf_filter";
 
 /// Prints all marks, and the circles of files.
@@ -79,7 +79,7 @@ impl Files {
             .args(["-C", root, "ls-files"])
             .output()?;
         let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
-        // Binary files, and those that are deleted but not committed, count for nothing.
+        // Binary files, and deleted ones, do not count.
         let texts = listed.lines().filter_map(|path| {
             let text = fs::read_to_string(format!("{root}/{path}")).ok()?;
             Some((path.to_owned(), text))
@@ -109,7 +109,7 @@ impl Files {
         (longest.0, longest.1)
     }
 
-    /// Files that lean on each other, crate by crate.
+    /// Files that depend on each other, crate by crate.
     fn circles(&self) -> Vec<Vec<String>> {
         let mut graph: DiGraphMap<&str, ()> = DiGraphMap::new();
         for (path, text) in self.0.iter().filter(|(path, _)| is_rust(path)) {
@@ -137,7 +137,7 @@ impl Files {
             .collect()
     }
 
-    /// The file of the deepest module that a path within a crate names.
+    /// The file of the deepest module in a path within a crate.
     fn file_of(&self, root: &str, named: &[String]) -> Option<&str> {
         (1..=named.len()).rev().find_map(|length| {
             let module = named[..length].join("/");
@@ -151,7 +151,7 @@ impl Files {
     }
 }
 
-/// The folder of a crate's sources, and the module that a file is.
+/// The folder of a crate's sources, and the module of a file.
 fn module_of(path: &str) -> Option<(&str, Vec<String>)> {
     let (root, module) = path.split_at(path.find("src/")? + "src/".len());
     let module = module.strip_suffix(".rs")?;
@@ -165,7 +165,7 @@ fn module_of(path: &str) -> Option<(&str, Vec<String>)> {
     Some((root, module))
 }
 
-/// The function of most lines, and its name.
+/// The longest function: lines and name.
 struct Longest(usize, String);
 
 impl Longest {
@@ -190,9 +190,9 @@ impl<'ast> Visit<'ast> for Longest {
     }
 }
 
-/// What a file names of its crate.
+/// References of a file to its crate.
 struct Leaning {
-    /// The module that the file is.
+    /// The module of the file.
     module: Vec<String>,
     /// Paths from the crate's root.
     named: Vec<Vec<String>>,
@@ -254,7 +254,7 @@ impl<'ast> Visit<'ast> for Leaning {
         visit::visit_path(self, path);
     }
 
-    /// Tests may lean on what they test.
+    /// Tests may depend on the tested module.
     fn visit_item_mod(&mut self, module: &'ast syn::ItemMod) {
         if module.ident != "tests" {
             visit::visit_item_mod(self, module);

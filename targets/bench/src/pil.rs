@@ -1,4 +1,5 @@
-//! Processor in the loop: the host's closed-loop vectors on the emulated core, every output and state word compared.
+//! Processor in the loop: the host's closed-loop vectors on the emulated core, with every output
+//! and state word compared.
 
 use crate::BenchError;
 use crate::firmware::{Firmware, PROGRAMS};
@@ -11,10 +12,10 @@ use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::time::Instant;
 
-/// What to replay.
+/// Options of the replay.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Steps per controller and target, at least
+    /// Minimum steps per controller and target
     #[arg(long, default_value_t = 50_000)]
     pub steps: usize,
     /// Only drives whose symbol contains this
@@ -25,7 +26,7 @@ pub struct Options {
 /// Replays vectors on every drive of every target.
 ///
 /// # Errors
-/// When a tool is missing, or a word differs.
+/// If a tool is missing, or a word differs.
 pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     let mut differing = 0;
     for &target in targets {
@@ -72,7 +73,7 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     }
 }
 
-/// What became of a drive.
+/// Result of a drive.
 struct Outcome {
     steps: usize,
     /// The first step that differs, in full.
@@ -89,12 +90,12 @@ fn compare(core: &impl Core, listed: &Listed, steps: usize) -> Result<Outcome, B
     })
 }
 
-/// What runs the records of a task: an emulator, or a test.
+/// Runs the records of a task: an emulator, or a test.
 pub trait Core {
     /// The answers to a task.
     ///
     /// # Errors
-    /// When the emulator fails or hangs.
+    /// If the emulator fails or hangs.
     fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError>;
 }
 
@@ -138,7 +139,8 @@ fn difference(
     })))
 }
 
-/// Lets the core read one ADC count of one step wrong by one: the comparison must name that step.
+/// Self-test: changes one ADC count of one step by one on the core; the comparison must name that
+/// step.
 fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
     const STEP: usize = 2500;
     let [program, ..] = PROGRAMS;
@@ -163,7 +165,7 @@ fn prove_that_it_can_fail(firmware: &Firmware) -> Result<(), BenchError> {
     }
 }
 
-/// The first block whose digest differs, or that was not answered.
+/// The first block with another digest, or without an answer.
 fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
     let mut found = found.chunks(8);
     vectors
@@ -172,7 +174,7 @@ fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
         .position(|digest| found.next() != Some(digest))
 }
 
-/// The first step that differs, with all its words: outputs, and state words by their names.
+/// The first step that differs, with all its words: outputs, and state words by name.
 pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option<String> {
     let length = ANSWER + 4 * names.len();
     let mut found = found.chunks(length);
@@ -184,7 +186,7 @@ pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option
     let mut line = |name: &str, [expected, found]: [Option<i32>; 2]| {
         let mark = if expected == found { ' ' } else { '*' };
         let shown = |word: Option<i32>| word.map_or("nothing".to_owned(), |word| word.to_string());
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "{mark} {name:20} {:>12} {:>12}",
@@ -257,7 +259,7 @@ pub mod tests {
         }
     }
 
-    /// The core's end in this process, with a step function of the test's choice.
+    /// The core's end in this process, with a given step function.
     struct InProcess(StepFn<Tested>);
 
     impl Core for InProcess {
@@ -290,7 +292,7 @@ pub mod tests {
     const STEPS: usize = 20_000;
 
     #[test]
-    fn the_same_code_on_both_ends_does_not_differ() {
+    fn the_same_code_on_both_ends_agrees() {
         let outcome =
             compare(&InProcess(StepFn::Bits(step_of_the_test)), &listed(), STEPS).expect("runs");
         assert!(outcome.steps >= STEPS);
@@ -328,7 +330,7 @@ pub mod tests {
         legs
     }
 
-    /// The report of a core whose calls are counted afresh in each of its replays.
+    /// The report of a core whose call counter restarts in each of its replays.
     fn report(step: StepFn<Tested>) -> String {
         struct Afresh(InProcess);
         impl Core for Afresh {
@@ -342,9 +344,9 @@ pub mod tests {
         outcome.difference.expect("a wrong bit is found")
     }
 
-    /// What `cost` counts as supervision is that of the drive: the same samples trip it.
+    /// The counted supervision is that of the drive: the same samples trip it.
     #[test]
-    fn a_drive_with_an_empty_law_is_supervised_alike() {
+    fn a_drive_with_an_empty_law_has_the_same_supervision() {
         let mut drives = (Tested::new(), Drive::<Supervised<Nearest>>::new());
         let mut random = fastrand::Rng::with_seed(1);
         let mut faults = vec![];

@@ -1,9 +1,9 @@
-//! The targets: their compiler's name, their folder, the machine that runs them.
+//! The targets: their compiler's name, folder and emulated machine.
 
 use clap::ValueEnum;
 use std::process::Command;
 
-/// A core that firmware is built for.
+/// A core with firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// ARMv7E-M, as `mps2-an386`
@@ -14,19 +14,19 @@ pub enum Target {
     Riscv32,
 }
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Answers only: as fast as the emulator goes.
+    /// Answers only, at full speed.
     Answers,
-    /// Counts of instructions: the emulator's clock follows them.
+    /// Counts of instructions, which drive the emulator's clock.
     Counts,
-    /// The log of all instructions, one by one, in the file `log`.
+    /// A log of all instructions, one by one, in the file `log`.
     Trace,
 }
 
 impl Target {
-    /// All, in the order of reports.
+    /// All targets, in the order of reports.
     pub const ALL: [Self; 3] = [Self::CortexM4, Self::CortexM0, Self::Riscv32];
 
     /// Folder under `targets/`, and name in reports.
@@ -47,7 +47,7 @@ impl Target {
         }
     }
 
-    /// The C compiler's program; C drives are built by it.
+    /// The C compiler's program, for C drives.
     pub fn c_compiler(self) -> &'static str {
         match self {
             Self::CortexM4 | Self::CortexM0 => "arm-none-eabi-gcc",
@@ -63,7 +63,8 @@ impl Target {
         }
     }
 
-    /// What makes the emulator take instructions one by one: it was renamed in version 8.1, and the old name went later.
+    /// The emulator's option for executing instructions one by one: renamed in version 8.1; the old
+    /// name was removed later.
     fn single_steps(self) -> Vec<&'static str> {
         let version = Command::new(self.emulator()).arg("--version").output();
         let major = version.ok().and_then(|output| {
@@ -78,9 +79,10 @@ impl Target {
         }
     }
 
-    /// The emulator's machine and clock. SysTick of the MPS2 boards ticks every 40 ns, so that `shift=10`,
-    /// 1024 ns per instruction, resolves each; the `microbit` has none that fits, and the Cortex-M3 of
-    /// `mps2-an385` executes all instructions of a Cortex-M0, from the same addresses.
+    /// The emulator's machine and clock. SysTick of the MPS2 boards ticks every 40 ns, so that
+    /// `shift=10`, 1024 ns per instruction, resolves each; the `microbit` has none that fits, and
+    /// the Cortex-M3 of `mps2-an385` executes all instructions of a Cortex-M0, from the same
+    /// addresses.
     pub fn machine(self, purpose: Purpose) -> Vec<&'static str> {
         let mut arguments = match (self, purpose) {
             (Self::CortexM4, _) => vec!["-machine", "mps2-an386"],

@@ -1,5 +1,5 @@
-//! Finds what compiles for a target and what runs the result: what is installed first, then Debian's own Rust,
-//! which builds `core` from its sources.
+//! Finds a target's compiler and emulator: installed ones first, then Debian's own Rust, which
+//! builds `core` from its sources.
 
 use crate::targets::Target;
 use std::env;
@@ -21,24 +21,24 @@ const PACKAGES: [&str; 7] = [
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 
-/// What compiles for a target.
+/// Compiler of a target.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
-    /// The compiler on the path has the target.
+    /// The compiler on the path, which has the target.
     Installed {
-        /// As `rustc --version` says.
+        /// Output of `rustc --version`.
         version: String,
     },
     /// Debian's compiler, with the sources of `core`.
     Debian {
-        /// As `rustc --version` says.
+        /// Output of `rustc --version`.
         version: String,
         /// A linker of the LLVM project.
         linker: PathBuf,
     },
 }
 
-/// Nothing compiles or runs firmware of a target.
+/// No tools to compile or run firmware of a target.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "firmware for {} cannot be {what} here: {reason}\n\
@@ -62,11 +62,11 @@ impl Missing {
     }
 }
 
-/// The toolchain of a target, whose emulator and C compiler are there, too. Where one is missing and this is a continuous
-/// integration run of root's, Debian's packages are installed first.
+/// The toolchain of a target, with its emulator and C compiler. If one is missing and this is a
+/// continuous integration run as root, Debian's packages are installed first.
 ///
 /// # Errors
-/// What is missing and how to get it.
+/// The missing tool and how to get it.
 pub fn find(target: Target) -> Result<Toolchain, Missing> {
     let found = look(target);
     if found.is_err() && env::var_os("CI").is_some() && install() {
@@ -101,12 +101,12 @@ fn compiler(target: Target) -> Result<Toolchain, Missing> {
     }
     let absent = |reason: &str| Err(Missing::new(target, "compiled", reason));
     let Some(version) = output(Command::new(DEBIAN_RUSTC).arg("--version")) else {
-        return absent("the compiler on the path lacks the target, and Debian's is not there");
+        return absent("the compiler on the path lacks the target, and Debian's is not installed");
     };
     let root = output(Command::new(DEBIAN_RUSTC).args(["--print", "sysroot"])).unwrap_or_default();
     let sources = Path::new(root.trim()).join("lib/rustlib/src/rust/library/core");
     if !sources.is_dir() || !Path::new(DEBIAN_CARGO).is_file() {
-        return absent("Debian's Rust is there without cargo or the sources of `core`");
+        return absent("Debian's Rust is installed without cargo or the sources of `core`");
     }
     let Some(linker) = linker(&libraries) else {
         return absent("neither the compiler on the path nor Debian has a linker `lld`");
@@ -126,7 +126,7 @@ fn linker(libraries: &Path) -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// Installs Debian's packages; whether that went well.
+/// Installs Debian's packages; true on success.
 fn install() -> bool {
     let run = |arguments: &[&str]| {
         println!("== set-up: apt-get {}", arguments.join(" "));
@@ -141,7 +141,7 @@ fn install() -> bool {
     run(&["update", "-qq"]) && run(&install)
 }
 
-/// A program of the path, free of what an outer cargo told this process.
+/// A program on the path, without the environment of an outer cargo.
 fn plain(program: &str) -> Command {
     let mut command = Command::new(program);
     for name in [
@@ -163,7 +163,7 @@ fn output(command: &mut Command) -> Option<String> {
 }
 
 impl Toolchain {
-    /// As `rustc --version` says.
+    /// Output of `rustc --version`.
     pub fn version(&self) -> &str {
         match self {
             Self::Installed { version } | Self::Debian { version, .. } => version,

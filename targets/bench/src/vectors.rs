@@ -1,9 +1,9 @@
-//! Vectors: what a drive reads in closed loop on the simulated plant, and at the edges of its inputs, with what it
-//! answers on the host.
+//! Vectors: inputs of a drive in closed loop on the simulated plant, and at the edges of their
+//! ranges, with its answers on the host.
 //!
-//! Nine stretches in ten run on the switched plant of the `hexagen` program: start-up, then speeds and set-points of
-//! both signs, up to past the speed limit. The tenth is the stimulus of the bit-for-bit test: arbitrary words,
-//! corners, calls strewn in.
+//! Nine stretches in ten run on the switched plant of the `hexagen` program: start-up, then speeds
+//! and set-points of both signs, up to above the speed limit. The tenth is the stimulus of the
+//! bit-for-bit test: arbitrary words, corner cases, interspersed calls.
 
 use crate::BenchError;
 use crate::listing::Listed;
@@ -21,31 +21,31 @@ const STRETCH: usize = 2048;
 /// The recorded run of a drive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vectors {
-    /// Records as they go to the core.
+    /// Records in the core's format.
     pub records: Vec<u8>,
     /// Digest of each block's answers.
     pub digests: Vec<[u8; 8]>,
-    /// Answers of the block that was asked for, step by step.
+    /// Answers of the requested block, step by step.
     pub full: Vec<Answer>,
     /// Steps among the records.
     pub steps: usize,
 }
 
-/// What a step put out, and its state words after it.
+/// Outputs of a step, and the state words after it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// What the step read.
+    /// Inputs of the step.
     pub sample: Sample,
-    /// Step from the begin of the run.
+    /// Step from the beginning of the run.
     pub step: usize,
-    /// Outputs and state words as they come from the core.
+    /// Outputs and state words in the core's format.
     pub bytes: Vec<u8>,
 }
 
-/// The drive of the firmware's list on the host.
+/// The host's drive for one of the firmware's list.
 ///
 /// # Errors
-/// When the host makes another drive of the same motor and options, or none.
+/// If the host's drive of the same motor and options differs, or does not exist.
 pub fn drive_of(listed: &Listed) -> Result<Prepared, BenchError> {
     let drive = prepared(&listed.symbol, &listed.motor, &listed.variant)?;
     let nameless = |spec: &str| spec.split_once('\n').map(|(_, rest)| rest.to_owned());
@@ -55,10 +55,10 @@ pub fn drive_of(listed: &Listed) -> Result<Prepared, BenchError> {
     Ok(drive)
 }
 
-/// The drive of a motor of the library, with the symbol that messages name it by.
+/// The drive of a motor of the library, with its symbol for messages.
 ///
 /// # Errors
-/// When there is no such motor, or no such drive of it.
+/// If there is no such motor, or no such drive of it.
 pub fn prepared(symbol: &str, motor: &str, variant: &str) -> Result<Prepared, BenchError> {
     let motor =
         MotorSource::of_library(motor).ok_or_else(|| BenchError::Motor(motor.to_owned()))?;
@@ -66,10 +66,10 @@ pub fn prepared(symbol: &str, motor: &str, variant: &str) -> Result<Prepared, Be
         .map_err(|errors| BenchError::Drive(symbol.to_owned(), errors.to_string()))
 }
 
-/// Records a run of at least `steps` steps; with the full answers of one block, if asked for.
+/// Records a run of at least `steps` steps, with the full answers of one block, if requested.
 ///
 /// # Errors
-/// When the plant cannot be made, which a specification that generates does not cause.
+/// If the plant is invalid, which a valid specification does not cause.
 pub fn record(drive: &Prepared, steps: usize, full: Option<usize>) -> Result<Vectors, BenchError> {
     let mut recorder = Recorder::new(drive, full);
     let mut stretches = Stretches::default();
@@ -85,7 +85,7 @@ pub fn record(drive: &Prepared, steps: usize, full: Option<usize>) -> Result<Vec
     Ok(recorder.finish())
 }
 
-/// What a stretch calls: a drive, and whoever takes notes.
+/// Receives a stretch's calls: a drive, or a recorder.
 pub trait Called {
     /// A call other than a step.
     fn call(&mut self, record: Record);
@@ -94,8 +94,8 @@ pub trait Called {
     fn step(&mut self, sample: Sample) -> Legs;
 }
 
-/// The stretches of a run in closed loop, always the same ones: start-up at standstill, then speeds and set-points of
-/// both signs, up to past the speed limit.
+/// The stretches of a run in closed loop, always the same ones: start-up at standstill, then speeds
+/// and set-points of both signs, up to above the speed limit.
 #[derive(Clone, Debug)]
 pub struct Stretches {
     random: fastrand::Rng,
@@ -132,7 +132,7 @@ pub struct Stretch {
     pub starts_up: bool,
     /// Share of the rated speed.
     pub speed: f64,
-    /// Set-points of the halves, shares of the largest one.
+    /// Set-points of the halves, relative to the largest one.
     pub currents: [f64; 2],
     /// Steps under control.
     pub steps: usize,
@@ -145,25 +145,27 @@ impl Stretch {
         Ok(Plant::new(plant_of(&drive.spec), 0.1, omega)?)
     }
 
-    /// What a speed loop is asked for, bits of an `I16F16` in rpm: a little more than there is, so that it asks for current.
+    /// Set-point of a speed loop, bits of an `I16F16` in rpm: a little more than the speed, so that
+    /// it demands current.
     fn wanted_rpm(&self, drive: &Prepared) -> i32 {
         let share = self.speed + 0.02_f64.copysign(self.speed);
         (share * drive.rated_rpm() * 65_536.0) as i32
     }
 
-    /// Runs a controller that knows its set-point on the drive's plant.
+    /// Runs a controller with a fixed set-point on the drive's plant.
     ///
     /// # Errors
-    /// When the plant cannot be made.
+    /// If the plant is invalid.
     pub fn run(&self, drive: &Prepared, controller: impl CurrentLoop) -> Result<(), BenchError> {
         ClosedLoop::new(self.plant(drive)?, controller, delay(drive)).run(self.steps, &mut ());
         Ok(())
     }
 
-    /// Runs a drive on its plant, from rest on. Set-points are given behind start-up, which need not keep them.
+    /// Runs a drive on its plant, from its initial state. Set-points are set after start-up, which
+    /// need not keep them.
     ///
     /// # Errors
-    /// When the plant cannot be made.
+    /// If the plant is invalid.
     pub fn close(&self, drive: &Prepared, called: &mut impl Called) -> Result<(), BenchError> {
         called.call(Record::New);
         if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
@@ -190,7 +192,7 @@ impl Stretch {
     }
 }
 
-/// When a drive's commands reach the plant.
+/// Delay of a drive's commands.
 fn delay(drive: &Prepared) -> Delay {
     match drive.spec.controller.common().delay {
         0 => Delay::None,
@@ -198,7 +200,7 @@ fn delay(drive: &Prepared) -> Delay {
     }
 }
 
-/// What a stretch calls, in the place of the controller.
+/// Receives a stretch's calls, in place of the controller.
 struct InLoop<'c, C>(&'c mut C);
 
 impl<C: Called> CurrentLoop for InLoop<'_, C> {
@@ -207,14 +209,14 @@ impl<C: Called> CurrentLoop for InLoop<'_, C> {
     }
 }
 
-/// A drive on the host: compiled code where it is built in, else the interpreted program, which equals it.
+/// A drive on the host: compiled code if built in, else the interpreted program, which is equal.
 pub struct OnHost<'g> {
     drive: &'g Prepared,
     subject: Box<dyn Subject + 'g>,
 }
 
 impl<'g> OnHost<'g> {
-    /// At rest.
+    /// In its initial state.
     pub fn new(drive: &'g Prepared) -> Self {
         let subject: Box<dyn Subject + 'g> = match drive.compiled() {
             Some(compiled) => Box::new(compiled),
@@ -244,7 +246,7 @@ impl Called for OnHost<'_> {
     }
 }
 
-/// A drive of the host that notes all calls and answers.
+/// A drive of the host that records all calls and answers.
 pub struct Recorder<'g> {
     host: OnHost<'g>,
     words: Vec<i32>,
@@ -255,7 +257,7 @@ pub struct Recorder<'g> {
 }
 
 impl<'g> Recorder<'g> {
-    /// A drive at rest.
+    /// A drive in its initial state.
     pub fn new(drive: &'g Prepared, full: Option<usize>) -> Self {
         Self {
             host: OnHost::new(drive),
@@ -294,15 +296,16 @@ impl<'g> Recorder<'g> {
         self.host.subject.set_state_words(words);
     }
 
-    /// Why the drive is tripped.
+    /// Fault of the drive.
     pub fn fault(&self) -> Option<Fault> {
         self.host.subject.fault()
     }
 
-    /// A stretch of the bit-for-bit test's stimulus: arbitrary words, corners, calls strewn in.
+    /// A stretch of the bit-for-bit test's stimulus: arbitrary words, corner cases, interspersed
+    /// calls.
     ///
     /// # Errors
-    /// When there is no stimulus for the drive.
+    /// If there is no stimulus for the drive.
     pub fn edges(&mut self, drive: &Prepared, seed: u64) -> Result<(), BenchError> {
         let mut stimulus = Stimulus::new(&drive.reference, seed)
             .map_err(|error| BenchError::Stimulus(error.to_string()))?;

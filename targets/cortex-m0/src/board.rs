@@ -41,8 +41,8 @@ extern "C" fn timer0() {
 pub fn start_timer() {
     /// Interrupts 0 to 31: set enable.
     const NVIC_ISER: *mut u32 = 0xe000_e100 as *mut u32;
-    // SAFETY: registers of timer 0 (width, prescaler, compare, shortcut to clear, interrupt, start) and of the
-    // interrupt controller, used here alone.
+    // SAFETY: registers of timer 0 (width, prescaler, compare, shortcut to clear, interrupt, start)
+    // and of the interrupt controller, used only here.
     unsafe {
         TIMER0.byte_add(0x508).write_volatile(0);
         TIMER0.byte_add(0x510).write_volatile(0);

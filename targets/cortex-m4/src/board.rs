@@ -41,7 +41,8 @@ extern "C" fn timer0() {
 pub fn start_timer() {
     /// Interrupts 0 to 31: set enable.
     const NVIC_ISER: *mut u32 = 0xe000_e100 as *mut u32;
-    // SAFETY: registers of timer 0 (control, value, reload) and of the interrupt controller, used here alone.
+    // SAFETY: registers of timer 0 (control, value, reload) and of the interrupt controller, used
+    // only here.
     unsafe {
         TIMER0.add(2).write_volatile(PERIOD - 1);
         TIMER0.add(1).write_volatile(PERIOD - 1);

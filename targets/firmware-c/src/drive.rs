@@ -1,6 +1,6 @@
-//! A drive in C as what sessions replay.
+//! A drive in C, as replayed by sessions.
 
-/// What a drive tells of itself as C hands it over, of a byte each.
+/// Status of a C drive, in bytes.
 #[repr(C)]
 pub(crate) struct StatusInC {
     mode: u8,
@@ -8,7 +8,7 @@ pub(crate) struct StatusInC {
     bus_is_stale: bool,
 }
 
-/// Types around the functions of drives in C, and the list of them.
+/// Types around the functions of drives in C, and their list.
 macro_rules! drives {
     ($(
         $name:ident: [u32; $words:literal], $symbol:ident, {
@@ -42,7 +42,7 @@ macro_rules! drives {
 
                 fn words(&self) -> [i32; <Self as Subject>::WORDS] {
                     let mut words = [0; <Self as Subject>::WORDS];
-                    // SAFETY: it writes so many words.
+                    // SAFETY: it writes this many words.
                     unsafe { $state_words(self, words.as_mut_ptr()) };
                     words
                 }
@@ -68,7 +68,7 @@ macro_rules! drives {
                 /// No drive here has a speed loop.
                 fn set_speed(&mut self, _: i32) {}
 
-                /// None is told its bus voltage.
+                /// None has a measured bus voltage.
                 fn set_bus(&mut self, _: u16) {}
 
                 fn reset(&mut self) {
@@ -98,7 +98,7 @@ macro_rules! drives {
                     if let Some(word) = words.get_mut(index) {
                         *word = value;
                     }
-                    // SAFETY: it reads so many words.
+                    // SAFETY: it reads this many words.
                     unsafe { $set_state_words(self, words.as_ptr()) };
                 }
             }

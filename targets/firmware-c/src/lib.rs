@@ -1,5 +1,5 @@
-//! Drives that are emitted as C99 and compiled by the target's C compiler, for the test bench: the step function that
-//! stands in the ELF is the C function itself.
+//! Drives emitted as C99 and compiled by the target's C compiler, for the test bench: the step
+//! function in the ELF is the C function itself.
 #![no_std]
 #![expect(
     unsafe_code,

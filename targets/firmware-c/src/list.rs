@@ -10,7 +10,7 @@ pub struct InC {
     pub motor: &'static str,
     /// Kind of controller.
     pub kind: &'static str,
-    /// Options as a macro call writes them.
+    /// Options in the notation of a macro call.
     pub options: &'static str,
 }
 

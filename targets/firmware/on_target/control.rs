@@ -12,7 +12,7 @@ use hexagen_firmware::interrupt::control_period;
 use static_cell::StaticCell;
 
 hexagen::controller! {
-    /// The drive of this firmware, a type of its own beside those of the test bench.
+    /// The drive of this firmware, separate from those of the test bench.
     pub HubDrive {
         motor: "../motors/trivedi-keshri-660w.toml",
         controller: pdcc { saturation: keep_angle, emf: held },
@@ -21,17 +21,18 @@ hexagen::controller! {
 
 static DRIVE: StaticCell<Drive<HubDrive>> = StaticCell::new();
 
-/// The drive's control loop, which the interrupt alone takes once the timer runs.
+/// The drive's control loop, used only by the interrupt once the timer runs.
 static CONTROL: Mutex<Cell<Option<ControlLoop<'static, HubDrive>>>> = Mutex::new(Cell::new(None));
 
-/// The drive's halves: the set-point for `main`, the control loop for the interrupt. Once, before the timer starts.
+/// The drive's halves: the set-point for `main`, the control loop for the interrupt. Once, before
+/// the timer starts.
 pub fn hand_over() -> &'static SetPoint<HubDrive> {
     let (set_point, control) = DRIVE.init(Drive::new()).split();
     critical_section::with(|token| CONTROL.borrow(token).set(Some(control)));
     set_point
 }
 
-/// A call of the control loop, once it is handed over.
+/// A call of the control loop, once it is installed.
 #[inline]
 pub fn with_control(call: impl FnOnce(&mut ControlLoop<'static, HubDrive>)) {
     critical_section::with(|token| {
@@ -43,7 +44,7 @@ pub fn with_control(call: impl FnOnce(&mut ControlLoop<'static, HubDrive>)) {
     });
 }
 
-/// What the timer's interrupt does. Nothing interrupts it, so that the critical section delays nothing.
+/// The timer's interrupt. Nothing interrupts it, so that the critical section delays nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn interrupt_trivedi_keshri_660w_pdcc() {
     with_control(|control| control_period(control, &REGISTERS));

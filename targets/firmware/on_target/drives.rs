@@ -1,6 +1,6 @@
-//! The drives of this firmware. Every step function stands in the ELF under its own name.
+//! The drives of this firmware. Every step function has its own symbol in the ELF.
 
-/// The drives, those that the goals are about with the word length of this core.
+/// The drives, those of the goals with the word length of this core.
 macro_rules! drives_for {
     ($target:ident) => {
         hexagen_firmware::drives! {
@@ -20,7 +20,7 @@ macro_rules! drives_for {
 
             HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
 
-            // The variants that the goals of the cost table are about, each with the words that suit the core.
+            // The variants of the cost table's goals, each with the core's word length.
             TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
                 "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held, target: $target };
             TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:

@@ -1,4 +1,4 @@
-//! Peers of the drives: each step function stands in the ELF under its own name.
+//! Peers of the drives: each step function has its own symbol in the ELF.
 
 use hexagen_firmware::hexagen::fixed::types::I16F16;
 use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Phcc, PiPwm};

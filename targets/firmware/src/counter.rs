@@ -1,9 +1,10 @@
-//! Counts the instructions of a call and sounds its stack, on the emulated core itself.
+//! Counts the instructions of a call and measures its stack, on the emulated core itself.
 //!
-//! A call goes through a few lines of assembly that are the same for every function: load the arguments, read
-//! the clock, call, read the clock. What these lines cost is measured on a function that returns at once.
-//! On RISC-V the clock is `minstret`. On Cortex-M it is SysTick of QEMU's MPS2 boards, 40 ns per tick, under
-//! `-icount shift=10`, which takes 1024 ns per instruction: one instruction is 25.6 ticks, so none is missed.
+//! A call goes through a few lines of assembly that are the same for every function: load the
+//! arguments, read the clock, call, read the clock. Their cost is measured with an empty function.
+//! On RISC-V the clock is `minstret`. On Cortex-M it is SysTick of QEMU's MPS2 boards, 40 ns per
+//! tick, under `-icount shift=10`, which takes 1024 ns per instruction: one instruction is 25.6
+//! ticks, so none is missed.
 #![expect(
     unsafe_code,
     reason = "the functions of counter.s are known to the linker only, and clocks lie at fixed addresses"
@@ -22,7 +23,8 @@ global_asm!(include_str!("counter_riscv32.s"));
 /// Instructions of a loop, counted by hand.
 const KNOWN: u32 = 64;
 
-/// What the assembly loads the function and its arguments from, in its order: four in registers, two behind them.
+/// The function and its arguments, in the order in which the assembly loads them: four in
+/// registers, two on the stack.
 #[repr(C)]
 struct Call {
     step: *const c_void,
@@ -30,9 +32,9 @@ struct Call {
 }
 
 unsafe extern "C" {
-    /// Ticks of the clock that a call takes.
+    /// Ticks of a call.
     fn hexagen_counted_call(call: *const Call) -> u32;
-    /// Bytes below the stack pointer that a call writes to.
+    /// Bytes below the stack pointer that a call writes.
     fn hexagen_sounded_call(call: *const Call) -> u32;
     /// A step that returns at once.
     fn hexagen_empty_step();
@@ -57,17 +59,17 @@ fn call<D>(
     let [adc_a, adc_b, _] = sample.adc();
     let [adc_a, adc_b, ticks] = [adc_a, adc_b, sample.ticks()].map(usize::from);
     let hall = usize::from(sample.hall());
-    // Room for a structure comes before all other arguments.
+    // Space for a returned structure precedes all other arguments.
     let (step, arguments) = match step {
         StepFn::Bits(step) => (step as *const c_void, [drive, adc_a, adc_b, hall, ticks, 0]),
         StepFn::Structure(step) => (step as *const c_void, [legs, drive, in_c, 0, 0, 0]),
     };
-    // SAFETY: the assembly calls `step` as its type says, with pointers that are valid and unshared here.
+    // SAFETY: the assembly calls `step` by its type, with valid and unshared pointers.
     unsafe { assembly(&Call { step, arguments }) }
 }
 
-/// Instructions of one call, from the function's entry to its return, both included. None where a loop that is
-/// counted by hand is not counted right: then the clock does not follow instructions.
+/// Instructions of one call, from the function's entry to its return, both included. `None` if the
+/// count of a known loop is wrong: then the clock does not follow instructions.
 pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<u32> {
     start_clock();
     let around = call(
@@ -90,21 +92,21 @@ pub fn count<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<u32> {
     Some(of(call(hexagen_counted_call, step, drive, sample)))
 }
 
-/// The call of [`count`] alone, for a log of its instructions. None on hosts.
+/// The call of [`count`] without counting, for a log of its instructions. `None` on hosts.
 pub fn trace<D>(step: StepFn<D>, drive: &mut D, sample: Sample) -> Option<()> {
     call(hexagen_counted_call, step, drive, sample);
     Some(())
 }
 
-/// A step that is written in assembly.
+/// A step in assembly.
 fn assembly(function: unsafe extern "C" fn()) -> StepFn<()> {
     // SAFETY: both such steps take any arguments, and touch no memory.
     StepFn::Bits(unsafe { core::mem::transmute(function) })
 }
 
-/// An interrupt's function in the place of a step.
+/// An interrupt's function as a step.
 pub fn interrupt_step(interrupt: extern "C" fn()) -> StepFn<()> {
-    // SAFETY: a function without arguments takes no harm from some; what it returns is not looked at.
+    // SAFETY: a function without arguments ignores them; its result is not used.
     StepFn::Bits(unsafe { core::mem::transmute(interrupt) })
 }
 
@@ -118,7 +120,7 @@ fn start_clock() {
     /// SysTick: control (enabled, from the core's clock), reload value.
     const CONTROL: *mut u32 = 0xe000_e010 as *mut u32;
     const RELOAD: *mut u32 = 0xe000_e014 as *mut u32;
-    // SAFETY: the timer of the core itself; nothing else in this firmware uses it.
+    // SAFETY: the core's own timer, used only here.
     unsafe {
         if CONTROL.read_volatile() & 1 == 0 {
             RELOAD.write_volatile(0x00ff_ffff);

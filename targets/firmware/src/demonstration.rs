@@ -1,4 +1,4 @@
-//! What a main program does while its interrupt controls the current: here, enough of it to see that it does.
+//! Demonstration of a main program while its interrupt controls the current.
 
 use crate::registers::Registers;
 use hexagen::{Control, Mode, Sample, SetPoint};
@@ -7,19 +7,19 @@ use semihosting::{eprintln, println, process};
 /// Hall codes of a rotor that turns forward, from sector 1 on.
 const CODES: [u8; 6] = [1, 5, 4, 6, 2, 3];
 
-/// Control periods that a sector lasts.
+/// Control periods of a sector.
 const SECTOR: usize = 40;
 
 /// Control periods of the demonstration.
 const PERIODS: usize = 2400;
 
-/// ADCs at their middle, and a rotor that turns.
+/// ADCs at mid-scale, and a turning rotor.
 fn sample(period: usize) -> Sample {
     Sample::with_hall([2048; 2], CODES[period / SECTOR % CODES.len()])
 }
 
-/// Waits until the drive controls, asks for a current, turns the rotor, and ends the emulator: well, if the drive
-/// controlled all the time and pulsed its legs.
+/// Waits until the drive controls, sets a current, turns the rotor, and ends the emulator:
+/// successfully, if the drive controlled all the time and pulsed its legs.
 pub fn run<C: Control>(
     set_point: &SetPoint<C>,
     registers: &Registers,
@@ -40,7 +40,7 @@ pub fn run<C: Control>(
     }
     let (status, legs) = (set_point.status(), registers.legs());
     let from = started.unwrap_or(PERIODS);
-    println!("{PERIODS} times awoken, control from the {from}th on; {status:?}, {legs:?}");
+    println!("{PERIODS} wake-ups, control from the {from}th on; {status:?}, {legs:?}");
     if status.is_running() && started.is_some() && legs.compare() != [0; 3] {
         process::exit(0)
     }

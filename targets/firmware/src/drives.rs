@@ -1,20 +1,20 @@
-//! The list of a firmware's drives, and the step functions that stand in the ELF.
+//! The list of a firmware's drives, and their step functions in the ELF.
 
 use crate::session::{Broken, Link};
 use crate::wire::Task;
 use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 
-/// A step function as it stands in the ELF.
+/// A step function in the ELF.
 #[derive(Debug)]
 pub enum StepFn<D> {
-    /// Takes the drive, counts of phases a and b, the Hall code, and ticks since the last Hall edge; returns its legs in
-    /// registers, as a word of 64 bits is returned.
+    /// Takes the drive, counts of phases a and b, the Hall code, and ticks since the last Hall
+    /// edge; returns its legs as a 64-bit word in registers.
     Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs),
-    /// Takes the sample and returns the legs as C99 has them, both in room of the caller's.
+    /// Takes the sample and returns the legs in C99's layout, both in the caller's memory.
     Structure(extern "C" fn(&mut D, &SampleInC) -> LegsInC),
 }
 
-// Derived, they would ask as much of `D`.
+// Derived, they would have the same bounds on `D`.
 impl<D> Clone for StepFn<D> {
     fn clone(&self) -> Self {
         *self
@@ -39,7 +39,7 @@ impl<D> StepFn<D> {
     }
 }
 
-/// A sample as C99 has it.
+/// A sample in C99's layout.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct SampleInC {
@@ -60,7 +60,7 @@ impl From<Sample> for SampleInC {
     }
 }
 
-/// The legs as C99 has them.
+/// The legs in C99's layout.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct LegsInC {
@@ -82,7 +82,7 @@ pub struct Listed {
     pub motor: &'static str,
     /// Kind of controller.
     pub kind: &'static str,
-    /// Options as the macro call writes them.
+    /// Options in the notation of a macro call.
     pub options: &'static str,
     /// Bytes of the drive's type.
     pub size: usize,
@@ -95,10 +95,11 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Writes what the bench must know: lines of a key and a value, the specification, and a line `end`.
+    /// Writes the list for the bench: lines with a key and a value, the specification, and a line
+    /// `end`.
     ///
     /// # Errors
-    /// When the output cannot be written.
+    /// If the output cannot be written.
     pub fn list(&self, link: &mut dyn Link) -> Result<(), Broken> {
         let mut line = |key: &str, values: &[&[&str]]| {
             link.write(key.as_bytes())?;
@@ -137,10 +138,11 @@ fn decimal(mut number: usize) -> [u8; 6] {
     digits
 }
 
-/// The drives of a firmware: for each a type by `hexagen::controller!`, its step function in the ELF, and a row of
-/// the list `DRIVES`.
+/// The drives of a firmware: for each a type by `hexagen::controller!`, its step function, and a
+/// row of the list `DRIVES`.
 ///
-/// The line `Name, symbol: "motor file", controller { options };` makes a type `Name` and a function `symbol`.
+/// The line `Name, symbol: "motor file", controller { options };` makes a type `Name` and a
+/// function `symbol`.
 #[macro_export]
 macro_rules! drives {
     ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* };)*) => {

@@ -1,4 +1,4 @@
-//! The body of a control interrupt, and what counts a whole one.
+//! The body of a control interrupt, and the counter of a whole one.
 
 use crate::counter::interrupt_step;
 use crate::registers::Registers;
@@ -7,8 +7,8 @@ use crate::wire::{HEADER, Mode, RECORD, Record, Task};
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, ControlLoop, Legs, SetPoint};
 
-/// One control period: two ADC registers and the Hall port are read, three compare registers and the output
-/// enables are written.
+/// One control period: two ADC registers and the Hall port are read, three compare registers and
+/// the output enables are written.
 #[inline]
 pub fn control_period<C: Control<Command = Legs>>(
     control: &mut ControlLoop<'_, C>,
@@ -18,11 +18,11 @@ pub fn control_period<C: Control<Command = Legs>>(
     registers.apply(legs);
 }
 
-/// Serves a task of counting on an interrupt that is called as a function: the core's own entry and exit are not
-/// part of the count.
+/// Counts an interrupt that is called as a function: the core's own entry and exit are not
+/// included.
 ///
 /// # Errors
-/// When the exchange ends early.
+/// If the exchange ends early.
 pub fn serve<C: Control>(
     link: &mut dyn Link,
     set_point: &SetPoint<C>,

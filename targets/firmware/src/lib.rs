@@ -1,9 +1,10 @@
-//! What the firmware of every target shares.
+//! Common part of the firmware of all targets.
 //!
-//! A firmware crate lists its drives with [`drives!`]; the test bench (`cargo xtask pil`, `cargo xtask cost`)
-//! sends vectors to the core, and [`session`] replays them on the drive: answers as digests, in full, or as
-//! counts of instructions. [`wire`] is the format that both ends speak. The modules in `on_target` are part of each
-//! firmware crate: they emit step functions, or use its board.
+//! A firmware crate lists its drives with [`drives!`]; the test bench (`cargo xtask pil`,
+//! `cargo xtask cost`) sends vectors to the core, and [`session`] replays them on the drive, with
+//! answers as digests, in full, or as counts of instructions. [`wire`] is the common format. The
+//! modules in `on_target` are part of each firmware crate: they emit step functions, or use its
+//! board.
 #![no_std]
 
 #[cfg_attr(not(target_os = "none"), path = "uncounted.rs")]

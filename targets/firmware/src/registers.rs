@@ -1,5 +1,5 @@
-//! Registers of a motor's peripherals. No emulated board has them, so words of RAM stand in their place: an interrupt
-//! reads and writes them as it would those of a chip, one load or store each that no compiler leaves out.
+//! Registers of a motor's peripherals. No emulated board has them, so words of RAM replace them: an
+//! interrupt accesses them as on a chip, by one load or store each that no compiler removes.
 #![expect(
     unsafe_code,
     reason = "what is written to a register counts as read; only a volatile access says so"
@@ -8,7 +8,8 @@
 use core::sync::atomic::AtomicU16;
 use hexagen::{Legs, Sample};
 
-/// One register, of which a halfword is used, as data registers of ADCs and compare registers of timers have it.
+/// One register, of which a halfword is used, as in data registers of ADCs and compare registers of
+/// timers.
 #[derive(Debug)]
 struct Register(AtomicU16);
 
@@ -19,7 +20,7 @@ impl Register {
 
     #[inline]
     fn read(&self) -> u16 {
-        // SAFETY: the word is valid for as long as the borrow of it, and aligned; one core alone accesses it.
+        // SAFETY: the word is valid while borrowed, and aligned; only one core accesses it.
         unsafe { self.0.as_ptr().read_volatile() }
     }
 
@@ -54,7 +55,8 @@ impl Registers {
         }
     }
 
-    /// What the ADCs and the Hall port hold. The drives of the interrupts see edges at samples: no timer captures them.
+    /// Contents of the ADCs and the Hall port. The interrupts' drives see edges at samples: no
+    /// timer captures them.
     #[inline]
     #[must_use]
     pub fn sample(&self) -> Sample {
@@ -62,7 +64,7 @@ impl Registers {
         Sample::with_hall(adc, self.hall.read() as u8)
     }
 
-    /// Writes the three compare values, and what the legs do besides into the timer's output enables.
+    /// Writes the three compare values, and the leg states into the timer's output enables.
     #[inline]
     pub fn apply(&self, legs: Legs) {
         for (register, value) in self.compare.iter().zip(legs.compare()) {
@@ -71,14 +73,14 @@ impl Registers {
         self.legs.write(legs.states());
     }
 
-    /// What the inverter is told.
+    /// The inverter's command.
     #[must_use]
     pub fn legs(&self) -> Legs {
         let [a, b, c] = self.compare.each_ref().map(Register::read).map(u64::from);
         Legs::from_bits(a | b << 16 | c << 32 | u64::from(self.legs.read()) << 48)
     }
 
-    /// Plays the ADCs and the Hall sensors.
+    /// Simulates the ADCs and the Hall sensors.
     pub fn feed(&self, sample: &Sample) {
         let [adc_a, adc_b, _] = sample.adc();
         self.adc_a.write(adc_a);

@@ -1,4 +1,4 @@
-//! The emulator's way to files of the host: semihosting.
+//! The emulator's access to files of the host: semihosting.
 
 use crate::drives::Drives;
 use crate::session::{Broken, Link, serve};
@@ -30,13 +30,13 @@ impl Link for Files {
     }
 }
 
-/// Serves the task in the file `task` of the emulator's folder, writes the file `answers`, and ends the
-/// emulator.
+/// Serves the task in the file `task` of the emulator's folder, writes the file `answers`, and ends
+/// the emulator.
 pub fn run(drives: Drives) -> ! {
     run_with(|link| serve(link, drives))
 }
 
-/// As [`run`], with another server.
+/// Like [`run`], with another server.
 pub fn run_with(serve: impl FnOnce(&mut dyn Link) -> Result<(), Broken>) -> ! {
     let files = (File::open(c"task"), File::create(c"answers"));
     let outcome = match files {
@@ -46,7 +46,7 @@ pub fn run_with(serve: impl FnOnce(&mut dyn Link) -> Result<(), Broken>) -> ! {
     match outcome {
         Ok(()) => process::exit(0),
         Err(broken) => {
-            eprintln!("the exchange broke off: {broken:?}");
+            eprintln!("the exchange failed: {broken:?}");
             process::exit(1)
         }
     }

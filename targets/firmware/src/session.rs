@@ -8,21 +8,22 @@ use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
 use hexagen::{Control, Drive, Legs, Sample};
 
-/// Room for the state words of any drive here.
+/// Maximum number of state words of a drive.
 pub(crate) const MOST_WORDS: usize = 64;
 
-/// Where a session reads its task and writes its answers.
+/// Input and output of a session.
 pub trait Link {
-    /// Fills the front of `bytes`; returns how many, fewer than asked for only at the end of the input.
+    /// Fills the front of `bytes`; returns how many, fewer than requested only at the end of the
+    /// input.
     ///
     /// # Errors
-    /// When the input cannot be read.
+    /// If the input cannot be read.
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Broken>;
 
     /// Writes all bytes.
     ///
     /// # Errors
-    /// When the output cannot be written.
+    /// If the output cannot be written.
     fn write(&mut self, bytes: &[u8]) -> Result<(), Broken>;
 }
 
@@ -31,16 +32,16 @@ pub trait Link {
 pub enum Broken {
     /// Input or output failed.
     Link,
-    /// What came in is no task or no record.
+    /// The input is not a task or record.
     Format,
-    /// Nothing counts instructions here: the session is not on a core of its own.
+    /// Instructions cannot be counted here: the session does not run on a core of its own.
     Uncounted,
 }
 
 /// Serves one task on the drives of this firmware.
 ///
 /// # Errors
-/// When the exchange ends early.
+/// If the exchange ends early.
 pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
     let mut header = [0; HEADER];
     if link.read(&mut header)? < HEADER {
@@ -54,10 +55,10 @@ pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
     (drive.replay)(link, &task)
 }
 
-/// Replays the records of a task on a drive, or on one with its supervision alone.
+/// Replays the records of a task on a drive, or on one with only its supervisor.
 ///
 /// # Errors
-/// When the exchange ends early.
+/// If the exchange ends early.
 pub fn replay_drive<C: Control<Command = Legs>>(
     step: extern "C" fn(&mut Drive<C>, u16, u16, u8, u16) -> Legs,
     link: &mut dyn Link,
@@ -74,7 +75,7 @@ pub fn replay_drive<C: Control<Command = Legs>>(
 /// Replays the records of a task on a drive.
 ///
 /// # Errors
-/// When the exchange ends early.
+/// If the exchange ends early.
 pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
     let mut replayed = Replayed {
         drive: D::new(),
@@ -108,10 +109,11 @@ pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> 
     Ok(())
 }
 
-/// Answers a peer's steps in full, counts them, or sounds their stack; the other calls of a task are the drives' own.
+/// Answers a peer's steps in full, counts them, or measures their stack; other calls of a task are
+/// for drives only.
 ///
 /// # Errors
-/// When the exchange ends early.
+/// If the exchange ends early.
 pub fn replay_peer<P: Peer>(
     step: StepFn<P>,
     link: &mut dyn Link,
@@ -136,7 +138,7 @@ pub fn replay_peer<P: Peer>(
     Ok(())
 }
 
-/// One call that is counted, traced or sounded.
+/// One counted, traced or measured call.
 pub(crate) fn measure<D>(
     mode: Mode,
     step: StepFn<D>,
@@ -166,7 +168,7 @@ struct Replayed<D> {
 }
 
 impl<D: Subject> Replayed<D> {
-    /// The sample of a step; any other call is carried out.
+    /// The sample of a step; any other call is executed.
     fn sample(&mut self, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
         match Record::decode(record).ok_or(Broken::Format)? {
             Record::Step(sample) => return Ok(Some(sample)),
@@ -189,7 +191,7 @@ impl<D: Subject> Replayed<D> {
         self.step.call(&mut self.drive, sample)
     }
 
-    /// The state words behind a step, in front of `words`.
+    /// The state words after a step, at the front of `words`.
     fn state_words<'w>(&self, words: &'w mut [i32; MOST_WORDS]) -> &'w [i32] {
         const { assert!(D::WORDS <= MOST_WORDS) };
         self.drive.state_words(words);

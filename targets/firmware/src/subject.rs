@@ -1,23 +1,23 @@
-//! A drive that a session replays, in Rust or in C.
+//! A drive for replay, in Rust or in C.
 
 use crate::session::MOST_WORDS;
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, Legs, State, Supervisor};
 
-/// A drive that a session replays, besides its step function.
+/// A drive for replay, without its step function.
 pub trait Subject {
     /// Number of its state words.
     const WORDS: usize;
 
-    /// A drive at rest.
+    /// A drive in its initial state.
     fn new() -> Self;
     /// Sets the current, bits of an `I16F16` in ampere.
     fn set_current(&mut self, bits: i32);
     /// Sets the torque, bits of an `I16F16` in newton metres.
     fn set_torque(&mut self, bits: i32);
-    /// Sets the speed, bits of an `I16F16` in rpm, where there is a speed loop.
+    /// Sets the speed, bits of an `I16F16` in rpm, if there is a speed loop.
     fn set_speed(&mut self, bits: i32);
-    /// Tells the bus voltage, ADC counts, where it is measured.
+    /// Sets the bus voltage, ADC counts, if it is measured.
     fn set_bus(&mut self, counts: u16);
     /// Clears a trip and all control state.
     fn reset(&mut self);
@@ -25,7 +25,7 @@ pub trait Subject {
     fn calibrate(&mut self);
     /// Starts the bootstrap pre-charge.
     fn precharge(&mut self);
-    /// Why it is tripped.
+    /// Fault of the drive.
     fn fault(&self) -> Option<Fault>;
     /// Copies its state words to the front of `words`.
     fn state_words(&self, words: &mut [i32]);

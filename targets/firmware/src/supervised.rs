@@ -1,4 +1,4 @@
-//! A drive with an empty law: what its step costs is supervision.
+//! A drive with an empty law: the cost of its step is supervision.
 
 use core::marker::PhantomData;
 use hexagen::arith::Word;
@@ -6,7 +6,7 @@ use hexagen::{
     Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, Units, Words,
 };
 
-/// The supervision of `C` around a law that pulses all legs and keeps nothing.
+/// The supervisor of `C` around a law without state that pulses all legs.
 #[derive(Clone, Copy, Debug)]
 pub struct Supervised<C>(PhantomData<C>);
 
@@ -50,7 +50,7 @@ impl<C: Control> Control for Supervised<C> {
     }
 }
 
-/// One control period of such a drive, called as a step function is.
+/// One control period of such a drive, called like a step function.
 pub extern "C" fn step_supervised<C: Control<Command = Legs>>(
     drive: &mut Drive<C>,
     adc_a: u16,

@@ -1,4 +1,4 @@
-//! The counter of hosts, where sessions run in tests: there is none.
+//! The counter on hosts, where sessions run in tests: there is none.
 
 use crate::drives::StepFn;
 use hexagen::{Legs, Sample};
@@ -8,12 +8,12 @@ pub fn count<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<u32> {
     None
 }
 
-/// Calls for a log of instructions: there is none.
+/// A call for a log of instructions: there is none.
 pub fn trace<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<()> {
     None
 }
 
-/// An interrupt's function in the place of a step.
+/// An interrupt's function as a step.
 pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
     extern "C" fn nothing(_: &mut (), _: u16, _: u16, _: u8, _: u16) -> Legs {
         Legs::OFF
@@ -21,7 +21,7 @@ pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
     StepFn::Bits(nothing)
 }
 
-/// Bytes of stack that one call uses: unknown.
+/// Bytes of stack of one call: unknown.
 pub fn sound<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<u32> {
     None
 }

@@ -1,7 +1,7 @@
-//! The format between the test bench and the core: a task, records that are replayed, answers.
+//! The format between the test bench and the core: a task, records for replay, answers.
 //!
-//! All numbers are little-endian. A task is one header and records up to the end of the input; the core
-//! answers each block of records, and what is left at the end, as the task's mode says.
+//! All numbers are little-endian. A task is one header and records up to the end of the input; the
+//! core answers each block of records, and the rest at the end, according to the task's mode.
 
 use hexagen::{Fault, Legs, Sample};
 
@@ -14,16 +14,16 @@ pub const BLOCK: usize = 512;
 /// Bytes of a task's header.
 pub const HEADER: usize = 12;
 
-/// Bytes of an answer in full, besides four per state word: compare values, leg states, fault.
+/// Bytes of a full answer, besides four per state word: compare values, leg states, fault.
 pub const ANSWER: usize = 10;
 
 /// First byte of a step's record.
 pub const STEP_RECORD: u8 = 1;
 
-/// Begin of every task.
+/// Magic number of every task.
 const MAGIC: [u8; 4] = *b"HXG1";
 
-/// What the core does with a task.
+/// Mode of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Lists its drives; reads no records.
@@ -34,22 +34,22 @@ pub enum Mode {
     Full = 2,
     /// Answers each step with its count of instructions, 16 bits.
     Count = 3,
-    /// Answers once: the greatest depth of the stack in bytes, 32 bits.
+    /// Answers once: the maximum stack depth in bytes, 32 bits.
     Stack = 4,
-    /// Calls each step as for a count, and answers nothing: the emulator logs the instructions.
+    /// Calls each step as for a count, without answers: the emulator logs the instructions.
     Trace = 5,
-    /// As [`Mode::Count`], on a drive with the same supervision and an empty law.
+    /// Like [`Mode::Count`], on a drive with the same supervisor and an empty law.
     Supervision = 6,
 }
 
-/// Begin of the input.
+/// Header of the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Task {
-    /// What to do.
+    /// Mode.
     pub mode: Mode,
-    /// Place in the list of drives.
+    /// Index in the list of drives.
     pub drive: u16,
-    /// The block that is answered in full.
+    /// The block with full answers.
     pub block: u32,
 }
 
@@ -63,7 +63,7 @@ impl Task {
         [m0, m1, m2, m3, self.mode as u8, 0, d0, d1, b0, b1, b2, b3]
     }
 
-    /// From bytes; none where they are no task.
+    /// From bytes; `None` if they are not a task.
     #[must_use]
     pub fn decode(bytes: [u8; HEADER]) -> Option<Self> {
         let [m0, m1, m2, m3, mode, _, d0, d1, b0, b1, b2, b3] = bytes;
@@ -90,7 +90,7 @@ impl Task {
 /// A call of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
-    /// Begin with a drive at rest.
+    /// Resets to a drive in its initial state.
     New,
     /// A control period.
     Step(Sample),
@@ -110,7 +110,7 @@ pub enum Record {
     SetSpeed(i32),
     /// Overwrites a state word.
     SetStateWord {
-        /// Place among the state words.
+        /// Index among the state words.
         index: u8,
         /// Its new value.
         value: i32,
@@ -145,7 +145,7 @@ impl Record {
         }
     }
 
-    /// From bytes; none where they are no record.
+    /// From bytes; `None` if they are not a record.
     #[must_use]
     pub fn decode(bytes: [u8; RECORD]) -> Option<Self> {
         let [operation, index, t0, t1, v0, v1, v2, v3] = bytes;
@@ -172,8 +172,8 @@ impl Record {
 
 /// Digest of a block's answers: two lanes of 32 bits.
 ///
-/// Each lane is a bijection of the lane for a given word, and of the word for a given lane: one word that
-/// differs, alone, always shows.
+/// Each lane is a bijection of the lane for a given word, and of the word for a given lane: a
+/// single differing word always changes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest([u32; 2]);
 
@@ -184,7 +184,7 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// Takes in a word.
+    /// Adds a word.
     pub fn word(&mut self, word: u32) {
         let [first, second] = self.0;
         self.0 = [
@@ -196,14 +196,14 @@ impl Digest {
         ];
     }
 
-    /// Takes in the command of a step.
+    /// Adds the command of a step.
     pub fn command(&mut self, legs: Legs) {
         for (compare, state) in legs.compare().into_iter().zip(legs.state()) {
             self.word(u32::from(compare) | (state as u32) << 16);
         }
     }
 
-    /// Takes in what a step put out.
+    /// Adds the outputs of a step.
     pub fn answer(&mut self, legs: Legs, fault: Option<Fault>) {
         self.command(legs);
         self.word(u32::from(number(fault)));
@@ -219,7 +219,7 @@ impl Digest {
     }
 }
 
-/// The number of a fault; 0 of none.
+/// The number of a fault; 0 for none.
 fn number(fault: Option<Fault>) -> u8 {
     fault.map_or(0, |fault| fault as u8)
 }

@@ -1,4 +1,5 @@
-//! A drive in Embassy: an interrupt above the executor runs the control loop, and tasks share its set-point.
+//! A drive in Embassy: an interrupt above the executor runs the control loop, and tasks share its
+//! set-point.
 #![no_std]
 #![no_main]
 
@@ -12,11 +13,11 @@ use static_cell::StaticCell;
 
 static DRIVE: StaticCell<Drive> = StaticCell::new();
 
-/// Handed over before the interrupt is let in; taken by it alone from then on.
+/// Set before the interrupt is enabled; used only by it from then on.
 static CONTROL: Mutex<Cell<Option<ControlLoop>>> = Mutex::new(Cell::new(None));
 
-/// The ADCs have sampled: once per control period. Nothing may interrupt it, so that the critical section
-/// delays nothing.
+/// The ADCs have sampled: once per control period. Nothing may interrupt it, so that the critical
+/// section delays nothing.
 #[interrupt]
 fn ADC0_SEQUENCE_0() {
     critical_section::with(|token| {
@@ -31,16 +32,16 @@ fn ADC0_SEQUENCE_0() {
 #[embassy_executor::task]
 async fn follow(set_point: &'static SetPoint) {
     set_point.set_current_ma(5_000);
-    // Await commands here: every task may set the set-point, without a lock.
+    // Await commands here: every task may change the set-point, without a lock.
     pending::<()>().await;
 }
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let (set_point, mut control) = DRIVE.init(Drive::new()).split();
-    // Offsets of the current sensors, then bootstrap capacitors; control begins by itself.
+    // Offsets of the current sensors, then bootstrap capacitors; control follows automatically.
     control.calibrate();
     critical_section::with(|token| CONTROL.borrow(token).set(Some(control)));
-    // Start the PWM timer and what triggers the ADCs, and let the interrupt in, here.
-    spawner.spawn(follow(set_point).expect("one of it"));
+    // Start the PWM timer and the ADCs' trigger, and enable the interrupt, here.
+    spawner.spawn(follow(set_point).expect("one instance"));
 }

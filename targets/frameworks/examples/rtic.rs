@@ -1,4 +1,5 @@
-//! A drive in RTIC: the control loop is a local resource of the task that the sampling interrupt starts.
+//! A drive in RTIC: the control loop is a local resource of the task that the sampling interrupt
+//! starts.
 #![no_std]
 #![no_main]
 
@@ -19,13 +20,13 @@ mod app {
     #[init(local = [drive: Drive = Drive::new()])]
     fn init(context: init::Context) -> (Shared, Local) {
         let (set_point, mut control) = context.local.drive.split();
-        // Offsets of the current sensors, then bootstrap capacitors; control begins by itself.
+        // Offsets of the current sensors, then bootstrap capacitors; control follows automatically.
         control.calibrate();
-        // Start the PWM timer and what triggers the ADCs here.
+        // Start the PWM timer and the ADCs' trigger here.
         (Shared {}, Local { control, set_point })
     }
 
-    /// The ADCs have sampled: once per control period, above everything else.
+    /// The ADCs have sampled: once per control period, at the highest priority.
     #[task(binds = ADC0_SEQUENCE_0, priority = 8, local = [control])]
     fn control_period(context: control_period::Context) {
         let control = context.local.control;

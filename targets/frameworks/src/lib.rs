@@ -15,11 +15,11 @@ hexagen::controller! {
 /// The drive.
 pub type Drive = hexagen::Drive<HubDrive>;
 
-/// The half of the drive that the control interrupt owns.
+/// The control interrupt's half of the drive.
 pub type ControlLoop = hexagen::ControlLoop<'static, HubDrive>;
 
-/// The half of the drive that all else shares.
+/// The half of the drive for everything else.
 pub type SetPoint = hexagen::SetPoint<HubDrive>;
 
-/// ADCs, Hall port and PWM timer; a chip's are those of its peripheral access crate.
+/// ADCs, Hall port and PWM timer; on a chip, those of its peripheral access crate.
 pub static REGISTERS: Registers = Registers::new();

@@ -1,5 +1,5 @@
-//! Fixed point beside the ideal model over the whole library: single steps from the same state keep
-//! within what is proven of them, and the proofs promise what a drive is to reach.
+//! Fixed point against the ideal model over the whole library: errors of single steps from the same
+//! state are within their proven bounds, and the bounds meet the accuracy goals.
 
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::ir::{StatedError, stated_errors};
@@ -7,7 +7,7 @@ use hexagen_lab::accuracy::{OneStep, at_speeds, differences, one_step};
 use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, library, prepare};
 use rayon::prelude::*;
 
-/// Controllers that modulate.
+/// Controllers with a modulator.
 const KINDS: [&str; 2] = ["pdcc", "pi-pwm"];
 
 fn drive(motor: &MotorSource, variant: &str) -> Prepared {
@@ -20,7 +20,7 @@ fn accuracy(drive: &Prepared) -> OneStep {
 }
 
 #[test]
-fn steps_keep_within_the_proven_bounds_and_compare_values_within_a_count() {
+fn steps_are_within_the_proven_bounds_and_compare_values_within_a_count() {
     let mut drives = vec![];
     for motor in library().iter().map(MotorSource::from) {
         for kind in KINDS {
@@ -37,14 +37,14 @@ fn steps_keep_within_the_proven_bounds_and_compare_values_within_a_count() {
         assert!(found.decisions_equal_pct > 99.98, "{}", named());
         if *word == 32 {
             assert!(found.compares_apart_counts <= 1, "{}", named());
-            // Compare values differ where the exact duty is half a count from a whole one.
+            // Compare values differ where the exact duty is near half a count.
             assert!(found.equal_steps_pct >= 99.3, "{}", named());
         }
     });
 }
 
 #[test]
-fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
+fn closed_loops_of_32_bit_words_have_the_figures_of_merit_of_floating_point() {
     let variants = [
         "pdcc",
         "pi-pwm",
@@ -75,7 +75,7 @@ fn closed_loops_of_32_bit_words_have_the_merits_of_floating_point() {
 }
 
 #[test]
-fn errors_of_the_papers_motor_are_proven_as_small_as_asked() {
+fn errors_of_the_papers_motor_are_proven_within_the_goal() {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     for kind in KINDS {
         let drive = drive(&motor, kind);
@@ -90,7 +90,7 @@ fn errors_of_the_papers_motor_are_proven_as_small_as_asked() {
 }
 
 #[test]
-fn data_sheets_state_what_16_bit_words_reach() {
+fn data_sheets_state_the_accuracy_of_16_bit_words() {
     for motor in library().iter().map(MotorSource::from) {
         for kind in KINDS {
             let drive = drive(&motor, &format!("{kind}:word=16"));

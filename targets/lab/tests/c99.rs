@@ -1,6 +1,5 @@
-//! Emitted C passes strict flags, computes what the bit-true model computes on every output and
-//! state bit, and has no undefined behaviour on the way, for the covering arrays of all kinds of
-//! controllers.
+//! Emitted C passes strict flags, equals the bit-true model in every output and state bit, and has
+//! no undefined behaviour, for the covering arrays of all kinds of controllers.
 
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::spec::parse_toml;
@@ -15,11 +14,11 @@ use std::{env, fs};
 /// Steps per drive.
 const STEPS: u64 = 20_000;
 
-/// Every so many drives are compiled with a check for undefined behaviour, the rest as firmware
-/// would be; all of them both ways where `HEXAGEN_WHOLE_PRODUCTS` is set.
+/// One in so many drives is compiled with a check for undefined behaviour, the rest as in firmware;
+/// all of them both ways if `HEXAGEN_WHOLE_PRODUCTS` is set.
 const CHECKED: usize = 6;
 
-/// What makes the compiled code stop at undefined behaviour.
+/// Makes the compiled code stop at undefined behaviour.
 const CHECK: &str = "-fsanitize=undefined -fno-sanitize-recover -O1";
 
 fn prepared(toml: &str, what: &str) -> Prepared {
@@ -27,7 +26,7 @@ fn prepared(toml: &str, what: &str) -> Prepared {
     prepared.unwrap_or_else(|errors| panic!("{what}\n{errors}"))
 }
 
-/// Compares a drive's C, compiled with these flags besides; what differs.
+/// Compares a drive's C, compiled with these additional flags; returns the difference.
 fn difference(drive: &Prepared, flags: &str, seed: u64) -> Option<String> {
     let verifier = match Verifier::of_c99(drive, flags) {
         Ok(verifier) => verifier,
@@ -66,7 +65,7 @@ fn emitted_c_is_bit_true() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Every motor of the library, with each kind of controller that it takes.
+/// Every motor of the library, with each kind of controller that suits it.
 fn library() -> impl Iterator<Item = Prepared> {
     let drives = motors().into_iter().flat_map(|motor| {
         let kinds = kinds().into_iter().map(|kind| kind.name.to_owned());
@@ -155,10 +154,10 @@ fn assert_has_none(text: &str, never: &[&str], what: &str) {
     }
 }
 
-/// Types' names that C keeps for itself, or C++, or a header, or the runtime; that of a function of
-/// every source; one that begins a stage's name, and one that begins a constant's.
+/// Type names reserved by C, C++, a header or the runtime; that of a function of every source; the
+/// beginning of a stage's name, and of a constant's.
 #[test]
-fn names_that_c_does_not_take_are_changed() {
+fn names_reserved_in_c_are_changed() {
     let paper = motor(PAPER_MOTOR);
     for (name, prefix) in [
         ("Int", "drive_int"),
@@ -178,8 +177,8 @@ fn names_that_c_does_not_take_are_changed() {
     }
 }
 
-/// Compiles these files with a drive and the runtime beside them; what the program says, or the
-/// compiler where it refuses.
+/// Compiles these files with a drive and the runtime; returns the output of the program, or of the
+/// compiler if it fails.
 fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let own = [
@@ -213,7 +212,7 @@ fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
     String::from_utf8_lossy(&run.stdout).into_owned()
 }
 
-/// What firmware does at start-up, and what it must see: [`c99_start_up.c`].
+/// Start-up as in firmware, with the expected results: [`c99_start_up.c`].
 const START_UP: &str = include_str!("c99_start_up.c");
 
 fn starting() -> Sources {
@@ -226,17 +225,14 @@ fn starting() -> Sources {
     emit_c99(&drive.generated.graph, &drive.generated.interface, "Hub")
 }
 
-/// Offsets that are averaged anew by every call of `calibrate`, once; a status that is published
-/// by every call; signals of the next controlled period.
+/// Offsets are averaged once per call of `calibrate`; every call publishes the status; signals are
+/// of the next controlled period.
 #[test]
-fn start_up_in_c_averages_once_per_call_and_tells_its_status_at_once() {
-    assert_eq!(
-        said(&starting(), &[("start_up.c", START_UP)]),
-        "as it should be\n"
-    );
+fn start_up_in_c_averages_once_per_call_and_publishes_its_status_at_once() {
+    assert_eq!(said(&starting(), &[("start_up.c", START_UP)]), "passed\n");
 }
 
-/// Two drives share one runtime; one that is of another version says what to do.
+/// Two drives share one runtime; the error for one of another version names the remedy.
 #[test]
 fn a_runtime_of_another_version_is_refused() {
     let [(_, header), _] = RUNTIME;

@@ -1,4 +1,7 @@
-/* Start-up of a drive with 16 samples of calibration and 4 periods of pre-charge, as firmware calls it. */
+/*
+ * Start-up of a drive with 16 samples of calibration and 4 periods of pre-charge, as firmware calls
+ * it.
+ */
 #include "hub.h"
 #include <stdio.h>
 
@@ -12,7 +15,7 @@ static hub drive;
         }                                               \
     } while (0)
 
-/* Steps whose legs are all in a state; how many of them come before the first that is not. */
+/* Steps with all legs in a state, until the first other one. */
 static int steps(int count, hexagen_mode mode, hexagen_leg leg, uint16_t adc_a, uint16_t adc_b)
 {
     int done;
@@ -27,7 +30,7 @@ static int steps(int count, hexagen_mode mode, hexagen_leg leg, uint16_t adc_a, 
     return done;
 }
 
-/* Whether these counts are the offsets; `unit` is what one count is. */
+/* Whether these counts are the offsets; `unit` is one count. */
 static int32_t unit;
 
 static int has_offsets(int32_t adc_a, int32_t adc_b)
@@ -65,7 +68,7 @@ int main(void)
     hub_calibrate(&drive);
     EXPECT(starts_up(1948, 2098));
 
-    /* Again, halfway: nothing of the first half counts. */
+    /* Again, halfway: the first half is discarded. */
     hub_calibrate(&drive);
     EXPECT(steps(8, HEXAGEN_MODE_CALIBRATE, HEXAGEN_LEG_OFF, 2148, 1948) == 8);
     hub_calibrate(&drive);
@@ -96,13 +99,13 @@ int main(void)
     EXPECT(steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2048, 2028) == 4);
     EXPECT(is_running());
 
-    /* Signals come with the next controlled period, in which legs of 24 V make no current. */
+    /* Signals are of the next controlled period, in which legs of 24 V make no current. */
     EXPECT(!hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));
     EXPECT(steps(1, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 1);
     EXPECT(hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));
     EXPECT(signals.currents[0] == 0 && signals.currents[2] == 0 && signals.sector == 2);
     EXPECT(!signals.is_off[0]);
     EXPECT(signals.voltages[0] > 23 * 65536 && signals.voltages[0] < 25 * 65536);
-    printf("as it should be\n");
+    printf("passed\n");
     return 0;
 }

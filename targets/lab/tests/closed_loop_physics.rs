@@ -1,10 +1,10 @@
-//! Terms of the laws against the simulated motor.
+//! The laws against the simulated motor.
 //!
-//! Generated program and bit-true model are written from one page per controller, so an error of a
-//! page is in both. What is expected here comes from the circuit alone: currents that resistance,
-//! inductance and bus allow, the phase of the EMF, the sample at which a phase is free of current.
-//! Each bound lies midway, by ratio, between two figures that stand beside it: what the law
-//! reaches, and the least wrong of what it reached with one sign turned or one term left out.
+//! Generated program and bit-true model are written from the same semantics page per controller, so
+//! an error of a page is in both. Expectations here come from the circuit only: currents allowed by
+//! resistance, inductance and bus, the phase of the EMF, the sample at which a phase is free of
+//! current. Each bound is the geometric mean of two figures given next to it: the law's result, and
+//! the best result of a law with one wrong sign or one missing term.
 
 use hexagen_lab::closed_loop::{
     ClosedLoop, PeriodRow, Recorder, Step, Trace, measure, quasi_square,
@@ -14,10 +14,10 @@ use hexagen_lab::plant::{Observer, Plant, Segment};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// A field of the 660 W motor's file that is replaced: section, name and value.
+/// A replaced field of the 660 W motor's file: section, name and value.
 type Field = (&'static str, &'static str, &'static str);
 
-/// Resistance that counts: 20 % of a current is lost in a period, and at standstill the bus drives
+/// A significant resistance: 20 % of a current decays in a period, and at standstill the bus drives
 /// 24 A through the pair.
 const RESISTIVE: &[Field] = &[
     ("motor", "resistance", "1 ohm per_phase"),
@@ -32,7 +32,7 @@ const RESISTIVE: &[Field] = &[
 /// Dead time of 4 % of the period, 1.9 V.
 const DEAD_TIME: Field = ("inverter", "dead_time", "2 us");
 
-/// Small strides: a vector moves the current by 1.6 A, while the resistance takes half of the bus.
+/// Small steps: a vector changes the current by 1.6 A, while the resistance takes half of the bus.
 const CALM: &[Field] = &[
     ("motor", "resistance", "0.6 ohm per_phase"),
     ("motor", "inductance", "0.99 mH per_phase"),
@@ -45,7 +45,7 @@ const SINE: &[Field] = &[
     ("motor", "rated_torque", ""),
 ];
 
-/// The drive of the 660 W motor with fields replaced; an empty value takes a field out.
+/// The drive of the 660 W motor with replaced fields; an empty value removes a field.
 fn drive(fields: &[Field], variant: &str) -> Prepared {
     let mut motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     for (section, name, value) in fields {
@@ -96,8 +96,8 @@ fn steps(drive: &Prepared, sector: u32, set_points: &[(f64, usize)]) -> Vec<Vec<
     samples
 }
 
-/// Records of the three starts at a speed in rpm and a part of the demanded torque; mean torque in
-/// parts of what is asked for, and peak-to-peak ripple in percent.
+/// Records of the three starts at a speed in rpm and a fraction of the demanded torque; mean torque
+/// relative to the demand, and peak-to-peak ripple in percent.
 fn measured(drive: &Prepared, rpm: f64, share: f64) -> (Vec<Trace>, f64, f64) {
     let torque = share * drive.demand();
     let run = run_of(&drive.spec, rpm * TAU / 60.0, torque);
@@ -112,7 +112,7 @@ fn measured(drive: &Prepared, rpm: f64, share: f64) -> (Vec<Trace>, f64, f64) {
     )
 }
 
-/// A figure of a run beside what it is and what the least wrong law makes of it.
+/// A figure of a run with the law's known figure and that of the best wrong law.
 struct Figure {
     of: String,
     found: f64,
@@ -150,10 +150,10 @@ fn assert_all(figures: Vec<Figure>) {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// Deadbeat control takes the current to the set-point in one period, or as near to it as the bus
-/// can, and never anywhere else: not behind a resistance, not on return from the limit of the bus.
+/// Deadbeat control drives the current to the set-point in one period, or as near as the bus
+/// allows, with a resistance and after a voltage limit, too.
 #[test]
-fn deadbeat_steps_at_standstill_are_those_of_the_circuit() {
+fn deadbeat_steps_at_standstill_match_the_circuit() {
     const VARIANTS: [&str; 13] = [
         "pdcc:emf=estimated",
         "pdcc:emf=estimated,emf_filter=1",
@@ -196,12 +196,12 @@ fn deadbeat_steps_at_standstill_are_those_of_the_circuit() {
     assert_all(figures.collect());
 }
 
-/// The same on a rotor that turns, where the EMF is part of the driving voltage, and as a mean
-/// where whole vectors overshoot by a stride: the torque is that of the set-point.
+/// The same with a turning rotor, where the EMF is part of the driving voltage, and on average for
+/// whole vectors, which overshoot by a step: the torque is that of the set-point.
 #[test]
-fn torque_is_as_asked_for_behind_a_resistance() {
-    // Wrong: of modulated voltages the EMF's sign in the driving voltage, of PI the resistive drop
-    // left out, of vectors what is left of the present current taken for all of it.
+fn torque_meets_the_demand_with_a_high_resistance() {
+    // Wrong: for modulated voltages the sign of the EMF in the driving voltage, for PI no resistive
+    // drop, for vectors no decay of the present current.
     let variants = [
         (RESISTIVE, "pdcc:advance=2,emf=estimated", [0.16, 3.8]),
         (RESISTIVE, "pdcc:advance=2,emf=model", [0.16, 3.8]),
@@ -244,9 +244,9 @@ fn torque_is_as_asked_for_behind_a_resistance() {
     assert_all(figures.collect());
 }
 
-/// PI at standstill: no overshoot to speak of, and no memory of what the bus could not give.
+/// PI at standstill: almost no overshoot, and no wind-up after a voltage limit.
 #[test]
-fn a_pi_regulator_forgets_what_the_bus_could_not_give() {
+fn a_pi_controller_has_no_wind_up() {
     let variants = [
         "pi-pwm:feed_forward=off",
         "pi-pwm:emf=estimated",
@@ -266,22 +266,21 @@ fn a_pi_regulator_forgets_what_the_bus_could_not_give() {
         let is_off = |i: &f64| (i - 10.0).abs() > 1.0;
         let late = samples[3].iter().rposition(is_off).unwrap_or(0) as f64;
         [
-            // Wrong: without the resistive drop in the estimate.
+            // Wrong: no resistive drop in the estimate.
             ("overshoot in A", over, [0.22, 1.76]),
-            // Wrong: an estimate from the voltage that was asked for.
-            ("undershoot behind the limit in A", under, [0.6, 3.1]),
-            // Wrong: the voltage that was asked for is integrated.
-            ("settling behind the limit in periods", late, [5.0, 13.0]),
+            // Wrong: an estimate from the demanded voltage.
+            ("undershoot after the limit in A", under, [0.6, 3.1]),
+            // Wrong: integration of the demanded voltage.
+            ("settling after the limit in periods", late, [5.0, 13.0]),
         ]
         .map(|(what, found, figures)| Figure::new(format!("{variant}, {what}"), found, figures))
     });
     assert_all(figures.collect());
 }
 
-/// With its dead time compensated a drive does what it does without, or comes nearer to that than
-/// one that does not compensate.
+/// With compensation, dead time has no effect, or less than without compensation.
 #[test]
-fn compensated_dead_time_is_as_none() {
+fn compensated_dead_time_has_no_effect() {
     let variants = [
         "pdcc:emf=estimated",
         "pdcc:emf=model,hall_capture=timer",
@@ -307,7 +306,7 @@ fn compensated_dead_time_is_as_none() {
         let lost = distance(&samples(&with, ""));
         let kept = distance(&samples(&with, ",dead_time_compensation=on"));
         let part = (kept / lost).sqrt();
-        // 0.07 to 0.31 but for a held EMF. Wrong: no compensation; turned 1.7 to 2.
+        // 0.07 to 0.31 except with a held EMF. Wrong: no compensation; inverted 1.7 to 2.
         Figure::new(format!("{variant}, part of the effect"), part, [0.5, 1.0])
     });
     assert_all(figures.collect());
@@ -328,11 +327,12 @@ fn lead(trace: &Trace) -> f64 {
     across.atan2(along).to_degrees()
 }
 
-/// A current that is asked for in phase with the EMF flows in phase with it.
+/// A current demanded in phase with the EMF flows in phase with it.
 #[test]
-fn an_estimated_emf_moves_on_with_the_rotor() {
-    // Wrong: one weight of the line EMF left out, or, of PHCC, turned; the motion left out is twice
-    // that, turned four times. PHCC lags by its bands, and its pattern moves the angle by a degree.
+fn an_estimated_emf_rotates_with_the_rotor() {
+    // Wrong: one weight of the line EMF missing, or, for PHCC, inverted; missing motion is twice
+    // that, inverted four times. PHCC lags by its bands, and its pattern moves the angle by a
+    // degree.
     let variants = [
         ("sine", SINE, "pdcc:", [0.2, 4.8]),
         (
@@ -377,10 +377,10 @@ fn an_estimated_emf_moves_on_with_the_rotor() {
     assert_all(figures.collect());
 }
 
-/// Ripple tells wrong lines: of the line EMF, where the EMF of the off phase runs from one flat top
-/// to the other, in the limit of the voltage, and in a cost that weighs the torque.
+/// Ripple reveals wrong lines: of the line EMF, where the EMF of the off phase runs from one flat
+/// top to the other, in the voltage limit, and in a torque-weighted cost.
 #[test]
-fn ripple_is_that_of_true_lines() {
+fn ripple_matches_the_design() {
     let variants = [
         // 1.8 to 2.0 % by design. Wrong: forces of the limit turned; motion left out 16.
         ("pdcc:advance=2,emf=estimated", 1500.0, [1.9, 13.1]),
@@ -420,14 +420,14 @@ fn ripple_is_that_of_true_lines() {
     assert_all(figures.collect());
 }
 
-/// Samples of commutations that begin with more than 5 A.
+/// Samples of commutations that begin above 5 A.
 #[derive(Debug, Default)]
 struct Commutations {
-    /// A leg is turned off though the outgoing phase carries current.
+    /// A leg is switched off while the outgoing phase carries current.
     early: usize,
-    /// None is though that current is gone.
+    /// No leg is switched off although that current is zero.
     late: usize,
-    /// All that were judged.
+    /// All judged samples.
     judged: usize,
 }
 
@@ -436,10 +436,10 @@ fn commutations(rows: &[PeriodRow], threshold: f64) -> Commutations {
     let (mut flows, mut counts, mut sign, mut phase) = (false, false, 0.0, 0);
     for k in 1..rows.len() - 1 {
         let row = &rows[k];
-        // What the drive makes of this sample is at work in the next period.
+        // The command for this sample is in effect in the next period.
         let is_driven = !rows[k + 1].state.contains(&2);
         if row.sector == rows[k - 1].sector {
-            // Gone for good once it was gone. Two counts of the converters decide nothing.
+            // Zero remains zero. A difference of two ADC counts is not judged.
             let left = sign * row.currents[phase] - threshold;
             flows &= if left.abs() < 0.04 {
                 is_driven
@@ -465,10 +465,10 @@ fn commutations(rows: &[PeriodRow], threshold: f64) -> Commutations {
     found
 }
 
-/// Three legs drive the current exactly while the phase that goes off still carries some: in all
-/// quadrants, with a time-out that never passes. Wrong signs end 3 to 31 % of the samples early.
+/// Three legs are driven exactly while the outgoing phase carries current: in all quadrants, with a
+/// time-out that never expires. Wrong signs end 3 to 31 % of the samples early.
 #[test]
-fn a_commutation_lasts_until_the_outgoing_current_is_gone() {
+fn a_commutation_lasts_until_the_outgoing_current_is_zero() {
     let variants = ["pdcc:modulation=pair,", "fcs-mpc:", "phcc:"];
     variants.par_iter().for_each(|variant| {
         let drive = drive(&[], &format!("{variant}commutation_timeout=255"));

@@ -1,23 +1,21 @@
-//! At 120 % of rated speed no controller reaches more than a tenth less torque than the
-//! nearest-point rule with the same options, which loses what it must and no more, but for one
-//! rule: listed with what it reaches.
+//! At 120 % of rated speed every controller reaches at least nine tenths of the torque of the
+//! nearest-point rule with the same options, except one rule, which is listed with its torque.
 
 use hexagen_lab::closed_loop::{RunOptions, mean_torque};
 use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Part of the rated speed that every controller of this motor has lost its rated torque at, bar
-/// those with proportional reference.
+/// Speed, relative to the rated one, at which every controller of this motor has lost its rated
+/// torque, except those with a proportional reference.
 const SPEED: f64 = 1.2;
 
-/// Part of the nearest-point rule's torque that counts as no collapse.
+/// Fraction of the nearest-point rule's torque that is no collapse.
 const KEPT: f64 = 0.9;
 
-/// The rule that falls short, by what its variants contain, and the part of the nearest-point
-/// rule's torque that it reaches. Scaling a voltage that points across the EMF, as it does in
-/// commutations, leaves too little along the EMF; quasi-square references ask for commutations all
-/// the time past the limit.
+/// The exception, by a part of its variants' names, and its fraction of the nearest-point rule's
+/// torque. Scaling a voltage that points across the EMF, as in commutations, leaves too little
+/// along the EMF; above the limit, quasi-square references demand commutations all the time.
 const SHORT: [&str; 3] = [
     "modulation=three_phase",
     "saturation=keep_angle",
@@ -40,7 +38,7 @@ fn torque(motor: &MotorSource, variant: &str) -> f64 {
     torque.unwrap_or_else(|trip| panic!("{variant}: {trip}"))
 }
 
-/// Every variant with the one whose nearest-point rule it is held against.
+/// Every variant with its nearest-point counterpart.
 fn pairs() -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     for kind in [
@@ -50,7 +48,7 @@ fn pairs() -> Vec<(String, String)> {
     ] {
         for emf in ["estimated", "model"] {
             for reference in ["quasi_square", "proportional"] {
-                // A pair of legs cannot drive three currents: it is refused.
+                // A pair of legs cannot drive three currents: such a variant is invalid.
                 if kind.ends_with("pair") && reference == "proportional" {
                     continue;
                 }

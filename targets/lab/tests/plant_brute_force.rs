@@ -1,5 +1,5 @@
-//! The plant against an independent integrator: fixed small Euler steps, written from the circuit
-//! alone, sharing no code with the plant. Covers PWM, dead time, legs that are off, commutation
+//! The plant against an independent integrator: small fixed Euler steps, derived from the circuit
+//! only, sharing no code with the plant. Covers PWM, dead time, legs that are off, commutation
 //! through diodes, unequal phases, both EMF shapes, and rectification above the bus voltage.
 
 use hexagen::{LegState, Legs};
@@ -14,7 +14,7 @@ struct Naive<'a> {
     omega_m: f64,
     theta_e: f64,
     i: [f64; 3],
-    /// Per leg: what the driver wants (1 upper, -1 lower, 0 off), and since when.
+    /// Per leg: the driver's request (1 upper, -1 lower, 0 off), and its time.
     wanted: [i8; 3],
     since: [f64; 3],
     t: f64,
@@ -118,7 +118,7 @@ impl<'a> Naive<'a> {
                     self.i[x] = 0.0;
                 }
             }
-            // What a diode refused, the switched legs did not get either.
+            // Current blocked by a diode is missing from the switched legs, too.
             let sum: f64 = self.i.iter().sum();
             let takers: Vec<usize> = (0..3).filter(|&x| self.i[x] != 0.0).collect();
             for &x in &takers {

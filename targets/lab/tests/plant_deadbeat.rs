@@ -1,6 +1,6 @@
 //! A float64 reference experiment: an ideal deadbeat controller on the 660 W motor must give the
-//! PDCC rows of the reference study that it stands for (`report/expected.rs`). Nothing of the
-//! generator takes part, so a difference here is the plant's or the figures of merit'.
+//! PDCC rows of the reference study (`report/expected.rs`). It uses nothing of the generator, so a
+//! difference is an error of the plant or of the figures of merit.
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_lab::closed_loop::{
@@ -23,7 +23,7 @@ fn motor() -> PlantParams {
     PlantParams::ideal(4, R, L, K_PHASE, V_BUS, T_S)
 }
 
-/// What the reference is.
+/// The reference's shape.
 #[derive(Clone, Copy)]
 enum Reference {
     QuasiSquare,
@@ -192,7 +192,7 @@ fn speed_limits_of_the_design_are_met() {
 }
 
 #[test]
-fn all_four_quadrants_are_alike() {
+fn all_four_quadrants_agree() {
     let forward = at(Reference::QuasiSquare, 400.0, TORQUE);
     let backward = at(Reference::QuasiSquare, -400.0, -TORQUE);
     assert_near(
@@ -233,7 +233,7 @@ fn all_four_quadrants_are_alike() {
     assert_near("standstill", standstill.mean_torque_nm, TORQUE, 1e-3);
 }
 
-/// The deadbeat controller, except that it gives up in a narrow band of speeds.
+/// The deadbeat controller, without voltage in a narrow band of speeds.
 struct Faltering(Option<Deadbeat>);
 
 impl CurrentLoop for Faltering {
@@ -277,9 +277,9 @@ fn speed_limit_is_the_first_crossing_even_if_the_torque_recovers() {
     );
 }
 
-/// A controller that asks for more torque the faster it turns: by 1 % per 100 rpm beyond 500 rpm.
+/// A controller whose torque rises with speed: by 1 % per 100 rpm above 500 rpm.
 #[test]
-fn a_torque_above_the_demand_ends_what_is_held() {
+fn a_torque_above_the_demand_is_not_held() {
     let run = RunOptions::new(1.0, CURRENT);
     let scan = |held| {
         let options = LimitOptions {

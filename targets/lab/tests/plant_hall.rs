@@ -1,5 +1,4 @@
-//! What the plant's capture timer says of Hall edges, against where the edges of a rotor that turns
-//! evenly are.
+//! The plant's capture timer against the known Hall edges of a rotor at constant speed.
 
 use hexagen::Legs;
 use hexagen_lab::plant::{Plant, PlantParams};
@@ -7,8 +6,8 @@ use hexagen_lab::plant::{Plant, PlantParams};
 /// Ticks per control period.
 const TICKS: f64 = 1800.0;
 
-/// Ticks from the last Hall edge to a time in periods, of a rotor that turns evenly, in degrees:
-/// edges are at 30 + 60 n. None where none has come yet.
+/// Ticks from the last Hall edge to a time in periods, at constant speed in degrees per period:
+/// edges are at 30 + 60 n. `None` before the first edge.
 fn ticks_since_edge(start: f64, per_period: f64, periods: f64) -> Option<f64> {
     let sixths = (start + per_period * periods - 30.0) / 60.0;
     let last = if per_period > 0.0 {
@@ -21,7 +20,7 @@ fn ticks_since_edge(start: f64, per_period: f64, periods: f64) -> Option<f64> {
 }
 
 #[test]
-fn samples_tell_the_whole_ticks_since_the_last_edge() {
+fn samples_have_the_whole_ticks_since_the_last_edge() {
     let mut compared = 0;
     for (start, per_period) in [
         (11.3, 0.731),
@@ -41,7 +40,7 @@ fn samples_tell_the_whole_ticks_since_the_last_edge() {
             let place = format!("{start} + {period} x {per_period} degrees");
             match ticks_since_edge(start, per_period, f64::from(period)) {
                 None => assert_eq!(sample.ticks(), u16::MAX, "{place}"),
-                // So near to a whole tick rounding decides.
+                // So near to an integer tick rounding decides.
                 Some(ticks) if (ticks - ticks.round()).abs() < 1e-5 => {}
                 Some(ticks) => {
                     assert_eq!(sample.ticks(), ticks.floor() as u16, "{place}");

@@ -31,7 +31,7 @@ fn legs(command: [Option<u16>; 3]) -> Legs {
     )
 }
 
-/// Keeps all segments.
+/// Records all segments.
 #[derive(Default)]
 struct Tape(Vec<Segment>);
 
@@ -86,7 +86,7 @@ fn emf_ramp_on_a_lossless_winding_integrates_to_a_parabola() {
 }
 
 #[test]
-fn three_unequal_phases_settle_where_ohm_says() {
+fn three_unequal_phases_settle_by_ohms_law() {
     let mut params = motor();
     params.k_phase = [0.0; 3];
     params.inductance = [L, 1.7 * L, 0.6 * L];
@@ -105,8 +105,8 @@ fn three_unequal_phases_settle_where_ohm_says() {
     }
 }
 
-/// The instant of a commutation from a+ c- to b+ c- at 150 degrees with an EMF that stands still:
-/// a tiny speed and a huge constant. Returns the plant, 20 A in a and c, and E.
+/// The instant of a commutation from a+ c- to b+ c- at 150 degrees with a constant EMF: a tiny
+/// speed and a huge constant. Returns the plant, 20 A in a and c, and E.
 fn commutation(bus_per_e: f64) -> (Plant, f64) {
     let mut params = motor();
     let e = V / bus_per_e;
@@ -138,7 +138,7 @@ fn commutation_slopes_of_the_three_classic_cases() {
             let [i_a, i_b, i_c] = segment.currents_at(middle);
             assert_close(i_a, 20.0 - (V + 2.0 * e) / (3.0 * L) * t, 1e-6);
             assert_close(i_b, 2.0 * (V - e) / (3.0 * L) * t, 1e-6);
-            // V = 4 E keeps the third current, a higher bus raises and a lower one drops it.
+            // V = 4 E keeps the third current, a higher bus raises and a lower one reduces it.
             assert_close(i_c, -20.0 - (V - 4.0 * e) / (3.0 * L) * t, 1e-6);
         }
         let end = during.last().map(|s| s.start + s.duration).unwrap();
@@ -289,7 +289,7 @@ fn mean_line_voltage_is_the_difference_of_the_compare_values() {
 }
 
 #[test]
-fn dead_time_costs_the_volt_seconds_that_the_current_decides() {
+fn dead_time_costs_volt_seconds_by_the_currents_sign() {
     let mut params = motor();
     params.k_phase = [0.0; 3];
     params.dead_time = 1e-6;
@@ -299,15 +299,15 @@ fn dead_time_costs_the_volt_seconds_that_the_current_decides() {
     plant.run_period(legs([Some(900); 3]), &mut ());
     plant.run_period(legs([Some(900); 3]), &mut ());
     let v = plant.truth().mean_voltages;
-    // Into the motor the lower diode conducts in both gaps: the rising edge comes late; out of
-    // the motor the upper one does: the falling edge comes late.
+    // For current into the motor the lower diode conducts in both gaps: the rising edge is late;
+    // for current out of the motor the upper one does: the falling edge is late.
     let lost = 1e-6 / T_S * V;
     assert_close(v[0], V / 2.0 - lost, 1e-9);
     assert_close(v[1], V / 2.0 + lost, 1e-9);
     assert_close(v[2], V / 2.0 + lost, 1e-9);
 }
 
-/// Mechanical angle that the shaft has turned, in radians.
+/// Mechanical angle of the shaft's rotation, in radians.
 #[derive(Default)]
 struct Turned(f64);
 
@@ -354,7 +354,7 @@ fn energy_of(params: PlantParams, omega_m: f64, limit: f64) {
 }
 
 #[test]
-fn energy_is_accounted_for() {
+fn energy_is_balanced() {
     energy_of(motor(), 80.0, 1e-10);
     let mut sine = motor();
     sine.shape = EmfShape::Sinusoidal;

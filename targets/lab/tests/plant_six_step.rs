@@ -1,7 +1,7 @@
 //! A float64 reference experiment: two conventional six-step drives on the 660 W motor, which
-//! differ in the current that their regulator holds. The largest of the three gives the mean and
-//! the ripple of the design document's row, the pair's those of the generated drive. Nothing of the
-//! generator takes part in these; a generated drive holds the pair's current, too.
+//! differ in the controlled current. The largest of the three gives the mean and the ripple of the
+//! design document's row, the pair's those of the generated drive. These use nothing of the
+//! generator; a generated drive controls the pair's current, too.
 
 use hexagen::{LegState, Legs, Sample};
 use hexagen_lab::closed_loop::{
@@ -20,10 +20,10 @@ const N: f64 = 1800.0;
 const TORQUE: f64 = 3.3;
 const CURRENT: f64 = TORQUE / 0.1648;
 
-/// Bandwidth of the regulator, hertz; its integral time is L/R.
+/// Bandwidth of the controller, hertz; its integral time is L/R.
 const BANDWIDTH: f64 = 600.0;
 
-/// The current that the regulator holds.
+/// The controlled current.
 #[derive(Clone, Copy, Debug)]
 enum Held {
     /// (|i_a| + |i_b| + |i_c|)/2, the largest of the three.
@@ -114,7 +114,7 @@ fn assert_near(held: Held, rpm: f64, expected: [f64; 3]) {
 
 fn limit(held: Held) -> f64 {
     let run = RunOptions::new(1.0, CURRENT);
-    // The design document's: where the torque falls off.
+    // The design document's criterion: a falling torque.
     let scan = LimitOptions {
         held: HeldTorque::AtLeast,
         ..LimitOptions::new(2000.0, TORQUE)
@@ -136,19 +136,19 @@ fn the_current_of_the_pair_gives_the_ripple_of_the_generated_drive() {
     assert_near(Held::Pair, 1500.0, [3.45, 19.2, 5.17]);
 }
 
-/// The design's 89 % is met by neither: it is lower than the limit of the regulator whose ripple it
-/// comes with.
+/// Neither meets the design's 89 %: it is below the limit of the controller with the matching
+/// ripple.
 #[test]
-fn the_current_of_the_pair_holds_the_torque_further() {
+fn the_current_of_the_pair_has_the_higher_limit() {
     let [largest, pair] = [Held::Largest, Held::Pair].map(limit);
     assert!((96.0..99.0).contains(&largest), "{largest}");
     assert!((104.0..108.0).contains(&pair), "{pair}");
 }
 
-/// With the rotor held, both currents of the pair come to the set-point, in every sector and with
+/// With the rotor held, both currents of the pair settle at the set-point, in every sector and with
 /// either sign.
 #[test]
-fn a_generated_drive_brings_the_current_of_the_pair_to_its_set_point() {
+fn a_generated_drive_controls_the_current_of_the_pair() {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     let drive = prepare(&motor, Some("pi-pwm:six_step=on")).expect("generates");
     let delay = run_of(&drive.spec, 0.0, 0.0).delay;

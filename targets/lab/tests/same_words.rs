@@ -1,9 +1,9 @@
-//! Fixed and ideal runs on the same ADC words: every figure of merit of every row of the result
-//! table that modulates, and, within 1 %, the mean torque of the others.
+//! Fixed and ideal runs on the same ADC counts: every figure of merit of all rows with a modulator,
+//! and, within 1 %, the mean torque of the others.
 //!
-//! A controller that applies one of a few vectors may decide a near tie either way, and the
-//! patterns differ from there on. Their single decisions are compared, from the same state, in the
-//! tests of `hexagen-reference`.
+//! A controller that applies one of a few vectors may decide a near tie either way, after which the
+//! patterns differ. The tests of `hexagen-reference` compare its single decisions from the same
+//! state.
 
 use hexagen_lab::accuracy::{differences, side_by_side};
 use hexagen_lab::engine::{EngineKind, MotorSource, plant_of, prepare, run_of};
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 const TORQUE: f64 = 3.3;
 
 #[test]
-fn fixed_and_ideal_agree_in_every_merit_of_rows_that_modulate_and_in_the_torque_of_all() {
+fn fixed_and_ideal_agree_in_all_figures_of_rows_with_a_modulator_and_in_the_torque_of_all() {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     let (mut compared, mut different) = (0, 0);
     for row in design_table() {
@@ -45,6 +45,7 @@ fn fixed_and_ideal_agree_in_every_merit_of_rows_that_modulate_and_in_the_torque_
         }
     }
     assert_eq!(compared, (9 * 14 + 3) * 2 * 2);
-    // A run may round every compare value alike, but all of them only if the two were one model.
+    // A run may round every compare value equally, but all of them only if both were the same
+    // model.
     assert!(different > 12, "only {different} of 48 runs differ at all");
 }

@@ -1,17 +1,17 @@
-//! An estimated sine keeps its length as it is moved on from period to period: the torque is the
-//! one that is asked for.
+//! An estimated sine EMF keeps its amplitude when rotated from period to period: the torque meets
+//! the demand.
 
 use hexagen_lab::closed_loop::mean_torque;
 use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 
-/// Part of the torque that may be missing: a quasi-square reference comes up to a period late.
+/// Tolerance below the demand: a quasi-square reference is up to a period late.
 const LOST: f64 = 0.08;
 
-/// Part that may be too much.
+/// Tolerance above the demand.
 const GAINED: f64 = 0.03;
 
 #[test]
-fn an_estimated_sine_makes_the_torque_that_is_asked_for() {
+fn an_estimated_sine_makes_the_demanded_torque() {
     let motor = MotorSource::of_library("br2804-1700kv").expect("is in the library");
     let mut wrong = vec![];
     for variant in ["pdcc", "pdcc:word=16", "pdcc:delay=0", "pdcc:emf_filter=1"] {

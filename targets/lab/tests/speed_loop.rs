@@ -1,5 +1,5 @@
 //! The speed loop in closed loop, on motors of different size: run-up from standstill under load,
-//! reversal, steps of the load, the limit of the current, and what is said of slow turning.
+//! reversal, load steps, current limit, and the documented lowest speed.
 
 use hexagen_lab::closed_loop::ClosedLoop;
 use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
@@ -7,8 +7,8 @@ use hexagen_lab::plant::{Mechanics, Plant};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Variants of every kind, and how far their phase currents go beyond the current that is asked
-/// for, in parts of the rated one: ripple, the more the fewer vectors they choose from.
+/// Variants of every kind, and the excess of their phase currents over the current limit, relative
+/// to the rated current: ripple, the more the fewer vectors they choose from.
 const VARIANTS: [(&str, f64); 5] = [
     ("pdcc:speed_loop=on", 0.15),
     (
@@ -20,22 +20,22 @@ const VARIANTS: [(&str, f64); 5] = [
     ("phcc:speed_loop=on", 0.9),
 ];
 
-/// From this ripple on a small current is none to turn slowly with.
+/// From this ripple on, a small current is too low for slow rotation.
 const RESTLESS: f64 = 0.7;
 
-/// A kind that carries the current of a motor further than it does others': two periods of a vector
-/// move it by 1.5 times the rated current.
+/// A kind that exceeds the limit further with one motor than with others: two periods of a vector
+/// change its current by 1.5 times the rated one.
 const ROUGH: (&str, &str) = ("hurst-long", "phcc");
 
-/// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load that
-/// a run-up does not last long with.
+/// Motors, from a servo of tens of watts to a traction motor, and an inertia of rotor and load with
+/// a short run-up.
 const MOTORS: [(&str, &str); 3] = [
     ("anaheim-bly171d", "1.5e-5 kg m2"),
     ("hurst-long", "5e-5 kg m2"),
     ("trivedi-keshri-660w", "2e-3 kg m2"),
 ];
 
-/// The same with loads so heavy that a run-up is one at the limit of the current.
+/// The same with loads that make the run-up a long one at the current limit.
 const HEAVY: [(&str, &str); 3] = [
     ("anaheim-bly171d", "3e-4 kg m2"),
     ("hurst-long", "1.5e-3 kg m2"),
@@ -59,20 +59,20 @@ fn drive(name: &str, inertia: &str, variant: &str) -> Prepared {
     prepare(&motor, Some(variant)).unwrap_or_else(|why| panic!("{name} {variant}: {why}"))
 }
 
-/// What happened between two looks.
+/// Measurements of an interval.
 #[derive(Clone, Copy, Debug)]
 struct Leg {
-    /// Mean speed over the last fifth, of the set one.
+    /// Mean speed over the last fifth, relative to the set-point.
     mean: f64,
-    /// Least speed over the last fifth, of the set one.
+    /// Least speed over the last fifth, relative to the set-point.
     least: f64,
-    /// Greatest speed of all, of the set one.
+    /// Greatest speed, relative to the set-point.
     peak: f64,
-    /// How far the greatest phase current was above the limit, of the rated one.
+    /// Excess of the greatest phase current over the limit, relative to the rated current.
     excess: f64,
 }
 
-/// A drive that turns a shaft of its own.
+/// A drive with a free shaft.
 struct Bench<'d> {
     drive: &'d Prepared,
     closed: ClosedLoop<Engine<'d>>,
@@ -81,7 +81,7 @@ struct Bench<'d> {
 }
 
 impl<'d> Bench<'d> {
-    /// At rest, with a limit and a load in parts of the rated torque.
+    /// At rest, with a current limit and a load relative to the rated torque.
     fn at_rest(drive: &'d Prepared, limit: f64, load: f64) -> Self {
         let speed = drive.spec.controller.common().speed.expect("a speed loop");
         let mut params = plant_of(&drive.spec);
@@ -101,7 +101,7 @@ impl<'d> Bench<'d> {
         }
     }
 
-    /// So many times 1/f at a part of the rated speed.
+    /// Runs this many times 1/f at a fraction of the rated speed.
     fn run(&mut self, share: f64, times: f64) -> Leg {
         let spec = &self.drive.spec;
         let speed = spec.controller.common().speed.expect("a speed loop");
@@ -138,7 +138,7 @@ impl<'d> Bench<'d> {
     }
 }
 
-/// Runs a test on all motors and variants; it gets the excess that is allowed to the current.
+/// Runs a test on all motors and variants, with the tolerated excess of the current.
 fn on_all(motors: &[(&str, &str)], test: impl Fn(&str, &Prepared, f64) + Sync) {
     let all: Vec<_> = motors
         .iter()
@@ -153,7 +153,7 @@ fn on_all(motors: &[(&str, &str)], test: impl Fn(&str, &Prepared, f64) + Sync) {
 }
 
 #[test]
-fn starts_under_load_reverses_and_bears_steps_of_the_load() {
+fn starts_under_load_reverses_and_handles_load_steps() {
     on_all(&MOTORS, |name, drive, excess| {
         let mut bench = Bench::at_rest(drive, 1.0, 0.3);
         for (share, load) in [
@@ -181,7 +181,7 @@ fn a_long_run_up_at_the_limit_ends_without_overshoot() {
         for (limit, load, times) in [(1.0, 0.0, 15.0), (0.5, 0.1, 40.0)] {
             let mut bench = Bench::at_rest(drive, limit, load);
             let early = bench.run(0.6, 1.0);
-            // At the limit all the time, and far from the speed.
+            // At the limit all the time, and far below the speed.
             assert!(early.peak < 0.7, "{name}: {early:?}");
             let leg = bench.run(0.6, times);
             println!("{name} {limit} of rated current, {load} of rated torque: {leg:.3?}");
@@ -215,10 +215,10 @@ fn four_turns_in_the_loops_time_are_enough_and_one_is_not() {
     });
 }
 
-/// A clock of 2.5 ticks a period: intervals that were counted with two or three would tell a speed
-/// that is 0.6 % off.
+/// A clock of 2.5 ticks a period: intervals counted with two or three would give a speed with an
+/// error of 0.6 %.
 #[test]
-fn edge_ticks_with_a_fraction_tell_the_speed() {
+fn edge_ticks_with_a_fraction_give_the_speed() {
     let mut motor = motor_with("trivedi-keshri-660w", "2e-3 kg m2");
     motor.text = motor.text.replace("\"1 MHz\"", "\"50 kHz\"");
     let variant = "pdcc:speed_loop=on,emf=model,advance=2,hall_capture=timer";

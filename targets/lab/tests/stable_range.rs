@@ -1,5 +1,5 @@
-//! The stable range of L and R that types and data sheets state, against simulation: loops stay
-//! calm inside of it and oscillate outside, by the rule of the robustness sheet.
+//! The stable range of L and R in types and data sheets, against simulation: loops are stable
+//! inside and oscillate outside, by the criterion of the robustness sheet.
 
 use hexagen_codegen::laws::{StableRange, stable_range};
 use hexagen_lab::engine::{MotorSource, prepare};
@@ -15,7 +15,7 @@ const MOTORS: [&str; 4] = [
     "teknic-m2310p",
 ];
 
-/// Loops whose EMF is estimated, and one that does without.
+/// Loops with an estimated EMF, and one without.
 const LOOPS: [&str; 7] = [
     "pdcc",
     "pdcc:saturation=nearest,modulation=pair",
@@ -26,7 +26,7 @@ const LOOPS: [&str; 7] = [
     "pi-pwm:feed_forward=off",
 ];
 
-/// Runs one loop on both sides of its edges; how many of them are run.
+/// Runs one loop on both sides of its edges; returns the number of runs.
 fn check_loop(motor: &str, variant: &str) -> usize {
     let source = MotorSource::of_library(motor).expect("is in the library");
     let drive = prepare(&source, Some(variant)).expect("generates");
@@ -48,7 +48,7 @@ fn check_loop(motor: &str, variant: &str) -> usize {
         check([1.0, inside], true);
         check([1.0, outside], false);
     }
-    // Far beyond twice the stated resistance the bus cannot drive the current.
+    // Far above twice the nominal resistance the bus cannot drive the current.
     for factor in [0.3, 0.7, 1.3, 2.0] {
         let is_stable = (resistance.0..=resistance.1).contains(&factor);
         check([factor, 1.0], is_stable);
@@ -57,7 +57,7 @@ fn check_loop(motor: &str, variant: &str) -> usize {
 }
 
 #[test]
-fn loops_are_calm_inside_and_oscillate_outside_of_their_stable_range() {
+fn loops_are_stable_inside_and_oscillate_outside_of_their_stable_range() {
     let edges: usize = MOTORS
         .into_par_iter()
         .flat_map(|motor| LOOPS.into_par_iter().map(move |variant| (motor, variant)))

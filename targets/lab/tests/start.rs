@@ -1,4 +1,4 @@
-//! Control begins on a rotor that turns: without a trip up to the speed that the type states.
+//! Control begins on a turning rotor: without a trip up to the speed stated by the type.
 
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::spec::BusSource;
@@ -9,14 +9,13 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// Rotor angles that control begins at, every other one backward.
+/// Start angles, every other one backward.
 const ANGLES: u32 = 12;
 
-/// Periods of a run: longer than the slowest filter below takes.
+/// Periods of a run: longer than the slowest filter below.
 const PERIODS: usize = 250;
 
-/// Every option that has a part in the current, with filters that follow at once, slowly and hardly
-/// at all.
+/// Every option that affects the current, with fast, slow and very slow filters.
 const VARIANTS: [&str; 49] = [
     "pdcc",
     "pdcc:emf_filter=1",
@@ -69,11 +68,11 @@ const VARIANTS: [&str; 49] = [
     "pi-pwm:saturation=torque_priority,reference=proportional,emf_filter=0.05",
 ];
 
-/// What the drive is told of its bus.
+/// Bus voltage of the drive.
 #[derive(Clone, Copy, Debug)]
 enum Bus {
     Fixed,
-    /// Measured, and at its least, nominal or greatest voltage.
+    /// Measured, at its minimum, nominal or maximum voltage.
     Least,
     Nominal,
     Greatest,
@@ -81,10 +80,10 @@ enum Bus {
 
 const BUSES: [Bus; 4] = [Bus::Fixed, Bus::Least, Bus::Nominal, Bus::Greatest];
 
-/// Trip levels over the greatest set-point; none for the default.
+/// Trip levels relative to the greatest set-point; `None` for the default.
 const TRIPS: [Option<f64>; 3] = [None, Some(1.5), Some(2.0)];
 
-/// A drive, and the voltage of its bus.
+/// A drive, and its bus voltage.
 struct Case {
     name: String,
     drive: Prepared,
@@ -92,7 +91,7 @@ struct Case {
 }
 
 impl Case {
-    /// None where the variant is not to be had for the motor.
+    /// `None` if the variant is invalid for the motor.
     fn new(motor: &str, variant: &str, bus: Bus, trip: Option<f64>) -> Option<Self> {
         let mut source = MotorSource::of_library(motor).expect("is in the library");
         let inverter = prepare(&source, Some("pdcc")).ok()?.spec.inverter;
@@ -125,7 +124,7 @@ impl Case {
         Some(Self { name, drive, v_bus })
     }
 
-    /// The greatest speed that the type states, rpm.
+    /// The greatest speed stated by the type, rpm.
     fn stated(&self) -> f64 {
         let mut constants = self.drive.generated.interface.constants.iter();
         let constant = constants.find(|constant| constant.name == "START_SPEED_RPM");
@@ -140,13 +139,13 @@ impl Case {
         self.drive.spec.inverter.maximum_speed * 60.0 / TAU
     }
 
-    /// Whether control that begins at this speed, either way, trips from some angle.
+    /// Whether control that begins at this speed, in either direction, trips from some angle.
     fn trips(&self, rpm: f64) -> bool {
         let spec = &self.drive.spec;
         let mut set_point = self.drive.set_point(0.0);
         set_point.v_bus = self.v_bus;
         if spec.controller.common().speed.is_some() {
-            // It may brake as hard as it likes.
+            // It may brake with any current.
             set_point.rpm = Some(0.0);
             set_point.current = spec.inverter.max_current;
         }
@@ -165,8 +164,8 @@ impl Case {
 }
 
 #[test]
-fn no_drive_trips_below_the_speed_that_it_states() {
-    // Every motor with every variant, a bus and a trip level, of which half is run.
+fn no_drive_trips_below_its_stated_speed() {
+    // Every motor with every variant, a bus and a trip level; half of them are run.
     let motors = library();
     let places = (0..motors.len()).flat_map(|m| (0..VARIANTS.len()).map(move |v| (m, v)));
     let places: Vec<(usize, usize)> = places.filter(|(m, v)| (m + v) % 2 == 0).collect();
@@ -194,8 +193,8 @@ fn no_drive_trips_below_the_speed_that_it_states() {
         .map(|(name, ..)| name)
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
-    // The speed is stated for use: many drives do trip not far beyond it. (Others could at a lower
-    // bus only, or from another angle.)
+    // The stated speed is useful: many drives do trip not far above it. (Others could only at a
+    // lower bus voltage, or from another angle.)
     let count = |n: usize| outcomes.iter().filter(|(_, flags)| flags[n]).count();
     let (judged, tripping) = (count(1), count(2));
     assert!(

@@ -1,10 +1,8 @@
-//! What the documentation of every type says of its supervisor's limits: a current sensor that is
-//! frozen within its range lets the true current rise to several times the trip level, and nothing
-//! trips.
+//! The documented limits of the supervisor: a current sensor that is frozen within its range lets
+//! the true current rise to several times the trip level, and nothing trips.
 //!
-//! Where this fails because a drive trips, the supervisor has learnt to see it: then the paragraph
-//! "What the supervisor cannot see" (`hexagen::Supervisor`, README) is to be changed with this
-//! test.
+//! If this fails because a drive trips, the supervisor detects it now: then change the paragraph
+//! "What the supervisor cannot see" (`hexagen::Supervisor`, README) and this test.
 
 use hexagen::{Fault, Sample};
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
@@ -14,7 +12,7 @@ use hexagen_lab::plant::Plant;
 /// Control periods, a tenth of a second.
 const PERIODS: usize = 2000;
 
-/// Kinds of controllers, each with parts of the rated speed and of the rated torque. (At most
+/// Kinds of controllers, each with fractions of the rated speed and of the rated torque. (At most
 /// others PHCC trips, at 1.0 to 1.6 times the level.)
 const RUNS: [(&str, f64, f64); 4] = [
     ("pdcc", 0.25, 1.0),
@@ -23,8 +21,8 @@ const RUNS: [(&str, f64, f64); 4] = [
     ("pi-pwm", 0.25, 1.0),
 ];
 
-/// The greatest true phase current over the trip level, and the fault, with sensor a as it is or
-/// frozen at the count of no current.
+/// The greatest true phase current over the trip level, and the fault, with sensor a working or
+/// frozen at the count of zero current.
 fn greatest_current(
     (variant, speed, share): (&str, f64, f64),
     is_frozen: bool,

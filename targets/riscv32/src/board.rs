@@ -20,7 +20,7 @@ const PERIOD: u64 = 500;
 /// The vector of the machine's timer interrupt.
 #[unsafe(no_mangle)]
 extern "C" fn MachineTimer() {
-    // SAFETY: the timer's compare register, which this interrupt alone writes from its first run on.
+    // SAFETY: the timer's compare register, which only this interrupt writes after its first run.
     unsafe { MTIMECMP.write_volatile(MTIMECMP.read_volatile() + PERIOD) };
     crate::control::interrupt_trivedi_keshri_660w_pdcc();
 }

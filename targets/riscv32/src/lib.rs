@@ -2,7 +2,7 @@
 #![no_std]
 
 pub mod board;
-// What is the same on every target.
+// Modules of all targets.
 #[path = "../../firmware/on_target/control.rs"]
 pub mod control;
 #[macro_use]

@@ -1,9 +1,10 @@
-//! What `cargo check` takes of a crate that adds hexagen: the first time, and with a hundred controllers.
+//! Time of `cargo check` of a crate that adds hexagen: the first time, and with a hundred
+//! controllers.
 //!
-//! Crates in a folder of their own, as a user would write them: one with a controller, which is checked with nothing built;
-//! one with 25 motors times 4 controllers and one with none, whose dependencies are built first. All are in the dev profile, in
-//! which macros run unoptimised. Another program runs the generator as the macro does, in the same profile, and says which part
-//! of it takes how long.
+//! Measures crates in a folder of their own, like a user's: one with a controller, checked with
+//! nothing built; one with 25 motors times 4 controllers and one with none, whose dependencies are
+//! built first. All use the dev profile, in which macros run unoptimised. Another program runs the
+//! generator like the macro, in the same profile, and measures its parts.
 
 mod first;
 
@@ -12,10 +13,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// What a hundred controllers may add.
+/// Goal for a hundred controllers.
 const GOAL: Duration = Duration::from_secs(5);
 
-/// Motors of the library of which every controller can be made: those whose current no vector moves too far.
+/// Motors of the library that suit every controller.
 const MOTORS: [&str; 11] = [
     "anaheim-bly171d",
     "anaheim-bly172s",
@@ -30,19 +31,20 @@ const MOTORS: [&str; 11] = [
     "trivedi-keshri-660w",
 ];
 
-/// Each motor at its own control period and at others, until there are as many as this.
+/// Each motor at its own control period and at others, up to this number.
 const COUNT: usize = 25;
 const PERIODS: [Option<&str>; 3] = [None, Some("32 kHz"), Some("40 kHz")];
 
 const CONTROLLERS: [&str; 4] = ["fcs_mpc", "pdcc", "phcc", "pi_pwm"];
 
-/// Measured so often; the median counts.
+/// Number of measurements; the median counts.
 const RUNS: usize = 5;
 
-/// Prints what the first check takes and what a hundred controllers add, with the share of each part.
+/// Prints the time of the first check and that added by a hundred controllers, with the share of
+/// each part.
 ///
 /// # Errors
-/// What could not be written, run or read.
+/// Errors of writing, running or reading.
 pub fn measure(root: &Path) -> Result<(), String> {
     let folder = Folder::new(root)?;
     folder.check_first()?;
@@ -54,7 +56,7 @@ pub fn measure(root: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// The generator's parts, and what is left for the compiler of all that controllers add.
+/// The generator's parts, and the compiler's rest of the added time.
 fn print_shares(shares: &[(String, f64)], added: Duration) {
     println!("of which the generator, unoptimised as in every dev build:");
     let all: f64 = shares.iter().map(|(_, seconds)| seconds).sum();
@@ -71,12 +73,12 @@ fn print_shares(shares: &[(String, f64)], added: Duration) {
 struct Times {
     none: Spread,
     hundred: Spread,
-    /// Mean processor time of the latter, where the system tells it.
+    /// Mean processor time of the latter, if the system provides it.
     busy: Option<Duration>,
 }
 
 impl Times {
-    /// What a hundred controllers add.
+    /// Time added by a hundred controllers.
     fn added(&self) -> Duration {
         self.hundred.median.saturating_sub(self.none.median)
     }
@@ -104,11 +106,11 @@ impl Times {
     }
 }
 
-/// Processor time of all programs that this one has run, where the system tells it (Linux).
+/// Processor time of all child processes, if the system provides it (Linux).
 fn processor_time() -> Option<Duration> {
     let text = fs::read_to_string("/proc/self/stat").ok()?;
-    // Behind the program's name, which may hold anything, the fields are those from the third on; the sixteenth and
-    // seventeenth are ticks of 10 ms.
+    // After the program's name, which may contain anything, the fields start at the third; the
+    // sixteenth and seventeenth are ticks of 10 ms.
     let (_, fields) = text.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(13).take(2);
     let ticks: Option<Vec<u64>> = ticks.map(|ticks| ticks.parse().ok()).collect();
@@ -199,7 +201,7 @@ impl Folder {
             .lines()
             .map(|call| format!("hexagen::controller! {{ {call} }}\n"));
         let macros: String = macros.collect();
-        // The generator's warnings come as deprecations.
+        // The generator's warnings are deprecations.
         let allowed = "#![no_std]\n#![allow(deprecated)]\n";
         write("hundred/src/lib.rs", &format!("{allowed}{macros}"))?;
         write("none/src/lib.rs", "#![no_std]\n")?;
@@ -213,7 +215,7 @@ impl Folder {
         write("shares/src/main.rs", include_str!("compile_time/shares.rs"))
     }
 
-    /// Checks a crate with one controller where nothing is built yet.
+    /// Checks a crate with one controller with nothing built.
     fn check_first(&self) -> Result<(), String> {
         let builds = self.0.join("first");
         if builds.exists() {
@@ -273,7 +275,7 @@ impl Folder {
         })
     }
 
-    /// Checks a crate of which nothing is known yet.
+    /// Checks a crate for the first time.
     fn check(&self, name: &str) -> Result<Duration, String> {
         self.forget(name)
             .map_err(|error| format!("{}: {error}", self.0.display()))?;
@@ -282,7 +284,7 @@ impl Folder {
         Ok(begin.elapsed())
     }
 
-    /// Removes what the compiler keeps of a crate from one run to the next.
+    /// Removes the compiler's incremental data of a crate.
     fn forget(&self, name: &str) -> std::io::Result<()> {
         for kept in ["incremental", ".fingerprint"] {
             let Ok(entries) = fs::read_dir(self.0.join("target/debug").join(kept)) else {

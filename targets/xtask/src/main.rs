@@ -1,8 +1,8 @@
 //! `cargo xtask`: the one tool that sets up, builds, runs and compares.
 //!
-//! `cargo xtask test` is what continuous integration runs: every check of a push, in an order that fails
-//! early. `cargo xtask nightly` adds the long ones. Every step is a plain cargo command that is printed
-//! before it runs, so that it can be repeated by hand.
+//! `cargo xtask test` is what continuous integration runs: every check of a push, in an order that
+//! fails early. `cargo xtask nightly` adds the long ones. Every step is a plain cargo command that
+//! is printed before it runs, so that it can be repeated by hand.
 
 mod compile_time;
 mod packages;
@@ -26,35 +26,41 @@ struct Arguments {
 enum Command {
     /// Format, contents of packages, lints, documentation and all tests
     Test,
-    /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps, all products of
-    /// options, `commands`, and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
+    /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
+    /// all products of options, `commands`, and the proofs of all motors and of a thousand random
+    /// ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
         steps: u64,
     },
-    /// Packs every crate that users take, and builds each from what was packed
+    /// Packs every published crate, and builds each from its package
     Packages,
-    /// Builds the firmware of every target and lets it run on the emulated board
+    /// Builds the firmware of every target and runs it on the emulated board
     Firmware(Forwarded),
-    /// Processor in the loop: closed-loop vectors on the emulated cores, every word compared (`--target`, `--steps`)
+    /// Processor in the loop: closed-loop vectors on the emulated cores, every word compared
+    /// (`--target`, `--steps`)
     Pil(Forwarded),
-    /// What a step costs on every target: instructions, bytes, cycles (`--target`, `--only`, `--accept`)
+    /// Cost of a step on every target: instructions, bytes, cycles (`--target`, `--only`,
+    /// `--accept`)
     Cost(Forwarded),
-    /// Whether the counted drives command what they did: digests of a million steps each (`--only`, `--accept`)
+    /// Regression of the counted drives' commands: digests of a million steps each (`--only`,
+    /// `--accept`)
     Commands(Forwarded),
-    /// How large the repository is beside its marks, and which files lean on each other in circles
+    /// Size of the repository with its marks, and circles of files that use each other
     Marks,
-    /// Plants 300 faults and lists who notices each: interval verifier, Gappa, or the comparison with the bit-true model
+    /// Plants 300 faults and lists the detector of each: interval verifier, Gappa, or the
+    /// comparison with the bit-true model
     Faults,
-    /// What 100 controllers add to `cargo check`, and the share of each part of the generator
+    /// Time that 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,
-    /// Refreshes every recorded expectation (snapshots, compiler messages) but that of `commands`, which changes only where
-    /// a drive is meant to act otherwise; read the diff afterwards
+    /// Refreshes every recorded expectation (snapshots, compiler messages) except that of
+    /// `commands`, which changes only with an intended change of behaviour; read the diff
+    /// afterwards
     Accept,
 }
 
-/// What goes on to the test bench, `targets/bench`.
+/// Commands of the test bench, `targets/bench`.
 #[derive(clap::Args)]
 #[command(disable_help_flag = true)]
 struct Forwarded {

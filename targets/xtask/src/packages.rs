@@ -1,11 +1,11 @@
-//! What users take from a registry: every crate of the workspace that does not say `publish = false`.
+//! Published packages: every crate of the workspace without `publish = false`.
 
 use crate::step::{Step, root, step};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// What every package holds at its top.
+/// Files at the top of every package.
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 const README: &str = "README.md";
 
@@ -16,15 +16,17 @@ struct Member {
     is_published: bool,
 }
 
-/// Packs all published crates; with `verify`, builds each from what was packed, and against the others as packed.
+/// Packs all published crates; with `verify`, builds each from its package, against the other
+/// packages.
 ///
 /// # Errors
-/// What could not be read of the workspace.
+/// Errors of reading the workspace.
 pub fn pack(verify: bool) -> Result<Step, String> {
-    // Before a commit, too: what is packed is the folder as it is.
+    // Also before a commit: the folder is packed as it is.
     let mut pack = step("packages", &["package", "--workspace", "--allow-dirty"]);
     if verify {
-        // A package has no profiles of its own; with the workspace's, dependencies are those that the tests have built.
+        // A package has no profiles of its own; with the workspace's, the tests have built its
+        // dependencies already.
         for variable in [
             "CARGO_PROFILE_DEV_DEBUG",
             "CARGO_PROFILE_DEV_BUILD_OVERRIDE_DEBUG",
@@ -43,7 +45,7 @@ pub fn pack(verify: bool) -> Result<Step, String> {
 /// Checks that each package holds both licences, word for word, and a README.
 ///
 /// # Errors
-/// What a package lacks, or what could not be read.
+/// What a package lacks, or an error of reading.
 pub fn check_contents() -> Result<(), String> {
     for member in members()?.iter().filter(|member| member.is_published) {
         let files = packed_files(&member.name)?;
@@ -67,7 +69,7 @@ pub fn check_contents() -> Result<(), String> {
     Ok(())
 }
 
-/// The paths of all files that a package will hold, one per line.
+/// The paths of all files of a package, one per line.
 fn packed_files(package: &str) -> Result<String, String> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)

@@ -11,7 +11,7 @@ pub struct Step {
     pub needs: Option<(&'static str, &'static str)>,
 }
 
-/// A cargo command that needs nothing else.
+/// A cargo command without prerequisites.
 pub fn step(name: &'static str, arguments: &[&str]) -> Step {
     let arguments = arguments
         .iter()

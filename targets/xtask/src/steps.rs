@@ -1,4 +1,4 @@
-//! The steps of each task: cargo commands with what they need.
+//! The steps of each task: cargo commands with their prerequisites.
 
 use crate::packages;
 use crate::step::{Step, root, step};
@@ -9,7 +9,7 @@ use std::time::Instant;
 /// All checks of a push.
 ///
 /// # Errors
-/// What could not be read of the workspace.
+/// Errors of reading the workspace.
 pub fn checks() -> Result<Vec<Step>, String> {
     Ok(vec![
         Step {
@@ -59,7 +59,7 @@ pub fn checks() -> Result<Vec<Step>, String> {
     ])
 }
 
-/// The format of a firmware crate, which is none of the workspace.
+/// The format of a firmware crate, which is not in the workspace.
 fn firmware_format(manifest: &str) -> Step {
     step(
         "format",
@@ -84,8 +84,8 @@ pub fn bench(command: &'static str, options: &[String]) -> Step {
     step
 }
 
-/// A command of the test bench among the checks. What it needs must be there in continuous integration;
-/// elsewhere it says what is missing, and goes on.
+/// A command of the test bench among the checks. In continuous integration its tools must be
+/// present; elsewhere missing ones are reported and skipped.
 fn on_target(command: &'static str, options: &[&str]) -> Step {
     let mut options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
     if env::var_os("CI").is_none() {
@@ -94,10 +94,10 @@ fn on_target(command: &'static str, options: &[&str]) -> Step {
     bench(command, &options)
 }
 
-/// Sees to it that proofs can be checked: as root of a Debian system, installs Gappa where it is missing.
+/// Ensures that proofs can be checked: as root of a Debian system, installs Gappa if it is missing.
 ///
 /// # Errors
-/// What to install, where it is missing and this is not root, or cannot be installed from here.
+/// What to install, if it is missing and this is not root, or it cannot be installed from here.
 pub fn checker() -> Result<(), String> {
     let runs = || {
         let version = Command::new("gappa").arg("--version").output();
@@ -109,8 +109,8 @@ pub fn checker() -> Result<(), String> {
     Err("`gappa` is missing, which checks the proofs; install it: `apt-get update && apt-get install --no-install-recommends gappa` as root on Debian and Ubuntu, else from https://gappa.gitlabpages.inria.fr".to_owned())
 }
 
-/// Sees to it that Gappa's proofs can be checked again by Coq: as root of a Debian system, installs it and the library
-/// of Gappa where they are missing.
+/// Ensures that Gappa's proofs can be checked again by Coq: as root of a Debian system, installs it
+/// and the library of Gappa if they are missing.
 ///
 /// # Errors
 /// As [`checker`].
@@ -132,7 +132,7 @@ fn is_root() -> bool {
     user.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
 }
 
-/// Installs a package of the system; whether that went well.
+/// Installs a package of the system; true on success.
 fn install(package: &str) -> bool {
     let apt = |arguments: &[&str]| {
         println!("== set-up: apt-get {}", arguments.join(" "));
@@ -142,12 +142,12 @@ fn install(package: &str) -> bool {
             .status();
         status.is_ok_and(|status| status.success())
     };
-    // A stale index is no reason to stop: the package may stand in it, or in a list that could be read.
+    // A stale index does not matter: it may have the package, or another list does.
     apt(&["update", "-qq"]);
     apt(&["install", "-y", "-qq", "--no-install-recommends", package])
 }
 
-/// All planted faults, with the list of who notices each.
+/// All planted faults, with the detector of each.
 pub fn faults() -> Step {
     let arguments = [
         "test",
@@ -163,10 +163,10 @@ pub fn faults() -> Step {
     }
 }
 
-/// What is too long for a push.
+/// Steps too long for a push.
 ///
 /// # Errors
-/// What could not be read of the workspace.
+/// Errors of reading the workspace.
 pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
     let steps = steps.to_string();
     let verify = [
@@ -262,7 +262,7 @@ pub fn refresh() -> Vec<Step> {
     ]
 }
 
-/// Runs the steps in order; stops at the first that fails.
+/// Runs the steps in order; stops at the first failure.
 ///
 /// # Errors
 /// The name of the failing step, or what is missing and how to get it.
@@ -288,7 +288,7 @@ pub fn run(steps: &[Step]) -> Result<(), String> {
             .envs(step.environment.iter().copied())
             .current_dir(root);
         if env::var_os("CI").is_some() {
-            // What is built once is built sooner, and on a third of the disk less, without notes for the next time.
+            // Without incremental data, builds are faster and use a third less of the disk.
             command.env("CARGO_INCREMENTAL", "0");
         }
         let status = command

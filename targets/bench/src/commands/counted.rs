@@ -1,4 +1,4 @@
-//! The counted drives: the list that the firmware makes them from, read without building it.
+//! The counted drives: the firmware's list, read without building the firmware.
 
 use crate::listing::{motor, variant};
 
@@ -6,11 +6,11 @@ use crate::listing::{motor, variant};
 #[path = "../../../firmware/on_target/drives.rs"]
 mod listed;
 
-/// In the place of the crate that the list names: its macro makes drives, this one lists them.
+/// Stand-in for the crate that the list names: its macro lists drives instead of making them.
 mod hexagen_firmware {
     macro_rules! drives {
         ($($name:ident, $symbol:ident: $motor:literal, $kind:ident { $($options:tt)* } $(, $call:ident)?;)*) => {
-            /// Symbol, motor file, kind of controller and options of each, as the list writes them.
+            /// Symbol, motor file, kind of controller and options of each, as in the list.
             const WRITTEN: &[[&str; 4]] = &[
                 $([stringify!($symbol), $motor, stringify!($kind), stringify!($($options)*)],)*
             ];
@@ -28,15 +28,15 @@ pub struct Counted {
     pub symbol: &'static str,
     /// Name of the library's motor.
     pub motor: &'static str,
-    /// Controller and options as the command line writes them.
+    /// Controller and options in the command line's notation.
     pub variant: String,
 }
 
-/// All of them, with the words that suit a Cortex-M4.
+/// All counted drives, with word lengths for a Cortex-M4.
 pub fn drives() -> Vec<Counted> {
     let counted = |&[symbol, file, kind, options]: &[&'static str; 4]| Counted {
         symbol,
-        // A file that is none is a motor that the library does not have.
+        // An unknown file becomes an unknown motor.
         motor: motor(file).unwrap_or(file),
         variant: variant(kind, options),
     };
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_is_read_with_the_words_of_the_core() {
+    fn the_list_is_read_with_the_cores_word_lengths() {
         let drives = drives();
         let keep_angle = drives
             .iter()

@@ -1,4 +1,4 @@
-//! Expected commands, versioned in `commands.txt`: a line for each drive.
+//! Expected commands, versioned in `commands.txt`: a line per drive.
 
 use super::run::Commands;
 use crate::BenchError;
@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-/// Begin of the file; lines like these are skipped.
+/// Header of the file; lines of this kind are skipped.
 const HEAD: &str = "\
 # Written by `cargo xtask commands --accept`; commands that differ fail `cargo xtask commands`.
 # Symbol, steps, steps in which not all legs are off, digest of all commands, digests of the stretches (8 digits each).
@@ -17,7 +17,7 @@ const HEAD: &str = "\
 /// Digits of a stretch's digest.
 const DIGITS: usize = 8;
 
-/// What is expected of each drive, by symbol.
+/// Expectations by symbol of the drive.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Expected(pub BTreeMap<String, Commands>);
 
@@ -32,7 +32,7 @@ impl Expected {
     /// Reads the expectations.
     ///
     /// # Errors
-    /// When there are none, or they are no such file.
+    /// If the file is missing or invalid.
     pub fn read() -> Result<Self, BenchError> {
         let path = path();
         let refused = |reason: &str| {
@@ -45,10 +45,10 @@ impl Expected {
         Self::parse(&text).map_err(|line| refused(&format!("line {line} cannot be read")))
     }
 
-    /// Writes them: beside, then in the place of the old ones.
+    /// Writes them to a temporary file that replaces the old one.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn write(&self) -> Result<(), BenchError> {
         let path = path();
         let beside = path.with_extension("new");
@@ -66,7 +66,7 @@ impl Expected {
                 digest,
                 stretches,
             } = commands;
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = write!(text, "{symbol} {steps} {driving} {digest:016x} ");
             for digest in stretches {
                 let _ = write!(text, "{digest:0DIGITS$x}");
@@ -76,7 +76,7 @@ impl Expected {
         text
     }
 
-    /// Reads the file's text; else the number of the line that is none.
+    /// Parses the file's text; the error is the number of the invalid line.
     fn parse(text: &str) -> Result<Self, usize> {
         let lines = (1..).zip(text.lines());
         lines
@@ -105,7 +105,7 @@ fn parse_line(line: &str) -> Option<(String, Commands)> {
     Some((symbol.to_owned(), commands))
 }
 
-/// How commands differ from the expected ones, in words; none where they are the same.
+/// The difference between commands and expectation as text; `None` if there is none.
 pub fn difference(expected: &Commands, found: &Commands) -> Option<String> {
     if expected == found {
         return None;
@@ -124,7 +124,7 @@ pub fn difference(expected: &Commands, found: &Commands) -> Option<String> {
             "the first difference is in stretch {first}, {} of {count} stretches differ",
             1 + differing.count()
         ),
-        None => "no stretch differs by itself".to_owned(),
+        None => "no single stretch differs".to_owned(),
     };
     Some(format!(
         "{place}; expected were {steps} steps, {driving} driving, digest {digest:016x}"
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn expectations_round_trip() {
         let expected = Expected(BTreeMap::from([
             ("step_x".to_owned(), commands()),
             ("step_y".to_owned(), commands()),
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_says_in_which_stretch_it_begins() {
+    fn a_difference_names_its_first_stretch() {
         assert_eq!(difference(&commands(), &commands()), None);
         let found = Commands {
             stretches: vec![7, 8, 9],
@@ -177,6 +177,6 @@ mod tests {
             ..commands()
         };
         let text = difference(&commands(), &found).expect("differs");
-        assert!(text.contains("no stretch differs by itself"), "{text}");
+        assert!(text.contains("no single stretch differs"), "{text}");
     }
 }

@@ -1,9 +1,10 @@
-//! Whether the drives command what they did before: digests of a million steps of each counted drive, in closed loop on
-//! the simulated plant.
+//! Regression test of the drives' commands: digests of a million steps of each counted drive, in
+//! closed loop on the simulated plant.
 //!
-//! Of a step only its command counts, compare values and leg states; state words, and what a drive does with arbitrary
-//! inputs, may change. The plant takes sines and powers from the system's mathematical library: another one may change
-//! the last bit of a voltage, in time a count of an ADC, and so the digest, with the same drives.
+//! Only commands are compared, that is compare values and leg states; state words, and the response
+//! to arbitrary inputs, may change. The plant uses sines and powers of the system's mathematical
+//! library: another one may change the last bit of a voltage, later an ADC count, and so the
+//! digest, with the same drives.
 
 mod counted;
 mod expected;
@@ -17,28 +18,29 @@ use hexagen_lab::engine::Prepared;
 use rayon::prelude::*;
 use run::{Commands, in_full};
 
-/// Steps of each drive, at least.
+/// Minimum steps of each drive.
 const STEPS: usize = 1_000_000;
 
-/// What to compare.
+/// Options of the comparison.
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// Only drives whose symbol contains this
     #[arg(long)]
     only: Option<String>,
-    /// Prints the samples and commands of this stretch, step by step, and compares nothing: to be set beside those of
-    /// another version
+    /// Prints the samples and commands of this stretch, step by step, without comparing, for
+    /// comparison with another version
     #[arg(long, value_name = "NUMBER")]
     stretch: Option<usize>,
-    /// Writes the digests down as expected
+    /// Writes the digests as expected
     #[arg(long, conflicts_with_all = ["only", "stretch"])]
     accept: bool,
 }
 
-/// Runs every counted drive and compares its commands with the expected ones, or writes them down.
+/// Runs every counted drive and compares its commands with the expected ones, or writes them.
 ///
 /// # Errors
-/// When a drive commands something else, or is not expected, or expected and not there, or none is asked for.
+/// If a drive's commands differ, a drive is not expected, an expected one is missing, or none is
+/// selected.
 pub fn run(options: &Options) -> Result<(), BenchError> {
     let mut drives = counted::drives();
     if let Some(part) = &options.only {
@@ -71,7 +73,7 @@ pub fn run(options: &Options) -> Result<(), BenchError> {
         let failure = match expected.remove(symbol) {
             None => Some("is not expected".to_owned()),
             Some(expected) => difference(&expected, &commands)
-                .map(|difference| format!("commands something else: {difference}")),
+                .map(|difference| format!("its commands differ: {difference}")),
         };
         let verdict = if failure.is_some() { "DIFFERS" } else { "same" };
         println!("{}, {verdict}", line(symbol, &commands));
@@ -79,7 +81,7 @@ pub fn run(options: &Options) -> Result<(), BenchError> {
     }
     if options.only.is_none() {
         let gone = expected.keys();
-        failures.extend(gone.map(|symbol| format!("{symbol} is expected, and not there")));
+        failures.extend(gone.map(|symbol| format!("{symbol} is expected, but missing")));
     }
     if failures.is_empty() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The recorded run of a drive: closed loops on the simulated plant, of which the commands alone are kept.
+//! The recorded run of a drive: commands in closed loop on the simulated plant.
 
 use crate::BenchError;
 use crate::vectors::{Called, OnHost, Stretch, Stretches};
@@ -7,7 +7,7 @@ use hexagen_firmware::wire::{Digest, Record};
 use hexagen_lab::engine::Prepared;
 use std::fmt::Write as _;
 
-/// What a drive commanded.
+/// Commands of a drive.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Commands {
     /// Steps of all stretches, start-up included.
@@ -20,7 +20,7 @@ pub struct Commands {
     pub stretches: Vec<u32>,
 }
 
-/// A drive of which the commands are noted by `note`.
+/// A drive whose commands are passed to `note`.
 struct Noting<'g, N> {
     host: OnHost<'g>,
     note: N,
@@ -38,7 +38,7 @@ impl<N: FnMut(Sample, Legs)> Called for Noting<'_, N> {
     }
 }
 
-/// Lets a drive run through a stretch, from rest on.
+/// Runs a drive through a stretch, from its initial state.
 fn each_step(
     drive: &Prepared,
     stretch: &Stretch,
@@ -49,15 +49,15 @@ fn each_step(
 }
 
 impl Commands {
-    /// Runs whole stretches, of `steps` steps at least.
+    /// Runs whole stretches of at least `steps` steps in total.
     ///
     /// # Errors
-    /// When the plant cannot be made.
+    /// If the plant is invalid.
     pub fn of(drive: &Prepared, steps: usize) -> Result<Self, BenchError> {
         Self::through(steps, |stretch, note| each_step(drive, stretch, note))
     }
 
-    /// Takes in the stretches as `run` runs them.
+    /// Adds the stretches that `run` runs.
     fn through(
         steps: usize,
         mut run: impl FnMut(&Stretch, &mut dyn FnMut(Sample, Legs)) -> Result<(), BenchError>,
@@ -88,7 +88,7 @@ fn number(digest: Digest) -> u64 {
 /// The samples and commands of a stretch, a line each.
 ///
 /// # Errors
-/// When the plant cannot be made.
+/// If the plant is invalid.
 pub fn in_full(drive: &Prepared, place: usize) -> Result<String, BenchError> {
     let mut stretches = Stretches::default();
     let stretch = (0..place).fold(stretches.draw(), |_, _| stretches.draw());
@@ -98,7 +98,7 @@ pub fn in_full(drive: &Prepared, place: usize) -> Result<String, BenchError> {
         let [adc_a, adc_b, _] = sample.adc();
         let (hall, hall_ticks) = (sample.hall(), sample.ticks());
         let ([a, b, c], state) = (legs.compare(), legs.state());
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "{step}: {adc_a} {adc_b} {hall:03b} {hall_ticks} | {a} {b} {c} | {state:?}"
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_drive_commands_the_same() {
+    fn the_same_drive_has_the_same_digest() {
         let drive = drive();
         let commands = Commands::of(&drive, STEPS).expect("a plant");
         assert!(commands.steps >= STEPS);
@@ -128,9 +128,9 @@ mod tests {
         assert_eq!(commands, Commands::of(&drive, STEPS).expect("a plant"));
     }
 
-    /// The digests are of commands, and every one of them counts.
+    /// The digests depend on every command.
     #[test]
-    fn one_count_of_one_compare_value_shows_in_its_stretch_alone() {
+    fn one_compare_count_changes_its_stretchs_digest_only() {
         const WRONG: usize = 7000;
         let drive = drive();
         let honest = Commands::of(&drive, STEPS).expect("a plant");

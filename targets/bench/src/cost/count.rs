@@ -16,42 +16,44 @@ const STEPS: usize = 2000;
 /// Steps of the stretch that is traced instruction by instruction.
 const TRACED: usize = 240;
 
-/// Number of the stimulus of the bit-for-bit test.
+/// Seed of the stimulus of the bit-for-bit test.
 const STIMULUS: u64 = 9;
 
-/// Inputs of a closed loop, and which of their steps are the normal path.
+/// Inputs of a closed loop, with the steps of the normal path marked.
 #[derive(Debug)]
 pub struct Inputs {
-    /// Start from rest, two speeds below the limit, one beyond it, one backward; rated current.
+    /// Start from rest, two speeds below the limit, one above it, one backward; rated current.
     records: Vec<u8>,
     /// A short stretch.
     traced: Vec<u8>,
-    /// Calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; of drives alone.
+    /// Calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; only for
+    /// drives.
     arbitrary: Option<Vec<u8>>,
 }
 
-/// What a step costs in time and stack.
+/// Cost of a step in time and stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Instructions of a settled step below the speed limit: the median.
     pub normal: u32,
-    /// The same of a drive with the same supervision and an empty law; where it was counted.
+    /// The same of a drive with the same supervisor and an empty law, if counted.
     pub supervision: Option<u32>,
-    /// Most instructions of a step in closed loop.
+    /// Maximum instructions of a step in closed loop.
     pub worst: u32,
-    /// Most instructions of a step in calibration, in pre-charge and on arbitrary inputs; of drives alone.
+    /// Maximum instructions of a step in calibration, in pre-charge and on arbitrary inputs; only
+    /// for drives.
     pub arbitrary: Option<u32>,
-    /// Bytes of stack, of the deepest of all these steps.
+    /// Bytes of stack, maximum of all these steps.
     pub stack: u32,
     /// Estimated cycles of a settled step: the median.
     pub cycles: u32,
 }
 
 impl Inputs {
-    /// Records the inputs of a drive in closed loop with itself.
+    /// Records the inputs of a drive in its own closed loop.
     ///
     /// # Errors
-    /// When its plant cannot be made.
+    /// If its plant is invalid.
     pub fn record(drive: &Prepared) -> Result<Self, BenchError> {
         let mut all = Recorder::new(drive, None);
         for stretch in stretches(drive) {
@@ -73,10 +75,11 @@ impl Inputs {
         })
     }
 
-    /// Records the inputs of an interrupt, whose calls other than steps are its own: what its drive meets in closed loop.
+    /// Records the inputs of an interrupt, which makes calls other than steps itself: its drive's
+    /// inputs in closed loop.
     ///
     /// # Errors
-    /// When its plant cannot be made.
+    /// If its plant is invalid.
     pub fn record_interrupt(drive: &Prepared) -> Result<Self, BenchError> {
         let arbitrary = None;
         Ok(Self {
@@ -85,10 +88,10 @@ impl Inputs {
         })
     }
 
-    /// Records the inputs of a peer in closed loop with itself, on the plant of a drive.
+    /// Records the inputs of a peer in its own closed loop, on the plant of a drive.
     ///
     /// # Errors
-    /// When the plant cannot be made.
+    /// If the plant is invalid.
     pub fn record_peer(
         drive: &Prepared,
         mut step: impl FnMut(&Sample) -> Legs,
@@ -113,12 +116,12 @@ impl Inputs {
         })
     }
 
-    /// The closed loop as it goes to the core.
+    /// The closed loop in the core's format.
     pub fn records(&self) -> &[u8] {
         &self.records
     }
 
-    /// What the steps of the closed loop read.
+    /// Inputs of the closed loop's steps.
     pub fn samples(&self) -> impl Iterator<Item = Sample> {
         let (records, _) = self.records.as_chunks();
         records
@@ -130,7 +133,7 @@ impl Inputs {
     }
 }
 
-/// Below the speed limit twice, beyond it, and backward; rated current.
+/// Twice below the speed limit, above it, and backward; rated current.
 fn stretches(drive: &Prepared) -> [Stretch; 4] {
     let share = drive.spec.motor.rated_current / drive.spec.inverter.max_current;
     [0.2, 0.7, 1.25, -0.7].map(|speed| Stretch {
@@ -166,10 +169,10 @@ fn median(mut numbers: Vec<u32>) -> u32 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(0)
 }
 
-/// Counts a step function of a program, by its place in the program's list and its symbol.
+/// Counts a step function of a program, given its index in the program's list and its symbol.
 ///
 /// # Errors
-/// When the emulator fails, or when its two ways of counting differ.
+/// If the emulator fails, or its two ways of counting differ.
 pub fn count(
     firmware: &Firmware,
     program: &str,
@@ -222,10 +225,11 @@ pub fn count(
     })
 }
 
-/// Counts the supervision of a drive: a settled step, the median, of one with the same limits and an empty law.
+/// Counts the supervision of a drive: the median of settled steps of a drive with the same limits
+/// and an empty law.
 ///
 /// # Errors
-/// When the emulator fails.
+/// If the emulator fails.
 pub fn supervision(
     firmware: &Firmware,
     program: &str,
@@ -274,7 +278,7 @@ mod tests {
     use crate::vectors::Called;
     use hexagen::Fault;
 
-    /// What the table says of its column of arbitrary inputs.
+    /// Checks the documentation of the table's column of arbitrary inputs.
     #[test]
     fn arbitrary_inputs_calibrate_pre_charge_and_trip() {
         let drive = paper_drive(INTERRUPT_VARIANT).expect("a drive of the library");

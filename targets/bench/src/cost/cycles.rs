@@ -1,8 +1,8 @@
-//! Cycles of a step, estimated: the instructions that the emulator executes one by one, each weighed by its kind.
+//! Estimated cycles of a step: the instructions that the emulator executes, weighted by kind.
 //!
-//! A load or store takes two cycles, of n words 1 + n, a branch that is taken three, a division as the table says,
-//! all else one: the tables of the Cortex-M4 and Cortex-M0 manuals for memory without wait states. RISC-V cores differ;
-//! the same weights are those of a short in-order pipeline.
+//! A load or store takes two cycles, of n words 1 + n, a taken branch three, a division as in the
+//! table, all others one: as in the Cortex-M4 and Cortex-M0 manuals for memory without wait states.
+//! RISC-V cores differ; the same weights suit a short in-order pipeline.
 
 use super::elf::{Class, Image};
 use crate::targets::Target;
@@ -25,7 +25,8 @@ pub struct Executed {
     pub cycles: u32,
 }
 
-/// All calls of a function in the emulator's log of single instructions. A call ends where `caller` goes on.
+/// All calls of a function in the emulator's log of single instructions. A call ends when `caller`
+/// continues.
 pub fn executed(
     log: &str,
     image: &Image,

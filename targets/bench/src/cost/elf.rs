@@ -1,4 +1,4 @@
-//! The ELF: where functions stand, how long they are, and what they call.
+//! The ELF: addresses, sizes and calls of functions.
 
 use crate::BenchError;
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
@@ -20,7 +20,7 @@ pub enum Isa {
 #[derive(Debug)]
 pub struct Image {
     isa: Isa,
-    /// Functions by begin, with their ends.
+    /// Functions by start address, with their ends.
     functions: BTreeMap<u32, u32>,
     names: BTreeMap<String, u32>,
     sections: Vec<(u32, Vec<u8>)>,
@@ -29,7 +29,7 @@ pub struct Image {
 /// Bytes of a function's code, literals included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code {
-    /// Its own.
+    /// Of the function itself.
     pub own: u32,
     /// Of all functions that it can call, libraries included.
     pub called: u32,
@@ -39,7 +39,7 @@ impl Image {
     /// Reads an ELF.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// If it cannot be read.
     pub fn read(path: &Path, isa: Isa) -> Result<Self, BenchError> {
         let bytes = fs::read(path)?;
         let file = object::File::parse(bytes.as_slice())?;
@@ -51,7 +51,7 @@ impl Image {
         };
         for symbol in file.symbols() {
             if symbol.kind() == SymbolKind::Text && symbol.size() > 0 {
-                // The lowest bit of a Thumb address says that it is one.
+                // The lowest bit of a Thumb address marks Thumb code.
                 let begin = symbol.address() as u32 & !1;
                 image.functions.insert(begin, begin + symbol.size() as u32);
                 image.names.insert(symbol.name()?.to_owned(), begin);
@@ -66,20 +66,20 @@ impl Image {
         Ok(image)
     }
 
-    /// Where a function stands.
+    /// Address of a function.
     ///
     /// # Errors
-    /// When there is none of this name.
+    /// If there is none of this name.
     pub fn function(&self, name: &str) -> Result<Range<u32>, BenchError> {
         let missing = || BenchError::Failed(format!("the ELF has no function `{name}`"));
         let begin = *self.names.get(name).ok_or_else(missing)?;
         Ok(begin..self.functions[&begin])
     }
 
-    /// The code of a function and of what it calls.
+    /// Code size of a function and of its callees.
     ///
     /// # Errors
-    /// When there is no such function.
+    /// If there is no such function.
     pub fn code(&self, name: &str) -> Result<Code, BenchError> {
         let own = self.function(name)?;
         let mut reached = BTreeSet::from([own.start]);
@@ -102,7 +102,7 @@ impl Image {
         })
     }
 
-    /// Where the branches of a function go.
+    /// Branch targets of a function.
     fn targets(&self, begin: u32) -> Vec<u32> {
         let end = self.functions[&begin];
         let mut targets = vec![];
@@ -151,14 +151,14 @@ pub struct Instruction {
     second: u16,
 }
 
-/// What an instruction's time depends on.
+/// Kinds of instructions by execution time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Loads or stores so many words.
+    /// Loads or stores this many words.
     Memory(u32),
     /// Divides.
     Divide,
-    /// All else.
+    /// Everything else.
     Plain,
 }
 
@@ -232,7 +232,7 @@ impl Instruction {
         is_pair.then(|| at.wrapping_add(upper & 0xffff_f000).wrapping_add(offset))
     }
 
-    /// What its time depends on.
+    /// Its kind.
     pub fn class(self) -> Class {
         match (self.isa, self.length()) {
             (Isa::Thumb, 2) => self.short_thumb_class(),

@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
-/// What is expected on a target.
+/// Expectations of a target.
 #[derive(Debug)]
 pub struct Expected(pub Counted);
 
-/// The figures by their names.
+/// The figures by name.
 fn named(figures: Figures) -> [(&'static str, u32); 6] {
     [
         ("normal path", figures.normal),
@@ -35,7 +35,7 @@ impl Expected {
     /// Reads the expectations of a target.
     ///
     /// # Errors
-    /// When there are none.
+    /// If there are none.
     pub fn read(target: Target) -> Result<Self, BenchError> {
         let path = path(target);
         let text = fs::read_to_string(&path)?;
@@ -47,7 +47,7 @@ impl Expected {
     /// Writes them.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn write(&self, target: Target) -> Result<(), BenchError> {
         let text =
             toml::to_string(&self.0).map_err(|error| BenchError::Failed(error.to_string()))?;
@@ -56,7 +56,7 @@ impl Expected {
         Ok(())
     }
 
-    /// What rose. Figures of another compiler are no rise; `is_above_goal` says what fails with it.
+    /// The increases. Figures of another compiler are not compared; `is_above_goal` limits them.
     pub fn rises(
         &self,
         compiler: &str,
@@ -88,7 +88,7 @@ impl Expected {
             .steps
             .keys()
             .filter(|symbol| !found.contains_key(*symbol));
-        rises.extend(gone.map(|symbol| format!("{symbol} is expected, and not there")));
+        rises.extend(gone.map(|symbol| format!("{symbol} is expected, but missing")));
         rises
     }
 }
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rise_fails_a_fall_passes_and_another_compiler_fails_above_its_goal_only() {
+    fn increases_fail_and_another_compiler_fails_only_above_its_goal() {
         let figures = |normal: u32| Figures {
             normal,
             supervision: Some(normal / 2),
@@ -133,7 +133,7 @@ mod tests {
         );
         assert_eq!(
             expected.rises("rustc 1", &BTreeMap::new(), above),
-            ["step_x is expected, and not there"]
+            ["step_x is expected, but missing"]
         );
     }
 }

@@ -1,11 +1,11 @@
-//! The goals: the fewest that were found by editing the emitted text by hand, with the same supervision in it, function
-//! entry to return, for the 660 W motor.
+//! The goals: the best figures found by editing the emitted text by hand, with the same supervisor,
+//! from function entry to return, for the 660 W motor.
 
 use crate::targets::Target;
 use hexagen_lab::counted::Figures;
 use std::fmt;
 
-/// A goal of one step; of what there is none, anything will do.
+/// Goal of one step; `None` is no goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Goal {
     /// Instructions on the normal path.
@@ -36,7 +36,7 @@ fn goals(target: Target) -> Vec<(&'static str, Goal)> {
             (PHCC, goal(Some(80), None, None)),
             (PI_PWM_KEEP_ANGLE, goal(Some(69), Some(110), None)),
         ],
-        // Of the default drive, with words of 16 bits.
+        // Of the default drive, with 16-bit words.
         Target::CortexM0 => vec![
             (PDCC, goal(Some(283), None, None)),
             (PDCC_KEEP_ANGLE, goal(None, Some(371), None)),
@@ -48,14 +48,14 @@ fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     }
 }
 
-/// The goal of a step function; of some there is none.
+/// The goal of a step function, if it has one.
 pub fn goal(target: Target, symbol: &str) -> Option<Goal> {
     let mut goals = goals(target).into_iter();
     goals.find_map(|(of, goal)| (of == symbol).then_some(goal))
 }
 
 impl Goal {
-    /// Whether no figure is above the goal.
+    /// Whether no figure exceeds the goal.
     pub fn is_met(&self, figures: &Figures) -> bool {
         [
             (self.normal, figures.normal),

@@ -1,4 +1,5 @@
-//! What a step costs: instructions, cycles, code, tables, state and stack, of every drive and of its peers.
+//! Cost of a step: instructions, cycles, code, tables, state and stack, of every drive and of its
+//! peers.
 
 mod count;
 mod cycles;
@@ -34,16 +35,16 @@ const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf=held";
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";
 
-/// The programs whose drives are in Rust, which have their supervision counted by itself.
+/// The programs with drives in Rust, whose supervision is counted separately.
 const IN_RUST: [&str; 2] = ["bench", EXPERIMENT];
 
-/// What to count.
+/// Options of counting.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Only steps whose symbol contains this; nothing is compared with the expected figures then
+    /// Only steps whose symbol contains this; without comparison with the expected figures
     #[arg(long)]
     pub only: Option<String>,
-    /// Writes the figures down as expected, those that were counted
+    /// Writes the counted figures as expected
     #[arg(long)]
     pub accept: bool,
 }
@@ -60,7 +61,7 @@ struct Row {
     symbol: String,
     counts: Counts,
     code: Code,
-    /// Bytes of tables; none for peers, whose tables have no names.
+    /// Bytes of tables; `None` for peers, whose tables have no names.
     tables: Option<usize>,
     state: Option<usize>,
 }
@@ -81,7 +82,7 @@ impl Row {
 /// Counts every drive of every target.
 ///
 /// # Errors
-/// When a tool is missing, or a figure rose.
+/// If a tool is missing, or a figure rose.
 pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     let mut rises = vec![];
     for &target in targets {
@@ -94,7 +95,7 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
             let compiler = compiler.to_owned();
             let mut steps = figures;
             if options.only.is_some() {
-                // What was not counted stays as it was.
+                // Figures that were not counted are kept.
                 let known = Expected::read(target)?.0.steps;
                 steps.extend(
                     known
@@ -116,22 +117,22 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     }
     println!(
         "normal, worst: instructions from the function's entry to its return, in closed loop at rated current (QEMU); normal is the \
-         median of settled steps at 0.2 and 0.7 of the rated speed, worst the largest of all steps there, at 1.25 and at -0.7 of it, each \
-         from the drive at rest on.\n\
-         supervision: of the normal path, what a drive with the same limits and an empty law takes on the same inputs: call and return, mode, \
-         checks of Hall code, ADCs and currents. The rest is the law. Of drives in Rust alone.\n\
-         arbitrary: the largest of calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; of drives alone.\n\
-         goal: normal / worst / stack of the best that was found by editing the emitted text by hand, with the same supervision.\n\
-         code: bytes of the function, and of all that it calls. state: bytes of the drive's type. stack: bytes, of the deepest of all steps.\n\
+         median of settled steps at 0.2 and 0.7 of the rated speed, worst the maximum of all steps there, at 1.25 and at -0.7 of it, each \
+         from the initial state.\n\
+         supervision: share of the normal path, counted on a drive with the same limits and an empty law: call and return, mode, \
+         checks of Hall code, ADCs and currents. The rest is the law. Only for drives in Rust.\n\
+         arbitrary: maximum in calibration, in pre-charge, and on arbitrary inputs and calls, which trip the drive; only for drives.\n\
+         goal: normal / worst / stack of the best version found by editing the emitted text by hand, with the same supervisor.\n\
+         code: bytes of the function, and of its callees. state: bytes of the drive's type. stack: bytes, maximum of all steps.\n\
          cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1.\n\
-         Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervision; what they put out is compared with the host, exactly (of step_foc, \
+         Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervisor; their outputs are compared with the host, exactly (of step_foc, \
          the first 500 steps)."
     );
     if rises.is_empty() {
         return Ok(());
     }
     Err(BenchError::Failed(format!(
-        "{}\naccept by `cargo xtask cost --accept` what is meant",
+        "{}\naccept intended changes by `cargo xtask cost --accept`",
         rises.join("\n")
     )))
 }
@@ -204,7 +205,7 @@ fn check_experiment(drives: &[Listed]) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// Counts what a program lists, on the inputs of each, with the bytes of its tables.
+/// Counts the drives of a program, each on its inputs, with the bytes of its tables.
 fn rows_of(
     firmware: &Firmware,
     program: &str,
@@ -241,7 +242,7 @@ fn row(
     })
 }
 
-/// Bytes of a drive's tables in flash: entries as wide as their values need.
+/// Bytes of a drive's tables in flash: entries of the least width that fits their values.
 fn tables(drive: &Prepared) -> usize {
     let tables = &drive.generated.graph.program().tables;
     let bytes = |values: &[i32]| {

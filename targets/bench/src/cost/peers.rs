@@ -1,4 +1,4 @@
-//! The peers on the host: the inputs that each meets in closed loop, and what it answers to them.
+//! The peers on the host: inputs of each in closed loop, and its outputs.
 
 use super::count::Inputs;
 use crate::BenchError;
@@ -10,23 +10,23 @@ use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Peer, Phcc, PiPwm
 use hexagen_firmware::wire::{Mode, Task, encode_outputs};
 use hexagen_lab::engine::Prepared;
 
-/// Steps of `foc` that are compared: the integral of its controllers has no limit, and in another's loop leaves its words
-/// some time after them, where a host that checks for it stops.
+/// Compared steps of `foc`: the integral of its controllers has no limit, and in the loop of
+/// another controller overflows some time later, where a host with overflow checks stops.
 const FOC_STEPS: usize = 500;
 
 /// The run of a peer on the host.
 #[derive(Debug)]
 pub struct Run {
-    /// What it read.
+    /// Its inputs.
     pub inputs: Inputs,
-    /// What it answered, step by step.
+    /// Its outputs, step by step.
     answers: Vec<Answer>,
 }
 
 /// Runs the peer with this symbol on the plant of a drive.
 ///
 /// # Errors
-/// When there is no such peer.
+/// If there is no such peer.
 pub fn run(drive: &Prepared, symbol: &str) -> Result<Run, BenchError> {
     match symbol {
         "step_f32_pdcc" => in_closed_loop::<Pdcc<f32>>(drive),
@@ -37,11 +37,12 @@ pub fn run(drive: &Prepared, symbol: &str) -> Result<Run, BenchError> {
         "step_i16f16_fcs_mpc" => in_closed_loop::<FcsMpc<I16F16>>(drive),
         "step_i16f16_phcc" => in_closed_loop::<Phcc<I16F16>>(drive),
         "step_i16f16_pi_pwm" => in_closed_loop::<PiPwm<I16F16>>(drive),
-        // `foc` and `idsp` are rotor-oriented, without an angle between the edges: they read what another PI meets.
+        // `foc` and `idsp` are rotor-oriented, without an angle between the edges: their inputs are
+        // those of another PI.
         "step_foc" => in_loop_of::<PiPwm<f32>, FocLoop>(drive, FOC_STEPS),
         "step_idsp" => in_loop_of::<PiPwm<f32>, IdspLoop>(drive, usize::MAX),
         _ => Err(BenchError::Failed(format!(
-            "`{symbol}` is no peer of the host"
+            "`{symbol}` is not a peer of the host"
         ))),
     }
 }
@@ -50,7 +51,7 @@ fn in_closed_loop<P: Peer>(drive: &Prepared) -> Result<Run, BenchError> {
     in_loop_of::<P, P>(drive, usize::MAX)
 }
 
-/// The inputs that `L` meets in closed loop with itself, and what `P` answers to the first of them.
+/// The inputs of `L` in its own closed loop, and the outputs of `P` for the first of them.
 fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared, steps: usize) -> Result<Run, BenchError> {
     let (mut closed, mut peer) = (L::new(), P::new());
     let inputs = Inputs::record_peer(drive, |sample| closed.step(sample))?;
@@ -69,11 +70,11 @@ fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared, steps: usize) -> Result<Run, B
 }
 
 impl Run {
-    /// Compares what the peer puts out on the core with what it put out on the host: every word, and exactly, since IEEE 754
-    /// fixes each operation of `f32` and nothing contracts two into one.
+    /// Compares a peer's outputs on the core with those on the host: every word, and exactly, since
+    /// IEEE 754 defines each operation of `f32` and nothing contracts two into one.
     ///
     /// # Errors
-    /// The first step that differs, or when the emulator fails.
+    /// The first step that differs, or an error of the emulator.
     pub fn compare(&self, core: &impl Core, listed: &Listed) -> Result<(), BenchError> {
         let task = Task {
             mode: Mode::Full,
@@ -102,7 +103,7 @@ mod tests {
 
     type Tested = PiPwm<I16F16>;
 
-    /// The core's end in this process, with a step function of the test's choice.
+    /// The core's end in this process, with a given step function.
     struct InProcess(extern "C" fn(&mut Tested, u16, u16, u8, u16) -> Legs);
 
     impl Core for InProcess {
@@ -127,13 +128,13 @@ mod tests {
         peer.step(&sample.hall_ticks(hall_ticks))
     }
 
-    /// What a compiler once made of the peers: their state is right, and their outputs are zeros.
+    /// Result of a past miscompilation: correct state, zero outputs.
     extern "C" fn zeros(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
         honest(peer, a, b, hall, ticks);
         Legs::all(LegState::Pulsed)
     }
 
-    /// One count more than there is, in phase b, above 899.
+    /// One count too much in phase b, above 899.
     extern "C" fn one_more(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
         let legs = honest(peer, a, b, hall, ticks);
         let [compare_a, compare_b, compare_c] = legs.compare();
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_core_on_which_a_peer_answers_otherwise_is_found() {
+    fn a_core_with_other_outputs_is_found() {
         let listed = Listed {
             place: 0,
             symbol: "step_i16f16_pi_pwm".to_owned(),

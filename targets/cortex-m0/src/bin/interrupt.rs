@@ -1,4 +1,5 @@
-//! Counts the whole interrupt of the firmware, called as a function on recorded inputs; the timer does not run.
+//! Counts the whole interrupt of the firmware, called as a function on recorded inputs; the timer
+//! does not run.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! The drives of the paper's experiment, as `hexagen reproduce` runs them, to be counted for its Table 5.
+//! The drives of the paper's experiment, as in `hexagen reproduce`, counted for its Table 5.
 #![no_std]
 #![no_main]
 
@@ -8,7 +8,7 @@ use drives::DRIVES;
 use hexagen_cortex_m4 as _;
 use hexagen_firmware::semihosted::run;
 
-/// Each controller as the paper prints it, and corrected.
+/// Each controller as printed in the paper, and corrected.
 mod drives {
     #![expect(deprecated, reason = "the printed switching table draws a warning")]
 

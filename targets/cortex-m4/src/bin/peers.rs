@@ -17,7 +17,8 @@ fn main() -> ! {
     run(PEERS)
 }
 
-/// Lets the core's floating-point unit work. This program is built with instructions for it, the others are not.
+/// Enables the core's floating-point unit. This program is built with instructions for it, the
+/// others are not.
 #[expect(unsafe_code, reason = "a register of the core")]
 fn enable_fpu() {
     /// Access to coprocessors.

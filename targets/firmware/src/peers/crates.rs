@@ -27,7 +27,7 @@ const ANGLES: [i32; 8] = [
 ];
 
 // Constants, since a literal that is read at run time costs a thousand instructions.
-// `foc` takes the error as measured less demanded.
+// `foc` takes the error as measured minus demanded.
 const K_P: I16F16 = I16F16::lit("-0.029");
 const K_I: I16F16 = I16F16::lit("-17.7");
 const OFFSET: I16F16 = I16F16::lit("2048");
@@ -58,8 +58,8 @@ impl Peer for FocLoop {
 
 type Filter = BiquadClamp<Q<i32, i64, 30>, i32>;
 
-/// Rotor-oriented control from pieces of `idsp`: its sine and cosine, a clamped biquad per axis as PI controller;
-/// Clarke, Park and modulation by hand.
+/// Rotor-oriented control from pieces of `idsp`: its sine and cosine, a clamped biquad per axis as
+/// PI controller; Clarke, Park and modulation by hand.
 pub struct IdspLoop {
     filter: Filter,
     state: [DirectForm1<i32>; 2],

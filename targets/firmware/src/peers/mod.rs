@@ -1,8 +1,8 @@
-//! What others would run in the same interrupt, to compare costs with: the four controllers written straight from
-//! their equations, in `f32` and in `I16F16`, and the crates `foc` and `idsp`.
+//! Alternatives for the same interrupt, to compare costs: the four controllers written directly
+//! from their equations, in `f32` and in `I16F16`, and the crates `foc` and `idsp`.
 //!
-//! All are of the paper's motor (48 V, 50 us, 12 bits over 40 A, a timer of 1800 counts) and read the inputs that are
-//! recorded for the drives. None has a supervision.
+//! All are for the paper's motor (48 V, 50 us, 12 bits over 40 A, a timer of 1800 counts) and use
+//! the recorded inputs of the drives. None has a supervisor.
 
 mod crates;
 mod naive;
@@ -15,9 +15,9 @@ pub use real::Real;
 
 use hexagen::{Legs, Sample};
 
-/// A controller that is compared with.
+/// A controller for comparison.
 pub trait Peer {
-    /// At rest, 20 A demanded.
+    /// Initial state, 20 A demanded.
     fn new() -> Self;
     /// One control period.
     fn step(&mut self, sample: &Sample) -> Legs;

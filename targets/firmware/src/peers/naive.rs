@@ -1,4 +1,4 @@
-//! The four controllers as one would write them from the equations, over any number type.
+//! The four controllers, written directly from the equations, over any number type.
 
 use super::Peer;
 use super::paper::{A, B, BUS, GAIN, K, LEGS, SQRT_3, TIMER};
@@ -22,15 +22,16 @@ fn reference<R: Real>(sample: Sample) -> [R; 2] {
     R::CORNERS[usize::from(sample.hall() & 7)]
 }
 
-/// Space-vector modulation by min/max injection; scales what the hexagon cannot hold.
+/// Space-vector modulation by min/max injection; scales voltages outside the hexagon.
 #[inline(always)]
 #[expect(
     clippy::inline_always,
     reason = "as each controller would have it in place"
 )]
 fn modulate<R: Real + Div<Output = R>>([v_alpha, v_beta]: [R; 2]) -> ([R; 2], Legs) {
-    // Phase voltages in counts of the timer. `37.5 * x` stands here once: of two products of 64 bits by the same odd multiple of
-    // 2^31, which 37.5 is one of in `I16F16`, rustc 1.96 (LLVM 22) makes undefined values on RV32.
+    // Phase voltages in counts of the timer. `37.5 * x` is computed once: rustc 1.96 (LLVM 22)
+    // miscompiles two 64-bit products by the same odd multiple of 2^31, such as 37.5 in `I16F16`,
+    // to undefined values on RV32.
     let alpha = v_alpha * R::num(TIMER / BUS);
     let half = alpha * R::num(0.5);
     let side = v_beta * R::num(SQRT_3 / 2.0 * TIMER / BUS);
@@ -64,7 +65,7 @@ fn whole(vector: usize) -> Legs {
 /// EMF of the last period and the current at the next sample, by the voltages applied.
 #[derive(Clone, Copy, Debug)]
 struct Prediction<R> {
-    /// What the last current decays to within a period.
+    /// Decay factor of the current over a period.
     i_left: [R; 2],
     v_last: [R; 2],
     v_now: [R; 2],
@@ -130,7 +131,7 @@ impl<R: Real> Peer for FcsMpc<R> {
         let i_ref: [R; 2] = reference(*sample);
         let mut best = (0, R::num(32_000.0));
         for (place, vector) in R::VECTORS.iter().enumerate() {
-            // In tens of ampere, so that the square fits 16 bits.
+            // In tens of amperes, so that the square fits 16 bits.
             let error = [0, 1].map(|x| {
                 (i_ref[x] - R::num(A) * i_next[x] - R::num(B) * (vector[x] - e[x])) * R::num(0.1)
             });
@@ -161,7 +162,7 @@ impl<R: Real> Peer for Phcc<R> {
 
     #[inline]
     fn step(&mut self, sample: &Sample) -> Legs {
-        /// The vector nearest to the wish, by the wishes of alpha and beta.
+        /// The vector nearest to the wanted direction in alpha and beta.
         const NEAREST: [usize; 4] = [1, 5, 2, 4];
         let (_, i_next) = self.prediction.next(currents(*sample));
         let i_ref: [R; 2] = reference(*sample);
@@ -203,7 +204,8 @@ impl<R: Real + Div<Output = R>> Peer for PiPwm<R> {
         let error = [0, 1].map(|x| i_ref[x] - i[x]);
         let v = [0, 1].map(|x| R::num(GAIN) * error[x] + self.integral[x]);
         let (applied, legs) = modulate(v);
-        // The share of the error, and of what was not applied: `GAIN * error + applied - v`.
+        // The gains of the error and of the difference between applied and demanded voltage:
+        // `GAIN * error + applied - v`.
         self.integral = [0, 1].map(|x| {
             let tracked = applied[x] - self.integral[x];
             self.integral[x] + R::num(SHARE) * tracked

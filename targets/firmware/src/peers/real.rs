@@ -1,10 +1,10 @@
-//! Numbers of the naive controllers.
+//! Number types of the naive controllers.
 
 use super::paper::{CORNERS, VECTORS};
 use core::ops::{Add, Mul, Neg, Sub};
 use hexagen::fixed::types::I16F16;
 
-/// What a naive controller computes with.
+/// Arithmetic of a naive controller.
 pub trait Real:
     Copy
     + PartialOrd
@@ -21,23 +21,23 @@ pub trait Real:
     fn num(value: f64) -> Self;
     /// An ADC count.
     fn count(count: u16) -> Self;
-    /// A compare value: whole counts, from 0 to `most`.
+    /// A compare value: integer counts, from 0 to `most`.
     fn compare(self, most: u16) -> u16;
 
-    /// The lesser.
+    /// Minimum.
     #[must_use]
     fn least(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
-    /// The greater.
+    /// Maximum.
     #[must_use]
     fn greatest(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
 }
 
-/// Converts a table while compiling.
+/// Converts a table at compile time.
 macro_rules! converted {
     ($table:expr, $rows:literal, |$value:ident| $convert:expr) => {{
         let from = $table;
@@ -75,7 +75,7 @@ impl Real for f32 {
 
     #[inline]
     fn compare(self, most: u16) -> u16 {
-        // Limited as an integer: the conversion to 32 bits is one instruction, which saturates by itself.
+        // Clamped as an integer: the conversion to 32 bits is one instruction, which saturates.
         (self as u32).min(most.into()) as u16
     }
 }

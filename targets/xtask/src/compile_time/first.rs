@@ -1,20 +1,20 @@
-//! The first `cargo check` of a crate that adds hexagen: its time, and what each crate has of it.
+//! The first `cargo check` of a crate that adds hexagen: its time, and the share of each crate.
 
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-/// What the first check may take on two cores.
+/// Goal of the first check on two cores.
 const GOAL: Duration = Duration::from_secs(30);
 
-/// Crates that are listed by name; the others together.
+/// Number of crates listed by name; the others together.
 const LISTED: usize = 10;
 
-/// Prints the time and the shares, from cargo's own report of a build that began with nothing.
+/// Prints the time and the shares, from cargo's own report of a clean build.
 ///
 /// # Errors
-/// What could not be read of the report.
+/// Errors of reading the report.
 pub fn print(report: &Path, taken: Duration) -> Result<(), String> {
     let text =
         fs::read_to_string(report).map_err(|error| format!("{}: {error}", report.display()))?;
@@ -46,7 +46,7 @@ pub fn print(report: &Path, taken: Duration) -> Result<(), String> {
     Ok(())
 }
 
-/// Crates with their seconds: a build script counts with its crate.
+/// Crates with their seconds: a build script counts for its crate.
 fn crates(report: &str) -> Option<Vec<(String, f64)>> {
     let (_, list) = report.split_once("const UNIT_DATA = ")?;
     let units = serde_json::Deserializer::from_str(list).into_iter::<Vec<Value>>();

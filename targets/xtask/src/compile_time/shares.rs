@@ -1,5 +1,5 @@
-//! Expands the calls of the other crate as the macro does, and says how long each part of the generator took.
-//! Part of the scratch workspace that `cargo xtask compile-time` writes.
+//! Expands the calls of the other crate like the macro, and prints the time of each part of the
+//! generator. Part of the scratch workspace that `cargo xtask compile-time` writes.
 
 use hexagen_codegen::expand_controller;
 use hexagen_codegen::stopwatch::Part;

@@ -1,4 +1,4 @@
-//! The naive controllers beside their equations, which are written here a second time, plainly and in `f64`.
+//! The naive controllers against their equations, written a second time, plainly and in `f64`.
 
 extern crate std;
 
@@ -65,7 +65,7 @@ impl Plain {
     }
 }
 
-/// What is applied of a voltage, and compare values in counts and parts of them.
+/// Applied voltage, and compare values in counts with fractions.
 fn modulated([alpha, beta]: [f64; 2]) -> ([f64; 2], [f64; 3]) {
     let height = 3.0_f64.sqrt() / 2.0 * beta;
     let phases = [alpha, height - alpha / 2.0, -height - alpha / 2.0];
@@ -77,7 +77,7 @@ fn modulated([alpha, beta]: [f64; 2]) -> ([f64; 2], [f64; 3]) {
     ([alpha * scale, beta * scale], counts)
 }
 
-/// A motor whose rotor turns at a speed that is slow at first, and for a fifth of the time too fast for the bus.
+/// A motor whose speed is low at first, and for a fifth of the time too high for the bus.
 #[derive(Default)]
 struct Motor {
     step: usize,
@@ -87,7 +87,7 @@ struct Motor {
 }
 
 impl Motor {
-    /// Phase currents as they are counted.
+    /// Phase currents as ADC counts.
     fn sample(&self) -> Sample {
         let sector = (self.angle / 60.0_f64.to_radians()) as usize % 6;
         let [alpha, beta] = self.i;
@@ -96,10 +96,11 @@ impl Motor {
         Sample::with_hall(adc, [1, 5, 4, 6, 2, 3][sector])
     }
 
-    /// One period with the voltage that was asked for in the last one; `v` is that of the next.
+    /// One period with the voltage demanded in the last one; `v` is that of the next.
     fn turn(&mut self, v: [f64; 2]) {
         let is_fast = self.step % 1000 >= 800;
-        // The middle of sector 1, of code 1, in which the current flows from phase c to b, lies at -90 degrees.
+        // The middle of sector 1, of code 1, in which the current flows from phase c to b, lies at
+        // -90 degrees.
         let direction = self.angle - 2.0 * 60.0_f64.to_radians();
         let emf = if is_fast { 32.0 } else { 12.0 };
         let emf = [emf * direction.cos(), emf * direction.sin()];
@@ -110,7 +111,8 @@ impl Motor {
     }
 }
 
-/// Compare values of a peer stand within `counts` of the plain ones; both cases of the modulation occur.
+/// Compare values of a peer are within `counts` of the plain ones; both cases of the modulation
+/// occur.
 fn stays_near<P: Peer>(
     counts: f64,
     mut voltage: impl FnMut(Sample) -> [f64; 2],
@@ -128,7 +130,7 @@ fn stays_near<P: Peer>(
         applied(v_applied, &peer);
         motor.turn(v_applied);
         for (found, expected) in found.into_iter().zip(expected) {
-            // The whole counts of the plain value are somewhere in the count below it.
+            // The plain value lies between its integer part and the next count.
             let error = f64::from(found) + 0.5 - expected;
             assert!(
                 error.abs() <= 0.5 + counts,
@@ -151,7 +153,8 @@ fn pdcc<R: Real + Div<Output = R> + Into<f64>>(counts: f64) {
             let i_ref = reference(sample);
             [0, 1].map(|x| (i_ref[x] - A * i_next[x]) / B + e[x])
         },
-        // The peer's own: on the same currents, both would take a difference of what they applied for EMF, and double it.
+        // The peer's own currents: on common ones, both would take a difference of their applied
+        // voltages for EMF, and double it.
         |_, peer| plain.borrow_mut().v_now = peer.0.v_now.map(Into::into),
     );
 }
@@ -187,7 +190,7 @@ fn gates<P: Peer>(peer: &mut P, sample: Sample) -> [u16; 3] {
     })
 }
 
-/// No other vector costs less than what is chosen, but for `tie`, in A^2.
+/// No other vector costs less than the chosen one, with a tolerance of `tie`, in A^2.
 fn fcs_mpc<R: Real>(tie: f64) {
     let mut peer = FcsMpc::<R>::new();
     let mut plain = Plain::default();
@@ -222,7 +225,8 @@ fn fcs_mpc<R: Real>(tie: f64) {
     assert!(chosen[..7].iter().all(|&times| times > 0), "{chosen:?}");
 }
 
-/// The wish of an axis turns where the band of 0.5 A is left, but for `tie`, in A.
+/// The wanted direction of an axis changes when the current leaves the band of 0.5 A, with a
+/// tolerance of `tie`, in A.
 fn phcc<R: Real>(tie: f64) {
     let mut peer = Phcc::<R>::new();
     let mut plain = Plain::default();
