@@ -6,9 +6,9 @@ use crate::spec::{Discretisation, Inverter, Spec};
 /// Coefficients of the discretised phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscretePhase {
-    /// Pole: the share of the current that is left after one period.
+    /// Pole: the fraction of the current left after one period.
     pub a: f64,
-    /// Ampere per volt applied for one period.
+    /// Amperes per volt applied for one period.
     pub b: f64,
 }
 
@@ -35,11 +35,11 @@ impl DiscretePhase {
         }
     }
 
-    /// The limit of the believed change of current in one period, ADC counts: a power of two, at least twice what the
-    /// largest bus can do or the converters can say.
+    /// The limit of the plausible current change in one period, ADC counts: a power of two, at
+    /// least twice the change possible with the largest bus or within the ADCs' range.
     ///
     /// # Errors
-    /// When the specification of the bus is inconsistent.
+    /// If the specification of the bus is inconsistent.
     pub fn di_limit(&self, inverter: &Inverter) -> Result<f64, Error> {
         let span = f64::from((1_u32 << inverter.adc_bits) - 1);
         let possible = self.b * 4.0 / 3.0 * inverter.v_bus_max()? / inverter.adc_gain.abs();

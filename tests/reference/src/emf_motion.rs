@@ -1,17 +1,18 @@
-//! How an estimated EMF moves on from period to period (section 8 of the semantics).
+//! Rotation of an estimated EMF from period to period (section 8 of the semantics).
 
 use crate::emf_shape::THIRD;
 use crate::{EmfShape, Error, Spec};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI};
 
-/// The motion in physical units.
+/// The rotation in physical units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmfMotion {
     /// The EMF turns (a sine); otherwise the off phase's EMF goes from one flat top to the other.
     pub turns: bool,
-    /// c: motion in one period per product of two line EMFs, 1/V; of a sine, turn over sqrt(3) per line EMF.
+    /// c: motion in one period per product of two line EMFs, 1/V; of a sine, turn over sqrt(3) per
+    /// line EMF.
     pub per_product: f64,
-    /// Line EMF from which on the motion no longer grows, volt.
+    /// Line EMF above which the motion no longer grows, volt.
     pub line_limit: f64,
 }
 
@@ -19,11 +20,11 @@ impl EmfMotion {
     /// The motion of a drive's EMF.
     ///
     /// # Errors
-    /// When a trapezoid's flat top is missing.
+    /// If a trapezoid's flat top is missing.
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         let motor = &spec.motor;
         let shape = EmfShape::new(motor)?;
-        // h: the mean of a less b where these two conduct, from 30 to 90 degrees.
+        // h: the mean of a minus b while these two conduct, from 30 to 90 degrees.
         let area =
             |theta: f64| shape.zero_sum_integral(theta) - shape.zero_sum_integral(theta - THIRD);
         let h = (area(FRAC_PI_2) - area(FRAC_PI_6)) * (3.0 / PI);

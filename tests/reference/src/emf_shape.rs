@@ -71,7 +71,7 @@ impl EmfShape {
         }
     }
 
-    /// Unit EMF of phase a less the mean of the three phases: the part that drives current in a
+    /// Unit EMF of phase a minus the mean of the three phases: the part that drives current in a
     /// star without neutral.
     pub fn zero_sum(self, theta: f64) -> f64 {
         let [a, b, c] = [theta, theta - THIRD, theta + THIRD].map(|theta| self.unit(theta));

@@ -1,10 +1,10 @@
 //! Exact integer operations in f64, for words of 32 bits.
 //!
-//! A word is an f64 with a whole value of at most 32 bits and sign. Sums and products that stay
-//! below 2^53 are exact in f64; longer products are split at 16 bits first (floor(C x/2^s) =
-//! floor((Ch x + floor(Cl x/2^16))/2^(s-16)) with C = Ch 2^16 + Cl), so every intermediate is
-//! exact. That they are, for all words that a drive's formats allow, is what the cross-crate
-//! tests prove of this text, over words with intervals; those here compare with 128-bit integers.
+//! A word is an f64 with an integer value of at most 32 bits and sign. Sums and products below 2^53
+//! are exact in f64; longer products are split at 16 bits first (floor(C x/2^s) = floor((Ch x +
+//! floor(Cl x/2^16))/2^(s-16)) with C = Ch 2^16 + Cl), so every intermediate is exact. The
+//! cross-crate tests prove this for all words of a drive's formats, over words with intervals; the
+//! tests here compare with 128-bit integers.
 #![expect(
     clippy::inline_always,
     reason = "the models spend their time in these few instructions"
@@ -19,15 +19,15 @@ pub fn word<W: Word>(x: f64) -> W {
     x.into()
 }
 
-/// A number from outside: any of its type.
+/// An input number: any of its type.
 #[inline(always)]
 pub fn input<W: Word>(x: impl Outside) -> W {
     x.any()
 }
 
-/// A type whose numbers come in from outside.
+/// A type of input numbers.
 pub trait Outside {
-    /// The number, which stands for any of its type.
+    /// The number, standing for any of its type.
     fn any<W: Word>(self) -> W;
 }
 
@@ -45,58 +45,58 @@ impl Outside for i32 {
     }
 }
 
-/// The greatest whole number not above `y` ([`Word::floor`]).
+/// The greatest integer not above `y` ([`Word::floor`]).
 #[inline(always)]
 #[track_caller]
 pub fn floor<W: Word>(y: W) -> W {
     y.floor()
 }
 
-/// The greater of two numbers.
+/// Maximum.
 #[inline(always)]
 pub fn greater<W: Word>(a: W, b: impl Into<W>) -> W {
     a.greater(b.into())
 }
 
-/// The lesser of two numbers.
+/// Minimum.
 #[inline(always)]
 pub fn lesser<W: Word>(a: W, b: impl Into<W>) -> W {
     a.lesser(b.into())
 }
 
-/// `then` where the condition holds, else `otherwise`.
+/// `then` if the condition holds, else `otherwise`.
 #[inline(always)]
 pub fn either<W: Word>(condition: bool, then: W, otherwise: W) -> W {
     W::either(condition, then, otherwise)
 }
 
-/// `y` within low <= high.
+/// `y` clamped to low <= high.
 #[inline(always)]
 pub fn within<W: Word>(y: W, low: impl Into<W>, high: impl Into<W>) -> W {
     lesser(greater(y, low), high)
 }
 
-/// The 16-bit count of a whole x, 0 <= x < 2^16.
+/// The 16-bit count of an integer x, 0 <= x < 2^16.
 #[inline(always)]
 #[track_caller]
 pub fn to_u16<W: Word>(x: W) -> u16 {
     x.known(0.0, TWO_16 - 1.0).to_i32() as u16
 }
 
-/// The index that a small whole x >= 0 is.
+/// The index of a small integer x >= 0.
 #[inline(always)]
 #[track_caller]
 pub fn to_index<W: Word>(x: W) -> usize {
     x.to_i32() as usize
 }
 
-/// What `of` says of phases a and b. Unlike `map` of an array it leaves nothing for the optimiser to unwind.
+/// `of` for phases a and b. Unlike `map` of an array, needs no unwinding.
 #[inline(always)]
 pub fn both<T>(mut of: impl FnMut(usize) -> T) -> [T; 2] {
     [of(0), of(1)]
 }
 
-/// What `of` says of phases a, b and c.
+/// `of` for phases a, b and c.
 #[inline(always)]
 pub fn all_three<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
@@ -128,16 +128,16 @@ pub fn floor_shift<W: Word>(x: W, n: u32) -> W {
     floor_weighted(x, pow2(-(n as i32)))
 }
 
-/// What the f64 arithmetic behind a constant may be off by, in units of its last bit: specifications
-/// with round numbers put constants exactly on a tie, where the order of operations would decide.
+/// Tolerance of the f64 arithmetic of a constant, in units of its last bit: specifications with
+/// round numbers make constants exactly on a tie, which the order of operations would decide.
 const TIE: f64 = 1.0 / TWO_16;
 
-/// R(x) = floor(x + 1/2): how a real constant becomes a word. Ties that f64 just misses count as ties.
+/// R(x) = floor(x + 1/2): rounding of a real constant to a word. Near ties count as ties.
 pub fn round_half_up(x: f64) -> f64 {
     (x + (0.5 + TIE)).floor()
 }
 
-/// floor(x) of a real constant. Whole numbers that f64 just misses count as whole.
+/// floor(x) of a real constant. Near integers count as integers.
 pub fn floor_constant(x: f64) -> f64 {
     (x + TIE).floor()
 }
@@ -152,7 +152,7 @@ pub fn wrap32<W: Word>(x: W) -> W {
     wrapped.known(0.0, TWO_32 - 1.0)
 }
 
-/// floor(y), |y| < 2^51, and the rest.
+/// floor(y), |y| < 2^51, and the remainder.
 #[inline]
 #[track_caller]
 pub fn split<W: Word>(y: W) -> (W, W) {
@@ -219,18 +219,18 @@ impl<W: Word> Coefficient<W> {
     }
 }
 
-/// Most fraction bits that leave room for a half below the last one.
+/// Maximum fraction bits that leave room for a half below the last one.
 const FRACTION: u32 = 51;
 
 /// A shift for products of two run-time words.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shift {
     bits: u32,
-    /// Products below this are taken whole.
+    /// Limit of products computed without splitting.
     whole: f64,
     /// 2^-s.
     weight: f64,
-    /// 2^(16-s), the weight of products of which 16 bits are cut off.
+    /// 2^(16-s), the weight of products without their 16 lowest bits.
     cut_weight: f64,
 }
 
@@ -256,8 +256,9 @@ impl Shift {
         self.bits
     }
 
-    /// x y/2^s rounded to the nearest with `nudge` of the weight of its last bit added. A product too long for f64
-    /// loses 16 bits, which the shift cuts off in any case: its upper and lower half are multiplied apart.
+    /// x y/2^s rounded to the nearest with `nudge` of the weight of its last bit added. A product
+    /// too long for f64 loses 16 bits, which the shift removes in any case: its upper and lower
+    /// half are multiplied separately.
     #[inline]
     fn product<W: Word>(&self, x: W, y: W, nudge: impl Fn(f64) -> f64) -> W {
         x.debug_whole();
@@ -283,8 +284,9 @@ impl Shift {
         self.product(x, y, |weight| 0.5 * weight - 0.5)
     }
 
-    /// floor((x1 y1 + x2 y2)/2^s) for words whose products' sum fits 64 bits. For shifts beyond 16 the upper and lower
-    /// halves of the first factors are multiplied apart, and the lower products lose the 16 bits together.
+    /// floor((x1 y1 + x2 y2)/2^s) for words whose products' sum fits 64 bits. For shifts above 16
+    /// the upper and lower halves of the first factors are multiplied separately, and the lower
+    /// products lose the 16 bits together.
     #[inline]
     #[track_caller]
     pub fn floor_sum_of_products<W: Word>(&self, [x1, y1]: [W; 2], [x2, y2]: [W; 2]) -> W {
@@ -319,7 +321,7 @@ mod tests {
 
     const PAIRS: usize = 4_000_000;
 
-    /// Words of every length, with the extremes and their neighbours often among them.
+    /// Words of every length, with the extremes and their neighbours frequent.
     fn word(random: &mut fastrand::Rng) -> i64 {
         const CORNERS: [i64; 9] = [
             0,

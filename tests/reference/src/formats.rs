@@ -1,4 +1,4 @@
-//! The format table of a drive: the only numbers that cross over from the generator.
+//! The format table of a drive: the only numbers taken from the generator.
 
 use crate::Error;
 use hexagen::Format;
@@ -20,7 +20,7 @@ impl FormatTable {
     /// The format of this name.
     ///
     /// # Errors
-    /// When there is none.
+    /// If there is none.
     pub fn get(&self, name: &'static str) -> Result<&Format, Error> {
         self.formats
             .iter()
@@ -28,10 +28,10 @@ impl FormatTable {
             .ok_or(Error::NoFormat(name))
     }
 
-    /// Fraction bits of a signal, or the shift of a coefficient, which must not be negative.
+    /// Fraction bits of a signal, or the shift of a coefficient; not negative.
     ///
     /// # Errors
-    /// When there is no such format or its fraction bits are negative.
+    /// If there is no such format or its fraction bits are negative.
     pub fn frac_bits(&self, name: &'static str) -> Result<u32, Error> {
         let frac_bits = i32::from(self.get(name)?.frac_bits);
         u32::try_from(frac_bits).map_err(|_| Error::Format {
@@ -41,11 +41,11 @@ impl FormatTable {
         })
     }
 
-    /// The shift of a product of two voltages: what the fraction bits of the factors exceed the
-    /// product's by.
+    /// The shift of a product of two voltages: the excess of the factors' fraction bits over the
+    /// product's.
     ///
     /// # Errors
-    /// When there is no such format, or the product has more fraction bits than its factors.
+    /// If there is no such format, or the product has more fraction bits than its factors.
     pub fn product_shift(&self, name: &'static str) -> Result<u32, Error> {
         let factors = 2 * i32::from(self.get("voltage")?.frac_bits);
         let frac_bits = i32::from(self.get(name)?.frac_bits);
@@ -59,7 +59,7 @@ impl FormatTable {
     /// Number of segments of a table.
     ///
     /// # Errors
-    /// When there is no such entry or the number is none of 12, 24, 48, 96.
+    /// If there is no such entry or the number is none of 12, 24, 48, 96.
     pub fn segments(&self, name: &'static str) -> Result<u32, Error> {
         let segments = self.get(name)?.segments;
         match segments {

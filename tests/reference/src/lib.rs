@@ -2,8 +2,8 @@
 //!
 //! Model A (`Ideal`) is the control law in f64 and physical units, without any rounding. Model B
 //! (`BitTrue`) computes every bit of the emitted code in f64 with an explicit quantiser at every
-//! rounding point. Both are built from a drive's normalised specification; only the format table
-//! crosses over from the generator, as data.
+//! rounding point. Both are built from a drive's normalised specification; only the format table is
+//! taken from the generator, as data.
 
 mod discrete_phase;
 mod emf_motion;

@@ -1,10 +1,10 @@
 //! The ideal and the bit-true model of every controller.
 //!
-//! Both follow the same texts, the `semantics.md` of the generator's controllers; section numbers in
-//! the comments are those of the `pdcc` text, which the others build on. The steps that all
-//! controllers share are written once per model, steps 9 to 11 once per controller and model in
-//! `law`. What involves no rounding (Hall decoding, edge timing, supervision) is shared by the
-//! models; every number that is rounded is computed twice.
+//! Both follow the same texts, the `semantics.md` of the generator's controllers; section numbers
+//! in the comments are those of the `pdcc` text, on which the others build. The common steps are
+//! written once per model, steps 9 to 11 once per controller and model in `law`. Parts without
+//! rounding (Hall decoding, edge timing, supervision) are common to both models; every rounded
+//! number is computed twice.
 
 mod bit_true;
 mod hall;

@@ -1,9 +1,8 @@
-//! The normalised specification that a generated drive carries (`Drive::SPEC`), read from its TOML
-//! text.
+//! The normalised specification of a generated drive (`Drive::SPEC`), read from its TOML text.
 //!
 //! All quantities are in SI units and per phase of the star; every default is filled in. Parsing
-//! rejects unknown fields and values outside their physical range, nothing more: the generator
-//! has already judged the motor.
+//! rejects unknown fields and values outside their physical range only: the generator has checked
+//! the motor.
 
 mod controller;
 
@@ -93,7 +92,7 @@ pub struct Inverter {
     pub trip_current: f64,
     /// Largest current set-point, ampere.
     pub max_current: f64,
-    /// Time between the two switches of a leg, second; only where it is above 0.
+    /// Dead time, second; only if above 0.
     #[serde(default)]
     pub dead_time: f64,
     /// How Hall edges are timed.
@@ -106,7 +105,7 @@ pub struct Inverter {
     pub rev_min: u32,
     /// Greatest mechanical speed, rad/s.
     pub omega_max: f64,
-    /// Periods without a Hall edge that count as a stall; 0: not watched.
+    /// Periods without a Hall edge that count as a stall; 0 without stall detection.
     pub stall_periods: u32,
     /// Binary logarithm of the number of calibration samples.
     pub calibration_log2: u32,
@@ -114,13 +113,13 @@ pub struct Inverter {
     pub precharge_periods: u32,
 }
 
-/// Where the bus voltage comes from.
+/// Source of the bus voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bus {
     /// The nominal value.
     Fixed,
-    /// An ADC count, handed over with `set_bus`.
+    /// An ADC count, set by `set_bus`.
     Measured,
 }
 
@@ -151,14 +150,14 @@ impl Spec {
     /// Reads a normalised specification from its TOML text.
     ///
     /// # Errors
-    /// When the text is not a normalised specification or a value is out of its physical range.
+    /// If the text is not a normalised specification or a value is out of its physical range.
     pub fn from_toml(text: &str) -> Result<Self, Error> {
         let spec: Self = toml::from_str(text).map_err(|error| Error::Syntax(error.to_string()))?;
         spec.check()?;
         Ok(spec)
     }
 
-    /// The options that every controller has.
+    /// The options of all controllers.
     pub fn loop_options(&self) -> LoopOptions {
         match &self.controller {
             Controller::Pdcc(pdcc) => pdcc.loop_options(),
@@ -169,7 +168,7 @@ impl Spec {
         }
     }
 
-    /// When a commutation ends; none for a controller that knows none.
+    /// The end of a commutation; `None` for a controller that tracks none.
     pub fn commutation_end(&self) -> Option<CommutationEnd> {
         let (threshold, timeout) = match &self.controller {
             Controller::Pdcc(Pdcc {
@@ -352,7 +351,7 @@ impl Inverter {
     /// The bus voltage's measurement, if there is one.
     ///
     /// # Errors
-    /// When the bus is measured but a field of the measurement is missing.
+    /// If the bus is measured but a field of the measurement is missing.
     pub fn bus_sense(&self) -> Result<Option<BusSense>, Error> {
         let needed = |field, value: Option<f64>| {
             value.ok_or(Error::Missing {

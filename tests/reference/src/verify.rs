@@ -1,8 +1,8 @@
-//! The bit-for-bit test: a drive and its bit-true model get the same inputs, and every output and
-//! every state word must be equal after every step.
+//! The bit-for-bit test: a drive and its bit-true model get the same inputs; every output and every
+//! state word must be equal after every step.
 //!
-//! Each session begins with a calibration; then three kinds of input take turns: arbitrary words, a crude motor in closed loop, and corner
-//! values. A seed fixes the whole run.
+//! Each session begins with a calibration; then three kinds of input alternate: arbitrary words, a
+//! crude motor in closed loop, and corner values. A seed determines the whole run.
 
 mod mismatch;
 mod report;
@@ -21,35 +21,35 @@ use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
 /// Steps that [`assert_bit_true`] runs.
 pub const DEFAULT_STEPS: u64 = 500_000;
 
-/// Steps after which drive and model start afresh.
+/// Steps after which drive and model are initialised again.
 const SESSION: u64 = 1 << 16;
 
 /// Compares a compiled drive with its bit-true model over `steps` steps.
 ///
 /// # Errors
-/// When they differ, or when no model can be built from the drive's specification and formats.
+/// If they differ, or no model can be built from the drive's specification and formats.
 pub fn verify<C: Control<Command = Legs>>(steps: u64, seed: u64) -> Result<Report, VerifyError> {
     let names: Vec<_> = Drive::<C>::state_names().collect();
     let new = Compiled::<C>::new;
     verify_subject(C::SPEC, C::FORMATS, &names, new, steps, seed)
 }
 
-/// Runs the bit-for-bit test of a compiled drive and panics with a table of what differs.
+/// Runs the bit-for-bit test of a compiled drive and panics with a table of the differences.
 ///
 /// # Panics
-/// When drive and model differ, or when no model can be built.
+/// If drive and model differ, or no model can be built.
 pub fn assert_bit_true<C: Control<Command = Legs>>() {
     if let Err(error) = verify::<C>(DEFAULT_STEPS, 1) {
         panic!("{} is not bit-true: {error}", C::NAME);
     }
 }
 
-/// As [`verify`], for anything that computes a drive's steps: `new` makes a subject at rest,
-/// `spec` and `formats` are what [`Control`]'s constants of these names hold, `names` those of its
-/// state words.
+/// Like [`verify`], for any implementation of a drive's steps: `new` makes a subject in its initial
+/// state, `spec` and `formats` are as in [`Control`]'s constants of these names, `names` those of
+/// its state words.
 ///
 /// # Errors
-/// As [`verify`].
+/// Like [`verify`].
 pub fn verify_subject<S: Subject>(
     spec: &str,
     formats: &[Format],
@@ -166,11 +166,11 @@ impl<S: Subject> Pair<S> {
                 }
             }
         }
-        // What the action did to the state is compared as part of the step.
+        // The action's effect on the state is compared as part of the step.
         self.model.state_words(&mut self.expected);
     }
 
-    /// One step of both; the differences if there are any.
+    /// One step of both; returns the differences, if any.
     #[inline]
     fn step(&mut self, sample: Sample) -> Result<Legs, Vec<Difference>> {
         std::mem::swap(&mut self.before, &mut self.expected);

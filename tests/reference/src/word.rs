@@ -1,7 +1,7 @@
-//! The numbers that model B computes with, and what only a number itself can do.
+//! The number type of model B, and its primitive operations.
 //!
-//! They are f64. The cross-crate tests build the same model over words that carry an interval beside
-//! their value, with which every operation proves itself exact.
+//! It is f64. The cross-crate tests build the same model over words with intervals, whose
+//! operations prove themselves exact.
 #![expect(
     clippy::inline_always,
     reason = "the models spend their time in these few instructions"
@@ -10,11 +10,12 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to a whole number.
+/// 1.5 * 2^52: adding it to |y| < 2^51 rounds y to an integer.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
 pub(crate) const TWO_16: f64 = 65_536.0;
 pub(crate) const TWO_32: f64 = 4_294_967_296.0;
-/// 2^51. Products below it can be taken whole: with half of their last bit added they still fit 53 bits.
+/// 2^51. Products below it need no splitting: with half of their last bit added they still fit 53
+/// bits.
 pub const WHOLE: f64 = 2_251_799_813_685_248.0;
 
 /// 2^exponent, for |exponent| <= 1022.
@@ -24,8 +25,8 @@ pub fn pow2(exponent: i32) -> f64 {
     f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
 }
 
-/// A word, or a number on the way to one. Sums, differences and products are exact; of a quotient nothing
-/// but [`Self::floor`] is.
+/// A word, or an intermediate number. Sums, differences and products are exact; of a quotient only
+/// [`Self::floor`] is.
 pub trait Word:
     Copy
     + Debug
@@ -44,22 +45,22 @@ pub trait Word:
     + Div<Output = Self>
     + Div<f64, Output = Self>
 {
-    /// The time for which an operation of several steps is under way.
+    /// Guard for the duration of an operation of several steps.
     type Site;
 
-    /// Marks the place from where the present function is called: what it does counts as steps of that place.
+    /// Marks the present function's caller: its operations count as steps of that place.
     #[track_caller]
     fn here() -> Self::Site;
 
-    /// The whole number `value`, which stands for any from `low` to `high`.
+    /// The integer `value`, which stands for any from `low` to `high`.
     fn whole(value: f64, low: f64, high: f64) -> Self;
 
-    /// The same number, which is known to lie from `low` to `high`.
+    /// The same number, known to lie from `low` to `high`.
     #[track_caller]
     #[must_use]
     fn known(self, low: f64, high: f64) -> Self;
 
-    /// Asserts in debug builds that the number is whole.
+    /// Asserts in debug builds that the number is an integer.
     #[track_caller]
     fn debug_whole(self);
 
@@ -67,19 +68,19 @@ pub trait Word:
     #[track_caller]
     fn debug_at_most(self, most: f64);
 
-    /// The nearest whole number, for a magnitude below 2^51, not half way between two.
+    /// The nearest integer, for a magnitude below 2^51, not half-way between two.
     #[track_caller]
     #[must_use]
     fn nearest(self) -> Self;
 
-    /// The greatest whole number not above this one, for a magnitude below 2^51. Of a quotient too: one of whole
-    /// numbers, the upper one below 2^52, does not round up to a whole number.
+    /// The greatest integer not above this one, for a magnitude below 2^51. Of a quotient too: one
+    /// of integers, the numerator below 2^52, does not round up to an integer.
     #[track_caller]
     #[must_use]
     fn floor(self) -> Self;
 
-    /// The product where its magnitude is below `limit`: 2^51 or less, or any number for a product that is known to
-    /// be exact. A product that is rounded is not below.
+    /// The product if its magnitude is below `limit`: 2^51 or less, or any number for a product
+    /// that is known to be exact. A product that is rounded is not below.
     #[track_caller]
     #[must_use]
     fn product_below(self, other: Self, limit: f64) -> Option<Self>;
@@ -105,16 +106,16 @@ pub trait Word:
     #[must_use]
     fn lesser(self, other: Self) -> Self;
 
-    /// `then` where the condition holds, else `otherwise`.
+    /// `then` if the condition holds, else `otherwise`.
     fn either(condition: bool, then: Self, otherwise: Self) -> Self;
 
-    /// The two's complement word of a whole number, its magnitude below 2^31.
+    /// The two's complement word of an integer, its magnitude below 2^31.
     #[track_caller]
     fn to_i32(self) -> i32;
 }
 
 impl Word for f64 {
-    /// Nobody asks.
+    /// No observer.
     type Site = ();
 
     #[inline(always)]
@@ -164,7 +165,7 @@ impl Word for f64 {
         (product.abs() < limit).then_some(product)
     }
 
-    /// By one division: the rounded quotient is at most one off, which the remainder tells.
+    /// By one division: the rounded quotient is at most one off, which the remainder reveals.
     #[inline]
     fn divide(self, s: u32, den: Self, limit: Self) -> Self {
         self.debug_whole();

@@ -1,9 +1,9 @@
 //! Model B: every bit of the emitted code, in f64 with an explicit quantiser at every rounding
 //! point.
 //!
-//! All signals are words held in f64 (see `crate::exact`); only table indices and small enums are
-//! integers. Coefficients are rounded here, from the specification; of the generator only the
-//! format table is used. Section numbers are those of `semantics.md`.
+//! All signals are words in f64 (see `crate::exact`); only table indices and small enums are
+//! integers. Coefficients are rounded here, from the specification; only the format table is taken
+//! from the generator. Section numbers are those of `semantics.md`.
 
 mod applied;
 mod constants;
@@ -58,12 +58,12 @@ pub struct BitTrue<W: Word = f64> {
     last: Signals<W>,
 }
 
-/// Which way a step went, for coverage counts.
+/// Path of a step, for coverage counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course<W = f64> {
-    /// Where the deadbeat voltage lay.
+    /// Position of the deadbeat voltage.
     pub reach: Reach,
-    /// A commutation is under way (where it is followed).
+    /// A commutation is in progress (if tracked).
     pub commutating: bool,
     /// Angle per period, angle words (2^32 per turn), signed; 0 while the angle is not timed.
     pub step_angle: W,
@@ -87,18 +87,18 @@ struct Signals<W> {
 }
 
 impl BitTrue {
-    /// A controller at rest with zero set-point.
+    /// A controller in its initial state.
     ///
     /// # Errors
-    /// When the specification is inconsistent, a format is missing, or a coefficient does not fit
-    /// its format.
+    /// If the specification is inconsistent, a format is missing, or a coefficient does not fit its
+    /// format.
     pub fn new(spec: &Spec, formats: &FormatTable) -> Result<Self, Error> {
         Self::over_words(spec, formats)
     }
 }
 
 impl<W: Word> BitTrue<W> {
-    /// As [`BitTrue::new`], for words of another type than f64.
+    /// Like [`BitTrue::new`], for words of another type than f64.
     ///
     /// # Errors
     /// As [`BitTrue::new`].
@@ -144,14 +144,14 @@ impl<W: Word> BitTrue<W> {
             .mul(within(input(bits), -self.k.t_max_bits, self.k.t_max_bits));
     }
 
-    /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
+    /// Sets the speed from the bits of an `I16F16` in rpm. No effect without a speed loop.
     pub fn set_speed(&mut self, bits: i32) {
         if let Some(speed) = &self.speed {
             self.speed_ref = speed.reference(bits);
         }
     }
 
-    /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
+    /// Sets the bus voltage as an ADC count. No effect if the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = &self.k.bus {
             let measured = bus.k_bus.mul(lesser(input(counts), bus.count_max));
@@ -171,8 +171,8 @@ impl<W: Word> BitTrue<W> {
         [self.j, self.v_bus, self.ratio, self.speed_ref]
     }
 
-    /// Clears a trip and all control state, and sets the set-point to 0 (the speed where it is
-    /// regulated, else the current); keeps the offsets. Ignored while calibration or pre-charge runs.
+    /// Clears a trip and all control state, and sets the set-point to 0 (the speed with a speed
+    /// loop, else the current); keeps the offsets. Ignored during calibration and pre-charge.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
             match self.speed {
@@ -196,12 +196,12 @@ impl<W: Word> BitTrue<W> {
         self.state.supervisor.precharge(&self.limits);
     }
 
-    /// Why the drive is tripped.
+    /// Fault of the drive.
     pub fn fault(&self) -> Option<Fault> {
         self.state.supervisor.fault
     }
 
-    /// What the drive is doing.
+    /// Mode of the drive.
     pub fn mode(&self) -> Mode {
         self.state.supervisor.mode
     }
@@ -212,13 +212,13 @@ impl<W: Word> BitTrue<W> {
         self.bus_watch.is_some()
     }
 
-    /// Whether the bus voltage, where it is measured, is no longer told.
+    /// Whether a measured bus voltage is stale.
     #[inline]
     pub fn bus_is_stale(&self) -> bool {
         self.bus_watch.is_some_and(|watch| watch.is_stale())
     }
 
-    /// Which way the last step went.
+    /// Path of the last step.
     #[inline]
     pub fn course(&self) -> Course<W> {
         Course {
@@ -245,8 +245,8 @@ impl<W: Word> BitTrue<W> {
         self.state.read(self.k.parts, words.iter().map(any));
     }
 
-    /// As [`Self::set_state_words`], where each word stands for any from its range's least to its
-    /// greatest.
+    /// Like [`Self::set_state_words`], with each word standing for any from its range's minimum to
+    /// its maximum.
     pub fn set_state_within(&mut self, words: &[i32], ranges: &[(i32, i32)]) {
         let words = words.iter().copied().zip(ranges.iter().copied());
         self.state.read(self.k.parts, words);
@@ -391,7 +391,7 @@ impl<W: Word> BitTrue<W> {
             }
         };
 
-        // 9 to 11, the controller's own
+        // 9 to 11, specific to the controller
         let decision = self.law.decide(&Inputs {
             k,
             v_bus: self.v_bus,

@@ -1,6 +1,6 @@
 //! Timing of Hall edges (section 4 of the semantics): age of the last edge, length of the last
-//! turn, and when they stop being trustworthy. Ages are whole ticks; of a period with a fraction of a tick the whole ones
-//! are counted, and a turn is made up for the rest.
+//! turn, and their validity. Ages are integer ticks; of a period with a fractional number of ticks
+//! the integer part is counted, and a turn is corrected for the rest.
 
 use super::sector::HallEvent;
 use crate::exact::{Word, greater, lesser, within, word};
@@ -12,7 +12,7 @@ pub struct HallClock {
     pub timer: bool,
     /// Ticks per control period.
     pub period: f64,
-    /// TICKS: those of them that are whole.
+    /// TICKS: their integer part.
     pub ticks: f64,
     /// TURN_REST.
     pub turn_rest: f64,
@@ -68,7 +68,7 @@ impl<W: Word> Default for HallTiming<W> {
 }
 
 impl<W: Word> HallTiming<W> {
-    /// Follows the direction only.
+    /// Tracks the direction only.
     #[inline]
     pub fn turn_direction(&mut self, event: &HallEvent) {
         if event.edge {
@@ -80,8 +80,8 @@ impl<W: Word> HallTiming<W> {
         }
     }
 
-    /// One sample; `direction_before` is the direction before this sample's edge was judged.
-    /// Leaves the age now in `age_prev`.
+    /// One sample; `direction_before` is the direction before this sample's edge was evaluated.
+    /// Leaves the present age in `age_prev`.
     #[inline]
     pub fn step(
         &mut self,

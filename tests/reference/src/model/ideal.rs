@@ -1,7 +1,7 @@
 //! Model A: the control law in f64 and physical units, with no rounding anywhere.
 //!
-//! Vectors are amplitude-invariant alpha-beta (`hexagen::conventions`); the inputs are the same ADC
-//! counts, Hall codes and timer ticks that the generated code reads, the outputs exact duties.
+//! Vectors are amplitude-invariant alpha-beta (`hexagen::conventions`); the inputs are the ADC
+//! counts, Hall codes and timer ticks of the generated code, the outputs exact duties.
 
 mod emf;
 mod law;
@@ -26,13 +26,13 @@ use speed::SpeedLoop;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
 use vector::{clarke, from_ab, phases, to_ab};
 
-/// A sector is half open: its last angle stays this far (radians) before the next one.
+/// A sector is half open: its last angle is this far (radians) before the next one.
 const SECTOR_END: f64 = FRAC_PI_3 * (1.0 - 1e-9);
 
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Duties {
-    /// Share of the period during which the upper switch is on, 0 to 1, phases a, b, c.
+    /// Fraction of the period during which the upper switch is on, 0 to 1, phases a, b, c.
     pub duty: [f64; 3],
     /// States of legs a, b, c.
     pub state: [LegState; 3],
@@ -63,7 +63,7 @@ pub struct Ideal {
     // From the specification.
     variant: Variant,
     law: Law,
-    /// When a leg that is off carries no current and when a commutation ends.
+    /// Current below which an off leg is without current and a commutation ends.
     end: CommutationEnd,
     phase: DiscretePhase,
     shape: EmfShape,
@@ -87,7 +87,7 @@ pub struct Ideal {
     speed_loop: Option<SpeedLoop>,
     // Set-points.
     current: f64,
-    /// The speed that is wanted, mechanical rad/s.
+    /// The speed set-point, mechanical rad/s.
     speed: f64,
     v_bus: f64,
     state: PhysicalState,
@@ -95,16 +95,17 @@ pub struct Ideal {
 }
 
 impl Ideal {
-    /// A controller at rest with zero set-point.
+    /// A controller in its initial state.
     ///
     /// # Errors
-    /// When the specification is inconsistent.
+    /// If the specification is inconsistent.
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
         let phase = DiscretePhase::new(spec);
         let bus_sense = inverter.bus_sense()?;
         let gain = inverter.adc_gain;
-        // A current of exactly the trip level is none above it, whatever these floating-point numbers lose.
+        // A current of exactly the trip level is not above it, whatever these floating-point
+        // numbers lose.
         let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.abs();
         let limits = Limits::new(inverter, trip_current)?;
         let pole_pairs = f64::from(motor.pole_pairs);
@@ -160,14 +161,14 @@ impl Ideal {
         self.set_current_amps(f64::from(bits) / 65_536.0 / self.k_t);
     }
 
-    /// Sets the speed from the bits of an `I16F16` in rpm. Does nothing without a speed loop.
+    /// Sets the speed from the bits of an `I16F16` in rpm. No effect without a speed loop.
     pub fn set_speed(&mut self, bits: i32) {
         if let Some(speed_loop) = &self.speed_loop {
             self.speed = speed_loop.allowed(f64::from(bits) / 65_536.0 * TAU / 60.0);
         }
     }
 
-    /// Tells the bus voltage as an ADC count. Does nothing when the bus is not measured.
+    /// Sets the bus voltage as an ADC count. No effect if the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = self.bus_sense {
             self.v_bus =
@@ -175,8 +176,8 @@ impl Ideal {
         }
     }
 
-    /// Clears a trip and all control state, and sets the set-point to 0 (the speed where it is
-    /// regulated, else the current); keeps the offsets. Ignored while calibration or pre-charge runs.
+    /// Clears a trip and all control state, and sets the set-point to 0 (the speed with a speed
+    /// loop, else the current); keeps the offsets. Ignored during calibration and pre-charge.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
             match self.speed_loop {
@@ -200,7 +201,7 @@ impl Ideal {
         self.state.supervisor.precharge(&self.limits);
     }
 
-    /// Why the controller is tripped.
+    /// Fault of the controller.
     pub fn fault(&self) -> Option<Fault> {
         self.state.supervisor.fault
     }
@@ -210,7 +211,7 @@ impl Ideal {
         &self.trace
     }
 
-    /// Takes over another model's state, so that one step's error can be measured.
+    /// Copies another model's state, to measure the error of one step.
     pub fn rebuild_from(&mut self, state: &PhysicalState) {
         self.state = *state;
     }
@@ -339,7 +340,7 @@ impl Ideal {
             ),
         };
 
-        // 9 to 11, the controller's own
+        // 9 to 11, specific to the controller
         let decision = self.law.decide(&Inputs {
             phase: self.phase,
             delayed,
@@ -421,7 +422,7 @@ impl Ideal {
         command.duties
     }
 
-    /// Electrical angle per tick, radians; 0 while it is not known.
+    /// Electrical angle per tick, radians; 0 while unknown.
     fn electrical_speed(&self) -> f64 {
         let timing = &self.state.timing;
         if timing.edges == 2 {
@@ -455,7 +456,7 @@ impl Ideal {
         (theta, step_angle, sector_eff)
     }
 
-    /// Follows the commutation (section 5); whether it goes on.
+    /// Tracks the commutation (section 5); returns whether it continues.
     fn commutate(&mut self, sector_eff: usize, current: f64, i: &Vector3<f64>) -> bool {
         let state = &mut self.state;
         let changed = sector_eff != state.sector_eff_prev && state.sector_eff_prev != 0;
@@ -472,7 +473,7 @@ impl Ideal {
         goes_on
     }
 
-    /// Voltage that a command really applies while the currents are `i` (section 7).
+    /// Voltage that a command applies at the currents `i` (section 7).
     fn applied(
         &self,
         terminal: &Vector3<f64>,
@@ -496,7 +497,7 @@ impl Ideal {
         clarke(&terminal)
     }
 
-    /// As [`Self::step`], rounded to timer counts.
+    /// Like [`Self::step`], rounded to timer counts.
     pub fn step_legs(&mut self, sample: &Sample) -> Legs {
         self.step(sample).to_legs(self.timer_period)
     }

@@ -1,4 +1,4 @@
-//! Sectors, the six 60 degree steps of the electrical turn, and what belongs to each of them.
+//! Sectors, the six 60 degree steps of the electrical turn, and their tables.
 
 use crate::spec::Motor;
 
@@ -26,7 +26,7 @@ pub fn hall_sectors(motor: &Motor) -> [usize; 8] {
     sectors
 }
 
-/// What a Hall sample says (section 2).
+/// Evaluation of a Hall sample (section 2).
 #[derive(Clone, Copy, Debug)]
 pub struct HallEvent {
     /// Sector now; the last one while the code is invalid.

@@ -1,13 +1,13 @@
-//! Modes, faults and the start-up sequence (section 3 of the semantics), and whether the bus voltage
-//! goes on being told (its section "Set-point words"). Nothing here is rounded: currents and trip level
-//! are compared in whatever unit the model uses.
+//! Modes, faults and the start-up sequence (section 3 of the semantics), and the age of the bus
+//! voltage (its section "Set-point words"). Nothing here is rounded: currents and trip level are
+//! compared in the model's unit.
 
 use crate::Error;
 use crate::exact::{Word, greater, lesser, word};
 use crate::spec::{Bus, Inverter};
 use hexagen::Fault;
 
-/// What the drive is doing.
+/// Operating mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// Controlling the currents.
@@ -55,7 +55,7 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
         Some(Fault::Hall) => 3,
         Some(Fault::Stall) => 4,
         Some(Fault::Offset) => 5,
-        Some(other) => unreachable!("a fault that no model tells: {other:?}"),
+        Some(other) => unreachable!("unknown fault: {other:?}"),
     }
 }
 
@@ -63,7 +63,7 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub adc_max: f64,
-    /// Count at zero current, and how far a calibrated one may be from it.
+    /// Count at zero current, and its tolerance in calibration.
     pub adc_offset: f64,
     pub offset_tolerance: f64,
     pub i_trip: f64,
@@ -93,7 +93,7 @@ impl Limits {
     }
 }
 
-/// How long a bus voltage that was told is fresh, second.
+/// Time after which a measured bus voltage is stale, second.
 const BUS_FRESH: f64 = 0.1;
 
 /// The age of a measured bus voltage.
@@ -101,14 +101,14 @@ const BUS_FRESH: f64 = 0.1;
 pub struct BusWatch {
     /// Periods after which it is stale.
     limit: u32,
-    /// Periods since it was told, up to the limit; there, too, before the first time.
+    /// Periods since the last call, up to the limit, which is also the initial value.
     age: u32,
-    /// It was told since the last period.
+    /// A call took effect since the last period.
     told: bool,
 }
 
 impl BusWatch {
-    /// None where the bus is fixed.
+    /// `None` if the bus is fixed.
     pub fn new(inverter: &Inverter) -> Option<Self> {
         (inverter.bus == Bus::Measured).then(|| {
             let limit = (BUS_FRESH / inverter.t_s - 1e-6).ceil() as u32;
@@ -120,7 +120,7 @@ impl BusWatch {
         })
     }
 
-    /// The voltage is told.
+    /// `set_bus` took effect.
     pub fn tell(&mut self) {
         self.told = true;
     }
@@ -142,7 +142,7 @@ impl BusWatch {
     }
 }
 
-/// What the supervision sees of one sample.
+/// The supervisor's inputs of one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<W> {
     /// ADC counts as read.
@@ -155,7 +155,7 @@ pub struct Observation<W> {
     pub demand: bool,
 }
 
-/// What a period is for.
+/// Kind of a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Period {
     /// The currents are controlled.
@@ -166,7 +166,7 @@ pub enum Period {
     Off,
 }
 
-/// What the supervision says of a sample.
+/// The supervisor's result for a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
     pub period: Period,
@@ -181,9 +181,9 @@ pub struct Supervisor<W = f64> {
     pub fault: Option<Fault>,
     pub countdown: W,
     pub sum: [W; 2],
-    /// Periods without an edge under demand; 0 where no stall is watched for.
+    /// Periods without an edge under demand; 0 without stall detection.
     pub stall_count: W,
-    /// The last Hall code that was one, where a stall is watched for; 0 before the first.
+    /// The last valid Hall code, with stall detection; 0 before the first.
     pub hall_prev: HallCode,
 }
 
@@ -192,7 +192,7 @@ pub struct Supervisor<W = f64> {
 pub struct HallCode(pub u8);
 
 impl HallCode {
-    /// That of a sample: the codes that three sensors can have are 1 to 6.
+    /// That of a sample: valid codes are 1 to 6.
     fn of(hall: u8) -> Option<Self> {
         (1..=6).contains(&hall).then_some(Self(hall))
     }
@@ -208,7 +208,7 @@ impl<W: Word> Supervisor<W> {
         }
     }
 
-    /// Whether a reset takes effect: start-up goes on to its end.
+    /// Whether a reset takes effect: start-up is not interrupted.
     pub fn may_reset(&self) -> bool {
         matches!(self.mode, Mode::Run | Mode::Tripped)
     }

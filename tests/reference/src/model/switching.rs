@@ -1,7 +1,7 @@
-//! The switching table of PHCC: a vector for each sector, state of commutation and pair of wishes.
+//! The switching table of PHCC: a vector for each sector, commutation state and pair of directions.
 //!
-//! Nothing here is rounded: both models read the same table. Voltages are in units of the bus, vectors
-//! amplitude-invariant alpha-beta.
+//! Nothing here is rounded: both models read the same table. Voltages are in units of the bus,
+//! vectors amplitude-invariant alpha-beta.
 
 use super::sector::{MINUS, OUT_PHASE, PLUS};
 use super::vectors::{self, FIRST_PAIR, FIRST_PAIR_ZERO};
@@ -13,14 +13,14 @@ use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, PI};
 /// Differences below this count as equal.
 const TIE: f64 = 1e-9;
 
-/// What the drive is asked to do; each has its own table.
+/// Quadrant of operation; each has its own table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Set {
     /// Torque and rotation forward.
     Forward,
     /// Torque and rotation backward.
     Backward,
-    /// Torque against forward rotation, or the sense of rotation is not known yet.
+    /// Torque against forward rotation, or unknown direction.
     BrakingForward,
     /// Torque against backward rotation.
     BrakingBackward,
@@ -42,7 +42,8 @@ impl Set {
     }
 }
 
-/// One set's vectors by sector less one, state of commutation, wish along phase a, wish across it.
+/// One set's vectors by sector minus one, commutation state, direction along phase a, direction
+/// across it.
 type Rows = [[[[usize; 2]; 2]; 2]; 6];
 
 /// The whole table.
@@ -55,10 +56,10 @@ pub struct Switching {
 }
 
 impl Switching {
-    /// The table that the options name.
+    /// The table of the options.
     ///
     /// # Errors
-    /// When the motor's EMF shape is inconsistent.
+    /// If the motor's EMF shape is inconsistent.
     pub fn new(spec: &Spec, options: &crate::Phcc) -> Result<Self, Error> {
         let shape = EmfShape::new(&spec.motor)?;
         let pairs = options.candidates != Candidates::ThreePhase;
@@ -109,7 +110,7 @@ fn at(rows: &Rows, index: usize, commutating: bool, [along, across]: [bool; 2]) 
     rows[index][usize::from(commutating)][usize::from(along)][usize::from(across)]
 }
 
-/// One set, by a rule for sector (1 to 6), state of commutation and wishes.
+/// One set, by a rule for sector (1 to 6), commutation state and directions.
 fn rows(rule: impl Fn(usize, bool, [bool; 2]) -> usize) -> Rows {
     let rule = &rule;
     std::array::from_fn(|index| {
@@ -121,7 +122,7 @@ fn rows(rule: impl Fn(usize, bool, [bool; 2]) -> usize) -> Rows {
     })
 }
 
-/// The paper's row of sector 1, turned with the sector.
+/// The paper's row of sector 1, rotated with the sector.
 fn printed() -> Rows {
     rows(|sector, commutating, rises| {
         let (next, before) = (sector % 6 + 1, (sector + 4) % 6 + 1);
@@ -135,8 +136,8 @@ fn printed() -> Rows {
     })
 }
 
-/// The same drive seen in a mirror: phases b and c exchanged, so that rotation and the component
-/// across phase a change their sense.
+/// The same drive mirrored: phases b and c exchanged, so that rotation and the component across
+/// phase a change sign.
 fn mirrored(set: &Rows) -> Rows {
     rows(|sector, commutating, [along, across]| {
         let image = (7 - sector) % 6;
@@ -148,7 +149,7 @@ fn mirrored(set: &Rows) -> Rows {
     })
 }
 
-/// What a derived set is made for.
+/// Design point of a derived set.
 struct Design {
     shape: EmfShape,
     /// Phase EMF per unit of the shape and weight of a wish, in commutation.
@@ -157,14 +158,15 @@ struct Design {
     /// Line EMF of the conducting pair and weight of a wish, otherwise.
     line_emf: f64,
     pair_weight: f64,
-    /// Angle of the commutation rows behind the sector's middle.
+    /// Angle of the commutation rows after the sector's middle.
     late: f64,
     /// A leg may be off.
     pairs: bool,
 }
 
 impl Design {
-    /// Three quarters of the bus for the EMF; commutations nine degrees after the sector's beginning.
+    /// Three quarters of the bus for the EMF; commutations nine degrees after the sector's
+    /// beginning.
     fn motoring(shape: EmfShape, pairs: bool) -> Self {
         Self {
             amplitude: 0.75 / line(shape),
@@ -206,8 +208,8 @@ impl Design {
         })
     }
 
-    /// The conducting pair's vector, its reverse or its zero: that whose line voltage is nearest to
-    /// what EMF and wish are along the pair.
+    /// The conducting pair's vector, its reverse or its zero: the one with the line voltage nearest
+    /// to EMF plus demand along the pair.
     fn along_the_pair(&self, sector: usize, wish: &Vector2<f64>) -> usize {
         let pair = FIRST_PAIR - 1 + sector;
         let reverse = FIRST_PAIR + (sector + 2) % 6;

@@ -1,5 +1,5 @@
-//! What a model can tell about its last step, and the state that one model takes over from
-//! another, in physical units.
+//! Signals of a model's last step, and the state that one model copies from another, in physical
+//! units.
 
 use super::hall::HallTiming;
 use super::supervision::Supervisor;
@@ -11,7 +11,7 @@ pub struct Trace {
     pub i: [f64; 2],
     /// EMF in the target period, volt.
     pub e: [f64; 2],
-    /// Voltage applied in the period that starts now, volt (0 where the variant has no use for it).
+    /// Voltage applied in the period that starts now, volt (0 if the variant does not use it).
     pub v_now: [f64; 2],
     /// Demanded voltage before limiting, volt (PHCC: 1/b times the predicted error).
     pub u_unsat: [f64; 2],
@@ -21,11 +21,11 @@ pub struct Trace {
     pub theta: f64,
     /// Electrical angle per period, radians, signed.
     pub step_angle: f64,
-    /// Sector that reference and commutation follow.
+    /// Sector of reference and commutation.
     pub sector_eff: usize,
-    /// A commutation is under way (where it is followed).
+    /// A commutation is in progress (if tracked).
     pub commutating: bool,
-    /// Where the demanded voltage lay (controllers of whole vectors: inside).
+    /// Position of the demanded voltage (controllers of whole vectors: inside).
     pub reach: Reach,
     /// Number of the chosen vector (0 out of control and for controllers that pulse).
     pub vector: usize,
@@ -33,7 +33,7 @@ pub struct Trace {
     pub run: bool,
 }
 
-/// Where a voltage lies, seen from the hexagon of voltages that the inverter can make.
+/// Position of a voltage relative to the inverter's hexagon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reach {
     /// Inside: nothing was limited.
@@ -45,7 +45,8 @@ pub enum Reach {
     PastReach,
 }
 
-/// What past samples and commands add to the voltages of the next two steps, phases a, b (deadbeat with a held EMF).
+/// Contributions of past samples and commands to the voltages of the next two steps, phases a, b
+/// (deadbeat with a held EMF).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Past<W = f64> {
     /// To this step's.
@@ -63,7 +64,7 @@ pub struct PhysicalState {
     pub(super) timing: HallTiming,
     pub(super) sector_prev: usize,
     pub(super) sector_eff_prev: usize,
-    /// Samples for which a commutation may still last, the last one counted.
+    /// Remaining samples of a commutation, the last one included.
     pub(super) commutation_left: f64,
     /// ADC offsets, counts.
     pub offset: [f64; 2],
@@ -83,12 +84,13 @@ pub struct PhysicalState {
     pub e_prev: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
-    /// Whether the components along a and across it are to rise (PHCC); none before the first sample in control.
+    /// Whether the components along a and across it are to rise (PHCC); `None` before the first
+    /// sample in control.
     pub rises: [Option<bool>; 2],
     /// Number of the vector that the last step chose (FCS-MPC with a switching weight).
     pub vector_prev: usize,
-    /// What the past adds to the voltage, volt.
+    /// Contribution of past periods to the voltage, volt.
     pub past: Past,
-    /// Integral of the speed regulator, ampere.
+    /// Integral of the speed controller, ampere.
     pub speed_integral: f64,
 }

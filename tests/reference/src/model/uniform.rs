@@ -1,8 +1,8 @@
-//! The deadbeat voltage in one saturating 16-bit format of SI units, the same for every motor: what comes of a fixed-point
-//! library that knows no motor. It is there for the generated formats to be compared with.
+//! The deadbeat voltage in one saturating 16-bit format of SI units, the same for every motor, as
+//! with a fixed-point library that knows no motor: a comparison for the generated formats.
 //!
-//! Three pulsed legs, estimated EMF, delay 1, no advance (sections 6, 8 and 9). Every operation rounds to the format and
-//! saturates.
+//! Three pulsed legs, estimated EMF, delay 1, no advance (sections 6, 8 and 9). Every operation
+//! rounds to the format and saturates.
 
 use super::sector::{CORNER_A, CORNER_B};
 use super::trace::{PhysicalState, Trace};
@@ -10,7 +10,7 @@ use super::variant::Variant;
 use crate::emf_motion::EmfMotion;
 use crate::{DiscretePhase, Error, Modulation, Reference, Spec};
 
-/// One format for everything: 16 bits, so many of them fraction bits.
+/// One format for everything: 16 bits, with this many fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Format {
     /// 2^frac_bits.
@@ -18,7 +18,7 @@ struct Format {
 }
 
 impl Format {
-    /// The nearest number of the format, ties up; beyond its ends the end.
+    /// The nearest number of the format, ties up; saturates.
     fn round(self, x: f64) -> f64 {
         (x * self.scale + 0.5).floor().clamp(-32_768.0, 32_767.0) / self.scale
     }
@@ -28,7 +28,7 @@ impl Format {
     }
 }
 
-/// The deadbeat law of one motor in the format of all.
+/// The deadbeat law of one motor in the common format.
 #[derive(Clone, Debug)]
 pub struct Uniform {
     format: Format,
@@ -42,11 +42,11 @@ pub struct Uniform {
 }
 
 impl Uniform {
-    /// The law with its coefficients in the format with so many fraction bits; none for a drive of another law than this
-    /// page's.
+    /// The law with its coefficients in the format with this many fraction bits; `None` for a drive
+    /// with another law.
     ///
     /// # Errors
-    /// When the specification is inconsistent.
+    /// If the specification is inconsistent.
     pub fn new(spec: &Spec, frac_bits: i32) -> Result<Option<Self>, Error> {
         let (variant, options) = (Variant::new(spec), spec.loop_options());
         let pulses_all = matches!(&spec.controller, crate::Controller::Pdcc(pdcc) if pdcc.modulation == Modulation::ThreePhase);
@@ -74,11 +74,11 @@ impl Uniform {
         }))
     }
 
-    /// The largest number that the format must hold for a motor: its bus voltage, the current that its converters
-    /// reach, and the coefficients of the law. (The deadbeat voltage itself may saturate.)
+    /// The largest number of a motor in the format: its bus voltage, the current range of its ADCs,
+    /// and the coefficients of the law. (The deadbeat voltage itself may saturate.)
     ///
     /// # Errors
-    /// When the specification is inconsistent.
+    /// If the specification is inconsistent.
     pub fn largest(spec: &Spec) -> Result<f64, Error> {
         let inverter = &spec.inverter;
         let full = f64::from((1_u32 << inverter.adc_bits) - 1);
@@ -88,8 +88,8 @@ impl Uniform {
         Ok(inverter.v_bus_max()?.max(current).max(stiffness))
     }
 
-    /// The deadbeat voltage of phases a, b, volt: from the state before a step, what the step measured, and the set-point in
-    /// ampere.
+    /// The deadbeat voltage of phases a, b, volt: from the state before a step, the step's
+    /// measurements, and the set-point in ampere.
     pub fn voltage(&self, before: &PhysicalState, measured: &Trace, set_point: f64) -> [f64; 2] {
         let q = self.format;
         let sector = measured.sector_eff;
@@ -123,8 +123,8 @@ impl Uniform {
         })
     }
 
-    /// Motions of the EMF in one period and in two. Their coefficient is smaller than any number of a format that holds
-    /// voltages, so here, in favour of the format, only the results are rounded.
+    /// Motions of the EMF in one period and in two. Their coefficient is below the resolution of a
+    /// format for voltages, so only the results are rounded here, in favour of the format.
     fn motions(&self, [p, q]: [f64; 2], [e_a, e_b]: [f64; 2]) -> [[f64; 2]; 2] {
         let limit = self.motion.line_limit.min(self.v_largest);
         let [line_a, line_b] = [2.0 * p + q, p + 2.0 * q];
@@ -134,7 +134,8 @@ impl Uniform {
         if self.motion.turns {
             [1.0, 2.0].map(|periods| {
                 let turn = periods * turn;
-                // The axes of a and b are not at right angles: across and back is -3 times the way.
+                // The axes of a and b are not at right angles: across and back is -3 times the
+                // distance.
                 rounded([
                     -turn * (e_a + 2.0 * e_b) - 1.5 * turn * turn * e_a,
                     turn * (2.0 * e_a + e_b) - 1.5 * turn * turn * e_b,

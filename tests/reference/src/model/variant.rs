@@ -1,24 +1,24 @@
-//! Which steps and state words a variant has, for both models.
+//! Steps and state words of a variant, for both models.
 
 use crate::spec::{
     Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg,
     Reference, Saturation, Spec, Switch,
 };
 
-/// What follows from a specification's choice of controller and options.
+/// Consequences of the choice of controller and options.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    /// The options that every controller has.
+    /// The options of all controllers.
     pub options: LoopOptions,
     /// Section 4: the rotor's angle is interpolated.
     pub rotor: bool,
-    /// Section 5: commutations are followed, and when they end.
+    /// Section 5: commutations are tracked, and their end.
     pub commutation: Option<CommutationEnd>,
-    /// Section 8: where the EMF comes from, if the variant uses it.
+    /// Section 8: source of the EMF, if the variant uses it.
     pub emf: Option<EmfSource>,
-    /// Section 9: what the past adds to the voltage is folded, the EMF held.
+    /// Section 9: contributions of past periods to the voltage are combined, with a held EMF.
     pub held: Switch,
-    /// Section 9 of PHCC: what is due holds the memory of the wishes.
+    /// Section 9 of PHCC: the contributions of past periods contain the directions' memory.
     pub wishes_in_due: Switch,
     /// Section 7: a leg may be off, so commands are kept as terminal voltages.
     pub floating: bool,
@@ -26,15 +26,15 @@ pub struct Variant {
     pub applied_now: bool,
     /// Section 10a: two vectors share the period.
     pub modulated: Switch,
-    /// Section 10w: changes of legs weigh.
+    /// Section 10w: changes of leg states have a cost.
     pub counts_changes: Switch,
-    /// Section 8: what the modelled EMF lacks is integrated.
+    /// Section 8: the modelled EMF's error is integrated.
     pub integral: Switch,
-    /// Section 11: compare values are shifted against the dead time.
+    /// Section 11: compare values are shifted to compensate the dead time.
     pub dead_time: Switch,
-    /// PI: whether one regulator serves the pair, or one each axis.
+    /// PI: whether there is one controller for the pair, or one per axis.
     pub six_step: Option<Switch>,
-    /// Section 10: what gives way outside the hexagon, if anything can lie there.
+    /// Section 10: the saturation rule, if the voltage can exceed the hexagon.
     pub saturation: Option<Saturation>,
 }
 
@@ -119,7 +119,7 @@ impl Variant {
         }
     }
 
-    /// Section 11: legs are pulsed for a part of the period.
+    /// Section 11: legs are pulsed for a fraction of the period.
     pub fn pulsed(&self) -> bool {
         self.saturation.is_some()
             || self.modulated == Switch::On
@@ -141,37 +141,37 @@ impl Variant {
         self.emf == Some(EmfSource::Estimated)
     }
 
-    /// Section 8: what the last period shows of its EMF takes part.
+    /// Section 8: the observed EMF of the last period is used.
     pub fn sees(&self) -> bool {
         self.estimated() || self.integrates()
     }
 
-    /// Section 9: what the past adds to the voltage is folded, the EMF held.
+    /// Section 9: contributions of past periods to the voltage are combined, with a held EMF.
     pub fn holds(&self) -> bool {
         self.held == Switch::On
     }
 
-    /// Section 9 of PHCC: what is due holds the memory of the wishes.
+    /// Section 9 of PHCC: the contributions of past periods contain the directions' memory.
     pub fn folds_wishes(&self) -> bool {
         self.wishes_in_due == Switch::On
     }
 
-    /// Section 8: what the modelled EMF lacks is integrated.
+    /// Section 8: the modelled EMF's error is integrated.
     pub fn integrates(&self) -> bool {
         self.integral == Switch::On
     }
 
-    /// Section 11: compare values are shifted against the dead time.
+    /// Section 11: compare values are shifted to compensate the dead time.
     pub fn compensates(&self) -> bool {
         self.dead_time == Switch::On
     }
 
-    /// Section 8: a leg that was off may leave a phase's EMF unseen.
+    /// Section 8: an off leg may leave a phase's EMF unobserved.
     pub fn unseen(&self) -> bool {
         self.estimated() && self.floating
     }
 
-    /// Some step needs the voltage that a command really applies (section 7).
+    /// Some step needs the voltage applied by a command (section 7).
     pub fn applied(&self) -> bool {
         self.applied_now || self.sees() || self.holds()
     }

@@ -1,5 +1,4 @@
-//! The voltage vectors that a controller may apply for a whole period: their numbers, legs and FCS-MPC's
-//! candidate lists.
+//! The voltage vectors for a whole period: their numbers, legs and FCS-MPC's candidate lists.
 
 use super::sector::OUT_PHASE;
 use crate::Candidates;
@@ -48,14 +47,13 @@ pub fn states(vector: usize) -> [LegState; 3] {
     })
 }
 
-/// Zero-sum leg voltages in sixths of the bus; a leg that is off counts as the middle of the two
-/// others.
+/// Zero-sum leg voltages in sixths of the bus; an off leg counts as the middle of the two others.
 #[inline]
 pub fn sixths(vector: usize) -> [f64; 3] {
     let legs = LEGS[vector].map(f64::from);
     let sum: f64 = legs.iter().sum();
     legs.map(|leg| match off_leg(vector) {
-        // Half a bus for a leg, the sum of all three taken off.
+        // Half a bus for a leg, minus the sum of all three.
         None => 3.0 * leg - sum,
         Some(_) if vector >= FIRST_PAIR_ZERO => 0.0,
         Some(_) => 3.0 * leg,
@@ -65,7 +63,7 @@ pub fn sixths(vector: usize) -> [f64; 3] {
 /// Three-phase vectors in the order of their gate patterns (section 10w).
 const BY_GATES: [usize; FIRST_PAIR] = [0, 3, 5, 4, 1, 2, 6];
 
-/// The vector at this place of a list where the cost has weights.
+/// The vector at this place of a list with a weighted cost.
 pub fn weighted_order(place: usize) -> usize {
     BY_GATES.get(place).copied().unwrap_or(place)
 }
@@ -77,7 +75,7 @@ pub fn changes(from: usize, to: usize) -> f64 {
     legs.filter(|(from, to)| **from != *to).count() as f64
 }
 
-/// The two phases beside the sector's outgoing one, in cyclic order.
+/// The two phases other than the sector's outgoing one, in cyclic order.
 pub fn pair_of(sector_eff: usize) -> (usize, usize) {
     let out = OUT_PHASE[sector_eff];
     ((out + 1) % 3, (out + 2) % 3)

@@ -18,14 +18,14 @@ pub enum Controller {
     PPwm(PPwm),
 }
 
-/// Options that every controller has.
+/// Options of all controllers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopOptions {
-    /// Where the EMF comes from.
+    /// Source of the EMF.
     pub emf: EmfSource,
     /// Weight of a new EMF estimate, above 0 to 1 (1: no filter).
     pub emf_filter: f64,
-    /// What the currents follow.
+    /// Shape of the current reference.
     pub reference: Reference,
     /// Phase advance, periods of electrical angle.
     pub advance: f64,
@@ -42,33 +42,33 @@ pub struct LoopOptions {
 }
 
 impl LoopOptions {
-    /// A regulator of the speed asks for the current.
+    /// A speed controller provides the current set-point.
     pub fn has_speed_loop(&self) -> bool {
         self.speed_bandwidth > 0.0
     }
 }
 
-/// When a commutation ends.
+/// End of a commutation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CommutationEnd {
     /// Outgoing current that ends it, ampere.
     pub threshold: f64,
-    /// Periods after which it is taken as ended.
+    /// Time-out, periods.
     pub timeout: u32,
 }
 
-/// Declares a controller's options: those that every controller has, and its own.
+/// Declares a controller's options: the common ones, and its own.
 macro_rules! options {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $kind:ty,)* }) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
-            /// Where the EMF comes from.
+            /// Source of the EMF.
             pub emf: EmfSource,
             /// Weight of a new EMF estimate, above 0 to 1 (1: no filter).
             pub emf_filter: f64,
-            /// What the currents follow.
+            /// Shape of the current reference.
             pub reference: Reference,
             /// Phase advance, periods of electrical angle.
             pub advance: f64,
@@ -108,19 +108,19 @@ macro_rules! options {
 options! {
     /// Options of predictive deadbeat current control.
     Pdcc {
-        /// How a voltage becomes leg commands.
+        /// Modulation of a voltage to leg commands.
         modulation: Modulation,
-        /// What gives way outside the hexagon.
+        /// Saturation rule outside the hexagon.
         saturation: Saturation,
-        /// Whether what the modelled EMF lacks is integrated.
+        /// Whether the modelled EMF's error is integrated.
         #[serde(default)]
         integral: Switch,
-        /// Whether compare values are shifted against the dead time.
+        /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
-        /// Periods after which a commutation is taken as ended.
+        /// Commutation time-out, periods.
         commutation_timeout: u32,
     }
 }
@@ -132,16 +132,16 @@ fn one() -> u32 {
 options! {
     /// Options of finite-control-set model predictive control.
     FcsMpc {
-        /// The vectors that are tried.
+        /// The candidate vectors.
         candidates: Candidates,
-        /// Where a leg that is off is taken to sit.
+        /// Assumed position of an off leg.
         off_leg: OffLeg,
         /// Whether a second vector shares the period.
         modulated: Switch,
-        /// Periods that the cost looks ahead, 1 or 2.
+        /// Horizon of the cost, 1 or 2 periods.
         #[serde(default = "one")]
         horizon: u32,
-        /// Error of current that a leg's change of state weighs as much as, ampere.
+        /// Weight of a leg's change of state, as an error of current, ampere.
         #[serde(default)]
         switching_weight: f64,
         /// Weight of the square of the error's component along the sector's mean EMF.
@@ -149,7 +149,7 @@ options! {
         torque_weight: f64,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
-        /// Periods after which a commutation is taken as ended.
+        /// Commutation time-out, periods.
         commutation_timeout: u32,
     }
 }
@@ -157,17 +157,17 @@ options! {
 options! {
     /// Options of predictive hysteresis current control.
     Phcc {
-        /// Where the switching table comes from.
+        /// Source of the switching table.
         table: SwitchingTable,
-        /// Error that a component may have before its wish turns, ampere.
+        /// Hysteresis band of an error component, ampere.
         band: f64,
-        /// The vectors that a derived table has (`All`: none).
+        /// The vectors of a derived table (`All`: none).
         candidates: Candidates,
-        /// Where a leg that is off is taken to sit.
+        /// Assumed position of an off leg.
         off_leg: OffLeg,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
-        /// Periods after which a commutation is taken as ended.
+        /// Commutation time-out, periods.
         commutation_timeout: u32,
     }
 }
@@ -175,17 +175,18 @@ options! {
 options! {
     /// Options of PI control with pulse-width modulation.
     PiPwm {
-        /// Bandwidth of the proportional loop, hertz: the gain is 2 pi times it times the inductance.
+        /// Bandwidth of the proportional loop, hertz: the gain is 2 pi times it times the
+        /// inductance.
         bandwidth: f64,
         /// Integral time and tracking time of the anti-windup, seconds.
         integral_time: f64,
         /// Whether the EMF is added to the voltage.
         feed_forward: Switch,
-        /// Whether one regulator holds the current of the conducting pair.
+        /// Whether one controller controls the conducting pair's current.
         six_step: Switch,
-        /// What gives way outside the hexagon.
+        /// Saturation rule outside the hexagon.
         saturation: Saturation,
-        /// Whether compare values are shifted against the dead time.
+        /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
     }
@@ -196,12 +197,12 @@ options! {
     PPwm {
         /// Bandwidth of the loop, hertz: the gain is 2 pi times it times the inductance.
         bandwidth: f64,
-        /// What gives way outside the hexagon.
+        /// Saturation rule outside the hexagon.
         saturation: Saturation,
     }
 }
 
-/// The vectors that FCS-MPC tries and that a switching table has.
+/// The candidate vectors of FCS-MPC, or those of a switching table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Candidates {
@@ -213,11 +214,11 @@ pub enum Candidates {
     All,
 }
 
-/// Where a controller of whole vectors takes a leg that is off to sit.
+/// Assumed position of an off leg with controllers of whole vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffLeg {
-    /// Where its diode or its EMF puts it.
+    /// Determined by its diode or its EMF.
     Physical,
     /// In the middle of the two others.
     Nominal,
@@ -229,14 +230,14 @@ pub enum OffLeg {
 pub enum SwitchingTable {
     /// From the vectors' geometry.
     Derived,
-    /// The paper's row of sector 1, turned with the sector.
+    /// The paper's row of sector 1, rotated with the sector.
     Printed,
-    /// Vector numbers for motoring forward: of each sector first the four otherwise, then the four in
+    /// Vector numbers for motoring forward: of each sector first the four without, then the four in
     /// commutation, each in the order of H_a, H_b (0 first).
     Given([u8; 48]),
 }
 
-/// As it is written.
+/// As written.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum TableText {
@@ -279,7 +280,7 @@ pub enum Switch {
     Off,
 }
 
-/// How a voltage becomes leg commands.
+/// Modulation of a voltage to leg commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Modulation {
@@ -289,7 +290,7 @@ pub enum Modulation {
     Pair,
 }
 
-/// What gives way when the voltage lies outside the hexagon.
+/// Saturation rule for voltages outside the hexagon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Saturation {
@@ -301,7 +302,7 @@ pub enum Saturation {
     TorquePriority,
 }
 
-/// Where the EMF comes from.
+/// Source of the EMF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EmfSource {
@@ -309,11 +310,11 @@ pub enum EmfSource {
     Estimated,
     /// From the motor's EMF shape at the interpolated Hall angle.
     Model,
-    /// That of the last period, taken as that of the target.
+    /// That of the last period, used as that of the target.
     Held,
 }
 
-/// What the currents follow.
+/// Shape of the current reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reference {

@@ -1,17 +1,17 @@
-//! How a failed comparison is told.
+//! Report of a failed comparison.
 
 use super::stimulus::{Action, Stream};
 use crate::Error;
 use hexagen::Sample;
 use std::fmt;
 
-/// Why a bit-for-bit test did not pass.
+/// Failure of a bit-for-bit test.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum VerifyError {
     /// No model can be built from the drive's specification and formats.
     #[error("no reference model: {0}")]
     Model(#[from] Error),
-    /// The drive's state words are not those that its specification calls for.
+    /// The drive's state words are not those of its specification.
     #[error("state words differ\n  drive: {found}\n  model: {expected}")]
     StateNames {
         /// The model's names.
@@ -19,7 +19,7 @@ pub enum VerifyError {
         /// The drive's names.
         found: String,
     },
-    /// A step came out differently.
+    /// The results of a step differ.
     #[error("{0}")]
     Mismatch(Box<Mismatch>),
 }
@@ -33,7 +33,7 @@ pub struct Mismatch {
     pub seed: u64,
     /// Kind of input.
     pub stream: Stream,
-    /// What was called before the step.
+    /// Calls before the step.
     pub action: Option<Action>,
     /// The step's input.
     pub sample: Sample,
@@ -46,7 +46,7 @@ pub struct Mismatch {
 pub struct Difference {
     /// Name of the output or state word.
     pub name: String,
-    /// Its value before the step, in both; none for outputs.
+    /// Its value before the step, in both; `None` for outputs.
     pub before: Option<i32>,
     /// The drive's value.
     pub found: i32,

@@ -1,41 +1,41 @@
-//! What a bit-for-bit test has covered.
+//! Coverage of a bit-for-bit test.
 
 use crate::{BitTrue, Mode, Reach};
 use std::fmt;
 
-/// How many steps of a passed test went which way, counted in the model.
+/// Number of steps of a passed test by path, counted in the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// All steps.
     pub steps: u64,
     /// Steps in control.
     pub running: u64,
-    /// Steps with offset calibration under way.
+    /// Steps with offset calibration in progress.
     pub calibrating: u64,
-    /// Calibrations that came to their end with offsets to be believed.
+    /// Calibrations completed with plausible offsets.
     pub calibrations: u64,
-    /// Steps with bootstrap pre-charge under way.
+    /// Steps with bootstrap pre-charge in progress.
     pub precharging: u64,
     /// Steps tripped.
     pub tripped: u64,
     /// Steps in control and limited to the hexagon.
     pub limited: u64,
-    /// Of these, steps past the reach along the EMF (torque priority).
+    /// Of these, steps beyond the limit along the EMF (torque priority).
     pub past_reach: u64,
-    /// Steps in control with a commutation under way (where it is followed).
+    /// Steps in control with a commutation in progress (if tracked).
     pub commutating: u64,
     /// Steps in control with an interpolated rotor angle.
     pub timed: u64,
     /// Of these, steps with the rotor turning backward.
     pub backward: u64,
-    /// Steps with a measured bus voltage that is told, and is fresh.
+    /// Steps with a measured bus voltage that is not stale.
     pub fresh_bus: u64,
     /// Calls between the steps: set-points, reset, calibration, pre-charge, state jumps.
     pub actions: u64,
 }
 
 impl Report {
-    /// Counts the step that the model has just made; `before` is its mode before that.
+    /// Counts the model's last step; `before` is its mode before that.
     #[inline]
     pub(super) fn count(&mut self, model: &BitTrue, before: Mode) {
         self.steps += 1;

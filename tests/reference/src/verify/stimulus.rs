@@ -1,8 +1,8 @@
 //! Input streams of the bit-for-bit test, deterministic by seed.
 //!
-//! A drive first starts up: its current offsets are calibrated at rest, then it pre-charges. Streams take turns
-//! in blocks from there on; calls (set-points, reset, start-up, jumps to an earlier state) are strewn in between.
-//! A tripped drive is reset soon, so that most steps are in control.
+//! A drive first starts up: its current offsets are calibrated at rest, then it pre-charges. After
+//! that, streams alternate in blocks, with interspersed calls (set-points, reset, start-up, jumps
+//! to an earlier state). A tripped drive is reset soon, so that most steps are in control.
 
 use super::toy_motor::ToyMotor;
 use crate::{Bus, BusSense, Error, Spec};
@@ -10,10 +10,10 @@ use fastrand::Rng;
 use hexagen::{Legs, Sample};
 use std::f64::consts::TAU;
 
-/// Steps after which another stream may take over.
+/// Steps of a block.
 const BLOCK: u32 = 512;
 
-/// Steps that start-up may take at most; longer ones are left before their end.
+/// Maximum steps of start-up; longer ones are abandoned.
 const START_UP: u32 = 1 << 14;
 
 /// Kind of input.
@@ -21,7 +21,7 @@ const START_UP: u32 = 1 << 14;
 pub enum Stream {
     /// Calibration at rest, then pre-charge.
     StartUp,
-    /// Words of any value, most of them within the trip level.
+    /// Words of any value, mostly within the trip level.
     Arbitrary,
     /// A motor in closed loop.
     Motor,
@@ -52,7 +52,7 @@ pub enum Action {
     Recall,
 }
 
-/// What the stimulus must know of the drive before the next step.
+/// The stimulus's knowledge of the drive before the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct Context {
     /// Current offsets, ADC counts.
@@ -84,7 +84,7 @@ pub struct Stimulus {
     i_max_bits: f64,
     t_max_bits: f64,
     startup_steps: u32,
-    /// Steps left of start-up, and the true offsets during it, ADC counts.
+    /// Remaining steps of start-up, and the true offsets during it, ADC counts.
     start_up: u32,
     true_offset: [i32; 2],
     nominal_offset: i32,
@@ -98,7 +98,7 @@ impl Stimulus {
     /// Streams for a drive of the given specification.
     ///
     /// # Errors
-    /// When the specification is inconsistent.
+    /// If the specification is inconsistent.
     pub fn new(spec: &Spec, seed: u64) -> Result<Self, Error> {
         let inverter = &spec.inverter;
         Ok(Self {
@@ -136,13 +136,13 @@ impl Stimulus {
         })
     }
 
-    /// The kind of input that the last sample belongs to.
+    /// The kind of the last sample.
     pub fn stream(&self) -> Stream {
         self.stream
     }
 
-    /// Lets the motor stand still without current and starts up, as for a new drive. One calibration in a few meets
-    /// an offset at the edge of the tolerance or beyond.
+    /// Stops the motor without current and starts up, as for a new drive. One calibration in a few
+    /// has an offset at the edge of the tolerance or beyond.
     pub fn restart(&mut self) {
         self.motor.i = [0.0; 2];
         self.pending = Legs::OFF;
@@ -200,7 +200,7 @@ impl Stimulus {
         (action, sample)
     }
 
-    /// A motor without current, its converters at their true offsets.
+    /// A motor without current, its ADCs at their true offsets.
     fn at_rest(&mut self) -> Sample {
         let noise = [0; 2].map(|_: i32| self.random.i32(-1..=1));
         let [adc_a, adc_b] = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
@@ -217,7 +217,7 @@ impl Stimulus {
         self.pending = legs;
     }
 
-    /// What firmware asks for behind a reset.
+    /// The calls of firmware after a reset.
     fn demand(&mut self) -> Action {
         match self.speed_bits {
             Some(most) => Action::SetSpeed(self.set_point(most)),
@@ -238,7 +238,7 @@ impl Stimulus {
             21 => Some(Action::Remember),
             22 => Some(Action::Recall),
             23 => {
-                // Rare enough that start-up takes a small share of the steps.
+                // Rare enough that start-up is a small fraction of the steps.
                 let rare = self.random.u32(..self.startup_steps.max(1)) == 0;
                 match (rare, self.random.bool()) {
                     (true, true) => Some(Action::Calibrate),
@@ -280,7 +280,7 @@ impl Stimulus {
         Some(Action::SetBus((volts / bus.gain) as u16))
     }
 
-    /// Hall code and ticks of a rotor that goes anywhere.
+    /// Hall code and ticks of a random rotor.
     fn wandering_hall(&mut self) -> (u8, u16) {
         let dice = self.random.u32(..);
         self.age = (self.age + self.ticks).min(65_535.0);
@@ -302,7 +302,7 @@ impl Stimulus {
             7 => u16::MAX,
             _ => self.age as u16,
         };
-        // Codes of more than three bits are none.
+        // Codes of more than three bits are invalid.
         let code = match (dice >> 8) & 0x1ff {
             0 => 0,
             1 => 7,
@@ -378,7 +378,7 @@ impl Stimulus {
             }
         };
         let counts = context.offset.map(&mut corner);
-        // One past the converter's range is a corner, too.
+        // One above the ADC's range is a corner case, too.
         let [adc_a, adc_b] =
             counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
         Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks)

@@ -1,9 +1,9 @@
-//! Anything that can be compared with the bit-true model.
+//! Subjects of a comparison with the bit-true model.
 
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, Legs, Sample};
 
-/// A computation of a drive's steps: compiled code, an interpreter, a remote target.
+/// An implementation of a drive's steps: compiled code, an interpreter, a remote target.
 pub trait Subject {
     /// Runs one control period.
     fn step(&mut self, sample: &Sample) -> Legs;
@@ -11,9 +11,9 @@ pub trait Subject {
     fn set_current(&mut self, bits: i32);
     /// Sets the torque set-point, bits of an `I16F16` in newton metres.
     fn set_torque(&mut self, bits: i32);
-    /// Sets the speed, bits of an `I16F16` in rpm, where there is a speed loop.
+    /// Sets the speed, bits of an `I16F16` in rpm, if there is a speed loop.
     fn set_speed(&mut self, bits: i32);
-    /// Tells the bus voltage as an ADC count.
+    /// Sets the bus voltage as an ADC count.
     fn set_bus(&mut self, counts: u16);
     /// Clears a trip and all control state.
     fn reset(&mut self);
@@ -21,9 +21,9 @@ pub trait Subject {
     fn calibrate(&mut self);
     /// Starts bootstrap pre-charge.
     fn precharge(&mut self);
-    /// What tripped the drive.
+    /// Fault of the drive.
     fn fault(&self) -> Option<Fault>;
-    /// Whether the bus voltage, where it is measured, is no longer told.
+    /// Whether a measured bus voltage is stale.
     fn bus_is_stale(&self) -> bool;
     /// Copies the state words, in the order of their names, to `words`.
     fn state_words(&self, words: &mut [i32]);
@@ -36,7 +36,7 @@ pub trait Subject {
 pub struct Compiled<C: Control>(pub Drive<C>);
 
 impl<C: Control> Compiled<C> {
-    /// The drive before its first period.
+    /// The drive in its initial state.
     pub const fn new() -> Self {
         Self(Drive::new())
     }

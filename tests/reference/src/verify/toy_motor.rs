@@ -1,5 +1,5 @@
-//! A crude motor that closes the loop for the plausible inputs: one Euler-like step per period,
-//! average voltages, a coarse EMF. It only has to bring a controller where motors bring it.
+//! A crude motor that closes the loop for plausible inputs: one Euler step per period, average
+//! voltages, a coarse EMF. It only has to reach realistic operating points.
 
 use crate::exact::floor;
 use crate::{DiscretePhase, EmfShape, Error, Spec};
@@ -48,7 +48,7 @@ impl ToyMotor {
         })
     }
 
-    /// A new speed to run up to, as a share of the greatest, signed.
+    /// A new target speed, relative to the maximum, signed.
     pub fn set_speed(&mut self, share: f64) {
         self.speed_target = share * self.speed_max;
     }
@@ -77,7 +77,7 @@ impl ToyMotor {
                     f64::from(legs.compare()[phase]) / self.timer_period * self.v_bus
                 }
                 LegState::Low => 0.0,
-                // A diode against the current; without current about what makes none.
+                // A diode against the current; without current about the voltage that makes none.
                 LegState::Off if i[phase].abs() > self.phase.b * self.v_bus / 4.0 => {
                     if i[phase] > 0.0 { 0.0 } else { self.v_bus }
                 }

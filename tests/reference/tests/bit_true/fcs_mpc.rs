@@ -37,7 +37,7 @@ fn voltage(vector: usize) -> [f64; 3] {
 }
 
 #[test]
-fn the_nearest_of_the_list_is_chosen() {
+fn the_nearest_candidate_is_chosen() {
     let mut seen = [0u32; 16];
     for (seed, (variant, options)) in (0..).zip(fcs_mpc()) {
         if !variants::is_plain(&options) {
@@ -99,7 +99,7 @@ fn the_nearest_of_the_list_is_chosen() {
             for (x, leg) in LEGS[trace.vector].bytes().enumerate() {
                 let expected = match leg {
                     b'+' => (1.0, LegState::Pulsed),
-                    // Where no leg is ever off, all are pulsed.
+                    // In variants without off legs, all are pulsed.
                     b'-' if options.candidates == Candidates::ThreePhase => (0.0, LegState::Pulsed),
                     b'-' => (0.0, LegState::Low),
                     _ => (0.0, LegState::Off),
@@ -111,8 +111,8 @@ fn the_nearest_of_the_list_is_chosen() {
     assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
 }
 
-/// The mean of the shared period costs no more than that of the chosen vector and any other at any share,
-/// as far as pulses in the middle of the period can make it.
+/// The mean of the shared period costs no more than that of the chosen vector and any other at any
+/// fraction, as far as pulses in the middle of the period can make it.
 fn shares_the_period(
     vector: usize,
     list: &[usize],
@@ -161,7 +161,7 @@ fn shares_the_period(
 }
 
 #[test]
-fn equals_go_to_the_first() {
+fn ties_choose_the_first_candidate() {
     let mut tried = 0;
     for (variant, options) in fcs_mpc() {
         let (inverter, common) = (&variant.spec.inverter, variant.spec.loop_options());

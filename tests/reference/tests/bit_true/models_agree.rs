@@ -1,5 +1,5 @@
-//! From the same state and the same sample, ideal and bit-true model take the same step but for
-//! rounding, in every variant.
+//! From the same state and the same sample, the ideal and the bit-true model take the same step
+//! except for rounding, in every variant.
 
 use crate::variants::{self, Variant};
 use hexagen::Sample;
@@ -8,7 +8,7 @@ use hexagen_reference::{BitTrue, Controller, DiscretePhase, Ideal, Mode, OffLeg,
 
 const STEPS: u64 = 1000;
 
-/// Greatest deviations seen, volt and counts.
+/// Largest deviations, volt and counts.
 #[derive(Debug, Default)]
 struct Worst {
     emf: f64,
@@ -49,7 +49,7 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
                 ideal.set_bus(counts);
             }
             Some(Action::Reset) => {
-                // Both forget the set-point, or neither.
+                // Both clear the set-point, or neither.
                 ideal.rebuild_from(&bit_true.physical_state());
                 bit_true.reset();
                 ideal.reset();
@@ -117,7 +117,8 @@ fn compare(
     worst.unsat = worst.unsat.max(far(b.u_unsat, a.u_unsat));
     if b.vector != a.vector {
         if let Controller::Phcc(options) = &variant.spec.controller {
-            // Only where the error lies at the edge of its band may a wish differ, or at zero where there was none.
+            // A direction may differ only if the error lies at the edge of its band, or at zero
+            // without a previous direction.
             let DiscretePhase { b: gain, .. } = DiscretePhase::new(&variant.spec);
             let [q_a, q_b] = a.u_unsat;
             let errors = [q_a, (q_a + 2.0 * q_b) / 3f64.sqrt()].map(|q| (q * gain).abs());
@@ -165,8 +166,8 @@ fn compare(
     }
 }
 
-/// The leg that was off carried the current at which its diode is taken to conduct, to the last bit: the
-/// models may differ in whether they saw its EMF.
+/// The off leg carried its diode's threshold current, to the last bit: the models may differ in
+/// whether they observed its EMF.
 fn floated_at_threshold(variant: &Variant, state: &PhysicalState) -> bool {
     let [a, b] = state.i_prev;
     let end = variant.spec.commutation_end().unwrap_or_default();
@@ -176,7 +177,7 @@ fn floated_at_threshold(variant: &Variant, state: &PhysicalState) -> bool {
     })
 }
 
-/// The greater deviation of phases a, b.
+/// The larger deviation of phases a, b.
 fn far(b: [f64; 2], a: [f64; 2]) -> f64 {
     (b[0] - a[0]).abs().max((b[1] - a[1]).abs())
 }
@@ -198,7 +199,7 @@ fn in_every_variant() {
         let named = || format!("{}: {worst:?}", variant.name);
         assert!(worst.compared > STEPS / 5, "{}", named());
         assert!(worst.decided_otherwise <= STEPS / 20, "{}", named());
-        // The model EMF carries the flux table's interpolation error; all else is rounding.
+        // The model EMF has the flux table's interpolation error; all else is rounding.
         assert!(worst.emf < 5e-4 * v_bus, "{}", named());
         assert!(worst.unsat < 1e-3 * v_bus, "{}", named());
         assert!(worst.limited < 0.01 * v_bus, "{}", named());

@@ -1,4 +1,5 @@
-//! PHCC: wishes keep their memory within the band, and the table's vectors move the current as wished.
+//! PHCC: directions are kept within the band, and the table's vectors move the current in the
+//! demanded direction.
 
 use crate::variants::{self, Variant};
 use hexagen::Sample;
@@ -60,7 +61,7 @@ fn sample(spec: &Spec, sector: usize, currents: [f64; 2]) -> Sample {
     Sample::with_hall(currents.map(count), spec.motor.hall_codes[sector - 1])
 }
 
-/// How the drive has come to where it is; with the sense of rotation, 1 or -1.
+/// History of the drive; with the direction of rotation, 1 or -1.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Past {
     /// It stood still since the start.
@@ -71,7 +72,7 @@ enum Past {
     Conducting(isize),
 }
 
-/// Vector of both models in a sector when both components are off by as much as the signs of `wishes` say.
+/// Vector of both models in a sector if both components are off in the directions `wishes`.
 fn chosen(variant: &Variant, sector: usize, past: Past, current: f64, wishes: [f64; 2]) -> usize {
     let spec = &variant.spec;
     let mut bit_true = BitTrue::new(spec, &variants::table(variant)).expect("a model");
@@ -83,7 +84,7 @@ fn chosen(variant: &Variant, sector: usize, past: Past, current: f64, wishes: [f
     let mut currents = [0.0; 3];
     currents[plus] = current;
     currents[minus] = -current;
-    // A current short of its reference by this much, above either band, asks for a rise.
+    // A current below its reference by this much, above either band, demands a rise.
     let step = spec.inverter.max_current / 10.0;
     currents[0] -= wishes[0] * step;
     currents[1] -= step * (wishes[1] * 3f64.sqrt() - wishes[0]) / 2.0;
@@ -122,8 +123,9 @@ fn alpha_beta(vector: usize) -> [f64; 2] {
 }
 
 #[test]
-fn at_standstill_the_pair_follows_the_wish_along_its_line() {
-    // The sense of rotation is unknown: rows that hold at any speed, with no EMF in the design and no zero.
+fn at_standstill_the_pair_follows_the_direction_along_its_line() {
+    // The direction is unknown: rows that hold at any speed, without an EMF in the design and
+    // without zeros.
     for motor in ["660 W", "servo"] {
         let (variant, _) = plain(motor, SwitchingTable::Derived, Candidates::Table2);
         let current = -0.4 * variant.spec.inverter.max_current;
@@ -145,7 +147,7 @@ fn at_standstill_the_pair_follows_the_wish_along_its_line() {
     }
 }
 
-/// What moves the current in mid-sector or at its beginning, by vector: v - e.
+/// Driving voltage in mid-sector or at its beginning, by vector: v - e.
 fn drive(vector: usize, sector: usize, entering: bool, shape: fn(f64) -> f64) -> [f64; 2] {
     let theta = (sector as f64 - 1.0) * 60.0 - if entering { 21.0 } else { 0.0 };
     let e = [0.0, 120.0, 240.0].map(|lag| 0.375 * shape(theta - lag));
@@ -162,7 +164,7 @@ fn trapezoid(degrees: f64) -> f64 {
 }
 
 #[test]
-fn motoring_vectors_come_nearest_to_a_quarter_bus_as_wished() {
+fn motoring_vectors_are_nearest_to_a_quarter_bus_in_the_demanded_direction() {
     let (variant, _) = plain("660 W", SwitchingTable::Derived, Candidates::ThreePhase);
     let current = 0.4 * variant.spec.inverter.max_current;
     for sector in 1..=6 {
@@ -206,7 +208,7 @@ fn backward_is_the_mirror_image_of_forward() {
 }
 
 #[test]
-fn the_printed_row_turns_with_the_sector() {
+fn the_printed_row_rotates_with_the_sector() {
     let (variant, _) = plain("660 W", SwitchingTable::Printed, Candidates::Table2);
     let current = 0.4 * variant.spec.inverter.max_current;
     for sector in 1..=6 {
@@ -230,7 +232,7 @@ fn the_printed_row_turns_with_the_sector() {
 }
 
 #[test]
-fn a_table_of_numbers_is_read_in_the_order_of_sector_commutation_and_wishes() {
+fn a_numeric_table_has_the_order_of_sector_commutation_and_directions() {
     let (variant, _) = plain("servo", SwitchingTable::Printed, Candidates::Table2);
     let numbers: Vec<usize> = (0..48).map(|place| (place * 7 + place / 16) % 16).collect();
     let text = variant.toml.replace("\"printed\"", &format!("{numbers:?}"));
@@ -252,7 +254,7 @@ fn a_table_of_numbers_is_read_in_the_order_of_sector_commutation_and_wishes() {
 }
 
 #[test]
-fn numbers_that_are_no_table_are_refused() {
+fn invalid_numeric_tables_are_rejected() {
     let (variant, _) = plain("servo", SwitchingTable::Printed, Candidates::Table2);
     let with = |table: &str| Spec::from_toml(&variant.toml.replace("\"printed\"", table));
     assert!(with(&format!("{:?}", [15; 48])).is_ok());
@@ -265,13 +267,13 @@ fn numbers_that_are_no_table_are_refused() {
     assert!(Spec::from_toml(&band).is_err());
 }
 
-/// The wishes of the step; none of an axis that comes from rest.
+/// The directions of the step; `None` for an axis that comes from rest.
 fn wishes(model: &BitTrue) -> [Option<bool>; 2] {
     model.physical_state().rises
 }
 
 #[test]
-fn a_wish_holds_within_the_band() {
+fn a_direction_is_kept_within_the_band() {
     let mut held = 0;
     for (seed, (variant, options)) in (0..).zip(phcc()) {
         let mut model = BitTrue::new(&variant.spec, &variants::table(&variant)).expect("a model");

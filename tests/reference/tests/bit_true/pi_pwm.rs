@@ -1,5 +1,5 @@
-//! Both PI models against a PI controller as the textbooks have it: parallel form, the integral in
-//! ampere seconds, back-calculation with tracking time T_i.
+//! Both PI models against a textbook PI controller: parallel form, the integral in ampere seconds,
+//! back-calculation with tracking time T_i.
 
 use crate::variants;
 use hexagen::Sample;
@@ -48,7 +48,7 @@ fn follows_a_textbook_controller() {
         let mut limited = 0;
         let volts = 2e-4 * inverter.v_bus;
         for step in 0..400u32 {
-            // Counts that wander about the reference, far enough at times to saturate.
+            // Counts that vary around the reference, at times far enough to saturate.
             let swing = if step % 100 < 10 { 1.5 } else { 0.05 };
             let counts =
                 |amps: f64| (f64::from(inverter.adc_offset) + amps / inverter.adc_gain).round();
@@ -92,7 +92,7 @@ fn follows_a_textbook_controller() {
                     "{}",
                     variant.name
                 );
-                // Integration, and tracking of what the limit took away.
+                // Integration, and back-calculation of the limited part.
                 let tracking = (pole[x] - mean - u[x]) / options.integral_time;
                 integral[x] += inverter.t_s * (k_i * error[x] + tracking);
             }

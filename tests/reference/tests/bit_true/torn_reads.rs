@@ -1,4 +1,5 @@
-//! Hall code and time since the edge that are read on either side of an edge: angle and speed hardly move.
+//! Hall code and time since the edge, read on either side of an edge: angle and speed hardly
+//! change.
 
 use crate::variants::{self, Variant};
 use hexagen::Sample;
@@ -7,10 +8,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Control periods of 60 electrical degrees: 1500 rpm with four pole pairs at 50 us.
 const SECTOR: f64 = 33.37;
-/// An edge that comes so soon after the first of the two reads comes before the second, periods.
+/// An edge this soon after the first read comes before the second, periods.
 const BETWEEN: f64 = 0.3;
 
-/// Which of the two is read behind the edge.
+/// The read after the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Late {
     Neither,
@@ -25,7 +26,7 @@ fn timed() -> Variant {
         .expect("the variant")
 }
 
-/// Angle and angle per period, step by step, of a rotor that turns evenly.
+/// Angle and angle per period, step by step, of a rotor at constant speed.
 fn run(variant: &Variant, late: Late) -> Vec<[f64; 2]> {
     let formats = FormatTable::new(variant.formats);
     let mut model = BitTrue::new(&variant.spec, &formats).expect("a model");
@@ -57,7 +58,7 @@ fn a_read_on_either_side_of_an_edge_moves_the_angle_by_less_than_a_period() {
     for late in [Late::Code, Late::Ticks] {
         let torn = run(&variant, late);
         assert_ne!(torn, right, "{late:?}: no edge between two reads");
-        // A turn and an edge until the speed is known.
+        // The speed is known after a turn and an edge.
         for (step, (torn, right)) in torn.iter().zip(&right).enumerate().skip(240) {
             let off = (torn[0] - right[0] + PI).rem_euclid(TAU) - PI;
             assert!(

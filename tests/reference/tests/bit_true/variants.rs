@@ -1,4 +1,5 @@
-//! Every PDCC variant and a spread of the other controllers' on two very different motors, with formats of about 30 bits.
+//! Every PDCC variant and a selection of the other controllers' on two very different motors, with
+//! formats of about 30 bits.
 
 use hexagen::{Format, Rounding};
 use hexagen_reference::{
@@ -128,7 +129,7 @@ commutation_timeout = 8
     variants
 }
 
-/// A spread of the options of FCS-MPC, PHCC and PI-PWM, on both motors.
+/// A selection of the options of FCS-MPC, PHCC and PI-PWM, on both motors.
 pub fn others() -> Vec<Variant> {
     const KINDS: [(&str, &[&str], &[&str]); 3] = [
         (
@@ -159,7 +160,7 @@ pub fn others() -> Vec<Variant> {
                     [("estimated", 1.0), ("estimated", 0.4), ("model", 1.0)][index / 6 % 3];
                 let delay = [1, 0][index / 18 % 2];
                 let reference = ["quasi_square", "proportional"][index / 36];
-                // The rest varies out of step with these.
+                // The other options vary out of step with these.
                 let advance = [0.0, 1.5][index % 5 % 2];
                 let discretisation = ["exact", "euler"][index % 7 % 2];
                 let capture = ["sampled", "timer"][index % 11 % 2];
@@ -167,7 +168,7 @@ pub fn others() -> Vec<Variant> {
                 let choosing = format!(
                     "off_leg = \"{second}\"\ncommutation_threshold = 0.1\ncommutation_timeout = 8"
                 );
-                // One regulator on the pair follows the corners, without the EMF.
+                // One controller of the pair follows the corners, without the EMF.
                 let six_step = match (second, reference) {
                     ("off", "quasi_square") => ["on", "off"][index % 17 % 2],
                     _ => "off",
@@ -265,7 +266,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let w = inverter.v_bus / f64::from(inverter.timer_period);
     let DiscretePhase { a, b } = DiscretePhase::new(spec);
     let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
-    // Currents reach twice the converter's range (phase c), voltages what deadbeat asks for them.
+    // Currents reach twice the ADC's range (phase c), voltages the deadbeat voltages for them.
     let f_i = 29 - (2.0 * adc_max).log2().ceil() as i32;
     let volts = 4.0 * (adc_max * g / b + 2.0 * inverter.v_bus_max().expect("a bus"));
     let f_v = 29 - (volts / w).log2().ceil() as i32;
@@ -286,7 +287,8 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let bus = inverter.v_bus_max().expect("a bus");
     let turn = f64::from(motor.pole_pairs) * inverter.t_s / (1.6 * motor.emf_constant);
     let ohm = g / w * 2f64.powi(f_v - f_i);
-    // A turn takes a line EMF of twice the bus at most, as a factor of 31 bits or a little more than 30; a ramp takes two.
+    // A turn takes a line EMF of twice the bus at most, as a factor of 31 bits or a little more
+    // than 30; a ramp takes two.
     let slope = match motor.emf_shape {
         EmfShapeKind::Sinusoidal => turn * 4.0 * bus,
         EmfShapeKind::Trapezoidal => {
@@ -352,7 +354,7 @@ pub fn table(variant: &Variant) -> FormatTable {
     FormatTable::new(variant.formats)
 }
 
-/// Whether the variant follows commutations.
+/// Whether the variant tracks commutations.
 pub fn commutates(variant: &Variant) -> bool {
     match &variant.spec.controller {
         Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::Pair,
@@ -362,7 +364,7 @@ pub fn commutates(variant: &Variant) -> bool {
     }
 }
 
-/// Whether a voltage can lie outside of what the variant can make.
+/// Whether a voltage can exceed the variant's range.
 pub fn saturates(variant: &Variant) -> bool {
     !matches!(
         variant.spec.controller,
@@ -383,7 +385,7 @@ pub fn has_rotor(variant: &Variant) -> bool {
         || options.reference == Reference::Proportional
 }
 
-/// Whether the cost of FCS-MPC is the error of the current in one period, and nothing else.
+/// Whether the cost of FCS-MPC is only the current error in one period.
 pub fn is_plain(options: &FcsMpc) -> bool {
     options.horizon == 1 && options.switching_weight + options.torque_weight <= 0.0
 }

@@ -1,14 +1,15 @@
-//! The bit-for-bit test passes for the model itself, covers what it claims, and sees one bit.
+//! The bit-for-bit test passes for the model itself, has the documented coverage, and detects one
+//! bit.
 
 use crate::variants::{self, Variant};
 use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
 use hexagen_reference::{BitTrue, Bus, Controller, FormatTable, Spec};
 
-/// The model in the place of a drive, with an optional fault.
+/// The model as a drive, with an optional fault.
 struct Mirror {
     model: BitTrue,
-    /// Flip the lowest bit of this state word (as seen from outside).
+    /// Flip the lowest bit of this state word in its output.
     flip: Option<usize>,
 }
 
@@ -129,7 +130,7 @@ fn start_up_is_part_of_every_session() {
 }
 
 #[test]
-fn a_fault_in_start_up_is_seen() {
+fn a_fault_in_start_up_is_detected() {
     let variant = &variants::all()[0];
     let fresh = BitTrue::new(&variant.spec, &variants::table(variant)).expect("a model");
     let names = fresh.state_names();
@@ -152,7 +153,7 @@ fn a_fault_in_start_up_is_seen() {
 }
 
 #[test]
-fn sees_one_wrong_bit_and_says_where() {
+fn detects_and_locates_one_wrong_bit() {
     let variant = &variants::all()[0];
     let names = BitTrue::new(&variant.spec, &variants::table(variant))
         .expect("a model")
@@ -173,7 +174,7 @@ fn sees_one_wrong_bit_and_says_where() {
 }
 
 #[test]
-fn state_words_survive_a_round_trip() {
+fn state_words_round_trip() {
     for variant in variants::all()
         .iter()
         .step_by(7)

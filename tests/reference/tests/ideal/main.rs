@@ -73,7 +73,7 @@ fn torque_priority_with_estimated_emf() {
             pct / 100.0 * RATED_RPM,
         )
     };
-    // As with the model: the estimate is moved on by the motor's shape.
+    // As with the model: the estimate is extrapolated with the EMF shape.
     assert_row(run(75.0), 3.30, 1.9);
     assert!(run(106.0).mean > 0.97 * DEMAND);
     assert!(run(109.0).mean < 0.97 * DEMAND);
@@ -129,7 +129,7 @@ fn torque_priority_with_proportional_reference() {
 }
 
 #[test]
-fn past_the_limit_torque_priority_gives_what_nearest_gives() {
+fn beyond_the_limit_torque_priority_equals_nearest() {
     for pct in [110.0, 115.0, 120.0, 130.0] {
         let rpm = pct / 100.0 * RATED_RPM;
         let priority = run("torque_priority", "model", "quasi_square", 2.0, rpm).mean;

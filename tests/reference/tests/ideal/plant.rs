@@ -80,7 +80,7 @@ impl Plant {
         TAU / self.omega_e.abs()
     }
 
-    /// What the sensors say now.
+    /// The sensors' present values.
     pub fn sample(&self) -> Sample {
         let inverter = &self.spec.inverter;
         let max = f64::from((1u32 << inverter.adc_bits) - 1);
@@ -150,7 +150,8 @@ pub struct Merits {
     pub i_rms: f64,
 }
 
-/// Runs a controller on the plant from three starts, as the `hexagen` program does, and takes the merits.
+/// Runs a controller on the plant from three starts, like the `hexagen` program, and returns the
+/// figures of merit.
 pub fn merits(
     spec: &Spec,
     rpm: f64,
@@ -162,7 +163,7 @@ pub fn merits(
         let mut plant = Plant::new(spec, rpm, theta);
         let t_s = spec.inverter.t_s;
         let period = plant.electrical_period();
-        // Two turns for the Hall timing on top of two of settling.
+        // Two turns for the Hall timing plus two of settling.
         let drop = ((0.015f64).max(4.0 * period) / t_s).ceil() as usize;
         let measure = (6.0 * period / t_s).round() as usize;
         let mut torque = Vec::with_capacity(measure * BINS);

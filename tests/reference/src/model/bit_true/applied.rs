@@ -1,4 +1,4 @@
-//! The voltage that a command really applies, off leg included (section 7).
+//! The voltage that a command applies, off leg included (section 7).
 
 use super::constants::Constants;
 use crate::exact::{Word, halve, within, word};

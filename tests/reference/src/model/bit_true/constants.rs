@@ -13,8 +13,8 @@ use crate::{
 /// Largest magnitude of a coefficient's word.
 const WORD_MAX: f64 = 2_147_483_647.0;
 
-/// Everything that a step needs besides state and set-point. Coefficients that the variant does
-/// not use are zero.
+/// All constants of a step besides state and set-point. Coefficients that the variant does not use
+/// are zero.
 #[derive(Clone, Debug)]
 pub struct Constants<W> {
     pub parts: Parts,
@@ -54,7 +54,7 @@ pub struct Constants<W> {
     pub line_scale: f64,
     /// -q, where q is.
     pub line_shift: u32,
-    /// Products of two line EMFs, or of a turn and one, of which the upper word counts.
+    /// Products of two line EMFs, or of a turn and one, of which the upper word is used.
     pub line_product: Shift,
     pub emf_turns: bool,
     pub filtered: bool,
@@ -68,7 +68,7 @@ pub struct Constants<W> {
     pub k_set: Coefficient<W>,
     pub k_torque: Coefficient<W>,
     pub k_advance: Coefficient<W>,
-    /// Ticks per period, where they are not whole.
+    /// Ticks per period, if not an integer.
     pub k_ticks: Option<Coefficient<W>>,
     pub ratio_bits: u32,
     pub scale_bits: u32,
@@ -81,7 +81,7 @@ pub struct Constants<W> {
     pub shape_product: Shift,
 }
 
-/// How physical values become words, and the plant that the coefficients describe.
+/// Scaling of physical values to words, and the plant of the coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale<'a> {
     formats: &'a FormatTable,
@@ -145,7 +145,7 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// As [`Self::coefficient`]; zero, without a format, where the variant does not use it.
+    /// Like [`Self::coefficient`]; zero, without a format, if the variant does not use it.
     pub fn only_if<W: Word>(
         &self,
         used: bool,
@@ -159,7 +159,7 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The shift of a product of two voltages; 0 where the variant does not use it.
+    /// The shift of a product of two voltages; 0 if the variant does not use it.
     pub fn product_if(&self, used: bool, name: &'static str) -> Result<Shift, Error> {
         if used {
             Ok(Shift::new(self.formats.product_shift(name)?))
@@ -168,13 +168,13 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// Fraction bits that a format has beyond those of voltages.
+    /// Fraction bits of a format in excess of those of voltages.
     pub fn extra_bits(&self, name: &'static str) -> Result<i32, Error> {
         let bits = self.formats.frac_bits(name)? as i32;
         Ok(bits - self.formats.frac_bits("voltage")? as i32)
     }
 
-    /// Fraction bits of a format; 0 where the variant does not use it.
+    /// Fraction bits of a format; 0 if the variant does not use it.
     pub fn bits_if(&self, used: bool, name: &'static str) -> Result<u32, Error> {
         if used {
             self.formats.frac_bits(name)

@@ -5,7 +5,7 @@ use super::state::State;
 use crate::exact::{Word, both, halve, within, word};
 use crate::model::sector::OUT_PHASE;
 
-/// What the period that ends with the currents `i` shows of the EMF of phases a, b.
+/// Observed EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
 fn seen<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
     let State { i_prev, v_prev, .. } = state;
@@ -29,7 +29,7 @@ pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2
     })
 }
 
-/// What the modelled EMF of phases a, b lacks, with what the period that ends with the currents `i` adds to it.
+/// Error of the modelled EMF of phases a, b, updated by the period that ends with the currents `i`.
 #[inline]
 pub fn integrate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
     let seen = seen(k, state, i);
@@ -41,7 +41,7 @@ pub fn integrate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 
     })
 }
 
-/// The estimate `seen` with the EMF of a leg that floated replaced by what the sector says of it.
+/// The estimate `seen` with the EMF of a floating leg replaced by that of the sector.
 #[inline]
 pub fn with_floated<W: Word>(
     k: &Constants<W>,

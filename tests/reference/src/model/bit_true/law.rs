@@ -1,4 +1,4 @@
-//! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
+//! Sections 9 to 11, which differ between controllers: from reference, current and EMF to the legs.
 
 mod dead_time;
 mod deadbeat;
@@ -21,7 +21,7 @@ use crate::model::trace::Past;
 use crate::{Controller, Error, Spec};
 use hexagen::Legs;
 
-/// What the shared sections have found out. Pairs are phases a, b.
+/// Results of the common sections. Pairs are phases a, b.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a, W> {
     pub k: &'a Constants<W>,
@@ -46,15 +46,15 @@ pub struct Inputs<'a, W> {
     pub hysteresis: [W; 2],
     /// `vector_prev` (FCS-MPC).
     pub vector_prev: usize,
-    /// What the past adds to the voltage (deadbeat with a held EMF).
+    /// Contribution of past periods to the voltage (deadbeat with a held EMF).
     pub past: Past<W>,
 }
 
-/// What a controller decides.
+/// Decision of a controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Decision<W> {
     pub u_unsat: [W; 2],
-    /// Limited to what the inverter can do; becomes `v_x_cmd`.
+    /// Limited to the inverter's range; becomes `v_x_cmd`.
     pub u: [W; 2],
     pub reach: Reach,
     /// Number of the chosen vector (controllers of whole vectors).
@@ -64,22 +64,22 @@ pub struct Decision<W> {
     pub integral: [W; 2],
     /// `h_a`, `h_b` (PHCC).
     pub hysteresis: [W; 2],
-    /// What the past adds to the voltage (deadbeat with a held EMF).
+    /// Contribution of past periods to the voltage (deadbeat with a held EMF).
     pub past: Past<W>,
 }
 
-/// A command to the inverter and the terminal voltages that it stands for.
+/// A command to the inverter and its terminal voltages.
 #[derive(Clone, Copy, Debug)]
 pub struct Command<W> {
     pub legs: Legs,
-    /// `t_a_cmd` to `t_c_cmd`, where a leg may be off.
+    /// `t_a_cmd` to `t_c_cmd`, if a leg may be off.
     pub terminal: [W; 3],
     /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
     pub off: usize,
 }
 
 impl<W: Word> Command<W> {
-    /// All legs alike, without any voltage.
+    /// All legs in the same state, without any voltage.
     pub fn idle(legs: Legs) -> Self {
         Self {
             legs,
@@ -89,7 +89,7 @@ impl<W: Word> Command<W> {
     }
 }
 
-/// A controller's own part of the step.
+/// The controller's own part of the step.
 #[derive(Clone, Debug)]
 pub enum Law<W> {
     Pdcc(pdcc::Pdcc<W>),

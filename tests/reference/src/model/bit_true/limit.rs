@@ -10,7 +10,7 @@ use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
 const BLEND_BITS: u32 = 15;
-/// Torque priority blends over `p_max >> BLEND_SHARE` past its reach.
+/// Torque priority blends over `p_max >> BLEND_SHARE` beyond its limit.
 const BLEND_SHARE: u32 = 1;
 /// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
 const LIGHT_SHARE: u32 = 2;
@@ -20,7 +20,7 @@ const BLEND_ONE: f64 = 32_768.0;
 /// The phase behind each.
 const NEXT: [usize; 3] = [1, 2, 0];
 
-/// A voltage within reach.
+/// A voltage within the hexagon.
 pub struct Limited<W> {
     /// Of phases a, b.
     pub u: [W; 2],
@@ -60,7 +60,7 @@ pub fn limit<W: Word>(
     }
     match rule {
         Saturation::KeepAngle => {
-            // More than the bus.
+            // The demand exceeds the bus.
             let spread = spread.known(1.0, WHOLE);
             let scale = Coefficient::new(
                 v_bus.divide(k.scale_bits, spread, word(pow2(k.scale_bits as i32))),
@@ -89,8 +89,8 @@ fn nearest<W: Word>(v_bus: W, u: [W; 3], max: W, min: W) -> [W; 3] {
     all_three(|x| within(u[x] - middle + half_bus, 0.0, v_bus))
 }
 
-/// The legs of the point of the hexagon that keeps the component of `u` along the EMF `f`; `near` are the
-/// terminals of the nearest point.
+/// The legs of the point of the hexagon that keeps the component of `u` along the EMF `f`; `near`
+/// are the terminals of the nearest point.
 fn torque_priority<W: Word>(
     k: &Constants<W>,
     v_bus: W,
@@ -138,7 +138,7 @@ fn torque_priority<W: Word>(
     if p > p_max {
         reach = Reach::PastReach;
         let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
-        // As the condition says.
+        // Implied by the condition.
         let past = (p - p_max).known(0.0, WHOLE);
         let blend = lesser(floor(past * BLEND_ONE / share), BLEND_ONE);
         let mul15 = Shift::new(BLEND_BITS);

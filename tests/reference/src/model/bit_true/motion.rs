@@ -1,10 +1,10 @@
-//! An estimated EMF moved on (section 8).
+//! Rotation of an estimated EMF (section 8).
 
 use super::constants::Constants;
 use crate::exact::{Word, floor_shift, halve, within};
 use crate::model::sector::{CORNER_A, CORNER_B};
 
-/// The estimate `e` of the period that just ended, in the target period and in the present one.
+/// The estimate `e` of the last period, extrapolated to the target period and to the present one.
 #[inline]
 pub fn ahead<W: Word>(
     k: &Constants<W>,

@@ -1,6 +1,6 @@
-//! Groups of state words, and which of them a variant has.
+//! Groups of state words by variant.
 
-/// A group of state words that not every variant has.
+/// A group of state words of some variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     Edges,
@@ -22,12 +22,12 @@ pub enum Part {
     Later,
 }
 
-/// The groups that a variant has.
+/// The groups of a variant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parts(u32);
 
 impl Parts {
-    /// Those of the groups whose condition is true.
+    /// The groups whose condition is true.
     pub fn new(groups: &[(Part, bool)]) -> Self {
         Self(
             groups

@@ -1,4 +1,4 @@
-//! What the bit-true model tells in physical units: none of its own arithmetic.
+//! The bit-true model's signals in physical units, not part of its arithmetic.
 
 use super::constants::Constants;
 use super::law::phcc::in_due;
@@ -10,7 +10,7 @@ use crate::model::trace::{Past, PhysicalState, Trace};
 use std::f64::consts::TAU;
 
 impl BitTrue {
-    /// The current set-point that the word `j` stands for, ampere.
+    /// The current set-point of the word `j`, ampere.
     pub fn set_point_amps(&self) -> f64 {
         self.j * self.k.volt / self.gain
     }
@@ -53,7 +53,7 @@ impl BitTrue {
         }
     }
 
-    /// The whole state in physical units: what an ideal model can be rebuilt from.
+    /// The whole state in physical units, from which an ideal model can be built.
     pub fn physical_state(&self) -> PhysicalState {
         let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
         self.state.to_physical(&self.k, integral_ampere)

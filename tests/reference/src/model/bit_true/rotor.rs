@@ -12,7 +12,7 @@ const SIXTH: f64 = 715_827_882.0;
 const HALF_SIXTH: f64 = 357_913_941.0;
 /// 30 degrees as an angle word, rounded up.
 const TWELFTH: f64 = 357_913_942.0;
-/// Angle words at which sectors 1 to 6 begin (entry 0 stands for "no sector").
+/// Angle words at which sectors 1 to 6 begin (entry 0 is "no sector").
 const SECTOR_START: [f64; 7] = [
     0.0,
     3_937_053_355.0,
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sectors_start_at_the_first_word_past_their_edge() {
+    fn sectors_start_at_the_first_word_after_their_edge() {
         for (sector, start) in SECTOR_START.iter().enumerate().skip(1) {
             let degrees = (60 * (sector as i128 - 1) - 30).rem_euclid(360);
             assert_eq!(*start as i128, ((degrees << 32) + 359) / 360);

@@ -1,4 +1,4 @@
-//! The speed regulator (section "Speed loop").
+//! The speed controller (section "Speed loop").
 
 use super::constants::{Constants, Scale};
 use crate::exact::{
@@ -8,7 +8,7 @@ use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 use std::f64::consts::TAU;
 
-/// Constants of the regulator.
+/// Constants of the controller.
 #[derive(Clone, Debug)]
 pub struct Regulator<W> {
     k_rpm: Coefficient<W>,
@@ -27,7 +27,7 @@ pub struct Regulator<W> {
 }
 
 impl<W: Word> Regulator<W> {
-    /// None without a speed loop.
+    /// `None` without a speed loop.
     pub fn new(spec: &Spec, scale: &Scale, k: &Constants<W>) -> Result<Option<Self>, Error> {
         if !scale.variant.options.has_speed_loop() {
             return Ok(None);
@@ -62,7 +62,7 @@ impl<W: Word> Regulator<W> {
             .mul(within(input(bits), -self.max_bits, self.max_bits))
     }
 
-    /// The set-point, and the integral behind the step.
+    /// The set-point, and the integral after the step.
     #[inline]
     pub fn regulate(&self, reference: W, speed: W, most: W, integral: W) -> (W, W) {
         let error = within(reference - speed, -self.error_max, self.error_max);

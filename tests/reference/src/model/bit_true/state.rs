@@ -9,8 +9,7 @@ use crate::model::supervision::{HallCode, Mode, Supervisor, fault_from_word, fau
 use crate::model::trace::Past;
 use hexagen::Fault;
 
-/// State words in f64; small enums as such. Words that the variant does not have are kept as well
-/// and never read.
+/// State words in f64, small enums as such. Words of other variants exist, too, but are never read.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State<W: Word> {
     pub supervisor: Supervisor<W>,
@@ -29,7 +28,7 @@ pub struct State<W: Word> {
     pub off_prev: usize,
     pub e_prev: [W; 2],
     pub integral: [W; 2],
-    /// `h_a`, `h_b`; where they are no words of their own, what is due holds them.
+    /// `h_a`, `h_b`; unless stored in the contributions of past periods.
     pub hysteresis: [W; 2],
     pub vector_prev: Vector,
     pub past: Past<W>,
@@ -39,10 +38,10 @@ pub struct State<W: Word> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Vector(pub usize);
 
-/// A value that is kept as a state word.
+/// A value stored as a state word.
 trait WordValue {
     fn to_word(&self) -> i32;
-    /// Sets a word, which stands for any of a range where it is a number.
+    /// Sets a word, which stands for any of a range if it is a number.
     fn set_word(&mut self, word: i32, range: (i32, i32));
 }
 
@@ -80,7 +79,7 @@ impl WordValue for Vector {
     }
 }
 
-/// The number of edges seen.
+/// The number of observed edges.
 impl WordValue for u8 {
     #[inline]
     fn to_word(&self) -> i32 {
@@ -239,7 +238,7 @@ pub fn names(parts: Parts) -> Vec<&'static str> {
 }
 
 impl<W: Word> State<W> {
-    /// Follows the commutation (section 5); whether it goes on.
+    /// Tracks the commutation (section 5); returns whether it continues.
     #[inline]
     pub fn commutate(&mut self, k: &Constants<W>, sector_eff: usize, j: W, i: &[W; 3]) -> bool {
         let changed = sector_eff != self.sector_eff_prev && self.sector_eff_prev != 0;
@@ -256,7 +255,7 @@ impl<W: Word> State<W> {
         goes_on
     }
 
-    /// What a period outside of control leaves behind (section 12).
+    /// State after a period without control (section 12).
     pub fn stop(&mut self) {
         self.speed_integral = word(0.0);
         self.v_cmd = [word(0.0); 2];
@@ -286,7 +285,8 @@ impl<W: Word> State<W> {
         for_each_word!(self, parts, put);
     }
 
-    /// Reads the words in order, each with the range that it stands for; words that are missing leave their part of the state as it is.
+    /// Reads the words in order, each with its range; missing words leave their part of the state
+    /// unchanged.
     pub fn read(&mut self, parts: Parts, mut words: impl Iterator<Item = (i32, (i32, i32))>) {
         macro_rules! take {
             ($name:literal, $place:expr) => {
@@ -296,7 +296,7 @@ impl<W: Word> State<W> {
             };
         }
         for_each_word!(self, parts, take);
-        // Without an advance the sector in force is that of the sample, and has no word of its own.
+        // Without an advance the effective sector is that of the sample, without a word of its own.
         if !parts.has(Part::SectorInForce) {
             self.sector_eff_prev = self.sector_prev;
         }

@@ -30,7 +30,7 @@ impl<W: Word> Table<W> {
             ]
         };
         let rows: Vec<[f64; 3]> = (0..segments).map(coefficients).collect();
-        // Any row may be taken.
+        // Any row may be read.
         let any = |row: &[f64; 3]| {
             [0, 1, 2].map(|place| {
                 let column = || rows.iter().map(|row| row[place]);

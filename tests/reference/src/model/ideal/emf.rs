@@ -1,4 +1,4 @@
-//! The EMF from what a period shows of it, moved on by the motor's shape (section 8).
+//! The EMF observed in a period, extrapolated by the motor's shape (section 8).
 
 use super::Ideal;
 use super::vector::{clarke, from_ab, phases, to_ab};
@@ -7,13 +7,13 @@ use crate::emf_motion::EmfMotion;
 use crate::model::sector;
 use nalgebra::{Vector2, Vector3};
 
-/// Share that the integral of a modelled EMF takes over of what it lacks.
+/// Fraction of a modelled EMF's error that is integrated per period.
 const INTEGRAL_SHARE: f64 = 1.0 / 8.0;
 
 impl Ideal {
-    /// The estimate `seen` with what is known of a leg that floated (section 8), of which only the EMF between
-    /// the two others is seen. While its own sector lasts the phase's EMF crosses zero; when another phase
-    /// goes off, the two have met.
+    /// The estimate `seen` with the known EMF of a floating leg (section 8), as only the EMF
+    /// between the two others is observed. In its own sector the phase's EMF crosses zero; when
+    /// another phase goes off, the two have met.
     pub(super) fn with_floated(&self, seen: &Vector2<f64>, sector_eff: usize) -> Vector2<f64> {
         let Some(off) = self.state.off_prev else {
             return *seen;
@@ -30,13 +30,14 @@ impl Ideal {
         } else {
             2.0 / 3.0 * (e[outgoing] - e[off])
         };
-        // Along the phase's own axis the difference of the two others stays.
+        // Along the phase's own axis the difference of the two others is kept.
         let mut axis = Vector3::zeros();
         axis[off] = change;
         seen + clarke(&axis) * 1.5
     }
 
-    /// What the period shows of its EMF that ends with the currents `i` of phases a, b: v - (i - a i_prev)/b.
+    /// Observed EMF of the period that ends with the currents `i` of phases a, b: v - (i - a
+    /// i_prev)/b.
     pub(super) fn emf_seen(&self, i: [f64; 2]) -> Vector2<f64> {
         let [pa, pb] = self.state.i_prev;
         let change = |now: f64, before: f64| (now - before).clamp(-self.di_limit, self.di_limit);
@@ -47,13 +48,13 @@ impl Ideal {
         from_ab(self.state.v_prev[0], self.state.v_prev[1]) - (d + i_prev * (1.0 - a)) / b
     }
 
-    /// An EMF within the largest bus.
+    /// An EMF clamped to the largest bus.
     pub(super) fn believed(&self, e: f64) -> f64 {
         e.clamp(-self.v_largest, self.v_largest)
     }
 
-    /// An estimated EMF one and two periods later (section 8): round its circle, to second order, or along the side
-    /// of its hexagon that belongs to the sector. The pair's EMF tells the speed.
+    /// An estimated EMF one and two periods later (section 8): on its circle, to second order, or
+    /// along the side of its hexagon in the sector. The pair's EMF gives the speed.
     pub(super) fn moved_on(&self, e: &Vector2<f64>, sector: usize) -> [Vector2<f64>; 2] {
         let EmfMotion {
             turns,
@@ -81,7 +82,7 @@ impl Ideal {
         }
     }
 
-    /// What the modelled EMF lacks, with what the period adds to it that ends with the currents `i`.
+    /// Error of the modelled EMF, updated by the period that ends with the currents `i`.
     pub(super) fn integrated(&self, i: [f64; 2]) -> Vector2<f64> {
         let pair = |[a, b]: [f64; 2]| from_ab(a, b);
         let lack = self.emf_seen(i) - pair(self.state.e_prev);

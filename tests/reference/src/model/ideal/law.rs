@@ -1,4 +1,4 @@
-//! Sections 9 to 11, where the controllers differ: from reference, current and EMF to the legs.
+//! Sections 9 to 11, which differ between controllers: from reference, current and EMF to the legs.
 
 mod dead_time;
 mod deadbeat;
@@ -19,7 +19,7 @@ use crate::model::trace::Past;
 use crate::{Controller, DiscretePhase, Error, Spec};
 use nalgebra::{Vector2, Vector3};
 
-/// What the shared sections have found out; vectors are alpha-beta.
+/// Results of the common sections; vectors are alpha-beta.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs {
     pub phase: DiscretePhase,
@@ -39,21 +39,21 @@ pub struct Inputs {
     pub set_point: f64,
     /// Sense of rotation, 1 or -1.
     pub direction: f64,
-    /// Whether the components are to rise (PHCC); none before the first sample in control.
+    /// Whether the components are to rise (PHCC); `None` before the first sample in control.
     pub rises: [Option<bool>; 2],
-    /// Number of the vector that the last step chose (FCS-MPC).
+    /// Number of the last step's vector (FCS-MPC).
     pub vector_prev: usize,
     /// Whether deadbeat control holds the EMF of the last period.
     pub emf_is_held: bool,
-    /// What the past adds to the voltage (deadbeat with a held EMF).
+    /// Contribution of past periods to the voltage (deadbeat with a held EMF).
     pub past: Past,
 }
 
-/// What a controller decides; voltages of the zero-sum phases.
+/// Decision of a controller; voltages of the zero-sum phases.
 #[derive(Clone, Copy, Debug)]
 pub struct Decision {
     pub u_unsat: Vector2<f64>,
-    /// Limited to what the inverter can do.
+    /// Limited to the inverter's range.
     pub u: Vector2<f64>,
     pub reach: Reach,
     /// Number of the chosen vector (controllers of whole vectors).
@@ -61,13 +61,13 @@ pub struct Decision {
     pub command: Command,
     /// Integral part of the voltage (PI), phases a, b.
     pub integral: [f64; 2],
-    /// Whether the components are to rise (PHCC); none before the first sample in control.
+    /// Whether the components are to rise (PHCC); `None` before the first sample in control.
     pub rises: [Option<bool>; 2],
-    /// What the past adds to the voltage (deadbeat with a held EMF).
+    /// Contribution of past periods to the voltage (deadbeat with a held EMF).
     pub past: Past,
 }
 
-/// What the inverter does in one period.
+/// State of the inverter in one period.
 #[derive(Clone, Copy, Debug)]
 pub struct Command {
     pub duties: Duties,
@@ -77,7 +77,7 @@ pub struct Command {
 }
 
 impl Command {
-    /// All legs alike, without any voltage.
+    /// All legs in the same state, without any voltage.
     pub fn idle(duties: Duties) -> Self {
         Self {
             duties,
@@ -87,7 +87,7 @@ impl Command {
     }
 }
 
-/// A controller's own part of the step.
+/// The controller's own part of the step.
 #[derive(Clone, Debug)]
 pub enum Law {
     Pdcc(pdcc::Pdcc),

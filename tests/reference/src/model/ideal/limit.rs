@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 pub struct Limited {
     /// Phase voltages, zero sum, volt.
     pub u: Vector3<f64>,
-    /// Where the voltage lay before.
+    /// Position of the voltage before limiting.
     pub reach: Reach,
 }
 
@@ -43,9 +43,9 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
     Limited { u, reach }
 }
 
-/// Share of the reach over which torque priority passes into the nearest point.
+/// Fraction of the limit over which torque priority blends into the nearest point.
 const BLEND_SHARE: f64 = 1.0 / 2.0;
-/// EMF below which torque has no direction to be kept in, as a share of the bus.
+/// EMF below which torque has no preferred direction, as a fraction of the bus.
 const LEAST_EMF: f64 = 1.0 / 32.0;
 /// Least weight of a line-to-line voltage, as a share of the largest EMF.
 const LIGHT_SHARE: f64 = 1.0 / 4.0;
@@ -84,7 +84,7 @@ fn clip_across(
     } else {
         (y, x)
     };
-    // Past the reach there is never less than nothing missing, whatever rounding says.
+    // Beyond the limit the missing part is at least zero, whatever rounding gives.
     let p_heavy = weight(heavy) * v_bus;
     let missing = p.abs().min(f[d].abs() * v_bus) - p_heavy;
     let to_light = if p.abs() >= p_heavy {

@@ -1,9 +1,9 @@
-//! The speed regulator (section "Speed loop"), in physical units.
+//! The speed controller (section "Speed loop"), in physical units.
 
 use crate::Spec;
 use std::f64::consts::TAU;
 
-/// Numbers of the regulator.
+/// Constants of the controller.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedLoop {
     /// Ampere per rad/s, mechanical.
@@ -17,7 +17,7 @@ pub struct SpeedLoop {
 }
 
 impl SpeedLoop {
-    /// None without a speed loop.
+    /// `None` without a speed loop.
     pub fn new(spec: &Spec) -> Option<Self> {
         let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
         let bandwidth = TAU * options.speed_bandwidth;
@@ -30,12 +30,13 @@ impl SpeedLoop {
         })
     }
 
-    /// The speed within what is allowed, mechanical rad/s.
+    /// The speed within the limits, mechanical rad/s.
     pub fn allowed(&self, speed: f64) -> f64 {
         speed.clamp(-self.greatest, self.greatest)
     }
 
-    /// The current, and the integral behind the step, ampere; `angle` is the electrical angle per tick.
+    /// The current, and the integral after the step, ampere; `angle` is the electrical angle per
+    /// tick.
     pub fn regulate(&self, wanted: f64, angle: f64, most: f64, integral: f64) -> (f64, f64) {
         let limit = 2.0 * self.max_current;
         let part = (self.gain * (wanted - angle * self.per_tick)).clamp(-limit, limit);

@@ -1,4 +1,4 @@
-//! Shifts of the compare values against the dead time (section 11).
+//! Shifts of the compare values to compensate the dead time (section 11).
 
 use super::Inputs;
 use crate::exact::{Coefficient, Word, round_half_up, within};
@@ -6,10 +6,10 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 
-/// Share of the largest set-point within which the shift is in proportion to the current.
+/// Fraction of the largest set-point up to which the shift is proportional to the current.
 const SOFT_BAND: f64 = 0.1;
 
-/// Coefficient and limit; zero where nothing is compensated.
+/// Coefficient and limit; zero without compensation.
 #[derive(Clone, Debug)]
 pub struct DeadTime<W> {
     k_dead: Coefficient<W>,

@@ -7,17 +7,17 @@ use crate::exact::{Coefficient, Word, both};
 use crate::model::bit_true::constants::Scale;
 use crate::model::trace::Past;
 
-/// How the voltage is put together.
+/// Form of the voltage.
 #[derive(Clone, Debug)]
 pub enum Form<W> {
     /// From prediction and EMF.
     TwoStep(Deadbeat<W>),
-    /// From what the past left.
+    /// From the contributions of past periods.
     Held(Held<W>),
 }
 
 impl<W: Word> Form<W> {
-    /// `asked`: the law asks for the EMF besides.
+    /// `asked`: the law uses the EMF, too.
     pub fn new(asked: bool, scale: &Scale) -> Result<Self, Error> {
         Ok(if scale.variant.holds() {
             Self::Held(Held::new(asked, scale)?)
@@ -44,7 +44,7 @@ impl<W: Word> Form<W> {
         }
     }
 
-    /// What is left of the measured current when the voltage takes effect, as a voltage.
+    /// The part of the measured current left when the voltage takes effect, as a voltage.
     #[inline]
     pub fn kept(&self, now: &Inputs<W>) -> [W; 2] {
         match self {
@@ -53,7 +53,7 @@ impl<W: Word> Form<W> {
         }
     }
 
-    /// What the currents and the voltage `u` leave to later steps.
+    /// Contribution of the currents and the voltage `u` to later steps.
     #[inline]
     pub fn past(&self, now: &Inputs<W>, u: [W; 2]) -> Past<W> {
         match self {

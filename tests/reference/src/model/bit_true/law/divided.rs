@@ -1,4 +1,5 @@
-//! Two vectors in one period: the shares of the period for which legs are high (sections 10a to 12 of FCS-MPC).
+//! Two vectors in one period: the fractions of the period for which legs are high (sections 10a to
+//! 12 of FCS-MPC).
 
 use super::{Command, Inputs, pulses};
 use crate::exact::{Word, all_three, both, floor_shift, halve, within, word};
@@ -12,7 +13,7 @@ pub fn with_off_leg(off: usize) -> [usize; 2] {
     both(|_| found.next().unwrap_or(vectors::FIRST_PAIR))
 }
 
-/// The legs that a pair vector drives high and low.
+/// The high and the low leg of a pair vector.
 pub fn high_and_low(vector: usize) -> (usize, usize) {
     let find = |wanted: i8| {
         let mut legs = vectors::LEGS[vector].iter();
@@ -62,7 +63,7 @@ pub fn command<W: Word>(now: &Inputs<W>, terminal: [W; 3], off: Option<usize>) -
     }
 }
 
-/// Phase voltages a, b of the command, a leg that is off midway between the two others.
+/// Phase voltages a, b of the command, with an off leg midway between the two others.
 pub fn mean<W: Word>(now: &Inputs<W>, command: &Command<W>) -> [W; 2] {
     let mut t = command.terminal;
     if let Some(off) = command.off.checked_sub(1) {

@@ -16,7 +16,7 @@ use crate::{Candidates, Error, Switch};
 #[derive(Clone, Debug)]
 pub struct FcsMpc<W> {
     pub candidates: Candidates,
-    /// Pairs are allowed and their off leg sits where current or EMF put it.
+    /// Pairs are allowed and their off leg is where current or EMF puts it.
     pub floating: bool,
     /// A second vector shares the period.
     modulated: bool,
@@ -69,7 +69,8 @@ impl<W: Word> FcsMpc<W> {
             let is_less = if exact || has_off_leg(other) || has_off_leg(vector) {
                 score < least
             } else {
-                // Three-phase vectors are told apart by their exact scores, whatever the products lose.
+                // Three-phase vectors are distinguished by their exact scores, whatever the
+                // products lose.
                 choice.score(other, true) < choice.score(vector, true)
             };
             if is_less {
@@ -83,7 +84,7 @@ impl<W: Word> FcsMpc<W> {
     }
 }
 
-/// What the scores are made of.
+/// Inputs of the scores.
 pub struct Choice<'a, W> {
     pub law: &'a FcsMpc<W>,
     pub v_bus: W,
@@ -107,7 +108,8 @@ impl<'a, W: Word> Choice<'a, W> {
 
     /// The decision for a vector.
     fn apply(&self, now: &Inputs<W>, vector: usize) -> Decision<W> {
-        // 12; a floating variant keeps the terminal voltages and shows the vector as it was judged.
+        // 12; a floating variant keeps the terminal voltages and traces the vector as it was
+        // scored.
         let u = if self.law.floating {
             self.voltage(vector)
         } else {
@@ -126,7 +128,7 @@ impl<'a, W: Word> Choice<'a, W> {
         }
     }
 
-    /// Terminal voltage of the off leg, the two others' mean being `driven`.
+    /// Terminal voltage of the off leg, for a mean `driven` of the two others.
     pub fn off_terminal(&self, leg: usize, driven: W) -> W {
         if self.held[leg] > self.law.i_comm_volts {
             word(0.0)
@@ -137,7 +139,8 @@ impl<'a, W: Word> Choice<'a, W> {
         }
     }
 
-    /// The vector's score; `exact` without the product that all scores of an exact list share.
+    /// The vector's score; `exact` without the product that is common to all scores of an exact
+    /// list.
     fn score(&self, vector: usize, exact: bool) -> W {
         let along = self.by_bus(vector);
         if exact {
@@ -147,8 +150,8 @@ impl<'a, W: Word> Choice<'a, W> {
         }
     }
 
-    /// The score whose multiple of the bus is `along`, one floor of both its products: vectors of the same voltage have
-    /// the same score, whatever products it is made of.
+    /// The score with the multiple `along` of the bus, one floor of both its products: vectors of
+    /// the same voltage have the same score, whatever products it consists of.
     pub fn rounded(&self, vector: usize, along: W) -> W {
         let score = &self.law.score;
         match self.aside(vector) {
@@ -162,7 +165,7 @@ impl<'a, W: Word> Choice<'a, W> {
         score_by_bus(self.v_bus, &self.u, vector)
     }
 
-    /// Factors of what an off leg that does not lie midway adds.
+    /// Factors of the contribution of an off leg that is not midway.
     fn aside(&self, vector: usize) -> Option<[W; 2]> {
         let off = vectors::off_leg(vector).filter(|_| self.law.floating)?;
         Some(if vector < vectors::FIRST_PAIR_ZERO {
@@ -244,7 +247,7 @@ impl<'a, W: Word> Choice<'a, W> {
         [terminal[0] - mean, terminal[1] - mean]
     }
 
-    /// Voltages of phases a, b as the score takes them, for the trace.
+    /// Voltages of phases a, b as in the score, for the trace.
     fn voltage(&self, vector: usize) -> [W; 2] {
         let legs = vectors::LEGS[vector];
         let mut terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { word(0.0) });
@@ -257,7 +260,7 @@ impl<'a, W: Word> Choice<'a, W> {
     }
 }
 
-/// 6 (|v|^2 - 2 u v) over the bus, a leg that is off midway.
+/// 6 (|v|^2 - 2 u v) over the bus, with an off leg midway.
 pub fn score_by_bus<W: Word>(v_bus: W, u: &[W; 3], vector: usize) -> W {
     let legs = vectors::LEGS[vector];
     let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);

@@ -1,4 +1,5 @@
-//! The deadbeat voltage with the EMF of the last period held, its terms collected by age (section 9, `emf: held`).
+//! The deadbeat voltage with the EMF of the last period held, its terms collected by age (section
+//! 9, `emf: held`).
 
 use super::Inputs;
 use crate::Error;
@@ -12,17 +13,17 @@ pub struct Held<W> {
     now: Coefficient<W>,
     past: Coefficient<W>,
     fade: Coefficient<W>,
-    /// Whether the law asks for the EMF.
+    /// Whether the law uses the EMF.
     asked: bool,
     due: Coefficient<W>,
     later: Coefficient<W>,
     di: Coefficient<W>,
-    /// Only the compensation of dead time asks for what is left of the current.
+    /// Only dead-time compensation uses the remaining current.
     hold: Coefficient<W>,
 }
 
 impl<W: Word> Held<W> {
-    /// `asked`: the law asks for the EMF.
+    /// `asked`: the law uses the EMF.
     pub fn new(asked: bool, scale: &Scale) -> Result<Self, Error> {
         let (a, b) = (scale.phase.a, scale.phase.b);
         let delayed = scale.variant.delayed();
@@ -52,7 +53,7 @@ impl<W: Word> Held<W> {
         both(|x| now.j[x] + now.past.due[x] + self.now.mul(now.i[x]))
     }
 
-    /// The EMF that the last period showed, phases a, b.
+    /// The observed EMF of the last period, phases a, b.
     #[inline]
     pub fn emf(&self, now: &Inputs<W>) -> [W; 2] {
         if !self.asked {
@@ -70,13 +71,13 @@ impl<W: Word> Held<W> {
         })
     }
 
-    /// What is left of the measured current when the voltage takes effect, as a voltage.
+    /// The part of the measured current left when the voltage takes effect, as a voltage.
     #[inline]
     pub fn kept(&self, now: &Inputs<W>) -> [W; 2] {
         both(|x| self.hold.mul(now.i[x]))
     }
 
-    /// What this step's current and voltage `u` leave to the next two.
+    /// Contributions of this step's current and voltage `u` to the next two.
     #[inline]
     pub fn past(&self, now: &Inputs<W>, u: [W; 2]) -> Past<W> {
         let sampled = both(|x| self.past.mul(now.i[x]));

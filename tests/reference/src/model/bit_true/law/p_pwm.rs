@@ -1,4 +1,4 @@
-//! Proportional control: proportional share and fed-forward EMF, limited and pulsed.
+//! Proportional control: proportional part and EMF feed-forward, limited and pulsed.
 
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, word};

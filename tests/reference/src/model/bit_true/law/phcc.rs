@@ -1,4 +1,5 @@
-//! PHCC: the predicted error's components against their bands, and the vector that a table has for both wishes.
+//! PHCC: the predicted error's components against their bands, and the vector of a table for both
+//! directions.
 
 use super::whole::{self, Sixth};
 use super::{Decision, Inputs};
@@ -10,12 +11,12 @@ use crate::model::trace::Past;
 
 use crate::{Candidates, Error, Spec};
 
-/// Where the memory of the axes is.
+/// Storage of the axes' memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Memory {
     /// `h_a`, `h_b`.
     Words,
-    /// In what is due.
+    /// In the contributions of past periods.
     Due,
 }
 
@@ -27,7 +28,7 @@ pub struct Phcc<W> {
     /// Vectors of pairs are allowed, which turn legs off.
     pairs: bool,
     k_hold: Coefficient<W>,
-    /// Of the present current in this prediction and in the next, the EMF held.
+    /// Of the present current in this prediction and in the next, with a held EMF.
     k_now: Coefficient<W>,
     k_past: Coefficient<W>,
     sixth: Sixth<W>,
@@ -118,7 +119,7 @@ impl<W: Word> Phcc<W> {
     }
 }
 
-/// What the memory of the axes adds to the words that are due, phases a and b (section 12).
+/// Contribution of the axes' memory to the words of past periods, phases a and b (section 12).
 #[inline]
 pub fn in_due<W: Word>([h_a, h_b]: [W; 2]) -> [W; 2] {
     let falls: W = word(if h_b < 0.0 { 1.0 } else { 0.0 });

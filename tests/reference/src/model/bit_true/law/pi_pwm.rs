@@ -1,4 +1,4 @@
-//! PI control: proportional share, integral and fed-forward EMF, limited and pulsed.
+//! PI control: proportional part, integral and EMF feed-forward, limited and pulsed.
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
@@ -11,7 +11,7 @@ use crate::{Error, Saturation, Spec, Switch};
 
 #[derive(Clone, Debug)]
 pub struct PiPwm<W> {
-    /// One regulator, for the pair.
+    /// One controller for the pair.
     six_step: bool,
     saturation: Saturation,
     k_drop: Coefficient<W>,
@@ -74,7 +74,7 @@ impl<W: Word> PiPwm<W> {
             past: now.past,
         }
     }
-    /// One regulator on the current of the conducting pair.
+    /// One controller of the conducting pair's current.
     fn decide_pair(&self, now: &Inputs<W>) -> Decision<W> {
         // 9
         let i = [now.i[0], now.i[1], -(now.i[0] + now.i[1])];

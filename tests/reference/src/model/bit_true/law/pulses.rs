@@ -5,7 +5,7 @@ use crate::exact::{Word, all_three, floor, greater, halve, lesser, to_u16, withi
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
-/// A timer compare value from a word of whole and half counts.
+/// A timer compare value from a word of integer and half counts.
 #[inline]
 fn compare<W: Word>(now: &Inputs<W>, counts: W) -> u16 {
     let k = now.k;
@@ -16,7 +16,7 @@ fn compare<W: Word>(now: &Inputs<W>, counts: W) -> u16 {
     ))
 }
 
-/// The voltage that gives the same duty on the nominal bus.
+/// The voltage with the same duty on the nominal bus.
 #[inline]
 fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
     if now.k.bus.is_some() {
@@ -26,15 +26,15 @@ fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
     }
 }
 
-/// The compare value of a leg that is high for the share of the period that `t` is of the bus; `shift` is against the
+/// The compare value of a leg that is high for the fraction `t` of the bus; `shift` compensates the
 /// dead time.
 #[inline]
 pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
     compare(now, nominal(now, t) + shift)
 }
 
-/// Three pulsed legs of voltages `u` against any common point, their common mode in the middle of the bus; with
-/// terminal voltages where the variant keeps them. `shifts` are against the dead time.
+/// Three pulsed legs with voltages `u` against any common point, their common mode in the middle of
+/// the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
 #[inline]
 pub fn three<W: Word>(now: &Inputs<W>, u: [W; 3], shifts: [W; 3], terminals: bool) -> Command<W> {
     let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
@@ -56,7 +56,8 @@ pub fn three<W: Word>(now: &Inputs<W>, u: [W; 3], shifts: [W; 3], terminals: boo
     }
 }
 
-/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are against the dead time.
+/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` compensate the
+/// dead time.
 #[inline]
 pub fn pair<W: Word>(now: &Inputs<W>, u: [W; 2], shifts: [W; 3]) -> Command<W> {
     if now.sector_eff == 0 {
@@ -67,7 +68,7 @@ pub fn pair<W: Word>(now: &Inputs<W>, u: [W; 2], shifts: [W; 3]) -> Command<W> {
     line(now, within(v, -now.v_bus, now.v_bus), shifts)
 }
 
-/// The line voltage `v` of the conducting pair, within the bus.
+/// The line voltage `v` of the conducting pair, clamped to the bus.
 #[inline]
 pub fn line<W: Word>(now: &Inputs<W>, v: W, shifts: [W; 3]) -> Command<W> {
     let mut command = Command::idle(Legs::OFF);

@@ -15,7 +15,7 @@ pub struct TwoSteps<W> {
 }
 
 impl<W: Word> TwoSteps<W> {
-    /// None where the cost looks one period ahead.
+    /// `None` for a horizon of one period.
     pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
         if options.horizon != 2 {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! The choice of FCS-MPC where its cost has weights (section 10w).
+//! The choice of FCS-MPC with weights in its cost (section 10w).
 
 use super::Inputs;
 use super::fcs_mpc::Choice;
@@ -15,7 +15,7 @@ pub struct Weights<W> {
 }
 
 impl<W: Word> Weights<W> {
-    /// None where nothing weighs but the current's error.
+    /// `None` if only the current error is weighted.
     pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
         let weighs = options.switching_weight + options.torque_weight > 0.0;
         if !weighs || options.modulated == Switch::On {
@@ -32,7 +32,7 @@ impl<W: Word> Weights<W> {
         }))
     }
 
-    /// The vector of the least cost; `exact`: no score of the list is rounded for its off legs.
+    /// The vector with the least cost; `exact`: no score of the list is rounded for its off legs.
     pub fn choose(&self, choice: &Choice<W>, now: &Inputs<W>, exact: bool) -> usize {
         let (zero, others) =
             vectors::candidates(choice.law.candidates, now.commutating, now.sector_eff);
@@ -62,7 +62,7 @@ impl<W: Word> Weights<W> {
                 }
             }
         }
-        // Pairs by their numbers, behind what is no pair.
+        // Pairs by their numbers, after the other vectors.
         kept.sort_by_key(|vector| if kind(*vector) < 3 { *vector } else { 0 });
         first_least(kept.into_iter(), |vector| self.rounded(choice, now, vector))
     }
@@ -72,7 +72,7 @@ impl<W: Word> Weights<W> {
         word::<W>(self.change) * vectors::changes(now.vector_prev, vector)
     }
 
-    /// The score over the bus, without what an off leg adds.
+    /// The score over the bus, without the contribution of an off leg.
     fn by_bus(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
         choice.by_bus(vector) + self.changed(now, vector)
     }
@@ -93,7 +93,7 @@ fn kind(vector: usize) -> usize {
     }
 }
 
-/// The first of the least score.
+/// The first with the least score.
 pub fn first_least<W: Word>(
     list: impl Iterator<Item = usize>,
     score: impl Fn(usize) -> W,
@@ -108,7 +108,7 @@ pub fn first_least<W: Word>(
     least.map_or(0, |(vector, _)| vector)
 }
 
-/// What the torque's error weighs.
+/// Cost of the torque's error.
 fn torque<W: Word>(
     weight: &Coefficient<W>,
     choice: &Choice<W>,

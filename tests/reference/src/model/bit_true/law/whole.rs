@@ -1,4 +1,4 @@
-//! One vector for a whole period: its legs, and its voltage as it is kept (sections 11 and 12 of FCS-MPC).
+//! One vector for a whole period: its legs, and its stored voltage (sections 11 and 12 of FCS-MPC).
 
 use super::{Command, Inputs};
 use crate::Error;
@@ -7,7 +7,7 @@ use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
 use hexagen::{LegState, Legs};
 
-/// The command of a vector; where none turns a leg off, low legs are pulsed with 0.
+/// The command of a vector; in variants without off legs, low legs are pulsed with 0.
 #[inline]
 pub fn command<W: Word>(now: &Inputs<W>, vector: usize, turns_off: bool) -> Command<W> {
     let legs = vectors::LEGS[vector];
@@ -26,10 +26,10 @@ pub fn command<W: Word>(now: &Inputs<W>, vector: usize, turns_off: bool) -> Comm
     }
 }
 
-/// A sixth of the bus, the unit of the vectors' phase voltages where no leg floats.
+/// A sixth of the bus, the unit of the vectors' phase voltages without floating legs.
 #[derive(Clone, Debug)]
 pub struct Sixth<W> {
-    /// None without a use for the voltage: only the trace shows it then.
+    /// `None` if the voltage is only traced.
     k_sixth: Option<Coefficient<W>>,
 }
 

@@ -5,7 +5,7 @@ use crate::DiscretePhase;
 use crate::model::trace::Past;
 use nalgebra::Vector2;
 
-/// Current at the beginning of the period that the command takes effect in.
+/// Current at the beginning of the period in which the command takes effect.
 pub fn current_then(now: &Inputs) -> Vector2<f64> {
     let DiscretePhase { a, b } = now.phase;
     if now.delayed {
@@ -24,7 +24,7 @@ pub fn voltage(now: &Inputs) -> Vector2<f64> {
     (now.i_ref - current_then(now) * a) / b + now.e
 }
 
-/// The EMF that the limits leave room for; one that the last period showed, within `limit` per phase.
+/// The EMF within the limits; an observed one within `limit` per phase.
 pub fn emf(now: &Inputs, limit: f64) -> Vector2<f64> {
     if now.emf_is_held {
         held::emf(now, limit)
@@ -33,7 +33,7 @@ pub fn emf(now: &Inputs, limit: f64) -> Vector2<f64> {
     }
 }
 
-/// What this step's current and voltage `u` leave to the next steps.
+/// Contributions of this step's current and voltage `u` to the next steps.
 pub fn past(now: &Inputs, u: &Vector2<f64>) -> Past {
     if now.emf_is_held {
         held::past(now, u)

@@ -52,7 +52,7 @@ pub fn command(
     (mean, command)
 }
 
-/// The share of the first of two voltages at the point nearest to `u` between them.
+/// The fraction of the first of two voltages at the point nearest to `u` between them.
 fn share(u: &Vector2<f64>, first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
     let along = first - second;
     ((u - second).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
@@ -78,7 +78,8 @@ fn neighbours(now: &Inputs, u: &Vector2<f64>, vector: usize) -> Vector3<f64> {
 
 /// Terminals between the better pair vector with that leg off and its zero.
 fn pair(options: &FcsMpc, now: &Inputs, u: &Vector2<f64>, off: usize) -> Vector3<f64> {
-    // Held at a rail, or following the two others: its own EMF moves both ends alike, across the line.
+    // Held at a rail, or following the two others: its own EMF moves both ends equally, across the
+    // line.
     let held = rail(options, now, off).filter(|_| floats(options));
     let ends = |high: usize| {
         let mut on = Vector3::zeros();

@@ -1,4 +1,4 @@
-//! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by trying.
+//! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by enumeration.
 
 use super::off_leg::{TIE, floats, with_off_leg};
 use super::{Decision, Inputs, deadbeat, divided, whole};
@@ -8,7 +8,7 @@ use crate::model::vectors;
 use crate::{Candidates, Spec, Switch};
 use nalgebra::{Vector2, Vector3};
 
-/// The options, and what they need of the drive.
+/// The options, with their constants of the drive.
 #[derive(Clone, Debug)]
 pub struct FcsMpc {
     options: crate::FcsMpc,
@@ -76,12 +76,14 @@ impl FcsMpc {
         }
     }
 
-    /// What the weights add to a vector that misses the wanted voltage so far (section 10w).
+    /// Contribution of the weights to a vector that misses the demanded voltage by this much
+    /// (section 10w).
     fn weighed(&self, now: &Inputs, vector: usize, miss: &Vector2<f64>) -> f64 {
         let per_leg =
             (self.options.switching_weight / now.phase.b).powi(2) * now.v_bus / self.v_bus;
         let switching = per_leg * vectors::changes(now.vector_prev, vector);
-        // The component of a zero-sum vector along the difference of two phases is that difference over sqrt(3).
+        // The component of a zero-sum vector along the difference of two phases is that difference
+        // over sqrt(3).
         let (x, y) = vectors::pair_of(now.sector_eff);
         let missed = phases(miss);
         let line = missed[x] - missed[y];
@@ -89,7 +91,8 @@ impl FcsMpc {
     }
 }
 
-/// The least square of the second period's miss, behind a first vector that misses the wanted voltage so far (section 10h).
+/// The least square of the second period's miss, after a first vector that misses the demanded
+/// voltage by this much (section 10h).
 fn second_miss(options: &crate::FcsMpc, now: &Inputs, miss: &Vector2<f64>) -> f64 {
     let (a, b) = (now.phase.a, now.phase.b);
     // The first period ends with i_ref - b miss.
@@ -101,7 +104,7 @@ fn second_miss(options: &crate::FcsMpc, now: &Inputs, miss: &Vector2<f64>) -> f6
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The voltage that a vector is taken to apply.
+/// The assumed voltage of a vector.
 fn voltage(options: &crate::FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
     let Some(off) = vectors::off_leg(vector).filter(|_| floats(options)) else {
         return whole::voltage(now, vector);

@@ -1,4 +1,5 @@
-//! Deadbeat control with the EMF of the last period held, its terms collected by age (section 9, `emf: held`).
+//! Deadbeat control with the EMF of the last period held, its terms collected by age (section 9,
+//! `emf: held`).
 
 use super::Inputs;
 use crate::DiscretePhase;
@@ -10,7 +11,7 @@ fn vector([a, b]: [f64; 2]) -> Vector2<f64> {
     from_ab(a, b)
 }
 
-/// The voltage asked for.
+/// The demanded voltage.
 pub fn voltage(now: &Inputs) -> Vector2<f64> {
     let DiscretePhase { a, b } = now.phase;
     let weight = if now.delayed {
@@ -27,7 +28,7 @@ pub fn deviation(now: &Inputs) -> Vector2<f64> {
     now.i_ref - now.i * (1.0 + a) + vector(now.past.due) * b
 }
 
-/// What this step's current and its voltage `u` leave to the next two predictions.
+/// Contributions of this step's current and its voltage `u` to the next two predictions.
 pub fn past_of_prediction(now: &Inputs, u: &Vector2<f64>) -> Past {
     let DiscretePhase { a, b } = now.phase;
     Past {
@@ -36,7 +37,7 @@ pub fn past_of_prediction(now: &Inputs, u: &Vector2<f64>) -> Past {
     }
 }
 
-/// The EMF that the last period showed, each phase within `limit`.
+/// The observed EMF of the last period, each phase within `limit`.
 pub fn emf(now: &Inputs, limit: f64) -> Vector2<f64> {
     let DiscretePhase { a, b } = now.phase;
     let (due, later) = (vector(now.past.due), vector(now.past.later));
@@ -48,7 +49,7 @@ pub fn emf(now: &Inputs, limit: f64) -> Vector2<f64> {
     vector(to_ab(&(known - now.i / b)).map(|e| e.clamp(-limit, limit)))
 }
 
-/// What this step's current and voltage `u` leave to the next two.
+/// Contributions of this step's current and voltage `u` to the next two.
 pub fn past(now: &Inputs, u: &Vector2<f64>) -> Past {
     let DiscretePhase { a, b } = now.phase;
     if now.delayed {

@@ -1,15 +1,15 @@
-//! The terminal of a leg that is off, where it is predicted.
+//! The terminal of an off leg, if predicted.
 
 use super::{Inputs, deadbeat};
 use crate::model::ideal::vector::{clarke, phases};
 use crate::{Candidates, OffLeg};
 use nalgebra::{Vector2, Vector3};
 
-/// Share of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64, far
-/// below that of any word. Corner references put the demand exactly between two vectors.
+/// Fraction of (|u| + bus)^2 below which two costs count as equal: far above the rounding of f64,
+/// far below that of any word. Corner references put the demand exactly between two vectors.
 pub const TIE: f64 = 1e-12;
 
-/// Whether the voltage of a leg that is off is predicted.
+/// Whether the voltage of an off leg is predicted.
 pub fn floats(options: &crate::FcsMpc) -> bool {
     options.off_leg == OffLeg::Physical && options.candidates != Candidates::ThreePhase
 }
@@ -26,7 +26,7 @@ pub fn rail(options: &crate::FcsMpc, now: &Inputs, off: usize) -> Option<f64> {
     }
 }
 
-/// The voltage of driven terminals with the off leg where it is predicted.
+/// The voltage of driven terminals with the off leg at its predicted position.
 pub fn with_off_leg(
     options: &crate::FcsMpc,
     now: &Inputs,

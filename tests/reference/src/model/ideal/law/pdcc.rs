@@ -10,7 +10,7 @@ use crate::{Error, Modulation, Spec};
 pub struct Pdcc {
     options: crate::Pdcc,
     dead_time: DeadTime,
-    /// Largest EMF that is believed, volt.
+    /// Largest plausible EMF, volt.
     v_largest: f64,
 }
 

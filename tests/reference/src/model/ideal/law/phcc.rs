@@ -1,4 +1,5 @@
-//! PHCC: the predicted error's components against their bands, and the vector that a table has for both wishes.
+//! PHCC: the predicted error's components against their bands, and the vector of a table for both
+//! directions.
 
 use super::{Decision, Inputs, deadbeat, held, whole};
 use crate::model::Reach;
@@ -31,7 +32,7 @@ impl Phcc {
         } else {
             now.i_ref - deadbeat::current_then(now)
         };
-        // As the error says outside of the band, as before within it; by its sign where there is no before.
+        // By the error outside of the band, as before within it; by its sign without a before.
         let rises = [0, 1].map(|axis| match now.rises[axis] {
             Some(true) => error[axis] >= -self.band,
             Some(false) => error[axis] > self.band,

@@ -1,4 +1,4 @@
-//! PI control: proportional share, integral and fed-forward EMF, limited and pulsed.
+//! PI control: proportional part, integral and EMF feed-forward, limited and pulsed.
 
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 #[derive(Clone, Copy, Debug)]
 pub struct PiPwm {
-    /// One regulator, for the pair.
+    /// One controller for the pair.
     six_step: bool,
     saturation: Saturation,
     /// Proportional gain, V/A.
@@ -60,7 +60,7 @@ impl PiPwm {
             past: now.past,
         }
     }
-    /// One regulator on the current of the conducting pair.
+    /// One controller of the conducting pair's current.
     fn decide_pair(&self, now: &Inputs) -> Decision {
         let i = phases(&now.i);
         let ends = (now.sector_eff != 0)

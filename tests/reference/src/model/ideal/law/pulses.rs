@@ -6,7 +6,8 @@ use crate::model::sector;
 use hexagen::LegState;
 use nalgebra::Vector3;
 
-/// Three pulsed legs, their common mode in the middle of the bus; `shifts` are shares of the period.
+/// Three pulsed legs, their common mode in the middle of the bus; `shifts` are shares of the
+/// period.
 pub fn three(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     let v_bus = now.v_bus;
     let terminal = u.map(|u_x| (u_x - u.max().midpoint(u.min()) + v_bus / 2.0).clamp(0.0, v_bus));
@@ -23,7 +24,8 @@ pub fn three(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     }
 }
 
-/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are shares of the period.
+/// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are shares of the
+/// period.
 pub fn pair(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     if now.sector_eff == 0 {
         return Command::idle(Duties::OFF);
@@ -32,7 +34,7 @@ pub fn pair(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
     line(now, v.clamp(-now.v_bus, now.v_bus), shifts)
 }
 
-/// The line voltage `v` of the conducting pair, within the bus.
+/// The line voltage `v` of the conducting pair, clamped to the bus.
 pub fn line(now: &Inputs, v: f64, shifts: &Vector3<f64>) -> Command {
     let mut command = Command::idle(Duties::OFF);
     let (sector_eff, v_bus) = (now.sector_eff, now.v_bus);

@@ -7,7 +7,7 @@ use crate::model::vectors;
 use hexagen::LegState;
 use nalgebra::{Vector2, Vector3};
 
-/// The command of a vector; where none turns a leg off, low legs are pulsed with 0.
+/// The command of a vector; in variants without off legs, low legs are pulsed with 0.
 pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
     let duties = Duties {
         duty: vectors::LEGS[vector].map(|leg| if leg > 0 { 1.0 } else { 0.0 }),
@@ -24,7 +24,7 @@ pub fn command(now: &Inputs, vector: usize, turns_off: bool) -> Command {
     }
 }
 
-/// A vector's voltage, a leg that is off in the middle of the others.
+/// A vector's voltage, with an off leg in the middle of the others.
 pub fn voltage(now: &Inputs, vector: usize) -> Vector2<f64> {
     clarke(&Vector3::from(vectors::sixths(vector))) * (now.v_bus / 6.0)
 }
