@@ -189,7 +189,7 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
 pub fn mutants_of_supervisor(text: &str) -> Vec<Mutant> {
     let behind = text.find("    /// A phase current in words of current");
     let mut start = behind.expect("what stands behind `Limits::hold`");
-    let end = text.find("    /// What the drive is doing, and what tripped it.");
+    let end = text.find("    /// Mode and fault of the drive.");
     let end = end.expect("what stands before the words");
     let mut code = vec![];
     for line in text[start..end].split_inclusive('\n') {
