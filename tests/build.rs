@@ -50,13 +50,13 @@ fn write_mutants(out_dir: &Path) {
         }
     }
     let tail = format!(
-        "/// Place of the drive, what is wrong, and whether it is noticed.\n\
+        "/// Place of the drive, what is wrong, and whether it is detected.\n\
          pub const MUTANTS: &[(usize, &str, IsNoticed)] = &[\n{list}];\n"
     );
     fs::write(out_dir.join("mutants.rs"), text + &tail).expect("OUT_DIR can be written");
 }
 
-/// The runtime's supervisor with one fault each, on the runtime's own words, samples and faults.
+/// The runtime's supervisor with one fault each, with the runtime's own words, samples and faults.
 fn write_supervisors(out_dir: &Path) {
     let source = |name: &str| {
         let path = Path::new("../runtime/src").join(name);
@@ -117,7 +117,7 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
         "/// Kind of controller, what the row is, and its comparison with the model over so many steps\n\
          /// from a seed.\n\
          pub const ROWS: &[(&str, &str, Verify)] = &[\n{rows}];\n\
-         /// What no row has, and the codes of the diagnostics that refuse it.\n\
+         /// Pairs without a row, and the codes of the diagnostics that reject them.\n\
          pub const REFUSED: &[(&str, &str)] = &[\n{refused}];\n"
     );
     fs::write(out_dir.join("covering_array.rs"), modules + &tail).expect("OUT_DIR can be written");
@@ -141,7 +141,7 @@ impl CoveringArray {
     fn of(kind: &Kind, motors: &[Motor]) -> Self {
         let mut array = Self::default();
         let first = kind.choice_of(&[]);
-        // A motor that cannot have the controller is in no pair.
+        // A motor without this controller is in no pair.
         let (able, unable): (Vec<&Motor>, Vec<&Motor>) = motors
             .iter()
             .partition(|motor| refusal(&kind.drive_toml(motor, &first, None)).is_empty());
@@ -202,7 +202,7 @@ fn type_name(kind: &Kind) -> String {
         .collect()
 }
 
-/// Codes of the diagnostics that refuse a drive; empty where it is accepted.
+/// Codes of the diagnostics that reject a drive; empty if it is valid.
 fn refusal(toml: &str) -> String {
     let codes = generate_toml(toml).err().into_iter().flatten();
     let codes: BTreeSet<String> = codes.map(|error| error.code.to_string()).collect();

@@ -11,22 +11,22 @@ use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-/// Steps from one arbitrary state, the first of which is the one that matters.
+/// Steps from one arbitrary state; the first one matters most.
 const STEPS_PER_STATE: usize = 2;
 
-/// A state with what is set and sampled in it, and what the model makes of it.
+/// A state with its calls and sample, and the model's answers.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What is set before the first step.
+    /// Calls before the first step.
     pub set: Set,
-    /// Set-point words that the model makes of it: current, bus voltage, its reciprocal, speed.
+    /// The model's set-point words: current, bus voltage, its reciprocal, speed.
     pub set_point_words: [i32; 4],
     words: Vec<i32>,
     sample: Sample,
     answers: [Answer; STEPS_PER_STATE],
 }
 
-/// What a step leaves behind.
+/// Result of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Answer {
     legs: Legs,
@@ -34,7 +34,7 @@ struct Answer {
     words: Vec<i32>,
 }
 
-/// What the model makes of a drive: at the start, and from arbitrary states.
+/// Recorded answers of a drive's model: at the start, and from arbitrary states.
 #[derive(Clone, Debug)]
 pub struct Record {
     /// Words of the initial state.
@@ -44,7 +44,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The first so many cases alone.
+    /// Only the first cases, this many.
     #[must_use]
     pub fn first(&self, cases: usize) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl Record {
 /// The cases of `steps` steps from arbitrary states of a drive, for any number of subjects.
 ///
 /// # Errors
-/// When no model can be built.
+/// If no model can be built.
 pub fn record(generated: &Generated, steps: u64, seed: u64) -> Result<Record, String> {
     let interface = &generated.interface;
     let spec = Spec::from_toml(&interface.spec_toml).map_err(|error| error.to_string())?;
@@ -115,10 +115,10 @@ fn next(sample: Sample) -> Sample {
     sample.hall_ticks(sample.ticks().saturating_add(1))
 }
 
-/// Compares the fresh subject with what was recorded; `names` are those of the state words.
+/// Compares a new subject with the record; `names` are those of the state words.
 ///
 /// # Errors
-/// What differs.
+/// The difference.
 pub fn replay<S: Subject>(record: &Record, names: &[&str], mut subject: S) -> Result<(), String> {
     let mut found = Answer::default();
     found.words.resize(names.len(), 0);

@@ -1,11 +1,11 @@
-//! Where the result of a step jumps: between two values of a word there are two neighbours whose
-//! results are farther apart than a smooth function's would be. Rounding, comparisons and limits
-//! show there, and hardly anywhere else.
+//! Jumps in the result of a step: two neighbouring values of a word whose results differ by more
+//! than a smooth function's would. Errors of rounding, comparisons and limits appear there, and
+//! hardly anywhere else.
 
 use hexagen::{LegState, Sample};
 use hexagen_reference::{BitTrue, Reach, Trace};
 
-/// What of a step's result is watched.
+/// The observed part of a step's result.
 #[derive(Clone, Copy, Debug)]
 pub enum Watched {
     /// The compare value of a phase: edges are the ties of its rounding.
@@ -14,12 +14,12 @@ pub enum Watched {
     Reach,
     /// Whether the demanded voltage drives or brakes.
     Torque,
-    /// Whether the demanded torque can be had beyond the corner of the hexagon (torque priority).
+    /// Whether the demanded torque is possible beyond the corner of the hexagon (torque priority).
     Corner {
         /// Bus voltage, volt.
         v_bus: f64,
     },
-    /// The sector that reference and commutation follow.
+    /// The sector of reference and commutation.
     Sector,
     /// A word of the state after the step.
     Word(usize),
@@ -59,8 +59,8 @@ impl Watched {
     }
 }
 
-/// Of the two line voltages that drive against the phase of the greatest EMF, the heavier is at most
-/// the bus: whether the demanded torque is more than that alone makes.
+/// Of the two line voltages that drive against the phase of the greatest EMF, the heavier is at
+/// most the bus: whether the demanded torque exceeds that of this one alone.
 fn is_beyond_corner(trace: &Trace, v_bus: f64) -> bool {
     let triple = |[a, b]: [f64; 2]| [a, b, -(a + b)];
     let (e, u) = (triple(trace.e), triple(trace.u_unsat));
@@ -79,8 +79,8 @@ fn is_beyond_corner(trace: &Trace, v_bus: f64) -> bool {
     torque.abs() >= force * v_bus
 }
 
-/// Halves the way between the ends, on the side that has the greater difference, down to neighbours;
-/// returns one of them. Without a difference that is some value between the ends.
+/// Bisects towards the greater difference, down to neighbours; returns one of them. Without a
+/// difference that is some value between the ends.
 pub fn seek(mut ends: [i32; 2], upper_side: bool, mut measure: impl FnMut(i32) -> Vec<i32>) -> i32 {
     ends.sort_unstable();
     let [mut low, mut high] = ends;
@@ -112,7 +112,7 @@ mod tests {
     fn neighbours_of_a_jump_are_found() {
         let ramp_with_jump = |x: i32| vec![x / 4 + if x > 12_345 { 1_000_000 } else { 0 }];
         let ends = [i32::MAX / 2, i32::MIN / 2];
-        // The ramp is longer than the jump is high until the way is short.
+        // The ramp is longer than the jump is high until the interval is short.
         let near = seek([20_000, -20_000], false, ramp_with_jump);
         assert_eq!(near, 12_345);
         assert_eq!(seek([20_000, -20_000], true, ramp_with_jump), 12_346);

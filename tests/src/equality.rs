@@ -1,17 +1,17 @@
-//! Comparisons of a program's step at equality: a wrong comparison, limit or order of ties shows there
-//! alone, and no stream of inputs gets there by chance.
+//! Inputs at which a program's comparisons meet equality: a wrong comparison, limit or order of
+//! ties appears only there, and no stream of inputs gets there by chance.
 //!
-//! The program says where its comparisons are; what it computes there is told by the model.
+//! The program lists its comparisons; their operands' values come from the model.
 
 use crate::set::Set;
 use hexagen::{Limits, Sample, Supervisor};
 use hexagen_codegen::ir::{Machine, Op, Output, Program, Setter, Value};
 use hexagen_lab::Inputs;
 
-/// Values of an operand pair that are met often enough by chance.
+/// Operand pairs with at most this many values meet often enough by chance.
 const FEW: i64 = 1 << 10;
 
-/// Results of the probe per comparison: both operands, and whether it is made.
+/// Results of the probe per comparison: both operands, and whether it is evaluated.
 const RESULTS: usize = 3;
 
 /// The comparisons of a step.
@@ -63,7 +63,7 @@ impl Comparisons {
         self.unguarded.is_empty()
     }
 
-    /// The program in a sample's period, with the bus voltage as set, behind a supervisor.
+    /// The program in a sample's period, with the bus voltage as set, after a supervisor.
     ///
     /// # Panics
     ///
@@ -92,7 +92,7 @@ impl Comparisons {
     }
 }
 
-/// A program whose comparisons are looked at.
+/// A program with its comparisons.
 #[derive(Debug)]
 pub struct Probe<'p> {
     machine: Machine<'p>,
@@ -104,8 +104,9 @@ pub struct Probe<'p> {
 }
 
 impl Probe<'_> {
-    /// By how much the first operand of a comparison is greater with a set-point and in a state, whose words
-    /// follow it; none where the comparison is not made, or the period is not controlled.
+    /// Difference between the first and second operand of a comparison, with a set-point and in a
+    /// state, whose words follow it; `None` if the comparison is not evaluated, or the period is
+    /// not controlled.
     pub fn difference(&mut self, comparison: usize, words: &[i32]) -> Option<i64> {
         let (bits, words) = words.split_first()?;
         self.machine.set(self.setter, &[*bits]).ok()?;
@@ -122,8 +123,8 @@ impl Probe<'_> {
     }
 }
 
-/// The value of a word nearest to `from`, by powers of eight, between which and its neighbour the
-/// difference changes its sign: of the two the one with the lesser difference. None without a change.
+/// The value of a word nearest to `from`, by powers of eight, at which the difference changes sign:
+/// of the two neighbours the one with the smaller difference. `None` without a change.
 pub fn seek_zero(
     from: i32,
     (least, most): (i32, i32),

@@ -1,10 +1,11 @@
-//! The bit-true model over words with intervals: that every sum and product of it is exact.
+//! Proof that every sum and product of the bit-true model is exact, by words with intervals.
 //!
-//! The model itself runs, over [`Bounded`] words in place of f64: state words are any of the intervals
-//! that the verifier has proven, inputs any of their types. An operation of the text gets the union of what it may give
-//! on all ways that have led to it, for all values, and has to fit 53 bits with it. Arbitrary states lead the program
-//! on its ways; a proof ends when as many states again as it took to get there have added nothing to any operation. Every
-//! value has to be what is known of it, and every step that of the plain model.
+//! The model itself runs, with [`Bounded`] words in place of f64: state words are any of the
+//! verifier's proven intervals, inputs any of their types. An operation in the source has the union
+//! of its results over all paths so far, for all values, which must fit 53 bits. Arbitrary states
+//! drive the program along its paths; a proof ends when as many further states as so far have added
+//! nothing to any operation. Every value must lie in its interval, and every step must equal the
+//! plain model's.
 
 mod bounded;
 pub mod ledger;
@@ -19,22 +20,22 @@ use hexagen_reference::{BitTrue, FormatTable, Spec};
 use ledger::Findings;
 use std::f64::consts::TAU;
 
-/// States that a proof takes at least, and at most.
+/// Minimum and maximum number of states of a proof.
 const STATES: [usize; 2] = [1 << 10, 1 << 16];
 
 /// Proves that a drive's bit-true model is exact.
 ///
 /// # Errors
-/// Where it may not be, or that the states did not suffice.
+/// The place of a possibly inexact operation, or that the states did not suffice.
 pub fn prove_exact(generated: &Generated) -> Result<Findings, String> {
     prove(generated, &formats(&generated.interface.formats), true)
 }
 
-/// As [`prove_exact`] for another format table, in the drive's own states. Steps are not compared with those of the
-/// plain model, which stops where a number is too long.
+/// Like [`prove_exact`] for another format table, in the drive's own states. Steps are not compared
+/// with the plain model, which stops at numbers that are too long.
 ///
 /// # Errors
-/// As [`prove_exact`].
+/// Like [`prove_exact`].
 pub fn prove_exact_in(generated: &Generated, table: &[Format]) -> Result<Findings, String> {
     prove(generated, table, false)
 }
@@ -59,7 +60,7 @@ fn prove(generated: &Generated, table: &[Format], compares: bool) -> Result<Find
     let [least, most] = STATES;
     let (mut settled, mut number) = (0, 0);
     while number < least + 2 * settled {
-        // The first step is one with the set-point of a drive at rest.
+        // The first step has the initial set-point.
         if number > 0 {
             let (bus, speed) = (states.bus_counts(), states.set_point(most_speed));
             model.set_bus(bus);

@@ -12,15 +12,15 @@ use std::sync::{Arc, OnceLock};
 /// Cases of `steps` steps from arbitrary states, with the model's answers.
 ///
 /// # Errors
-/// When no model can be built.
+/// If no model can be built.
 pub fn record_states(generated: &Generated, steps: u64, seed: u64) -> Result<Record, String> {
     cases::record(generated, steps, seed)
 }
 
-/// As [`compare`], from arbitrary states.
+/// Like [`compare`], from arbitrary states.
 ///
 /// # Errors
-/// What differs, or which value left its proven interval.
+/// The difference, or the value that left its proven interval.
 pub fn compare_states(
     generated: &Generated,
     program: &Program,
@@ -31,10 +31,10 @@ pub fn compare_states(
     compare_record(generated, program, &record)
 }
 
-/// Compares the interpreted `program` with what was recorded.
+/// Compares the interpreted `program` with the record.
 ///
 /// # Errors
-/// What differs, or which value left its proven interval.
+/// The difference, or the value that left its proven interval.
 pub fn compare_record(
     generated: &Generated,
     program: &Program,
@@ -58,11 +58,11 @@ fn unless_escaped<T>(escaped: &OnceLock<Escape>, result: Result<T, String>) -> R
     }
 }
 
-/// Compares the words that the setters make of every input: of all set-points up to the greatest and a
-/// few beyond, and of all bus voltages.
+/// Compares the setters' words for every input: all set-points up to slightly above the greatest,
+/// and all bus voltages.
 ///
 /// # Errors
-/// What differs, or which value left its proven interval.
+/// The difference, or the value that left its proven interval.
 pub fn compare_all_set_points(generated: &Generated, program: &Program) -> Result<(), String> {
     let interface = &generated.interface;
     let spec = Spec::from_toml(&interface.spec_toml).map_err(|error| error.to_string())?;
@@ -105,7 +105,7 @@ fn compare_setter(
     let escape = |escape: Escape| format!("left its interval: {}", escape.place);
     machine.set(setter, &[word]).map_err(escape)?;
     let expected = model.set_point_words().map(|word| word as i32);
-    // The current's word comes first, then those of a measured bus, as far as they are needed.
+    // The current's word comes first, then those of a measured bus, if needed.
     if machine.params[..] == expected[..machine.params.len()] {
         return Ok(());
     }
@@ -116,7 +116,7 @@ fn compare_setter(
     ))
 }
 
-/// The words that the setters make, which steps show only through their effects.
+/// The setters' words, which steps show only through their effects.
 fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
     let mut machine = Machine::of_program(program);
     for Case {
@@ -156,11 +156,11 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares the interpreter with the bit-true model; `program` may be another one than the
-/// generated, to see whether the comparison notices.
+/// Compares the interpreter with the bit-true model; `program` may be faulty, to test the
+/// comparison.
 ///
 /// # Errors
-/// What differs, or which value left its proven interval.
+/// The difference, or the value that left its proven interval.
 pub fn compare(
     generated: &Generated,
     program: &Program,

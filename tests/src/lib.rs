@@ -1,9 +1,9 @@
-//! What the cross-crate tests share: the motor library, the options of a drive, covering arrays,
-//! planted faults, proofs over programs and of the model's exactness, and what the bit-for-bit test is
-//! extended by: the interpreter as a subject, and arbitrary states.
+//! Common parts of the cross-crate tests: motor library, options of a drive, covering arrays,
+//! planted faults, proofs over programs and of the model's exactness, and extensions of the
+//! bit-for-bit test: the interpreter as a subject, and arbitrary states.
 
 pub mod cases;
-/// The drives of the covering arrays, as the build script finds them.
+/// The drives of the covering arrays, from the build script.
 pub mod covering {
     include!(concat!(env!("OUT_DIR"), "/covering_specifications.rs"));
 }
@@ -20,7 +20,7 @@ pub mod proof;
 pub mod set;
 pub mod states;
 
-/// The README's examples, which the documentation tests of this crate run.
+/// The README's examples, run as documentation tests of this crate.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;

@@ -6,7 +6,7 @@ use std::path::Path;
 /// The folder of motor files, relative to this crate.
 pub const FOLDER: &str = "../targets/motors";
 
-/// The motor that the published results are about.
+/// The motor of the published results.
 pub const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// A motor file of the library.
@@ -21,7 +21,7 @@ pub struct Motor {
 /// All motors, in the order of their names.
 ///
 /// # Panics
-/// When the library cannot be read or is empty.
+/// If the library cannot be read or is empty.
 pub fn motors() -> Vec<Motor> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
     let entries = fs::read_dir(&folder).expect("the motor library can be read");
@@ -45,7 +45,7 @@ pub fn motors() -> Vec<Motor> {
     motors
 }
 
-/// A motor's text with an inertia, where it states none: what a speed loop needs.
+/// A motor's text with an inertia, as a speed loop needs one.
 pub fn with_inertia(text: &str) -> String {
     if text.contains("\ninertia") {
         text.to_owned()
@@ -57,7 +57,7 @@ pub fn with_inertia(text: &str) -> String {
 /// The motor of this file name.
 ///
 /// # Panics
-/// When the library has none.
+/// If the library has none.
 pub fn motor(name: &str) -> Motor {
     motors()
         .into_iter()

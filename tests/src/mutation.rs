@@ -1,10 +1,10 @@
-//! Faults planted in text, of emitted code and of the runtime's supervisor: a wrong constant, shift,
-//! sign, rounding or comparison.
+//! Faults planted in text, of emitted code and of the runtime's supervisor: a wrong constant,
+//! shift, sign, rounding or comparison.
 
 use crate::options::Drive;
 use std::ops::Range;
 
-/// Drives whose text faults are planted in: together they have every stage of a step.
+/// Drives for faults in the text: together they have every stage of a step.
 pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pdcc",
@@ -66,7 +66,7 @@ struct Edit {
     new: String,
 }
 
-/// A kind of fault: its name, and all places where it can be planted.
+/// A kind of fault: its name, and a function that lists its places.
 type Kind = (&'static str, fn(&str, &[Range<usize>]) -> Vec<Edit>);
 
 const KINDS: &[Kind] = &[
@@ -107,7 +107,7 @@ const KINDS: &[Kind] = &[
     ("branches swapped", swapped_branches),
 ];
 
-/// What can be wrong in the supervisor besides.
+/// Further faults of the supervisor.
 const KINDS_OF_SUPERVISOR: &[Kind] = &[
     ("not left out", |text, code| {
         replaced(text, code, "!is_", "is_")
@@ -164,7 +164,7 @@ const KINDS_OF_SUPERVISOR: &[Kind] = &[
             .into_iter()
             .flat_map(|name| {
                 let other = name.replace("_a", "_b");
-                // Where it is used, not where it is named.
+                // At its uses, not its declaration.
                 let used = |edit: &Edit| !text[..edit.range.start].ends_with('[');
                 replaced(text, code, name, &other)
                     .into_iter()
@@ -175,13 +175,13 @@ const KINDS_OF_SUPERVISOR: &[Kind] = &[
     }),
 ];
 
-/// Mutants of an emitted drive, `per_kind` of every kind that it has sites for, spread evenly.
+/// Mutants of an emitted drive, `per_kind` of every kind with sites in it, spread evenly.
 pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
     mutants_in(text, &code_lines(text), KINDS, per_kind)
 }
 
-/// All mutants of the supervisor, but for what its limits must hold (faults of that are planted where
-/// it is tested) and for access to its words.
+/// All mutants of the supervisor, except `Limits::hold` (with planted faults in its own tests) and
+/// the access to its words.
 ///
 /// # Panics
 ///
@@ -225,16 +225,16 @@ fn mutants_in(text: &str, code: &[Range<usize>], kinds: &[Kind], per_kind: usize
     found
 }
 
-/// Lines of the law: its constants, its tables, its entries and their stages. No documentation, no
-/// interface, nothing that is told to people.
+/// Lines of the law: its constants, tables, entries and stages, without documentation, interface
+/// and signals.
 fn code_lines(text: &str) -> Vec<Range<usize>> {
     let mut lines = vec![];
     let (mut start, mut in_step) = (0, true);
     for line in text.split_inclusive('\n') {
         let trimmed = line.trim_start();
         let begins = |starts: &[&str]| starts.iter().any(|start| line.starts_with(start));
-        // Items for the user and the runtime are `pub`, the law's are private; of what the runtime is
-        // given all but the functions that it runs is left out.
+        // Items for the user and the runtime are `pub`, the law's are private; of the runtime's
+        // input only the functions that it runs are included.
         if begins(&["    pub ", "    impl", "        const ", "        type "]) {
             in_step = false;
         } else if begins(&["    fn ", "    const ", "    static ", "        fn "]) {
@@ -284,7 +284,8 @@ fn constants(text: &str, code: &[Range<usize>], wrong: impl Fn(i64) -> i64) -> V
     sites.collect()
 }
 
-/// Name and index of the table entry at this place, in tables of rows its field, too, if there is a table.
+/// Name and index of the table entry at this place, with its field in tables of rows, if there is a
+/// table.
 fn table_entry(text: &str, at: usize) -> Option<String> {
     let declaration = text[..at].rfind("static ")?;
     let (head, entries) = text[declaration..at].split_once("] = [")?;
@@ -310,7 +311,7 @@ fn table_entries(text: &str, code: &[Range<usize>]) -> Vec<Edit> {
             continue;
         };
         let entries = &text[start..start + length];
-        // A row's entries stand behind the names of their fields.
+        // A row's entries follow their fields' names.
         let mut at = start;
         for piece in entries.split_inclusive(',') {
             let begin = match piece.rfind(": ") {

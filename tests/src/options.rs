@@ -1,8 +1,8 @@
-//! Every option of a drive with the values that are tested, by kind of controller: the axes of the
-//! full products and of the covering arrays.
+//! Every option of a drive with its tested values, by kind of controller: the axes of the full
+//! products and of the covering arrays.
 //!
-//! Which kinds there are, which options they take and which words these have says the generator's own table: a new kind or
-//! word has its axis at once. Written down here are the numbers that are tried, and what is tried together.
+//! Kinds, their options and the options' words come from the generator's own table: a new kind or
+//! word has its axis at once. Listed here are the tested numbers and combinations.
 
 use crate::library::{Motor, motor};
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -10,10 +10,10 @@ use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{KINDS, Rule, Spec, check, parse_toml};
 use toml_edit::{DocumentMut, Item, Table};
 
-/// What an option value sets: section, field, TOML value.
+/// Setting of an option's value: section, field, TOML value.
 type Setting = (&'static str, &'static str, &'static str);
 
-/// An option with values, as it is written down here: each a short name, and the fields that it sets.
+/// An option listed here: short names of its values, and the fields that they set.
 type Row = (&'static str, &'static [(&'static str, &'static [Setting])]);
 
 /// A value of an option.
@@ -21,7 +21,7 @@ type Row = (&'static str, &'static [(&'static str, &'static [Setting])]);
 pub struct Value {
     /// Short name.
     pub name: &'static str,
-    /// What it sets: section, field, TOML value.
+    /// Its settings: section, field, TOML value.
     settings: Vec<(&'static str, &'static str, String)>,
 }
 
@@ -39,32 +39,32 @@ pub struct Axis {
 pub struct Kind {
     /// Its name in a specification.
     pub name: &'static str,
-    /// The options that depend on each other, then the loose ones.
+    /// The options that depend on each other, then the independent ones.
     pub axes: Vec<Axis>,
-    /// The number of loose ones.
+    /// The number of independent ones.
     loose: usize,
 }
 
 /// One value per axis of a kind, as indices.
 pub type Choice = Vec<usize>;
 
-/// Number of a combination of loose options, with the value of another axis (their numbers).
+/// Number of a combination of independent options, with the value of another axis (by index).
 pub type Meeting = (usize, (usize, usize));
 
-/// Stands for a voltage of 1.6 times the motor's bus.
+/// Placeholder of a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
-/// Values that every drive of a kind refuses: kind, option, value.
+/// Values rejected by every drive of a kind: kind, option, value.
 const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
 
-/// A switching table that no derivation gives: every vector occurs.
+/// A switching table that no derivation gives, with every vector.
 const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
     2, 2, 9, 9, 0, 13, 6, 12, 3, 8, 1, 11, 10, 5, 14, 7, 4, 0, 15, 3, 12, 6, 8, 1, 9, 10, 13, 2, 5, 11, 7, 4]";
 
-/// Options that not all kinds take, beside those of the table: the default value first.
+/// Options of some kinds, besides those of the table: the default value first.
 const OWN: &[Row] = &[
     (
-        // What is chosen, and by which cost.
+        // Candidates and cost.
         "choice",
         &[
             ("one", &[("controller", "modulated", "\"off\"")]),
@@ -94,12 +94,12 @@ const OWN: &[Row] = &[
     ),
 ];
 
-/// Options that all kinds take, beside those of the table.
+/// Options of all kinds, besides those of the table.
 const SHARED: &[Row] = &[
     (
         "emf",
         &[
-            // Not stated: a PI loop without feed-forward has no say in it.
+            // Not stated: it has no effect on a PI loop without feed-forward.
             ("estimated", &[]),
             ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
@@ -151,7 +151,7 @@ const SHARED: &[Row] = &[
     ),
 ];
 
-/// Options that no other option depends on, of the inverter and of the controllers that take them.
+/// Independent options, of the inverter and of the controllers that have them.
 const LOOSE: &[Row] = &[
     (
         "tuning",
@@ -191,7 +191,7 @@ const LOOSE: &[Row] = &[
         "stall_timeout",
         &[
             ("none", &[]),
-            // And, where a timer tells the edges, a clock whose ticks do not divide the period.
+            // With a timer, also a clock whose ticks do not divide the period.
             (
                 "100ms",
                 &[
@@ -232,7 +232,7 @@ const LOOSE: &[Row] = &[
                     ("inverter", "precharge", "\"0 ms\""),
                 ],
             ),
-            // Short enough for many a start-up.
+            // Short enough for many start-ups.
             (
                 "brief",
                 &[
@@ -251,7 +251,7 @@ pub struct Drive {
     pub kind: &'static str,
     /// Name of the motor.
     pub motor: &'static str,
-    /// Options that have not the first value of their axis.
+    /// Options without the first value of their axis.
     pub settings: &'static [(&'static str, &'static str)],
 }
 
@@ -261,7 +261,7 @@ impl Drive {
         format!("{} {}", self.kind, self.motor)
     }
 
-    /// Its motor's file with its options, and another type name if one is given.
+    /// Its motor's file with its options, and another type name, if given.
     pub fn toml(&self, type_name: Option<&str>) -> String {
         let kind = kind(self.kind);
         kind.drive_toml(
@@ -272,7 +272,7 @@ impl Drive {
     }
 }
 
-/// Options that no axis sets, with what tries them.
+/// Options without an axis, with the tests that cover them.
 const TRIED_ELSEWHERE: [(&str, &str); 4] = [
     (
         "commutation_threshold",
@@ -300,7 +300,7 @@ pub fn kinds() -> Vec<Kind> {
 /// The kind of this name.
 ///
 /// # Panics
-/// When there is none.
+/// If there is none.
 pub fn kind(name: &str) -> Kind {
     let known = KINDS.iter().find(|known| known.name == name);
     let known = known.expect("a kind of controller");
@@ -333,7 +333,8 @@ pub fn kind(name: &str) -> Kind {
     }
 }
 
-/// An option of the table, its default first; that is left unstated, because another option may rule its statement out.
+/// An option of the table, its default first; the default is not stated, as another option may
+/// forbid stating it.
 fn axis_of_words(rule: &'static Rule) -> Axis {
     let words: Vec<&str> = rule.words().iter().map(|word| word.word).collect();
     let default = rule.preset_value().unwrap_or(words[0]);
@@ -354,7 +355,7 @@ fn axis_of_words(rule: &'static Rule) -> Axis {
     }
 }
 
-/// An option that is written down here, with those of its values that the kind takes.
+/// An option listed here, with those of its values that the kind accepts.
 fn axis(kind: &hexagen_codegen::spec::Kind, (name, values): &'static Row) -> Axis {
     let rules = kind.rules();
     let is_taken = |(value, settings): &&(&str, &[Setting])| {
@@ -376,7 +377,7 @@ fn axis(kind: &hexagen_codegen::spec::Kind, (name, values): &'static Row) -> Axi
     }
 }
 
-/// Options that no axis sets, but some kind takes.
+/// Options of some kind without an axis.
 pub fn untested_options() -> Vec<&'static str> {
     let mut untested: Vec<&str> = vec![];
     for known in &KINDS {
@@ -412,8 +413,9 @@ impl Kind {
         combinations(self.bound())
     }
 
-    /// Element `index` of the full product of the options that depend on each other. The loose ones take a combination
-    /// each, by a hash of the index, so that values of both meet in any order.
+    /// Element `index` of the full product of the options that depend on each other. The
+    /// independent ones take a combination each, by a hash of the index, so that values of both
+    /// meet in any order.
     pub fn product_element(&self, index: usize) -> Choice {
         // Knuth's multiplicative hash; its upper bits are the mixed ones.
         let hash = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
@@ -427,8 +429,8 @@ impl Kind {
         [bound, &digits(self.loose(), number)].concat()
     }
 
-    /// Number of the combination of the loose options in a choice, with every value of another
-    /// axis that it meets there (number of the axis, and of the value).
+    /// Number of the independent options' combination in a choice, with every value of another axis
+    /// (numbers of axis and value).
     pub fn meetings(&self, choice: &[usize]) -> Vec<Meeting> {
         let (bound, loose) = choice.split_at(self.bound().len());
         let axes = self.loose().iter().zip(loose);
@@ -439,7 +441,7 @@ impl Kind {
         values.map(|showing| (combination, showing)).collect()
     }
 
-    /// All meetings.
+    /// All combinations of this kind.
     pub fn all_meetings(&self) -> impl Iterator<Item = Meeting> {
         let values = |(axis, values): (usize, &Axis)| {
             (0..values.values.len()).map(move |value| (axis, value))
@@ -450,10 +452,10 @@ impl Kind {
         })
     }
 
-    /// The choice with the first value of every axis but those named: `[("emf", "model")]`.
+    /// The choice with the first value of every axis except the named ones: `[("emf", "model")]`.
     ///
     /// # Panics
-    /// When there is no such axis or value.
+    /// If there is no such axis or value.
     pub fn choice_of(&self, settings: &[(&str, &str)]) -> Choice {
         let mut choice = vec![0; self.axes.len()];
         for (name, value) in settings {
@@ -475,10 +477,10 @@ impl Kind {
         format!("{}: {}", self.name, values.collect::<Vec<_>>().join(" "))
     }
 
-    /// The motor's file with this controller, the options set and the type name replaced.
+    /// The motor's file with this controller and its options, and another type name.
     ///
     /// # Panics
-    /// When the motor file is no TOML or has no bus voltage.
+    /// If the motor file is no TOML or has no bus voltage.
     pub fn drive_toml(&self, motor: &Motor, choice: &[usize], type_name: Option<&str>) -> String {
         let mut document: DocumentMut = motor.text.parse().expect("a TOML file");
         let text = |value: &str| -> Item {
@@ -506,7 +508,7 @@ impl Kind {
     }
 }
 
-/// Values of the axes, by the number of their values: the last axis turns fastest.
+/// Values of the axes, by index: the last axis varies fastest.
 fn digits(axes: &[Axis], mut index: usize) -> Choice {
     let mut choice: Choice = axes
         .iter()

@@ -1,8 +1,8 @@
 //! A covering array: few rows in which every pair of values of any two axes occurs.
 //!
-//! Greedy and deterministic. First a row is sought for every pair, so that it is known which pairs no
-//! row can have. Then rows are grown around a pair that is still open, each further value being the
-//! one that closes most open pairs.
+//! Greedy and deterministic. First a row is sought for every pair, to find the pairs without any
+//! row. Then rows are grown around an open pair, each further value being the one that closes most
+//! open pairs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,16 +12,16 @@ const ATTEMPTS: usize = 40;
 /// Two axes with a value each; the first axis is the lesser.
 pub type Pair = ((usize, usize), (usize, usize));
 
-/// Rows that cover all pairs, and the pairs that no accepted row was found for.
+/// Rows that cover all pairs, and the pairs without an accepted row.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Covering {
     /// Rows: a value per axis.
     pub rows: Vec<Vec<usize>>,
-    /// Pairs that are in no row.
+    /// Pairs in no row.
     pub open: Vec<Pair>,
 }
 
-/// Covers all pairs of axes with so many values each by rows that `accepts` takes.
+/// Covers all pairs of axes with these numbers of values by rows that `accepts` accepts.
 pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering {
     let mut order = Shuffle(1);
     let mut witnesses: BTreeMap<Pair, Vec<usize>> = BTreeMap::new();
@@ -30,8 +30,8 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
         if witnesses.contains_key(&pair) {
             continue;
         }
-        // Where few rows are accepted, random ones may all miss; that of the first values and those that
-        // are known to be accepted are likelier.
+        // If few rows are accepted, random ones may all miss; that of the first values and accepted
+        // ones are likelier.
         let first = std::iter::once(vec![0; lengths.len()]);
         let random = (0..ATTEMPTS).map(|_| order.row(lengths));
         let known: BTreeSet<Vec<usize>> = witnesses.values().cloned().collect();
@@ -50,7 +50,7 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
     while let Some(pair) = open.first() {
         let grown = (0..ATTEMPTS).map(|_| grow(*pair, lengths, &open, &covering.open, &mut order));
         let mut grown: Vec<Vec<usize>> = grown.collect();
-        // The best one first: to ask whether a row is accepted takes long.
+        // The best one first: checking a row takes long.
         grown.sort_by_cached_key(|row| gain(row, &open));
         let row = grown.into_iter().rev().find(|row| accepts(row));
         let row = row.unwrap_or_else(|| witnesses[pair].clone());
@@ -86,7 +86,7 @@ fn gain(row: &[usize], open: &BTreeSet<Pair>) -> usize {
     open.iter().filter(|pair| covers(row, **pair)).count()
 }
 
-/// A row with the pair and none of the forbidden ones, if it can be helped.
+/// A row with the pair and, if possible, without forbidden ones.
 fn grow(
     ((a, x), (b, y)): Pair,
     lengths: &[usize],
@@ -120,7 +120,7 @@ fn grow(
     row.into_iter().map(|value| value.unwrap_or(0)).collect()
 }
 
-/// Orders that differ from call to call, the same in every run.
+/// Pseudo-random orders, the same in every run.
 struct Shuffle(u64);
 
 impl Shuffle {
@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn every_pair_is_in_a_row_or_told() {
         let lengths = [3, 2, 4, 2, 3];
-        // One pair, and a value that allows but one other.
+        // One pair, and a value that allows only one other.
         let forbidden = |row: &[usize]| row[0] == 2 && row[2] == 3 || row[4] == 1 && row[2] != 2;
         let covering = cover(&lengths, |row| !forbidden(row));
         let open = [0, 1, 3].map(|value| ((2, value), (4, 1)));

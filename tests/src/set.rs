@@ -1,23 +1,23 @@
-//! What firmware tells a drive besides samples.
+//! Inputs of a drive besides samples.
 
 use hexagen_reference::BitTrue;
 use hexagen_reference::verify::Subject;
 
-/// What firmware tells a drive from outside the step.
+/// Calls of firmware from outside the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Set {
     /// Set-point, bits of an `I16F16`.
     pub bits: i32,
     /// It is a torque, else a current.
     pub is_torque: bool,
-    /// Bus voltage, ADC counts, where it is measured.
+    /// Bus voltage, ADC counts, if measured.
     pub bus: Option<u16>,
-    /// Speed, bits of an `I16F16` in rpm, where it is regulated.
+    /// Speed, bits of an `I16F16` in rpm, with a speed loop.
     pub speed: Option<i32>,
 }
 
 impl Set {
-    /// Tells the model.
+    /// Applies it to the model.
     pub fn tell(self, model: &mut BitTrue) {
         if let Some(counts) = self.bus {
             model.set_bus(counts);
@@ -32,7 +32,7 @@ impl Set {
         }
     }
 
-    /// Tells a subject.
+    /// Applies it to a subject.
     pub fn apply<S: Subject>(self, subject: &mut S) {
         if let Some(counts) = self.bus {
             subject.set_bus(counts);

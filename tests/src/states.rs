@@ -1,9 +1,9 @@
 //! Arbitrary states: every state word is set to some value of its proven interval, so that one step
-//! reaches what streams of plausible inputs reach in years.
+//! covers what streams of plausible inputs would in years.
 //!
 //! Values come from the whole interval, from its ends, from small numbers, and from the program's
-//! own constants and their neighbours, so that comparisons are met at equality. Half of the states
-//! is moved to an edge: to one side of where the step's result jumps.
+//! own constants and their neighbours, so that comparisons meet equality. Half of the states are
+//! moved to an edge: to one side of a jump of the step's result.
 
 use crate::edges::{self, Watched};
 use crate::equality::{Comparisons, seek_zero};
@@ -14,18 +14,18 @@ use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::limits;
 use hexagen_reference::{BitTrue, HallCapture, Spec};
 
-/// Generator of states and of the samples that go with them.
+/// Generator of states and of samples for them.
 #[derive(Debug)]
 pub struct States<'a> {
     random: Rng,
     names: &'a [&'static str],
     limits: Limits,
-    /// Intervals of the state words: the supervisor's, and those that are proven of the law's.
+    /// Intervals of the state words: the supervisor's, and the law's proven ones.
     ranges: Vec<(i32, i32)>,
     /// Constants of the program, trip level and stall time-out.
     constants: Vec<i32>,
     comparisons: Comparisons,
-    /// Least and greatest sum of calibration samples that is good enough.
+    /// Least and greatest valid sum of calibration samples.
     calibration: [i64; 2],
     count_bits: u32,
     adc_max: i64,
@@ -42,7 +42,7 @@ pub struct States<'a> {
 }
 
 impl<'a> States<'a> {
-    /// States of a drive: its specification, what was generated of it, and the names of its state
+    /// States of a drive: its specification, the generated program, and the names of its state
     /// words.
     pub fn new(spec: &Spec, generated: &Generated, names: &'a [&'static str], seed: u64) -> Self {
         let inverter = &spec.inverter;
@@ -81,7 +81,7 @@ impl<'a> States<'a> {
         &self.ranges
     }
 
-    /// A set-point, bits of an `I16F16`; `most` is the greatest that the drive follows.
+    /// A set-point, bits of an `I16F16`; `most` is the drive's limit.
     pub fn set_point(&mut self, most: f64) -> i32 {
         match self.random.u8(..8) {
             0 => 0,
@@ -100,7 +100,7 @@ impl<'a> States<'a> {
         match self.random.u8(..4) {
             0 => self.random.u16(..),
             1 => self.random.u16(4090..4100),
-            // As low as it can be told.
+            // The lowest possible one.
             2 => 0,
             _ => self.random.u16(..4096),
         }
@@ -124,7 +124,8 @@ impl<'a> States<'a> {
         value.clamp(low, high)
     }
 
-    /// A constant of the program (or that by a power of two) or a neighbour of it, of either sign.
+    /// A constant of the program (times or over a power of two) or a neighbour of it, of either
+    /// sign.
     fn constant(&mut self) -> i64 {
         let index = self.random.usize(..self.constants.len());
         let shift = [0, 0, 1, 8][self.random.usize(..4)];
@@ -132,7 +133,7 @@ impl<'a> States<'a> {
         if self.random.bool() { near } else { -near }
     }
 
-    /// Fills in a state; returns a sample for it.
+    /// Writes a state; returns a sample for it.
     pub fn fill(&mut self, words: &mut [i32]) -> Sample {
         let mut hall = match self.random.u8(..64) {
             0 => 0,
@@ -164,7 +165,7 @@ impl<'a> States<'a> {
             let (low, high) = self.ranges[place];
             words[place] = i32::from(hall).clamp(low, high);
         }
-        // Phases that are equal or opposite put maxima and differences on their ties.
+        // Equal or opposite phases put maxima and differences on their ties.
         for index in 0..words.len() {
             if let Some(a) = self.names[index]
                 .strip_suffix("_b_prev")
@@ -195,7 +196,7 @@ impl<'a> States<'a> {
         sample
     }
 
-    /// A rotor that has been in its sector for half of its last turn, or nearly: it is lost then.
+    /// A rotor that has been in its sector for about half of its last turn: then it is lost.
     fn take_half_a_turn(&mut self, words: &mut [i32], sample: Sample) {
         let Some(place) = self.place("age_prev") else {
             return;
@@ -222,7 +223,7 @@ impl<'a> States<'a> {
         }
     }
 
-    /// A rotor whose angle, some ticks ahead, is at the end of its sector to the last bit.
+    /// A rotor whose angle, some ticks later, is at the end of its sector to the last bit.
     fn end_sector(&mut self, words: &mut [i32]) {
         let places = ["age_prev", "omega", "edges"].map(|name| self.place(name));
         let [Some(age_prev), Some(omega), Some(edges)] = places else {
@@ -282,8 +283,8 @@ impl<'a> States<'a> {
         age.clamp(0, 65_535)
     }
 
-    /// Counts for currents of any value, by the offsets; most of them below the trip level.
-    /// `is_slow` leaves no current.
+    /// Counts for currents of any value, by the offsets; mostly below the trip level. `is_slow`
+    /// leaves no current.
     fn fill_currents(&mut self, words: &mut [i32], is_slow: bool) -> [u16; 2] {
         let span = self.adc_max << self.count_bits;
         let trip = (self.trip << self.count_bits) + 1;
@@ -295,7 +296,7 @@ impl<'a> States<'a> {
                 _ => self.random.i64(-trip..=trip),
             });
             if self.random.u8(..8) == 0 {
-                // The third phase gets the interesting value.
+                // The third phase gets the selected value.
                 currents[1] = (-currents[0] - currents[1]).clamp(-span, span);
             }
             let third = currents[0] + currents[1];
@@ -351,7 +352,7 @@ impl<'a> States<'a> {
         counts
     }
 
-    /// What holds between state words in every state that a drive can be in.
+    /// Invariants between state words in every reachable state.
     fn respect_invariants(&mut self, words: &mut [i32]) {
         let mut set = |name: &str, value: &dyn Fn(i32) -> i32| {
             if let Some(place) = self.names.iter().position(|known| *known == name) {
@@ -385,7 +386,7 @@ impl<'a> States<'a> {
         set("omega", &|word| if edges == 2 { word } else { 0 });
         let intervals = ["t1", "t2", "t3", "t4", "t5", "t6"].map(|name| set(name, &|word| word));
         set("rev", &|_| intervals.iter().sum());
-        // The leg that is off has no terminal voltage of its own.
+        // The off leg has no terminal voltage of its own.
         let off = set("off_cmd", &|word| word);
         for (number, name) in ["t_a_cmd", "t_b_cmd", "t_c_cmd"].into_iter().enumerate() {
             set(name, &|word| {
@@ -394,7 +395,7 @@ impl<'a> States<'a> {
         }
     }
 
-    /// The last samples of most calibrations make sums that are just good enough, or just not.
+    /// The last samples of most calibrations make sums just inside, or just outside, the tolerance.
     fn end_calibration(&mut self, words: &mut [i32], sample: Sample) {
         let places = ["mode", "countdown", "sum_a", "sum_b"].map(|name| self.place(name));
         let [Some(mode), Some(countdown), sum_a, sum_b] = places else {
@@ -420,7 +421,7 @@ impl<'a> States<'a> {
         }
     }
 
-    /// Whether a word has many values, and the invariants leave it free.
+    /// Whether a word has many values that the invariants leave free.
     fn is_free(&self, index: usize, word: i32) -> bool {
         let (least, most) = self.ranges[index];
         let name = self.names[index];
@@ -436,7 +437,7 @@ impl<'a> States<'a> {
             "t6",
             "rev",
         ];
-        // These are zero where there is nothing to tell.
+        // These are zero without information.
         let is_zero = word == 0 && (name == "omega" || name.starts_with("t_"));
         i64::from(most) - i64::from(least) >= 1 << 10 && !bound.contains(&name) && !is_zero
     }
@@ -447,7 +448,7 @@ impl<'a> States<'a> {
     }
 
     /// Moves up to three words to where a comparison of the program meets equality, or next to it.
-    /// The set-point is one of these words.
+    /// The set-point counts as a word.
     fn seek_equality(&mut self, words: &mut [i32], sample: Sample, (set, most): (&mut Set, i32)) {
         if self.comparisons.is_empty() {
             return;
@@ -481,8 +482,8 @@ impl<'a> States<'a> {
         words.copy_from_slice(&all[1..]);
     }
 
-    /// Moves half of the states to an edge: a quarter to where a comparison meets equality, and one word of
-    /// another quarter to where what is watched changes, on either side of it.
+    /// Moves half of the states to an edge: a quarter to where a comparison meets equality, and one
+    /// word of another quarter to either side of a jump of the observed result.
     pub fn seek_edge(
         &mut self,
         model: &mut BitTrue,

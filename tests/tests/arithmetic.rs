@@ -1,4 +1,4 @@
-//! The integer primitives of emitted code against the meaning of the IR's operators.
+//! The integer primitives of emitted code against the semantics of the IR's operators.
 
 #![expect(
     clippy::redundant_closure_for_method_calls,
@@ -45,7 +45,7 @@ fn symmetric(bits: u32) -> Interval {
     Interval::new(-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
 }
 
-/// A word of at most `bits` bits, small and large ones alike.
+/// A word of at most `bits` bits, small and large ones.
 fn word(bits: u32) -> impl Strategy<Value = i32> {
     (any::<i32>(), 32 - bits..32).prop_map(|(word, shift)| word >> shift)
 }
@@ -56,7 +56,7 @@ fn natural(bits: u32) -> impl Strategy<Value = i32> {
 
 const TABLE: [i16; 8] = [5, -3, 32767, -32768, 0, 1, 2, 3];
 
-/// Words at the ends of what a product takes, and any others.
+/// Words at the ends of a product's range, and random ones.
 fn factor() -> impl Strategy<Value = i32> {
     const ENDS: [i32; 8] = [
         i32::MIN,
@@ -96,7 +96,7 @@ proptest! {
 
     #[test]
     fn extremes_of_words_whose_difference_just_fits(x in factor(), difference in factor()) {
-        // All of x - y from -2^31 to 2^31 - 1: beyond, no caller goes.
+        // All of x - y from -2^31 to 2^31 - 1: no caller exceeds it.
         if let Some(y) = x.checked_sub(difference) {
             prop_assert_eq!(Word(x).lesser(Word(y)).0, x.min(y));
             prop_assert_eq!(Word(x).greater(Word(y)).0, x.max(y));
@@ -106,7 +106,7 @@ proptest! {
     #[test]
     fn magnitudes_beyond_a_limit(x in factor(), limit in natural(31), near in -1..=1_i64) {
         let magnitude = i64::from(x).abs();
-        // Any limit, and those about the magnitude.
+        // Any limit, and those next to the magnitude.
         for limit in [i64::from(limit), magnitude + near] {
             if let Ok(limit) = i32::try_from(limit.max(0)) {
                 let exceeds = magnitude > i64::from(limit);
@@ -165,8 +165,8 @@ proptest! {
 
     #[test]
     fn quotients_whose_digits_are_corrected(high in 0_i32..1 << 8, low in 0_i32..1 << 8, less in 0_i32..16, shift in 0_u32..=31) {
-        // A divisor whose lower half, once its highest bit is set, is large beside the upper one, and a numerator just
-        // below it: the estimate is two too large.
+        // A divisor whose lower half, once its highest bit is set, is large beside the upper one,
+        // and a numerator just below it: the estimate is two too large.
         let d = 1 << 30 | high << 15 | 0x7f00 | low >> 1;
         let n = (d - 1 - less).max(0);
         let exact = ((i64::from(n) << shift) / i64::from(d)) as i32;

@@ -1,8 +1,9 @@
-//! The vector that FCS-MPC and PHCC apply is the best one but for proven ties: in closed loops, and next to the
-//! edges where the choice changes, its cost is never above the least by more than twice the bound of a score.
+//! The vector applied by FCS-MPC and PHCC is the best one except for proven ties: in closed loops,
+//! and next to the edges of the choice, its cost is never above the least by more than twice the
+//! bound of a score.
 //!
-//! Costs are those of the ideal model from the same state, enumerated here. `HEXAGEN_DECISIONS` in the environment is
-//! the number of steps of all drives together.
+//! Costs are those of the ideal model from the same state, enumerated here. The environment's
+//! `HEXAGEN_DECISIONS` is the number of steps of all drives together.
 
 use hexagen::{Legs, Sample, Supervisor};
 use hexagen_codegen::ir::stated_errors;
@@ -24,7 +25,7 @@ const STEPS: u64 = 1_000_000;
 /// Steps of a stream between two searches for an edge.
 const STRIDE: u64 = 60;
 
-/// Variants of the paper's motor; of the others, the kinds with their defaults.
+/// Variants of the paper's motor; for the others, the kinds with their defaults.
 const VARIANTS: [&str; 6] = [
     "fcs-mpc:candidates=all",
     "fcs-mpc:candidates=three_phase",
@@ -89,23 +90,23 @@ struct Subject {
     eps_u: f64,
     /// One word of current, ampere.
     current_word: f64,
-    /// Intervals of the words of state; the supervisor's stay.
+    /// Intervals of the words of state; the supervisor's are fixed.
     intervals: Vec<[i64; 2]>,
 }
 
-/// What was found.
+/// Findings.
 #[derive(Clone, Debug, Default)]
 struct Tally {
     /// Steps in control, compared.
     steps: u64,
     /// Of these, next to an edge.
     crafted: u64,
-    /// On which the models chose another vector.
+    /// Steps with different vectors of the two models.
     different: u64,
-    /// On which a vector that neither chose is beyond the tie band: the check can fail.
+    /// Steps with an unchosen vector beyond the tie band: the check can fail.
     refuted: u64,
-    /// Left out: an off leg's current at the diode's threshold, or a trip or the end of a commutation decided otherwise,
-    /// by a current at its level to the last word.
+    /// Excluded: an off leg's current at the diode's threshold, or a trip or the end of a
+    /// commutation decided differently, by a current at its level to the last word.
     left_out: u64,
     /// Greatest excess over the least cost, in parts of 2 eps.
     worst: f64,
@@ -124,7 +125,7 @@ impl Tally {
     }
 }
 
-/// What the ideal model decides on.
+/// Inputs of the ideal model's decision.
 struct Situation {
     /// Demanded voltage of phases a, b, c, volt.
     u: [f64; 3],
@@ -132,7 +133,7 @@ struct Situation {
     e: [f64; 3],
     /// K a times the currents at its beginning, volt.
     held: [f64; 3],
-    /// The same of the current at which a diode is taken to conduct.
+    /// The same of the diode's threshold current.
     threshold: f64,
     v_bus: f64,
 }
@@ -153,7 +154,8 @@ impl Situation {
         }
     }
 
-    /// 6 (|v|^2 - 2 u v) of a vector, sums over phases; an off leg at a rail where `conducts` says so of its phase.
+    /// 6 (|v|^2 - 2 u v) of a vector, sums over phases; an off leg at a rail if `conducts` is set
+    /// for its phase.
     fn score(&self, vector: usize, physical: bool, conducts: [Option<f64>; 3]) -> f64 {
         let driven = |leg: Option<u8>| f64::from(leg.unwrap_or(0)) * self.v_bus;
         let mut t = LEGS[vector].map(driven);
@@ -174,7 +176,8 @@ impl Situation {
         6.0 * (0..3).map(of_phase).sum::<f64>()
     }
 
-    /// Where the diodes may hold each leg: one place, or two where the current is within `band` of the threshold.
+    /// Possible positions of each leg: one, or two if the current is within `band` of the
+    /// threshold.
     fn rails(&self, band: f64) -> Vec<[Option<f64>; 3]> {
         let mut all = vec![[None; 3]];
         for phase in 0..3 {
@@ -205,7 +208,7 @@ impl Situation {
     }
 }
 
-/// The vectors to choose from in the situation of a step.
+/// The candidates in the situation of a step.
 fn candidates(set: Candidates, trace: &Trace) -> Vec<usize> {
     match set {
         _ if trace.sector_eff == 0 => vec![0],
@@ -226,7 +229,7 @@ fn generated(text: &str, variant: &str) -> Option<Generated> {
 }
 
 impl Subject {
-    /// None for a motor that the controller cannot work with.
+    /// `None` for a motor that the controller does not suit.
     fn new(name: &str, text: &str, variant: &str) -> Option<Self> {
         let generated = generated(text, variant)?;
         let program = generated.graph.program();
@@ -243,7 +246,8 @@ impl Subject {
         let v_bus = spec.inverter.v_bus_max().expect("a bus");
         let eps = match spec.controller {
             Controller::Phcc(_) => eps_u,
-            // Without rounded scores only the voltage is off, that of phase c twice as far as the others.
+            // Without rounded scores only the voltage is off, that of phase c twice as far as the
+            // others.
             _ => bound("score").unwrap_or(12.0 * v_bus * 2.0 * eps_u),
         };
         let current = table.iter().find(|format| format.name == "current");
@@ -283,8 +287,8 @@ impl Subject {
             if vector == trace.vector {
                 return 0.0;
             }
-            // A wish differs only where its error is as far from its band, or from zero where there was none, as the
-            // errors may be off.
+            // A direction differs only if its error is within the errors' bound from its band, or
+            // from zero without a previous direction.
             let band = options.band / DiscretePhase::new(&self.spec).b;
             let [q_a, q_b] = trace.u_unsat;
             let from_edge = |axis: usize, error: f64, band: f64| match before.rises[axis] {
@@ -311,7 +315,7 @@ impl Subject {
         excess.fold(f64::INFINITY, f64::min) / (2.0 * self.eps)
     }
 
-    /// A candidate that neither model chose.
+    /// A candidate chosen by neither model.
     fn neither_of(&self, found: usize, exact: &Trace) -> Option<usize> {
         let all = match &self.spec.controller {
             Controller::FcsMpc(options) => candidates(options.candidates, exact),
@@ -321,7 +325,8 @@ impl Subject {
         all.into_iter().rev().find(other)
     }
 
-    /// One step of both models from the state of the bit-true one: its legs, and the vector that it chose in control.
+    /// One step of both models from the state of the bit-true one: its legs, and its vector in
+    /// control.
     fn compare(
         &self,
         models: &mut (BitTrue, Ideal),
@@ -361,7 +366,8 @@ impl Subject {
         (legs, Some(found.vector))
     }
 
-    /// Seeks the edge between two values of a word of state whose vectors differ; compares at every value on the way.
+    /// Searches the edge between two values of a word of state with different vectors; compares at
+    /// every tried value.
     fn seek_edge(
         &self,
         models: &mut (BitTrue, Ideal),
@@ -392,7 +398,7 @@ impl Subject {
         tally.crafted += tally.steps - before;
     }
 
-    /// Streams of inputs, closed loops most of them, and searches for edges from their states.
+    /// Streams of inputs, mostly closed loops, and searches for edges from their states.
     fn run(&self, steps: u64, seed: u64) -> Tally {
         let mut models = (self.bit_true.clone(), self.ideal.clone());
         let mut scratch = models.clone();
@@ -411,7 +417,7 @@ impl Subject {
             };
             let (action, sample) = stimulus.next(&context);
             match action {
-                // The ideal model, too, must be able to follow.
+                // The ideal model must be able to follow, too.
                 Some(Action::SetCurrent(bits) | Action::SetTorque(bits)) => {
                     models.0.set_current(bits.clamp(-most, most));
                 }
@@ -469,7 +475,8 @@ fn the_cost_of_the_applied_vector_is_above_the_least_by_no_more_than_two_eps() {
     println!("{total:?}");
     assert!(total.steps >= steps);
     assert!(total.crafted > total.steps / 10, "{total:?}");
-    // Rounding does break ties, else nothing was seen; and a choice that is far from every tie would say nothing of eps.
+    // Rounding must break ties, else the test saw nothing; and a choice far from every tie would
+    // not test eps.
     assert!(total.different > total.steps / 10_000, "{total:?}");
     assert!(total.refuted > total.steps / 2, "{total:?}");
     assert!(total.worst > 0.01, "{total:?}");

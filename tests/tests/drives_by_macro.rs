@@ -1,5 +1,5 @@
-//! Drives of every kind of controller, made by the macro as firmware makes them: they are bit-true, and
-//! the tables that their types show are those of the vectors' geometry.
+//! Drives of every kind of controller, made by the macro as in firmware: they are bit-true, and the
+//! tables of their types are those of the vectors' geometry.
 
 #![expect(
     deprecated,
@@ -58,7 +58,7 @@ macro_rules! check_tables {
             for (index, vector) in (0..6).zip(<$drive>::TWO_PHASE_VECTORS) {
                 assert_near(real(vector), polar(bus / 3f64.sqrt(), 270.0 + 60.0 * f64::from(index)));
             }
-            // The times of (16) on the vectors that bound a sector make the voltage.
+            // The times of (16) with the vectors at a sector's boundaries make the voltage.
             let period = f64::from(<$drive>::TIMER_PERIOD);
             for (sector, times) in (0..6).zip(<$drive>::SVM_COEFFICIENTS.chunks(2)) {
                 let degrees = 60.0 * f64::from(sector);

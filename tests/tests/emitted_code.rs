@@ -1,4 +1,4 @@
-//! What emitted code never contains, and that it is laid out as `rustfmt` lays it out.
+//! What emitted code never contains, and its `rustfmt` layout.
 
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::c99::emit_c99;
@@ -10,7 +10,7 @@ use hexagen_tests::library::{PAPER_MOTOR, motor, motors, with_inertia};
 use hexagen_tests::options::{generate_toml, kinds};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Besides every kind of controller with all options at their defaults.
+/// In addition to every kind of controller with all options at their defaults.
 const VARIANTS: [&str; 7] = [
     "pdcc:modulation=pair,advance=1",
     "pdcc:emf=model,reference=proportional,saturation=nearest",
@@ -27,7 +27,7 @@ fn all_code() -> Vec<Vec<(String, TokenStream)>> {
     kinds.chain(VARIANTS).map(code_of).collect()
 }
 
-/// Why a drive of the library may be refused: its vectors move the current too far.
+/// Why a drive of the library may be rejected: its vectors move the current too far.
 const REASON: &str = "HX0406";
 
 fn code_of(variant: &str) -> Vec<(String, TokenStream)> {
@@ -59,7 +59,7 @@ fn generate_variant(motor: &str, name: &str, variant: &str) -> Result<Generated,
     generate(&spec, &origins)
 }
 
-/// All words, signs and numbers of the code, documentation left out.
+/// All words, signs and numbers of the code, without documentation.
 fn code_words(tokens: TokenStream, words: &mut Vec<String>) {
     let mut tokens = tokens.into_iter().peekable();
     while let Some(token) = tokens.next() {
@@ -102,7 +102,7 @@ fn no_float_no_unsafe_no_panic_no_loop_no_division() {
                 "{name}: #[{word}]"
             );
         }
-        // `for` stands in `impl Trait for Type` alone.
+        // `for` appears only in `impl Trait for Type`.
         let loops = words.windows(2).filter(|pair| pair[0] == "for").count();
         let impls = words.iter().filter(|word| *word == "impl").count();
         assert!(loops < impls, "{name} contains a loop");
@@ -141,7 +141,8 @@ fn dividing_functions(tokens: TokenStream, found: &mut Vec<(String, Vec<String>)
     }
 }
 
-/// In the step only functions off the normal path divide; a setter may, it runs outside the step.
+/// In the step only functions off the normal path divide; a setter may, as it runs outside the
+/// step.
 #[test]
 fn divisions_are_off_the_normal_path() {
     let mut cold = 0;
@@ -159,15 +160,15 @@ fn divisions_are_off_the_normal_path() {
     assert!(cold > 50, "{cold} functions");
 }
 
-/// The words of a text without what makes it a comment.
+/// The words of a text without comment marks.
 fn words_of(text: &str) -> String {
     let words = text.split_whitespace();
     let words = words.filter(|word| !["///", "//!", "*", "/**", "*/"].contains(word));
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// What is wrong without a trip, and what the board must therefore have, is told where firmware engineers read: with the
-/// supervisor in both languages, to which every type points, and in the README.
+/// Faults that do not trip, and the board's requirements that follow, are documented for firmware
+/// engineers: with the supervisor in both languages, to which every type refers, and in the README.
 #[test]
 fn every_type_leads_to_what_its_supervisor_cannot_see() {
     let said = [
@@ -210,7 +211,7 @@ fn every_type_leads_to_what_its_supervisor_cannot_see() {
     }
 }
 
-/// The code that the README shows is emitted, item by item.
+/// The README's code is emitted, item by item.
 #[test]
 fn readme_shows_emitted_code() {
     let readme = include_str!("../../README.md");
@@ -263,10 +264,10 @@ fn check_layout(name: &str, tokens: &TokenStream) {
         panic!("rustfmt is not installed (rustup component add rustfmt)");
     };
     assert_eq!(rustfmt(&formatted).as_ref(), Some(&formatted), "{name}");
-    // Layout is all that changes: the tokens are the emitted ones.
+    // Only the layout changes: the tokens are the emitted ones.
     let same = |text: &str| format_rust(&text.parse().expect("Rust")) == format_rust(tokens);
     assert!(same(&text) && same(&formatted), "{name}");
-    // No line of code is longer than rustfmt's width: nothing was too complex for it to lay out.
+    // No line of code is longer than rustfmt's width: rustfmt could format everything.
     let long = |line: &&str| line.len() > 100 && !line.contains("//") && line.starts_with("    ");
     assert_eq!(
         formatted.lines().filter(long).collect::<Vec<_>>(),
@@ -275,8 +276,8 @@ fn check_layout(name: &str, tokens: &TokenStream) {
     );
 }
 
-/// Tables of vectors, of switching and of modulation are constants of every type, and so every data sheet
-/// has them.
+/// Tables of vectors, of switching and of modulation are constants of every type, and so every data
+/// sheet has them.
 #[test]
 fn data_sheets_show_all_constants_of_the_type() {
     for kind in kinds() {

@@ -1,6 +1,6 @@
-//! The compiled code computes what the bit-true model computes, on every output and state bit, for
-//! an array of drives of each kind of controller, in which every pair of option values and every
-//! motor with every option value occurs.
+//! The compiled code equals the bit-true model in every output and state bit, for an array of
+//! drives of each kind of controller, with every pair of option values and every motor with every
+//! option value.
 
 use hexagen_reference::verify::{Report, VerifyError, verify};
 use hexagen_tests::options::{kinds, untested_options};
@@ -17,11 +17,11 @@ mod array {
     include!(concat!(env!("OUT_DIR"), "/covering_array.rs"));
 }
 
-/// Steps over all arrays; every kind of controller has an equal share of them.
+/// Steps over all arrays, in equal parts for every kind of controller.
 const STEPS: u64 = 10_000_000;
 
-/// Pairs of option values of which one has no effect beside the other, or rules it out: the
-/// generator says so.
+/// Pairs of option values of which one has no effect with the other, or excludes it, by the
+/// generator's diagnostics.
 const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc candidates=three_phase off_leg=nominal",
     "fcs-mpc choice=torque emf=held",
@@ -52,7 +52,7 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm reference=proportional advance=2",
 ];
 
-/// Rows of a kind, with their places in the whole list.
+/// Rows of a kind, with their indices in the whole list.
 fn rows_of(kind: &str) -> Vec<(usize, &str, Verify)> {
     let rows = array::ROWS.iter().enumerate();
     rows.filter(|(_, (known, ..))| *known == kind)
@@ -93,7 +93,8 @@ fn compiled_drives_are_bit_true() {
 }
 
 hexagen::controller! {
-    /// A rotor that may turn by 48 electrical degrees in a period: at most 30 of them are believed.
+    /// A rotor that may turn by 48 electrical degrees in a period: at most 30 of them are
+    /// plausible.
     pub Fast {
         motor: {
             pole_pairs: 4,
@@ -124,7 +125,7 @@ fn a_rotor_that_turns_by_more_than_30_degrees_a_period_is_followed_bit_for_bit()
     assert!(report.timed > 1000 && report.backward > 1000, "{report}");
 }
 
-/// All that the streams are to reach was reached, and often.
+/// The streams reached everything they should, and often.
 fn check_reach(kind: &str, total: &Report) {
     for (what, count) in [
         ("limited", total.limited),
@@ -146,7 +147,7 @@ fn check_reach(kind: &str, total: &Report) {
             "{kind}: only {count} steps were {what}"
         );
     }
-    // Every drive starts up; some of them with an offset that is refused.
+    // Every drive starts up; some of them with an invalid offset.
     let drives = rows_of(kind).len() as u64;
     assert!(total.calibrations > drives / 2, "{kind}: {total}");
     assert!(total.precharging > 0, "{kind}: {total}");
@@ -161,14 +162,14 @@ fn every_pair_of_option_values_is_compiled() {
     let (strong, rest): (Vec<_>, Vec<_>) = array::REFUSED
         .iter()
         .partition(|(_, codes)| *codes == "HX0406");
-    // One vector can be too strong for a motor, whatever else is chosen.
+    // One vector can be too strong for a motor, whatever the other options.
     assert!(
         strong.iter().all(|(what, _)| what.contains("motor=")),
         "{strong:?}"
     );
     let (refused, codes): (Vec<&str>, Vec<&str>) = rest.into_iter().unzip();
     assert_eq!(refused, WITHOUT_EFFECT);
-    // Two legs cannot drive three currents; all else is refused as it has no effect.
+    // Two legs cannot drive three currents; all other rejections are for lack of effect.
     let three_currents = "pdcc modulation=pair reference=proportional";
     for (what, codes) in refused.iter().zip(codes) {
         let expected = if *what == three_currents {

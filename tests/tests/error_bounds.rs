@@ -1,5 +1,5 @@
-//! No value is further from the ideal one than the generator says: steps from random words, beside the same steps in
-//! floating point with exact coefficients, without rounding and with the same decisions.
+//! No value exceeds its error bound: steps from random words against the same steps in floating
+//! point with exact coefficients, without rounding and with the same decisions.
 
 use fastrand::Rng;
 use hexagen_codegen::ir::{Case, Exact, Interval, Kind, Node, Op, Program, Value, cases};
@@ -45,7 +45,7 @@ fn word(random: &mut Rng, Interval { low, high }: Interval) -> i64 {
     }
 }
 
-/// A word for an input, a set-point or a state word: most Hall codes are some.
+/// A word for an input, a set-point or a state word: Hall codes are mostly valid.
 fn draw(random: &mut Rng, node: &Node) -> i64 {
     let anything = random.u8(..8) == 0;
     match node.name.as_str() {
@@ -54,8 +54,8 @@ fn draw(random: &mut Rng, node: &Node) -> i64 {
     }
 }
 
-/// The ideal number of a node, from those of its operands, in the order of [`Op::operands`]; of angles and what is looked up
-/// the word itself, which is as exact as its own bound says.
+/// The ideal number of a node, from those of its operands, in the order of [`Op::operands`]; for
+/// angles and lookups the word itself, which is as exact as its own bound.
 fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
     let scale = |shift: u32| (-f64::from(shift)).exp2();
     match op {
@@ -86,7 +86,7 @@ fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
     }
 }
 
-/// Largest share of a bound that an error took up, over all values of all steps.
+/// Largest ratio of an error to its bound, over all values of all steps.
 fn run(program: &Program, seed: u64) -> f64 {
     let function = &program.step;
     let all: Vec<Case> = cases(program, function);
@@ -128,7 +128,7 @@ fn run(program: &Program, seed: u64) -> f64 {
                 (_, None) => None,
             };
         }
-        // The case that the step was: of each condition, whether it held.
+        // The case of the step: of each condition, whether it held.
         let holds = |condition: Value, held: bool| {
             values[condition.index()].is_some_and(|(flag, _)| (flag == 1) == held)
         };
@@ -151,7 +151,7 @@ fn run(program: &Program, seed: u64) -> f64 {
     most
 }
 
-/// The share of its bound that a value's error takes up.
+/// The ratio of a value's error to its bound.
 fn share(bounds: &hexagen_codegen::ir::Bounds, value: Value, values: &[Option<Pair>]) -> f64 {
     let Some((word, ideal)) = values[value.index()] else {
         return 0.0;
@@ -167,7 +167,7 @@ fn share(bounds: &hexagen_codegen::ir::Bounds, value: Value, values: &[Option<Pa
 }
 
 #[test]
-fn no_value_is_further_from_the_ideal_one_than_its_bound() {
+fn no_value_exceeds_its_error_bound() {
     let toml = with_inertia(&motor(PAPER_MOTOR).text);
     for variant in VARIANTS {
         let mut ast = parse_toml(&toml, "motor.toml").expect("TOML");
@@ -185,8 +185,8 @@ fn no_value_is_further_from_the_ideal_one_than_its_bound() {
         let most = run(program, 1);
         println!("{variant}: {most:.3} of the bound at most");
         assert!(most <= 1.0, "{variant}: {most} of the bound");
-        // A bound that nothing comes near would say nothing; that of a reference by table is the table's own misfit,
-        // which the ideal step here has, too.
+        // A bound that nothing approaches would be useless; that of a reference by table is the
+        // table's own error, which the ideal step here has, too.
         assert!(
             most > 0.02 || variant.contains("proportional"),
             "{variant}: only {most} of the bound"

@@ -1,4 +1,5 @@
-//! Every sum and product of the bit-true model is exact in f64, for all words that a drive's formats allow.
+//! Every sum and product of the bit-true model is exact in f64, for all words that a drive's
+//! formats allow.
 
 use hexagen_lab::formats;
 use hexagen_reference::exact::{Coefficient, Word, floor, input};
@@ -7,10 +8,10 @@ use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{generate_toml, kind, kinds};
 use rayon::prelude::*;
 
-/// Drives of the paper's motor, by kind: as many elements of the product of options.
+/// Drives of the paper's motor, by kind: number of elements of the product of options.
 const OPTIONS: usize = 24;
 
-/// Proves drives, and says what the longest number of all is. Diagnostics refuse some.
+/// Proves drives, and reports the longest number. Some are rejected by diagnostics.
 fn prove_all(what: &str, tomls: &[(String, String)]) {
     let proofs: Vec<_> = tomls
         .par_iter()
@@ -73,9 +74,9 @@ fn of_the_paper_motor_with_every_value_of_every_option() {
     prove_all("options", &drives);
 }
 
-/// Bits that are too many for a format are found, and so is a product that is not split.
+/// Too many bits of a format are detected, and a product that is not split.
 #[test]
-fn numbers_that_are_too_long_are_found() {
+fn numbers_that_are_too_long_are_detected() {
     let kind = kind("pdcc");
     let toml = kind.drive_toml(&motor(PAPER_MOTOR), &kind.choice_of(&[]), None);
     let (_, generated) = generate_toml(&toml).expect("the paper's motor generates");

@@ -1,7 +1,8 @@
-//! The comparison notices small faults planted in the IR: a score per drive, and the survivors by name.
+//! The comparison detects small faults planted in the IR: a score per drive, and the survivors by
+//! name.
 //!
-//! Many survivors change nothing: padding of tables, limits that cannot act, ties that lead to the same
-//! vector. So the score is less than 100 %, and what counts is that it does not fall.
+//! Many survivors are equivalent: padding of tables, limits that cannot act, ties that lead to the
+//! same vector. So the score is less than 100 %, and must not fall.
 
 use hexagen_codegen::ir::{Op, Program};
 use hexagen_tests::faults::{DRIVES, Fault, LEAST_NOTICED, faults, wrong_limits};
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
 
-/// Steps of each kind within which a fault must show.
+/// Steps of each kind within which a fault must be detected.
 const STEPS: u64 = 40_000;
 
 /// Names of the constants that the setters use.
@@ -24,12 +25,12 @@ fn constants_of_setters(program: &Program) -> BTreeSet<String> {
     used.collect()
 }
 
-/// Names of the unnoticed faults of a drive; the number of all.
+/// Names of the undetected faults of a drive; the number of all.
 fn plant(drive: &Drive) -> (Vec<String>, usize) {
     let (_, generated) = generate_toml(&drive.toml(None)).expect("the drive generates");
     let program = generated.graph.program();
     let all = record_states(&generated, STEPS, 1).expect("the drive has a model");
-    // Most faults show at once.
+    // Most faults appear at once.
     let (few, some) = (all.first(250), all.first(5000));
     let setters = constants_of_setters(program);
     let noticed = |program: &Program| {
@@ -57,7 +58,7 @@ fn plant(drive: &Drive) -> (Vec<String>, usize) {
 }
 
 #[test]
-fn planted_faults_are_noticed() {
+fn planted_faults_are_detected() {
     let (mut survivors, mut low) = (String::new(), vec![]);
     for (drive, least) in DRIVES.iter().zip(LEAST_NOTICED) {
         let name = drive.name();
@@ -79,9 +80,9 @@ fn planted_faults_are_noticed() {
     assert!(low.is_empty(), "{low:#?}; survivors: {file}");
 }
 
-/// What differs from drive to drive of the supervisor.
+/// The drive-specific parameters of the supervisor.
 #[test]
-fn every_wrong_limit_is_noticed() {
+fn every_wrong_limit_is_detected() {
     let (mut planted, mut unnoticed) = (0, vec![]);
     for drive in DRIVES {
         let (_, sound) = generate_toml(&drive.toml(None)).expect("the drive generates");
@@ -90,7 +91,7 @@ fn every_wrong_limit_is_noticed() {
             planted += 1;
             let mut faulty = sound.clone();
             faulty.interface.limits = limits;
-            // Where nothing else notices it, no such drive compiles.
+            // Otherwise such a drive does not compile.
             let noticed = !hexagen_lab::limits(&limits).hold()
                 || compare_record(&faulty, sound.graph.program(), &record).is_err()
                 || compare(&faulty, sound.graph.program(), STEPS, 1).is_err();

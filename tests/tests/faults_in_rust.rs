@@ -1,5 +1,4 @@
-//! The comparison notices every fault planted in the text of emitted code, but for those that
-//! change nothing.
+//! The comparison detects every fault planted in the text of emitted code, except equivalent ones.
 
 use hexagen::{Control, Drive, Legs};
 use hexagen_reference::verify::{Compiled, verify};
@@ -27,11 +26,10 @@ mod planted {
     include!(concat!(env!("OUT_DIR"), "/mutants.rs"));
 }
 
-/// Steps of each kind within which a fault must show.
+/// Steps of each kind within which a fault must be detected.
 const STEPS: u64 = 200_000;
 
-/// Drive (place in the list), how the name of a fault begins, and why it changes no output and no
-/// state, where it is planted.
+/// Drive (index in the list), beginning of the fault's name, and why the fault is equivalent.
 const EQUIVALENT: &[(usize, &str, &str)] = &[
     (
         0,
@@ -86,7 +84,7 @@ fn is_noticed<C: Control<Command = Legs>>(record: &Record) -> bool {
 }
 
 #[test]
-fn every_planted_fault_is_noticed() {
+fn every_planted_fault_is_detected() {
     let records: Vec<Record> = MUTATED
         .iter()
         .map(|drive| {

@@ -1,5 +1,5 @@
-//! The bit-true model's own supervision notices every fault planted in the text of the runtime's
-//! supervisor, but for those that change nothing.
+//! The bit-true model's own supervision detects every fault planted in the text of the runtime's
+//! supervisor, except equivalent ones.
 
 use hexagen::Limits;
 use hexagen_codegen::pipeline::Generated;
@@ -12,8 +12,7 @@ use rayon::prelude::*;
 
 /// A supervisor of one drive.
 trait Supervised {
-    /// A period: the currents that pass, and the number of the state of all legs where the drive
-    /// rests.
+    /// A period: the passed currents, or the number of the state of all legs if the drive rests.
     fn period(&mut self, adc: [u16; 2], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
     fn reset(&mut self);
     fn calibrate(&mut self);
@@ -97,7 +96,7 @@ mod planted {
     include!(concat!(env!("OUT_DIR"), "/supervisors.rs"));
 }
 
-/// Drives that together have all that a supervisor may have. Their laws keep the last currents.
+/// Drives that together use everything of a supervisor. Their laws store the last currents.
 const DRIVES: [Drive; 3] = [
     Drive {
         kind: "pdcc",
@@ -120,10 +119,10 @@ const DRIVES: [Drive; 3] = [
     },
 ];
 
-/// Steps in streams, and from arbitrary states, within which a fault must show.
+/// Steps in streams, and from arbitrary states, within which a fault must be detected.
 const STEPS: u64 = 200_000;
 
-/// Fault, and why it changes nothing.
+/// Fault, and why it is equivalent.
 const EQUIVALENT: &[(&str, &str)] = &[(
     "> for >=: `if bits >= log2 {`",
     "a mean of as many fraction bits as its sum is not shifted",
@@ -207,12 +206,12 @@ impl Sound {
     }
 }
 
-/// A supervisor and the model that is supervised by its own.
+/// A supervisor and the model that it supervises.
 struct Pair {
     supervisor: Box<dyn Supervised>,
     model: BitTrue,
     words: Vec<i32>,
-    /// Places of the last currents.
+    /// Indices of the last currents.
     currents: [usize; 2],
     legs: hexagen::Legs,
 }
@@ -263,7 +262,7 @@ impl Pair {
 }
 
 #[test]
-fn every_planted_fault_is_noticed() {
+fn every_planted_fault_is_detected() {
     let sound = DRIVES.map(|drive| Sound::of(&drive));
     let noticed = |new: New| sound.iter().any(|sound| sound.differs(new));
     let [(_, healthy), planted @ ..] = planted::SUPERVISORS else {

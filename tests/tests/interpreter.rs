@@ -1,4 +1,4 @@
-//! The interpreted IR computes what the bit-true model computes, on every output and state bit.
+//! The interpreted IR equals the bit-true model in every output and state bit.
 
 use hexagen_codegen::ir::{Machine, Output, Program};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
@@ -14,26 +14,27 @@ const DEFAULT_STEPS: u64 = 100_000;
 /// Steps of each element of the full product; the seeds differ, so all streams take part.
 const PRODUCT_STEPS: u64 = 500;
 
-/// Elements of a kind's product that a push compares; `HEXAGEN_WHOLE_PRODUCTS` in the environment takes all. That of
-/// FCS-MPC is longer.
+/// Elements of a kind's product in a push; the environment's `HEXAGEN_WHOLE_PRODUCTS` takes all.
+/// That of FCS-MPC is longer.
 const MOST_OF_A_PRODUCT: usize = 5_000;
 
 /// Drives of each library motor and kind, and steps of each of them.
 const SAMPLE: usize = 24;
 const SAMPLE_STEPS: u64 = 2_000;
 
-/// Codes of options that rule each other out.
+/// Codes of options that exclude each other.
 const RULED_OUT: [&str; 2] = ["DependentField", "OptionWithoutEffect"];
 
-/// What became of many drives.
+/// Results of many drives.
 #[derive(Debug, Default)]
 struct Tally {
     compared: usize,
     steps: u64,
-    /// Codes of the diagnostics that refused a drive, with the number of drives and the first one.
+    /// Codes of the diagnostics that rejected a drive, with the number of drives and the first one.
     refused: BTreeMap<String, (usize, String)>,
     failures: Vec<String>,
-    /// What the loose options met, each with the first choice that shows the other option's value.
+    /// Combinations of the independent options, each with the first choice that has the other
+    /// option's value.
     met: BTreeSet<Meeting>,
     shown: BTreeMap<(usize, usize), Vec<usize>>,
 }
@@ -57,7 +58,8 @@ impl Tally {
                 let shown = tally.met.iter().map(|(_, value)| (*value, choice.to_vec()));
                 tally.shown = shown.collect();
                 let program = generated.graph.program();
-                // A step from an arbitrary state costs many of a stream, and shows as much.
+                // A step from an arbitrary state costs as much as many of a stream, and finds as
+                // much.
                 let from_states = steps / 8;
                 let compared = compare(&generated, program, steps, seed).and_then(|report| {
                     compare_states(&generated, program, from_states, seed).map(|()| report)
@@ -109,8 +111,8 @@ impl Tally {
     }
 }
 
-/// Elements of the product in an order of which any part visits all values of every axis: the stride shares no factor
-/// with the axes' lengths.
+/// Elements of the product in an order of which any part visits all values of every axis: the
+/// stride is coprime to the axes' lengths.
 fn spread_element(kind: &Kind, index: usize) -> Vec<usize> {
     kind.product_element(index * 13_831 % kind.product_len())
 }
@@ -139,8 +141,9 @@ fn default_drive_of_the_paper_motor() {
     }
 }
 
-/// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The loose ones take
-/// turns, and then what they have not met: each of their combinations with every value of every other option.
+/// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The
+/// independent ones alternate; then their missing combinations follow: each of theirs with every
+/// value of every other option.
 #[test]
 fn full_product_of_options_on_the_paper_motor() {
     let paper = motor(PAPER_MOTOR);
@@ -199,8 +202,7 @@ fn every_library_motor_in_a_sample_of_the_product() {
     }
 }
 
-/// The angle per period that a drive sees, in degrees, of a rotor that turns by so many, once it
-/// turns evenly.
+/// A drive's angle per period, in degrees, at a constant speed of the rotor in degrees per period.
 fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     const CODES: [i32; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
     const TICKS: f64 = 50.0;
@@ -214,7 +216,7 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     let mut machine = Machine::of_program(&probe);
     let mut seen = 0;
     for period in 0..200 {
-        // Sixths of a turn since sector 1 began.
+        // Sixths of a turn since the beginning of sector 1.
         let sixths = (10.0 + f64::from(period) * degrees + 30.0) / 60.0;
         let edge = if degrees > 0.0 {
             sixths.floor()
@@ -238,9 +240,9 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     f64::from(seen) * 360.0 / f64::from(32).exp2()
 }
 
-/// Told by the rotor's speed alone: model and generator limit it by constants of their own.
+/// Only the rotor's speed reveals it: model and generator limit it by constants of their own.
 #[test]
-fn a_rotor_is_believed_to_turn_by_30_degrees_a_period_at_most() {
+fn the_rotors_angle_per_period_is_limited_to_30_degrees() {
     let lines = "[controller]\nhall_capture = \"timer\"\nemf = \"model\"\n";
     let text = motor(PAPER_MOTOR).text.replacen("[controller]\n", lines, 1);
     let text = text.replacen(
@@ -252,7 +254,7 @@ fn a_rotor_is_believed_to_turn_by_30_degrees_a_period_at_most() {
     for degrees in [3.0, 11.0, 20.0, 28.0, 29.5, 30.5, 33.0, 41.0, 52.0] {
         for turned in [degrees, -degrees] {
             let seen = angle_per_period(generated.graph.program(), turned);
-            // A turn is measured to a tick, of 600 and more at up to 30 degrees.
+            // A turn is measured to a tick, of 600 or more at up to 30 degrees.
             let believed = f64::min(degrees, 30.0).copysign(turned);
             let limit = if degrees < 30.0 {
                 degrees / 400.0

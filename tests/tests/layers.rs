@@ -1,10 +1,11 @@
-//! The generator's stages import earlier stages only (`hexagen_codegen`'s own picture of its pipeline).
+//! The generator's stages import earlier stages only (`hexagen_codegen`'s own picture of its
+//! pipeline).
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Modules of the generator, each with those that it may import besides itself.
+/// Modules of the generator, each with its allowed imports besides itself.
 const IMPORTS: [(&str, &[&str]); 15] = [
     ("at_once", &[]),
     ("derive", &[]),
@@ -64,7 +65,7 @@ const IMPORTS: [(&str, &[&str]); 15] = [
     ),
 ];
 
-/// Rust files under `folder`, but for those of unit tests.
+/// Rust files under `folder`, except unit tests.
 fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
     for entry in fs::read_dir(folder).expect("a readable folder") {
         let path = entry.expect("a readable entry").path();

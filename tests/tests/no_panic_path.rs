@@ -1,5 +1,5 @@
-//! Optimised drives have no panic path, whatever else the compiler checks: the machine code of step,
-//! setters and signals calls nothing of `core::panicking`.
+//! Optimised drives have no panic path, whatever else the compiler checks: the machine code of
+//! step, setters and signals calls nothing of `core::panicking`.
 
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
@@ -25,10 +25,10 @@ const CONTROLLERS: [&str; 7] = [
 /// One with a setter more.
 const REGULATED: &str = "pdcc:speed_loop=on";
 
-/// A bus that is measured: all setters, and the double buffer.
+/// A measured bus: all setters, and the double buffer.
 const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"100 V\"\n";
 
-/// The emitted modules of all drives, and functions that call what firmware calls.
+/// The emitted modules of all drives, and functions with the calls of firmware.
 fn firmware() -> String {
     let toml = with_inertia(&motor(PAPER_MOTOR).text);
     let mut text = "#![no_std]\nuse hexagen::{ControlLoop, Legs, Sample, SetPoint, Signals, Status, fixed::types::I16F16};\n".to_owned();
@@ -36,7 +36,7 @@ fn firmware() -> String {
         let name = format!("Drive{number}");
         let mut toml = toml.replace("[inverter]\n", &format!("[inverter]\n{BUS}"));
         if number % 2 == 0 {
-            // No count is beyond the range.
+            // No count is out of range.
             toml = toml.replace("adc_bits = 12", "adc_bits = 16");
         }
         let mut ast = parse_toml(&toml, "motor.toml").expect("TOML");
@@ -106,7 +106,7 @@ fn panic_paths(level: &str) -> Vec<String> {
         let path = entry.expect("a source").path();
         if path.extension().is_some_and(|ending| ending == "rs") {
             let text = fs::read_to_string(&path).expect("a source");
-            // What firmware runs, not what this machine would.
+            // Code of firmware cores, not of this machine.
             let text = text
                 .replace("cfg!(not(target_pointer_width = \"64\"))", "true")
                 .replace("cfg!(target_arch = \"riscv32\")", "true");
@@ -166,9 +166,9 @@ fn optimised_code_has_no_panic_path() {
     }
 }
 
-/// What the documentation says of it, and the proof that a panic path is seen.
+/// The documented exception; also proves that a panic path is detected.
 #[test]
-fn unoptimised_code_has_those_of_core_itself() {
+fn unoptimised_code_has_only_panic_paths_of_core() {
     let paths = panic_paths("0");
     assert!(!paths.is_empty());
     for path in paths {

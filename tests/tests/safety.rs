@@ -1,5 +1,4 @@
-//! What a drive does with input that must not be believed, and how start-up runs: one scenario each, on the
-//! step that firmware calls.
+//! Response of a drive to invalid input, and start-up: one scenario each, on the step of firmware.
 
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, LegState, Legs, Mode, Sample};
@@ -49,7 +48,7 @@ fn quiet(drive: &mut Drive<Guarded>, periods: usize) -> Legs {
 }
 
 #[test]
-fn a_converter_at_an_end_of_its_range_trips_at_once() {
+fn an_adc_at_an_end_of_its_range_trips_at_once() {
     for count in [0, 4095, 4096, u16::MAX] {
         for on_a in [true, false] {
             let mut drive = Drive::<Guarded>::new();
@@ -64,7 +63,7 @@ fn a_converter_at_an_end_of_its_range_trips_at_once() {
 }
 
 hexagen::controller! {
-    /// As `Guarded`, but for a trip level that a count at an end need not be above.
+    /// As `Guarded`, except for a trip level that a count at an end need not exceed.
     pub Late {
         motor: {
             pole_pairs: 4,
@@ -90,7 +89,7 @@ hexagen::controller! {
     }
 }
 
-/// With every offset that calibration accepts, a count at an end trips, told from an over-current.
+/// With every accepted offset, a count at an end trips, distinct from an over-current.
 fn check_ends<C: Control<Command = Legs>>() {
     for offset in [ZERO - 102, ZERO, ZERO + 102] {
         for count in [0, 4095] {
@@ -110,15 +109,15 @@ fn check_ends<C: Control<Command = Legs>>() {
 }
 
 #[test]
-fn a_converter_at_an_end_trips_with_any_offset_that_calibration_accepts() {
+fn an_adc_at_an_end_trips_with_any_accepted_offset() {
     check_ends::<Guarded>();
     check_ends::<Late>();
 }
 
-/// A trip level of 1944 counts is the current of the topmost count with an offset of 2151: with a
-/// tolerance of 103 counts on, that count is told by itself.
+/// A trip level of 1944 counts is the current of the topmost count with an offset of 2151: from a
+/// tolerance of 103 counts on, that count has a fault of its own.
 #[test]
-fn a_converter_at_an_end_trips_with_any_tolerance_of_offsets() {
+fn an_adc_at_an_end_trips_with_any_tolerance_of_offsets() {
     const TRIP: i32 = 1944;
     let amperes = |counts: f64| counts * 40.0 / 2048.0;
     let paper = motor(PAPER_MOTOR).text;
@@ -176,13 +175,13 @@ fn over_current_trips_by_either_phase_and_by_the_third() {
 }
 
 #[test]
-fn impossible_hall_codes_trip() {
-    // A code of more than three bits is none, whatever its lower three say.
+fn invalid_hall_codes_trip() {
+    // A code of more than three bits is invalid, whatever its lower three.
     for hall in [0, 7, 8, 0b1000 | HALL, 0b1111, 0x80 | HALL, u8::MAX] {
         let mut drive = Drive::<Guarded>::new();
         assert_eq!(step(&mut drive, [ZERO; 2], hall), Legs::OFF);
         assert_eq!(drive.status().fault, Some(Fault::Hall));
-        // Beside an over-current, too.
+        // With an over-current, too.
         let mut drive = Drive::<Guarded>::new();
         assert_eq!(step(&mut drive, [ZERO + 1946, ZERO], hall), Legs::OFF);
         assert_eq!(drive.status().fault, Some(Fault::Hall));
@@ -202,12 +201,12 @@ fn calibration_averages_then_charges_then_runs() {
         assert_eq!(step(&mut drive, [ZERO + 100, ZERO - 50], HALL), Legs::LOW);
     }
     assert!(drive.status().is_running());
-    // The new zero is 2148 and 1998 counts: no current, so the legs stand at half.
+    // The new zero is 2148 and 1998 counts: no current, so the legs are at half.
     let legs = step(&mut drive, [ZERO + 100, ZERO - 50], HALL);
     assert_eq!(legs.compare(), [900; 3]);
 }
 
-/// The offsets in force, in counts: a new drive has the nominal ones.
+/// The effective offsets, in counts: a new drive has the nominal ones.
 fn offsets(drive: &Drive<Guarded>) -> [i32; 2] {
     let words = |drive: &Drive<Guarded>| {
         let mut words = vec![0; Drive::<Guarded>::state_names().count()];
@@ -222,7 +221,7 @@ fn offsets(drive: &Drive<Guarded>) -> [i32; 2] {
     })
 }
 
-/// A whole start-up with these offsets, and what it must show: the samples of pre-charge and
+/// A whole start-up with these offsets and its expected results: the samples of pre-charge and
 /// control are others.
 #[track_caller]
 fn starts_up(drive: &mut Drive<Guarded>, a: u16, b: u16) {
@@ -251,7 +250,7 @@ fn every_calibration_averages_its_own_samples_once() {
     starts_up(&mut drive, ZERO + 100, ZERO - 50);
     drive.calibrate();
     starts_up(&mut drive, ZERO - 100, ZERO + 50);
-    // Halfway: nothing of the first half counts.
+    // Halfway: the first half is discarded.
     drive.calibrate();
     for _ in 0..8 {
         step(&mut drive, [ZERO + 100, ZERO - 100], HALL);
@@ -295,7 +294,7 @@ fn an_offset_far_from_nominal_is_a_fault_and_changes_nothing() {
 }
 
 #[test]
-fn start_up_is_not_cut_short() {
+fn start_up_is_not_interrupted() {
     let mut drive = Drive::<Guarded>::new();
     drive.calibrate();
     quiet(&mut drive, 3);
@@ -315,7 +314,7 @@ fn start_up_is_not_cut_short() {
 }
 
 #[test]
-fn a_tripped_drive_obeys_reset_only() {
+fn a_tripped_drive_accepts_only_reset() {
     let mut drive = Drive::<Guarded>::new();
     drive.set_current(I16F16::from_num(10));
     step(&mut drive, [ZERO; 2], 0);
@@ -329,7 +328,7 @@ fn a_tripped_drive_obeys_reset_only() {
 }
 
 #[test]
-fn a_reset_leaves_nothing_asked_for() {
+fn a_reset_clears_the_set_point() {
     let mut drive = Drive::<Guarded>::new();
     drive.set_current(I16F16::from_num(10));
     let driven = quiet(&mut drive, 1);

@@ -1,4 +1,4 @@
-//! What drives tell people agrees with what the bit-true model believes in the same period.
+//! The signals of drives agree with the bit-true model's in the same period.
 
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Legs, Signals};
@@ -29,7 +29,7 @@ drives! {
 
 const STEPS: usize = 60_000;
 
-/// How often a drive told an EMF and a speed that is not 0.
+/// Number of signals with an EMF, and with a speed that is not 0.
 #[derive(Debug, Default, PartialEq)]
 struct Told {
     periods: usize,
@@ -127,7 +127,7 @@ fn a_modelled_emf_and_speed() {
 }
 
 #[test]
-fn an_emf_that_is_fed_forward() {
+fn a_fed_forward_emf() {
     assert_tells::<Fed>(true, true);
 }
 
@@ -137,7 +137,7 @@ fn the_speed_of_a_speed_loop() {
 }
 
 #[test]
-fn no_emf_where_the_law_works_none_out() {
+fn no_emf_if_the_law_estimates_none() {
     assert_tells::<Held>(false, false);
     assert_tells::<Hysteretic>(false, false);
 }

@@ -1,5 +1,5 @@
-//! No call of the runtime panics, whatever its arguments: arithmetic, supervisor, drives in any state. The crate is
-//! built with overflow checks.
+//! No call of the runtime panics, for any arguments: arithmetic, supervisor, drives in any state.
+//! The crate is built with overflow checks.
 
 use hexagen::arith::{
     Word, angle_fraction, angle_index, divide, divide_by_digits, divide_narrow, lookup,
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 use std::hint::black_box;
 
 hexagen::controller! {
-    /// With every call that options bring.
+    /// With the calls of all options.
     pub Conveyor {
         motor: {
             pole_pairs: 4,
@@ -53,13 +53,13 @@ hexagen::controller! {
     }
 }
 
-/// Any word, and those at which operations overflow.
+/// Any word, and those next to overflow.
 fn word() -> impl Strategy<Value = Word> {
     let corners = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
     prop_oneof![any::<i32>(), proptest::sample::select(corners.to_vec())].prop_map(Word)
 }
 
-/// Any number of bits or segments, above all those that are about a word's.
+/// Any number of bits or segments, mostly near a word's.
 fn number() -> impl Strategy<Value = u32> {
     prop_oneof![0..=70_u32, any::<u32>()]
 }
@@ -87,7 +87,7 @@ fn leg() -> impl Strategy<Value = LegState> {
     any::<i32>().prop_map(LegState::from_number)
 }
 
-/// Limits that need not hold.
+/// Limits that may be invalid.
 fn limits() -> impl Strategy<Value = Limits> {
     (
         (any::<u16>(), any::<bool>(), number()),
@@ -153,7 +153,7 @@ fn call() -> impl Strategy<Value = Call> {
     ]
 }
 
-/// Calls that all drives have.
+/// The calls of all drives.
 fn carry_out<C: Control>(drive: &mut Drive<C>, call: Call) {
     match call {
         Call::Step(sample) => {
@@ -176,7 +176,7 @@ fn carry_out<C: Control>(drive: &mut Drive<C>, call: Call) {
     black_box((drive.signals(), format!("{drive:?} {status:?}")));
 }
 
-/// Any calls, in a state that no drive need get into.
+/// Any calls, in a possibly unreachable state.
 fn run<C: Control<Command = Legs>>(state: &[i32], calls: &[Call]) {
     let mut drive = Drive::<C>::new();
     drive.set_state_words(state);
@@ -292,7 +292,7 @@ proptest! {
     }
 }
 
-/// Far beyond what the specification allows, a set-point counts as the largest.
+/// A set-point far above the limit counts as the limit.
 #[test]
 fn extreme_set_points_saturate() {
     let first = |set: &dyn Fn(&Drive<Chooser>)| {

@@ -1,9 +1,10 @@
 //! Words that prove their operations exact.
 //!
-//! Beside its value a word carries what all its values are multiples of (2^last) and an interval that holds them.
-//! An operation is exact for all of them if their magnitude is below 2^(53+last), which every sum, difference and
-//! product checks. The value only decides which way the program goes: a place of the program gives the union
-//! of all intervals that it has ever given (module `ledger`), so that what is proven does not depend on the way.
+//! Besides its value a word has an interval that contains all its values, and the power of two,
+//! 2^last, that divides them. An operation is exact for all of them if their magnitude is below
+//! 2^(53+last), which every sum, difference and product checks. The value only decides the
+//! program's path: an operation returns the union of all its intervals so far (module `ledger`), so
+//! that the proof does not depend on the path.
 
 use super::ledger::{self, Site};
 use hexagen_reference::exact::{WHOLE, Word};
@@ -11,16 +12,16 @@ use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use std::panic::Location;
 
-/// Numerators of quotients that are rounded down directly lie below.
+/// Limit of numerators whose quotients are floored directly.
 const QUOTIENT: f64 = 2.0 * WHOLE;
 const TWO_32: f64 = 4_294_967_296.0;
 
-/// Stands for the last place of what has none, such as a quotient: no sum or product of it is exact.
+/// The last place of numbers without one, such as a quotient: no sum or product of it is exact.
 const NO_LAST: i32 = -100_000;
 /// The last place of zero.
 const LAST_OF_ZERO: i32 = 1_023;
 
-/// A word that knows what else it may be, or a number on the way to one.
+/// A word, or an intermediate number, with its interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     value: f64,
@@ -28,11 +29,12 @@ pub struct Bounded {
     pub(crate) high: f64,
     /// All values are multiples of 2^last.
     pub(crate) last: i32,
-    /// What has made it last.
+    /// Its last operation.
     pub(crate) made: Option<Made>,
 }
 
-/// The operation that made a word. Those of `a + b + c` stand in one place: they differ in how many of them have
+/// The operation that made a word. Those of `a + b + c` are at one place: they differ in the number
+/// of earlier ones.
 /// come before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Made {
@@ -60,7 +62,7 @@ impl Bounded {
         exponent(magnitude) + 1 - self.last
     }
 
-    /// Whether the value is what is known of it.
+    /// Whether the value lies in its interval.
     pub(crate) fn holds(self) -> bool {
         let last = f64::from(self.last.clamp(-1_000, 1_000)).exp2();
         (self.low..=self.high).contains(&self.value) && (self.value / last).fract() == 0.0
@@ -76,7 +78,7 @@ impl Bounded {
         )
     }
 
-    /// With the bounds and the last place moved by a monotonic function that yields whole numbers.
+    /// With the bounds and the last place mapped by a monotonic function with integer results.
     #[track_caller]
     fn rounded(self, what: &'static str, round: impl Fn(f64) -> f64) -> Self {
         if self.bits() > 53 {
@@ -104,7 +106,7 @@ impl Default for Bounded {
     }
 }
 
-/// A constant, which is nothing else.
+/// A constant.
 impl From<f64> for Bounded {
     fn from(x: f64) -> Self {
         let last = if x == 0.0 {
@@ -146,11 +148,11 @@ impl Word for Bounded {
         }
     }
 
-    /// Nothing: the bits of what is computed of a number tell whether it is too large.
+    /// No check here: the bits of results show whether the number is too large.
     fn debug_at_most(self, _most: f64) {}
 
     fn nearest(self) -> Self {
-        // A tie comes with a last place of a half and goes to the even one: no bound may lie on one.
+        // A tie has a last place of a half and goes to the even one: no bound may lie on one.
         self.rounded("rounding", f64::round_ties_even)
     }
 
@@ -173,8 +175,8 @@ impl Word for Bounded {
         is_below.then(|| ledger::enter(product.known(-limit, limit), "product", self))
     }
 
-    /// That the steps of f64's division are exact for all words is the argument that stands beside them, and what the
-    /// test with 128-bit integers is about; here it is seen to that they are such words.
+    /// The proof that the steps of f64's division are exact for all words is in the comments next
+    /// to them, and tested with 128-bit integers; here their operands are checked to be words.
     fn divide(self, s: u32, den: Self, limit: Self) -> Self {
         for (what, x, least) in [
             ("numerator", self, 0.0),
@@ -267,7 +269,7 @@ fn product(a: Bounded, b: Bounded) -> Bounded {
     )
 }
 
-/// A quotient of whole numbers, the lower one above zero: good for [`floor`] alone.
+/// A quotient of integers, the denominator above zero: valid for [`floor`] only.
 #[track_caller]
 fn quotient(a: Bounded, b: Bounded) -> Bounded {
     if a.last < 0 || b.last < 0 || b.low < 1.0 || a.low.abs().max(a.high.abs()) >= QUOTIENT {

@@ -1,4 +1,4 @@
-//! What words have been at every place of the program, and where an operation may not be exact.
+//! Ranges of words at every place of the program, and possibly inexact operations.
 
 use super::bounded::{Bounded, Made};
 use std::cell::RefCell;
@@ -7,11 +7,11 @@ use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::panic::Location;
 
-/// Faults that are told.
+/// Number of reported faults.
 const TOLD: usize = 8;
 
-/// An operation of the program: where it stands, or the operation of several steps that it belongs to, the
-/// number of the step, and what is done.
+/// An operation of the program: its place in the source, or that of the operation with several
+/// steps it belongs to, the number of the step, and its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
     file: &'static str,
@@ -56,7 +56,7 @@ impl Hasher for Mixer {
     }
 
     fn write(&mut self, bytes: &[u8]) {
-        // Of texts the length, and the last letters, tell them apart.
+        // Texts are distinguished by length and last letters.
         self.write_u64(bytes.len() as u64);
         for chunk in bytes.rchunks(8).take(2) {
             self.write_u64(
@@ -82,14 +82,14 @@ impl Hasher for Mixer {
 
 #[derive(Debug, Default)]
 struct Ledger {
-    /// Places are told from one another. They are not while coefficients are made, all in one place.
+    /// Places are distinguished, except while coefficients are made, all at one place.
     is_open: bool,
     known: HashMap<Place, Bounded, BuildHasherDefault<Mixer>>,
-    /// Entries that told something new, and the last of them.
+    /// Entries that changed a range, and the last of them.
     news: u64,
     newest: Option<Place>,
     faults: Vec<String>,
-    /// The operation of several steps that is under way, and its number of steps so far.
+    /// The current operation with several steps, and its number of steps so far.
     outer: Option<(&'static Location<'static>, u32)>,
 }
 
@@ -111,7 +111,7 @@ impl Drop for Site {
     }
 }
 
-/// Marks the place from where the present function is called: what it does counts as steps of that place.
+/// Marks the present function's caller: its operations count as steps of that place.
 #[track_caller]
 pub fn here() -> Site {
     let location = Location::caller();
@@ -133,8 +133,8 @@ pub(crate) fn go_another_way() {
     });
 }
 
-/// The union of what is known of the place and of `x`, which it gives now from `first` and another operand; `x` itself
-/// while the ledger is closed.
+/// The union of the place's range and of `x`, its present result from `first` and another operand;
+/// `x` itself while the ledger is closed.
 #[track_caller]
 pub(crate) fn enter(x: Bounded, what: &'static str, first: Bounded) -> Bounded {
     let location = Location::caller();
@@ -170,7 +170,7 @@ pub(crate) fn enter(x: Bounded, what: &'static str, first: Bounded) -> Bounded {
     })
 }
 
-/// Notes what may not be exact.
+/// Records a possibly inexact operation.
 #[track_caller]
 pub(crate) fn fault(text: &str) {
     let location = Location::caller();
@@ -197,22 +197,22 @@ impl Ledger {
     }
 }
 
-/// Forgets everything. What follows on this thread is judged by itself.
+/// Clears everything. The following is judged by itself.
 pub fn begin() {
     LEDGER.with_borrow_mut(|ledger| *ledger = Ledger::default());
 }
 
-/// What follows on this thread is entered.
+/// The following on this thread is recorded.
 pub fn open() {
     LEDGER.with_borrow_mut(|ledger| ledger.is_open = true);
 }
 
-/// How many entries have told something new.
+/// Number of entries that changed a range.
 pub fn news() -> u64 {
     LEDGER.with_borrow(|ledger| ledger.news)
 }
 
-/// The last entry that told something new.
+/// The last entry that changed a range.
 pub fn newest() -> String {
     LEDGER.with_borrow(|ledger| {
         let told = |place: Place| format!("{place}: {:?}", ledger.known[&place]);
@@ -220,23 +220,23 @@ pub fn newest() -> String {
     })
 }
 
-/// What has been found since the beginning.
+/// Summary.
 #[derive(Clone, Debug)]
 pub struct Findings {
     /// Operations.
     pub operations: usize,
-    /// The most bits that a sum or product of any of them takes.
+    /// The most bits of any sum or product.
     pub bits: i32,
-    /// Where.
+    /// Its place.
     pub place: String,
 }
 
-/// What may not be exact, if anything.
+/// The possibly inexact operations.
 pub fn faults() -> Option<String> {
     LEDGER.with_borrow(|ledger| (!ledger.faults.is_empty()).then(|| ledger.faults.join("\n")))
 }
 
-/// What has been found since the beginning.
+/// Summary.
 pub fn findings() -> Findings {
     LEDGER.with_borrow(|ledger| {
         let longest = ledger.known.iter().max_by_key(|(place, word)| {

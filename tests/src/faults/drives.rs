@@ -1,9 +1,9 @@
-//! The drives that faults are planted in.
+//! The drives with planted faults.
 
 use crate::options::Drive;
 
-/// Percent of the faults planted in each drive that the comparison notices at the least, a per cent or two below what it
-/// does notice: a comparison that looks at less falls below.
+/// Minimum percentage of the faults planted in each drive that the comparison must detect, a per
+/// cent or two below the present score: a weaker comparison falls below.
 pub const LEAST_NOTICED: [u8; 13] = [91, 88, 92, 89, 93, 87, 86, 92, 81, 74, 95, 77, 60];
 
 /// Together these have every stage of a step of every kind of controller.

@@ -2,7 +2,7 @@
 
 use hexagen_codegen::interface::Limits;
 
-/// A fault: what is wrong, and how.
+/// A fault: name and change.
 type Fault = (&'static str, fn(&mut Limits));
 
 const FAULTS: [Fault; 19] = [
@@ -43,7 +43,7 @@ const FAULTS: [Fault; 19] = [
     }),
 ];
 
-/// All of them that these limits can have. The currents follow, so that nothing contradicts itself.
+/// All of them that these limits can have. The currents follow, so that the limits stay consistent.
 pub fn wrong_limits(sound: &Limits) -> Vec<(&'static str, Limits)> {
     let planted = FAULTS.map(|(what, change)| {
         let mut limits = *sound;

@@ -1,6 +1,6 @@
-//! Every small fault of a kind that can be planted in a program: a wrong bit in a constant or a
-//! table, a shift or a rounding, operators and operands exchanged, a state word forgotten. And the drives that they are
-//! planted in.
+//! Every small fault of each kind in a program: a wrong bit in a constant or a table, a shift or a
+//! rounding, operators and operands exchanged, a state word not updated. And the drives with
+//! planted faults.
 
 mod drives;
 mod limits;
@@ -14,29 +14,30 @@ use hexagen_codegen::ir::{
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// A fault: where, what, and the program with it.
+/// A fault: place, change, and the faulty program.
 #[derive(Clone, Debug)]
 pub struct Fault {
     /// Stage and name of the value, or the name of the constant, table or word.
     pub place: String,
-    /// What was changed; with a number where the place has several of the same.
+    /// The change, with a number if the place has several of the kind.
     pub what: String,
     /// The faulty program. Its intervals are opened to the whole word, so that only a wrong result
-    /// (or one that leaves the word) gives it away.
+    /// (or one that leaves the word) reveals it.
     pub program: Program,
     change: Change,
 }
 
 impl Fault {
-    /// Place, and what was changed.
+    /// Place and change.
     pub fn name(&self) -> String {
         format!("{}: {}", self.place, self.what)
     }
 
-    /// The fault in `program`, of which it is one, with the intervals that follow: what a generator would have made of it.
+    /// The fault in `program`, its origin, with consistent intervals, as a generator would have
+    /// made it.
     ///
     /// # Errors
-    /// The value that leaves its word, or whose operator has no result, and then has no interval.
+    /// The value that leaves its word, or whose operator has no result, and so no interval.
     pub fn planted_in(&self, program: &Program) -> Result<Program, String> {
         let mut faulty = program.clone();
         self.change.apply(&mut faulty);
@@ -84,7 +85,7 @@ pub fn faults(program: &Program) -> impl Iterator<Item = Fault> + '_ {
     changes.map(move |(place, mut what, change)| {
         let mut program = open.clone();
         change.apply(&mut program);
-        // Values without a name can share a place.
+        // Unnamed values can share a place.
         let number = known.entry((place.clone(), what.clone())).or_insert(0);
         *number += 1;
         if *number > 1 {
@@ -105,11 +106,11 @@ enum Change {
     Constant(usize, i32),
     Entry(usize, usize, i32),
     Initial(usize, i32),
-    /// The state word keeps its old value: number in the list of new state.
+    /// The state word keeps its old value: index in the list of new state.
     Forget(usize, Value),
     /// Function (0 the step, then the setters), node, operator.
     Op(usize, usize, Op),
-    /// So many nodes are tracking.
+    /// Number of tracking nodes.
     Tracking(usize),
 }
 
@@ -145,7 +146,7 @@ fn wrong_words(raw: i32) -> Vec<(String, i32)> {
     wrong
 }
 
-/// The last state words that are tracked at rest are forgotten.
+/// The last state words tracked at rest are not updated.
 fn tracking(program: &Program) -> impl Iterator<Item = Found> + '_ {
     let Function {
         stages,
@@ -235,7 +236,7 @@ fn words(program: &Program) -> impl Iterator<Item = Found> + '_ {
     initial.chain(forgotten)
 }
 
-/// The value that node `index` defines, found where it is used.
+/// The value that node `index` defines, found by its uses.
 fn value_of(function: &Function, index: usize) -> Option<Value> {
     let operands = function.nodes.iter().flat_map(|node| node.op.operands());
     operands.into_iter().find(|value| value.index() == index)
@@ -263,7 +264,7 @@ fn nodes(program: &Program) -> impl Iterator<Item = Found> + '_ {
         })
 }
 
-/// Stage and name of a value; a value without name is told by the next one that has a name.
+/// Stage and name of a value; an unnamed value has that of the next named one.
 fn place(function: &Function, index: usize) -> String {
     let stage = function
         .stages
@@ -297,7 +298,7 @@ fn wrong_literals(op: Op) -> impl Iterator<Item = (String, Op)> {
     })
 }
 
-/// Operators that are wrong in one way, with what is wrong.
+/// Operators with one fault each, with its name.
 fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
     // The identity, for an operator left out.
     let same = |a: Value| Op::Max(a, a);

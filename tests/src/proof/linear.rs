@@ -1,4 +1,4 @@
-//! Linear forms with whole coefficients over numbered variables, and facts about them.
+//! Linear forms with integer coefficients over numbered variables, and facts about them.
 
 use std::ops::{Add, Neg, Sub};
 
@@ -29,7 +29,7 @@ impl Linear {
         }
     }
 
-    /// Its value, if no variable is in it.
+    /// Its value, if it has no variable.
     pub fn as_number(&self) -> Option<i64> {
         self.weights.is_empty().then_some(self.constant)
     }
@@ -80,17 +80,19 @@ impl Neg for &Linear {
     }
 }
 
-/// That a sum of weighted variables is at least `bound`; the weights have no common divisor.
+/// The fact that a sum of weighted variables is at least `bound`; the weights have no common
+/// divisor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fact {
     /// Weights of the variables.
     pub weights: Vec<i64>,
-    /// What their sum is not below.
+    /// Lower bound of their sum.
     pub bound: i64,
 }
 
 impl Fact {
-    /// That the form is not negative. Without a common divisor of the weights the bound is the tightest one for whole numbers.
+    /// The fact that the form is not negative. Without a common divisor of the weights the bound is
+    /// the tightest one for integers.
     pub fn not_negative(form: &Linear) -> Self {
         let divisor = form.weights.iter().fold(0, |one, &two| gcd(one, two.abs()));
         let divisor = divisor.max(1);
@@ -100,12 +102,12 @@ impl Fact {
         }
     }
 
-    /// That the form is at most -1.
+    /// The fact that the form is at most -1.
     pub fn negative(form: &Linear) -> Self {
         Self::not_negative(&(&-form - &Linear::number(1)))
     }
 
-    /// Whether it alone makes `other` true.
+    /// Whether it implies `other`.
     pub fn implies(&self, other: &Self) -> bool {
         self.weights == other.weights && self.bound >= other.bound
     }

@@ -1,8 +1,10 @@
-//! Proofs about a slice of a program: every path through it, with exact linear arithmetic over all integers.
+//! Proofs about a slice of a program: every path through it, with exact linear arithmetic over all
+//! integers.
 //!
-//! [`linear`] has the forms, [`simplex`] says whether linear facts have a common point, [`paths`] follows every
-//! sequence of decisions that is possible, and [`slice`](mod@slice) computes a program's values along a path. Products of two words and
-//! floors are numbers of which only their definition is known, so what is proven holds whatever they are.
+//! [`linear`] has the forms, [`simplex`] decides whether linear facts have a common point,
+//! [`paths`] follows every possible sequence of decisions, and [`slice`](mod@slice) computes a
+//! program's values along a path. Of products of two words and of floors only the definition is
+//! known, so the proof holds for any of their values.
 
 pub mod linear;
 pub mod paths;

@@ -1,23 +1,23 @@
-//! Every path of decisions about the signs of linear forms, by running a check again for each.
+//! Every path of decisions about the signs of linear forms, by repeated runs of a check.
 //!
-//! A run asks [`Path::is_negative`]; where facts known so far leave both answers open, the run goes one way
-//! and another run goes the other way. What no whole numbers satisfy is left out, as far as
-//! rational arithmetic can tell: what remains is at most too much, so a proof is never wrong.
+//! A run asks [`Path::is_negative`]; if the known facts leave both answers open, the run takes one,
+//! and another run the other. Paths without an integer solution are left out, as far as rational
+//! arithmetic can tell: at most too many remain, so a proof is never wrong.
 
 use super::linear::{Fact, Linear};
 use super::simplex::{Rational, common_point};
 use std::collections::HashMap;
 
-/// What was assumed contradicts what is known: the run ends without a verdict.
+/// An assumption contradicts the known facts: the run ends without a verdict.
 #[derive(Clone, Copy, Debug)]
 pub struct Contradiction;
 
-/// A decision, and whether the other one is still to be followed.
+/// A decision, and whether the alternative is still to be followed.
 #[derive(Clone, Copy, Debug)]
 struct Decision {
     negative: bool,
     open: bool,
-    /// The other one is impossible.
+    /// The alternative is impossible.
     implied: bool,
 }
 
@@ -28,22 +28,22 @@ pub struct Path {
     /// Decisions of the trail that this run has taken.
     taken: usize,
     facts: Vec<Fact>,
-    /// What follows from the facts; of no use to the simplex method.
+    /// Consequences of the facts, not used by the simplex method.
     implied: Vec<Fact>,
-    /// A point at which the facts hold.
+    /// A point that satisfies the facts.
     witness: Option<Vec<Rational>>,
     names: Vec<String>,
-    /// Products and floors by what they are made of.
+    /// Products and floors by their operands.
     defined: HashMap<Defined, Linear>,
 }
 
-/// Factors and shift of a product, or what a floor is taken of.
+/// Factors and shift of a product, or the operand of a floor.
 type Defined = (Linear, Linear, u32);
 
 /// Runs `check` on every path. The number of paths.
 ///
 /// # Errors
-/// What `check` says of the first path that it refutes, and where that path goes.
+/// The finding of `check` on the first refuted path, and the path.
 pub fn for_all_paths(
     mut check: impl FnMut(&mut Path) -> Result<Result<(), String>, Contradiction>,
 ) -> Result<usize, String> {
@@ -81,7 +81,7 @@ impl Path {
     /// A new flag.
     ///
     /// # Errors
-    /// Where the path ends.
+    /// If the path ends.
     pub fn flag(&mut self, name: &str) -> Result<bool, Contradiction> {
         let chance = self.variable(name);
         self.is_negative(&chance)
@@ -90,7 +90,7 @@ impl Path {
     /// A new whole number from 0 to below `end`.
     ///
     /// # Errors
-    /// Where the path ends.
+    /// If the path ends.
     pub fn number(&mut self, name: &str, end: i64) -> Result<i64, Contradiction> {
         let chance = self.variable(name);
         for value in 0..end - 1 {
@@ -101,10 +101,10 @@ impl Path {
         Ok(end - 1)
     }
 
-    /// Takes the form to be not negative.
+    /// Assumes that the form is not negative.
     ///
     /// # Errors
-    /// Where that cannot be.
+    /// If that is impossible.
     pub fn assume(&mut self, form: &Linear) -> Result<(), Contradiction> {
         let fact = Fact::not_negative(form);
         if fact.weights.is_empty() {
@@ -115,7 +115,7 @@ impl Path {
             };
         }
         self.facts.push(fact);
-        // Runs before this one have come this way.
+        // Earlier runs have come this way.
         if self.taken < self.trail.len() {
             self.witness = None;
             return Ok(());
@@ -130,7 +130,7 @@ impl Path {
     /// Whether the form is negative, on this path.
     ///
     /// # Errors
-    /// Where neither can be.
+    /// If neither is possible.
     pub fn is_negative(&mut self, form: &Linear) -> Result<bool, Contradiction> {
         if let Some(number) = form.as_number() {
             return Ok(number < 0);
@@ -164,7 +164,7 @@ impl Path {
         Ok(decision.negative)
     }
 
-    /// A decision that no run before this one has taken.
+    /// A decision that no earlier run has made.
     fn decide(&mut self, yes: &Fact, no: &Fact) -> Result<Decision, Contradiction> {
         if self.witness.is_none() {
             self.witness = self.point(None);
@@ -183,7 +183,7 @@ impl Path {
         })
     }
 
-    /// A point at which the facts hold, and one more.
+    /// A point that satisfies the facts, and one more.
     fn point(&self, more: Option<&Fact>) -> Option<Vec<Rational>> {
         let facts: Vec<&Fact> = self.facts.iter().chain(more).collect();
         common_point(&facts, self.names.len())
@@ -192,7 +192,7 @@ impl Path {
     /// floor(x / 2^bits).
     ///
     /// # Errors
-    /// Where the path ends.
+    /// If the path ends.
     pub fn floored(&mut self, x: &Linear, bits: u32) -> Result<Linear, Contradiction> {
         if let Some(number) = x.as_number() {
             return Ok(Linear::number(number >> bits));
@@ -209,7 +209,7 @@ impl Path {
         Ok(floor)
     }
 
-    /// floor(x y / 2^bits), of which no more is known than that it is the same for the same factors.
+    /// floor(x y / 2^bits), known only to be the same for the same factors.
     pub fn product(&mut self, x: &Linear, y: &Linear, bits: u32) -> Linear {
         match (x.as_number(), y.as_number()) {
             (Some(x), Some(y)) => {
@@ -228,9 +228,9 @@ impl Path {
         product
     }
 
-    /// floor((x y + z w) / 2^bits), of which no more is known than that it is the same for the same products.
+    /// floor((x y + z w) / 2^bits), known only to be the same for the same products.
     pub fn sum_of_products(&mut self, factors: [[&Linear; 2]; 2], bits: u32) -> Linear {
-        /// Beyond the shifts of single products.
+        /// Distinct from the shifts of single products.
         const OF_SUMS: u32 = 128;
         let [first, second] = factors.map(|[x, y]| self.product(x, y, 0));
         let key = (&first + &second, Linear::default(), OF_SUMS + bits);
@@ -245,7 +245,8 @@ impl Path {
         sum
     }
 
-    /// Whether products of factors that are equal here can be equal, too: on the way they counted as any numbers.
+    /// Whether products of factors that are equal here can be equal, too: so far they were
+    /// independent.
     fn is_consistent(&mut self) -> bool {
         let mut products: Vec<(Defined, Linear)> = self.defined.drain().collect();
         products.sort();
@@ -267,7 +268,7 @@ impl Path {
         true
     }
 
-    /// Whether the form can be nothing but zero.
+    /// Whether the form can only be zero.
     fn is_zero(&self, form: &Linear) -> bool {
         match form.as_number() {
             Some(number) => number == 0,
@@ -277,7 +278,7 @@ impl Path {
         }
     }
 
-    /// Where the path goes, for messages.
+    /// The path, for messages.
     fn place(&self) -> String {
         let point = self.point(None).unwrap_or_default();
         let values = self.names.iter().zip(&point);

@@ -1,4 +1,4 @@
-//! Whether linear facts have a common rational point: the simplex method with Bland's rule, exact.
+//! Whether linear facts have a common rational point: the exact simplex method with Bland's rule.
 
 use super::linear::Fact;
 use num_rational::Ratio;
@@ -6,11 +6,12 @@ use num_rational::Ratio;
 /// An exact number.
 pub type Rational = Ratio<i128>;
 
-/// A point (a value per variable) at which all facts hold; none where there is no such point.
+/// A point (a value per variable) that satisfies all facts; `None` if there is no such point.
 ///
-/// The facts' sums are further variables with a lower bound each. Rows say what the dependent variables are
-/// in terms of the free ones; a dependent variable below its bound is exchanged for a free one until none
-/// is. Of several choices the first variable is taken, so that no exchange comes twice.
+/// The facts' sums are further variables with a lower bound each. Rows express the dependent
+/// variables in terms of the free ones; a dependent variable below its bound is exchanged for a
+/// free one until none is. Of several choices the first variable is taken, so that no exchange
+/// repeats.
 pub fn common_point(facts: &[&Fact], variables: usize) -> Option<Vec<Rational>> {
     Tableau::new(facts, variables).solve()
 }
@@ -76,7 +77,7 @@ impl Tableau {
             .min_by_key(|&row| self.dependent[row])
     }
 
-    /// The column of a free variable whose change can raise the row's variable.
+    /// The column of a free variable that can raise the row's variable.
     fn exchangeable(&self, row: usize) -> Option<usize> {
         let zero = Rational::from_integer(0);
         let can_raise = |&column: &usize| {

@@ -1,18 +1,18 @@
-//! Values of a program along a path, from some that are given.
+//! Values of a program along a path, from given ones.
 
 use super::linear::Linear;
 use super::paths::{Contradiction, Path};
 use hexagen_codegen::ir::{Comparison, Function, Op, Program, Value};
 use std::collections::HashMap;
 
-/// A word as a linear form, or a flag that the path has decided.
+/// A word as a linear form, or a flag decided by the path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Symbol {
     /// A word.
     Word(Linear),
     /// A flag.
     Flag(bool),
-    /// A flag that is still to be decided: whether the form is negative. Only given, never computed.
+    /// An undecided flag: whether the form is negative. Only given, never computed.
     Sign(Linear),
 }
 
@@ -31,7 +31,7 @@ impl Symbol {
     /// The flag.
     ///
     /// # Panics
-    /// For a word, and for a flag that is still to be decided.
+    /// For a word, and for an undecided flag.
     pub fn flag(self) -> bool {
         match self {
             Self::Flag(flag) => flag,
@@ -40,7 +40,7 @@ impl Symbol {
     }
 }
 
-/// A program's step with the values that are given: nodes, constants and set-point words by their name.
+/// A program's step with the given values: nodes, constants and set-point words by name.
 #[derive(Clone, Debug)]
 pub struct Slice<'p> {
     program: &'p Program,
@@ -49,7 +49,7 @@ pub struct Slice<'p> {
 }
 
 impl<'p> Slice<'p> {
-    /// The step of a program; nothing is given.
+    /// The step of a program, without given values.
     pub fn new(program: &'p Program) -> Self {
         Self {
             program,
@@ -66,11 +66,11 @@ impl<'p> Slice<'p> {
     /// The value of this name.
     ///
     /// # Errors
-    /// Where the path ends.
+    /// If the path ends.
     ///
     /// # Panics
-    /// When there is none, or when it depends on something that is not given and on which no proof can
-    /// rest: inputs, states, angles.
+    /// If there is none, or it depends on something that is not given and that no proof can use:
+    /// inputs, states, angles.
     pub fn named(&mut self, name: &str, path: &mut Path) -> Result<Symbol, Contradiction> {
         let mut nodes = self.program.step.nodes.iter();
         let node = nodes.position(|node| node.name == name);
@@ -102,7 +102,7 @@ impl<'p> Slice<'p> {
         Ok(value)
     }
 
-    /// The condition of the stage whose result is this join.
+    /// The condition of the stage with this join as result.
     fn guard(&self, join: usize) -> Value {
         let guards = self.step().stages.iter();
         let mut guards = guards.filter_map(|stage| stage.guard.as_ref());
@@ -242,7 +242,8 @@ impl<'p> Slice<'p> {
         Ok(Symbol::Word(word))
     }
 
-    /// What a factor is a shift of, and the shift that is left to its product: floor(2^n x y / 2^s) is floor(x y / 2^(s - n)).
+    /// The operand of a factor's shift, and the shift left for its product: floor(2^n x y / 2^s) is
+    /// floor(x y / 2^(s - n)).
     fn unshifted(&self, factor: Value, shift: u32) -> (Value, u32) {
         match self.step().node(factor).op {
             Op::ShiftLeft(whole, bits) if bits <= shift => (whole, shift - bits),
@@ -269,7 +270,7 @@ impl<'p> Slice<'p> {
     }
 }
 
-/// The lesser of two words, or the greater one.
+/// The minimum or maximum of two words.
 fn bounded([a, b]: [Linear; 2], greater: bool, path: &mut Path) -> Result<Linear, Contradiction> {
     let is_less = path.is_negative(&(&a - &b))?;
     Ok(if is_less == greater { b } else { a })

@@ -1,5 +1,5 @@
-//! The choice of a vector as its semantics page words it: one candidate after the other, the first of the
-//! least score.
+//! The choice of a vector as in its semantics page: one candidate after the other, the first with
+//! the least score.
 
 use hexagen_codegen::spec::Candidates;
 use hexagen_tests::proof::linear::Linear;
@@ -14,19 +14,19 @@ const LEGS: [&[u8; 3]; 16] = [
 /// The leg that is off in sectors 1 to 6.
 const OFF: [usize; 6] = [0, 2, 1, 0, 2, 1];
 
-/// A leg that is off, as the physical prediction has it.
+/// A leg that is off, as in the physical prediction.
 #[derive(Clone, Debug)]
 pub struct OffLeg {
-    /// Negative where its predicted current flows into the motor through a diode, and out of it.
+    /// Negative if its predicted current flows into the motor through a diode, and out of it.
     pub inward: Linear,
     pub outward: Linear,
-    /// What its EMF lifts it by above the driven legs' mean.
+    /// Lift of its EMF above the driven legs' mean.
     pub lift: Linear,
-    /// Twice its terminal beside a pair that is driven high and low, less the bus.
+    /// Twice its terminal next to a pair that is driven high and low, minus the bus.
     pub offset: Linear,
 }
 
-/// What the choice depends on.
+/// Inputs of the choice.
 #[derive(Clone, Debug)]
 pub struct Situation {
     pub candidates: Candidates,
@@ -34,11 +34,11 @@ pub struct Situation {
     pub commutating: bool,
     pub bus: Linear,
     pub u: [Linear; 3],
-    /// None where they count as lying midway.
+    /// `None` if they count as midway.
     pub off_legs: Option<[OffLeg; 3]>,
     /// Shift of the products in scores.
     pub shift: u32,
-    /// What turning legs a, b, c high, low and off costs over the bus, where that weighs.
+    /// Cost of turning legs a, b, c high, low and off over the bus, if weighted.
     pub changes: Option<[[Linear; 3]; 3]>,
 }
 
@@ -51,7 +51,7 @@ pub fn sixths(vector: usize) -> [i64; 3] {
 }
 
 impl Situation {
-    /// The number of the vector that is applied.
+    /// The number of the applied vector.
     pub fn vector(&self, path: &mut Path) -> Result<usize, Contradiction> {
         Ok(self.least(path)?.0)
     }
@@ -75,7 +75,8 @@ impl Situation {
         Ok(least)
     }
 
-    /// The vector that shares the period with `vector`, and the terminals of the legs: their share of the bus.
+    /// The vector that shares the period with `vector`, and the terminals of the legs: their
+    /// fraction of the bus.
     pub fn shared(&self, vector: usize, path: &mut Path) -> Result<[Linear; 3], Contradiction> {
         let mut terminals = [(); 3].map(|()| Linear::default());
         if vector < 7 {
@@ -196,7 +197,7 @@ impl Situation {
         Ok(kept)
     }
 
-    /// 6 (|v|^2 - 2 u v), the off leg left out, over the bus.
+    /// 6 (|v|^2 - 2 u v), without the off leg, over the bus.
     pub fn by_bus(&self, vector: usize) -> Linear {
         let find = |wanted: u8| LEGS[vector].iter().position(|&leg| leg == wanted);
         let is_high = |leg: &&u8| **leg == b'+';
@@ -257,7 +258,7 @@ impl Situation {
 }
 
 impl OffLeg {
-    /// Where the leg sits beside driven legs with that mean.
+    /// Position of the leg next to driven legs with that mean.
     pub fn terminal(
         &self,
         bus: &Linear,

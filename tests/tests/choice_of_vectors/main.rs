@@ -1,8 +1,9 @@
-//! The emitted choice of a vector equals the enumerated argmin, ties included, for every integer input: proven over the
-//! IR of every kind of drive that the library's motors allow, with any bus voltage and any threshold.
+//! The emitted choice of a vector equals the enumerated argmin, ties included, for every integer
+//! input: proven over the IR of every kind of drive that the library's motors allow, with any bus
+//! voltage and any threshold.
 //!
-//! A drive with off legs is proven in two parts: where each leg would sit, case by case of its current; and the
-//! choice for whatever place that may be. Scores that are rounded are the same numbers on both sides.
+//! A drive with off legs is proven in two parts: the position of each leg, case by case of its
+//! current; and the choice for any position. Rounded scores are the same numbers on both sides.
 
 mod enumerated;
 
@@ -20,7 +21,7 @@ use hexagen_tests::proof::slice::{Slice, Symbol};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Options that have not the first value of their axis.
+/// Options without the first value of their axis.
 type Settings = &'static [(&'static str, &'static str)];
 
 type Verdict = Result<Result<(), String>, Contradiction>;
@@ -30,7 +31,7 @@ const PHASES: [&str; 3] = ["a", "b", "c"];
 /// Legs that are low in V0 to V6: 1 a, 2 b, 4 c.
 const LOW_LEGS: [usize; 7] = [7, 3, 2, 6, 4, 5, 1];
 
-/// What a proof is about: a drive's program.
+/// The subject of a proof: a drive's program.
 #[derive(Clone, Debug)]
 struct Subject {
     program: Program,
@@ -64,7 +65,7 @@ impl Subject {
         nodes.any(|node| node.name == name)
     }
 
-    /// Bus and threshold, a number each or any number; and the whole parts of the bus that a fixed one is given by.
+    /// Bus and threshold, a number each or any number; and the integer parts of a fixed bus.
     fn slice(
         &self,
         bus: &Linear,
@@ -79,7 +80,7 @@ impl Subject {
         Ok(slice)
     }
 
-    /// Part one: where off legs sit.
+    /// Part one: positions of off legs.
     fn off_leg(&self, phase: usize, path: &mut Path) -> Verdict {
         let bus = positive("v_bus", path)?;
         let threshold = path.variable("threshold");
@@ -137,11 +138,12 @@ impl Subject {
         Ok(Ok(()))
     }
 
-    /// Part two: the choice, wherever off legs sit. `plane`: the bus, and u of phases a and b, as numbers.
+    /// Part two: the choice, for any positions of off legs. `plane`: the bus, and u of phases a and
+    /// b, as numbers.
     fn choice(&self, plane: Option<[i64; 3]>, path: &mut Path) -> Verdict {
         self.compared(plane, path, |subject, situation, slice, path| {
             let vector = situation.vector(path)?;
-            // By the legs that are low, where nothing else is asked for.
+            // By the legs that are low, if nothing else is required.
             let (name, number) = if subject.has("pattern") {
                 ("pattern", LOW_LEGS[vector])
             } else {
@@ -160,7 +162,8 @@ impl Subject {
         })
     }
 
-    /// Part three: how two vectors share the period, for any pair vector or zero of a pair, and for the nearest of V0 to V6.
+    /// Part three: how two vectors share the period, for any pair vector or zero of a pair, and for
+    /// the nearest of V0 to V6.
     fn sharing(&self, plane: Option<[i64; 3]>, path: &mut Path) -> Verdict {
         self.compared(plane, path, |subject, situation, slice, path| {
             let vector = if subject.options.pairs() && path.flag("pair")? {
@@ -187,7 +190,7 @@ impl Subject {
         })
     }
 
-    /// Name of the sector that the choice goes by.
+    /// Name of the choice's sector.
     fn sector(&self) -> &'static str {
         let names = ["sector_eff", "sector", "sector_seen"];
         let name = names.into_iter().find(|name| self.has(name));
@@ -222,7 +225,7 @@ impl Subject {
         let off_legs = if self.options.floating() {
             let off_legs = LEG_NAMES.map(|names| off_leg(names, &mut slice, path));
             for leg in &off_legs {
-                // With a threshold that is not negative no current flows both ways.
+                // With a non-negative threshold no current flows both ways.
                 path.assume(&(&leg.inward + &leg.outward))?;
             }
             Some(off_legs)
@@ -252,7 +255,7 @@ impl Subject {
         check(self, &situation, &mut slice, path)
     }
 
-    /// Part four: what the best second vector adds behind a first one.
+    /// Part four: the contribution of the best second vector after a first one.
     fn ahead(&self, first: usize, path: &mut Path) -> Verdict {
         let bus = positive("v_bus", path)?;
         let mut slice = self.slice(&bus, &Linear::default(), path)?;
@@ -285,7 +288,8 @@ impl Subject {
         })
     }
 
-    /// Part five: the vector `number` against the best of those before it, whatever second ones add.
+    /// Part five: the vector `number` against the best of those before it, for any contribution of
+    /// second ones.
     fn next_of_sequence(&self, number: usize, path: &mut Path) -> Verdict {
         let bus = positive("v_bus", path)?;
         let mut slice = self.slice(&bus, &Linear::default(), path)?;
@@ -326,7 +330,7 @@ impl Subject {
         } else {
             [known, least]
         };
-        // The best of all is the vector, and nobody asks for its score.
+        // The best of all is the vector, whose score is not needed.
         let is_last = number + 1 == self.first_vectors();
         let best = if is_last { "vector" } else { names.best };
         for (name, expected) in [best, names.least].into_iter().zip(expected) {
@@ -340,7 +344,7 @@ impl Subject {
         Ok(Ok(()))
     }
 
-    /// Vectors that a sequence may begin with.
+    /// Possible first vectors of a sequence.
     fn first_vectors(&self) -> usize {
         match self.options.candidates {
             Candidates::All => 13,
@@ -376,7 +380,7 @@ impl Subject {
         Ok(paths)
     }
 
-    /// What the proof rests on, as text: drives of the same text have the same proof.
+    /// Inputs of the proof as text: drives with the same text have the same proof.
     fn key(&self) -> String {
         let text = self.program.to_string();
         let stages = [
@@ -401,9 +405,10 @@ impl Subject {
         } = self.options;
         let counts_changes = switching_weight > 0.0;
         let mut key = format!("{candidates:?} {modulated} {horizon} {counts_changes} {tables:?}\n");
-        // The proof takes the products' shift for a name; that it is the right one is seen here.
+        // The proof uses the products' shift as a name; its value is checked here.
         let shift = format!(">> {})", self.shift);
-        // As upper words they have the rest of a word's bits before them; one or two are shifts of their own, too.
+        // As upper words they have the rest of a word's bits before them; one or two are shifts of
+        // their own, too.
         let room = 32_u32.checked_sub(self.shift).filter(|&room| room > 2);
         let raised = room.map(|room| format!(" << {room}"));
         let mut is_inside = false;
@@ -449,17 +454,17 @@ const LEG_NAMES: [[&str; 4]; 3] = [
     ["c_inward", "c_outward", "lift_c", "d_c"],
 ];
 
-/// Names of what turning legs high, low and off costs.
+/// Names of the costs of turning legs high, low and off.
 const CHANGES: [[&str; 3]; 3] = [
     ["to_high_a", "to_low_a", "to_off_a"],
     ["to_high_b", "to_low_b", "to_off_b"],
     ["to_high_c", "to_low_c", "to_off_c"],
 ];
 
-/// Names in the choice of a sequence that begins with a vector.
+/// Names in the choice of a sequence's first vector.
 #[derive(Clone, Copy, Debug)]
 struct Sequence {
-    /// What the best second vector adds.
+    /// Contribution of the best second vector.
     ahead: &'static str,
     /// The best first vector up to this one.
     best: &'static str,
@@ -471,7 +476,7 @@ const fn sequence(ahead: &'static str, best: &'static str, least: &'static str) 
     Sequence { ahead, best, least }
 }
 
-/// By the number of the vector; the first one is compared with none.
+/// By the number of the vector; the first one has no comparison.
 const SEQUENCES: [Sequence; 13] = [
     sequence("ahead_0", "best_0", "least_0"),
     sequence("ahead_1", "best_1", "least_1"),
@@ -531,7 +536,7 @@ fn off_leg(names: [&'static str; 4], slice: &mut Slice, path: &mut Path) -> OffL
     }
 }
 
-/// Every drive of the library's motors that chooses vectors, once per text that its proof rests on.
+/// Every drive of the library's motors that chooses vectors, once per text of its proof.
 fn subjects() -> BTreeMap<String, (String, Subject)> {
     const AXES: [(&str, &[&str]); 7] = [
         ("choice", &["one", "two", "fewer_changes", "two_steps"]),
@@ -551,7 +556,8 @@ fn subjects() -> BTreeMap<String, (String, Subject)> {
         };
         settings = settings.iter().flat_map(longer).collect();
     }
-    // Changes that weigh leave physical off legs to the two parts that are proven here without weights, and without off legs.
+    // Weighted changes leave physical off legs to the two parts that are proven here without
+    // weights, and without off legs.
     let is_taken = |settings: &Vec<(&str, &str)>| {
         let has = |setting: &(&str, &str)| settings.contains(setting);
         !has(&("choice", "fewer_changes"))
@@ -600,8 +606,8 @@ fn the_rule_finds_the_first_of_the_least_score() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Drives in whose choice faults are planted, the most of them that are tried, and how many of these change
-/// the choice at the least: some change what no choice rests on. Together the drives have every stage.
+/// Drives with faults planted in the choice, the maximum number of tried faults, and the minimum
+/// number that change the choice: some are equivalent. Together the drives have every stage.
 const PLANTED: [(Settings, usize, usize); 9] = [
     (&[("choice", "two")], 6, 4),
     (
@@ -637,8 +643,8 @@ const PLANTED: [(Settings, usize, usize); 9] = [
 /// The drive of [`WRONG_RULES`].
 const WRONG_RULES_OF: Settings = &[("off_leg", "nominal")];
 
-/// Wrong rules that a few random inputs would hardly show: the order of ties, the edge of the zero vector, a vector
-/// left out, and the sign that tells two of them apart.
+/// Wrong rules that a few random inputs would hardly reveal: the order of ties, the edge of the
+/// zero vector, a missing vector, and the sign that distinguishes two of them.
 const WRONG_RULES: [(&str, &str); 6] = [
     ("nearest_vector: b_is_low", "another comparison"),
     ("nearest_vector: in low_legs", "never"),

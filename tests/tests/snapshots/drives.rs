@@ -1,4 +1,4 @@
-//! The drives whose texts are kept, and the texts of a drive.
+//! The drives of the snapshots, and the texts of a drive.
 
 use hexagen_codegen::emit::c99::{Sources, emit_c99};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
@@ -14,7 +14,7 @@ use toml_edit::DocumentMut;
 /// Kinds of texts.
 pub const TEXTS: [&str; 4] = ["rust", "c99", "ir", "datasheet"];
 
-/// Name of the type in every text, so that they differ in what the drives differ in.
+/// Name of the type in every text, so that only the drives' differences show.
 const NAME: &str = "Hub";
 
 /// Further fields of a variant's specification: section, field, value.
@@ -96,7 +96,7 @@ const VARIANTS: [(&str, &str, Fields); 19] = [
     ),
 ];
 
-/// What is generated for a drive.
+/// The texts of a drive.
 pub struct Drive {
     /// Controller and variant, or controller and motor, or its row in the covering array.
     pub name: String,
@@ -122,14 +122,14 @@ impl Drive {
     /// Its text of a kind.
     ///
     /// # Panics
-    /// When there is no such kind.
+    /// If there is no such kind.
     pub fn text(&self, kind: &str) -> &str {
         let place = TEXTS.iter().position(|text| *text == kind);
         &self.texts[place.expect("a kind of text")]
     }
 }
 
-/// The paper's motor with each controller as it is by default.
+/// The paper's motor with each controller's defaults.
 pub fn defaults() -> Vec<Drive> {
     let kinds = kinds();
     kinds
@@ -158,7 +158,7 @@ fn variant(name: &str, options: &str, fields: Fields) -> Drive {
     Drive::new(name, &generated)
 }
 
-/// Every motor with every controller that it takes, and all drives of the covering arrays.
+/// Every motor with every suitable controller, and all drives of the covering arrays.
 pub fn others() -> Vec<Drive> {
     let kinds = kinds();
     let motors = motors();
@@ -169,7 +169,7 @@ pub fn others() -> Vec<Drive> {
             (format!("{} {}", kind.name, motor.name), toml)
         }));
     }
-    // A motor that cannot have the controller has none of its texts.
+    // A motor without the controller has none of its texts.
     drives.retain(|(_, toml)| generate_toml(toml).is_ok());
     drives.extend(SPECIFICATIONS.iter().map(|(_, what, toml)| {
         let name: Vec<&str> = what.split(' ').take(2).collect();
@@ -183,7 +183,7 @@ pub fn others() -> Vec<Drive> {
     drives.collect()
 }
 
-/// A specification under the name that all have here, with further fields.
+/// A specification with the common name and further fields.
 fn specification(toml: &str, fields: Fields) -> String {
     let mut document: DocumentMut = toml.parse().expect("a TOML file");
     let names = [

@@ -1,4 +1,4 @@
-//! What is new in a text beside those that have been shown: units whole, or lines of known units.
+//! New parts of a text compared with earlier ones: units whole, or lines of known units.
 
 use crate::shape::{Shape, shape};
 use crate::units::{Unit, balance, units};
@@ -31,7 +31,7 @@ fn abridged(unit: &Unit) -> String {
     }
 }
 
-/// What earlier texts of one kind have shown.
+/// Units and lines shown by earlier texts of one kind.
 #[derive(Debug, Default)]
 pub struct Shown {
     names: BTreeSet<String>,
@@ -39,14 +39,14 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Takes a text that is shown in full.
+    /// Adds a text that is shown in full.
     pub fn add(&mut self, units: &[Unit]) {
         self.names
             .extend(units.iter().map(|unit| unit.name.clone()));
         self.shapes.extend(units.iter().flat_map(Unit::shapes));
     }
 
-    /// What is new in a text: units of new names whole, of the others lines of new shapes.
+    /// The new parts of a text: units with new names whole, of the others lines with new shapes.
     pub fn extract(&mut self, units: &[Unit]) -> String {
         let mut extract = String::new();
         let mut was_whole = false;
@@ -68,7 +68,7 @@ impl Shown {
         extract
     }
 
-    /// Shapes of the units that have not been shown, by unit and alphabet; they are shown now.
+    /// Shapes of the units not shown so far, by unit and alphabet; now they count as shown.
     pub fn rest(&mut self, units: impl IntoIterator<Item = Unit>) -> String {
         let mut new: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for (name, line) in units
@@ -87,7 +87,7 @@ impl Shown {
     }
 }
 
-/// Lines of a unit under its name; a single one beside it.
+/// Lines of a unit under its name; a single one next to it.
 fn lines_of(name: &str, lines: &[&str]) -> String {
     match lines {
         [] => String::new(),
@@ -101,7 +101,7 @@ pub fn shapes_of_extracts(kind: &str, extracts: &str) -> BTreeSet<Shape> {
     let mut shown = BTreeSet::new();
     let mut whole = String::new();
     let mut name: Option<String> = None;
-    // The last line ends what is whole.
+    // The last line ends the whole unit.
     for line in extracts.lines().chain(["+"]) {
         let is_head = line == "+" || line.starts_with("= ") || line.starts_with("~ ");
         if is_head {

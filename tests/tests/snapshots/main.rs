@@ -1,13 +1,13 @@
-//! What the generator writes, versioned: emitted Rust and C99, IR text and data sheets.
+//! The generator's output, versioned: emitted Rust and C99, IR text and data sheets.
 //!
-//! In full: Rust of the paper's motor with each of the paper's controllers, C of two. Of its variants the units
-//! that are new, and of known units the lines whose shape is new. Of all motors and of the covering
-//! arrays the shapes of lines that none of those has. A digest of every text tells where there is
-//! another change: of numbers, of the order of lines, of function heads, of C's comments.
+//! In full: Rust of the paper's motor with each of the paper's controllers, C of two. Of its
+//! variants new units, and of known units the lines with a new shape. Of all motors and of the
+//! covering arrays the shapes of lines that appear nowhere above. A digest of every text reveals
+//! any other change: of numbers, of the order of lines, of function heads, of C's comments.
 //!
 //! In extracts `=` begins a drive, `+` new units, `~` lines of a known unit.
-//! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them anew; a
-//! person reads the difference.
+//! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them; a person
+//! reads the difference.
 
 mod drives;
 mod extracts;
@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use units::{Unit, units};
 
-/// Where the snapshots are, seen from this file.
+/// Folder of the snapshots, relative to this file.
 const FOLDER: &str = "kept";
 
 /// Controllers whose Rust is kept in full.
@@ -38,7 +38,7 @@ const IN_FULL_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
 static DRIVES: LazyLock<[Vec<Drive>; 3]> =
     LazyLock::new(|| [drives::defaults(), drives::variants(), drives::others()]);
 
-/// Snapshots by file name without ending, but for that of the digests.
+/// Snapshots by file name without ending, except that of the digests.
 static SNAPSHOTS: LazyLock<BTreeMap<String, String>> = LazyLock::new(snapshots);
 
 /// File name of the digests.
@@ -109,13 +109,13 @@ fn assert_kept(snapshots: &BTreeMap<String, String>) {
 }
 
 #[test]
-fn what_is_generated_is_what_was_reviewed() {
+fn the_generators_output_is_as_reviewed() {
     assert_kept(&SNAPSHOTS);
 }
 
-/// Numbers, orders and repetitions that no extract shows.
+/// Numbers, orders and repetitions, which no extract shows.
 #[test]
-fn nothing_else_has_changed() {
+fn the_digests_have_not_changed() {
     assert_kept(&BTreeMap::from([(DIGESTS.to_owned(), digests())]));
 }
 

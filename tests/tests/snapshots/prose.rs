@@ -1,6 +1,6 @@
 //! Prose of comments and data sheets, by sentence.
 
-/// Prose that is being read: paragraphs become sentences, rows of tables and indented text stay.
+/// Prose being read: paragraphs become sentences, rows of tables and indented text are kept.
 #[derive(Default)]
 pub struct Prose {
     lines: Vec<String>,
@@ -8,12 +8,12 @@ pub struct Prose {
 }
 
 impl Prose {
-    /// Takes a line of prose, empty where a paragraph ends.
+    /// Adds a line of prose, empty at the end of a paragraph.
     pub fn read(&mut self, line: &str) {
         let is_row = line.starts_with(['|', '#', ' ', '`']) && !line.ends_with(['.', ',']);
         let is_range = line.starts_with("| `") && line.contains("` [");
         if is_range {
-            // The stage alone: words and ranges are those of the IR.
+            // Only the stage: words and ranges are those of the IR.
             self.keep(line.split(" | ").next().unwrap_or(line));
         } else if is_row || line.is_empty() {
             self.keep(line);
@@ -23,7 +23,7 @@ impl Prose {
         }
     }
 
-    /// Takes a line that is no part of a paragraph, and stays as it is.
+    /// Adds a line that is not part of a paragraph, unchanged.
     pub fn keep(&mut self, line: &str) {
         self.end_paragraph();
         self.lines.push(line.to_owned());
@@ -43,7 +43,7 @@ impl Prose {
         self.lines.push(sentence);
     }
 
-    /// The lines of what has been read.
+    /// The resulting lines.
     pub fn finish(&mut self) -> Vec<String> {
         self.end_paragraph();
         let mut lines = std::mem::take(&mut self.lines);

@@ -1,4 +1,4 @@
-//! Lines of emitted texts without what differs from motor to motor.
+//! Lines of emitted texts without the differences between motors.
 
 /// A unit's name and the shape of one of its lines.
 pub type Shape = (String, String);
@@ -28,7 +28,7 @@ pub fn shape(line: &str) -> String {
     shape.replace("V_BUS", "v_bus")
 }
 
-/// Length of the number that a text begins with: `-1_405.5e-3`.
+/// Length of the number at the beginning of a text: `-1_405.5e-3`.
 fn number(text: &str) -> usize {
     let after_sign = text.strip_prefix('-').unwrap_or(text);
     if !after_sign.starts_with(|digit: char| digit.is_ascii_digit()) {
@@ -47,7 +47,7 @@ fn number(text: &str) -> usize {
     length + text.len() - after_sign.len()
 }
 
-/// What follows a number, without the prefix of its unit: a blank and `A` for ` mA`.
+/// The text after a number, without the prefix of its unit: a blank and `A` for ` mA`.
 fn without_prefix(text: &str) -> (&str, &str) {
     let units = ["ohm", "A", "V", "H", "Hz", "W", "s", "rad", "Nm"];
     let word = text.strip_prefix(' ').unwrap_or_default();
@@ -60,7 +60,8 @@ fn without_prefix(text: &str) -> (&str, &str) {
     unit.map_or(("", text), |unit| (" ", unit))
 }
 
-/// Length of the fixed-point type (`I7F25`) or the vector's name (`V12`) that a text begins with.
+/// Length of the fixed-point type (`I7F25`) or the vector's name (`V12`) at the beginning of a
+/// text.
 fn numbered_name(text: &str) -> usize {
     let digits = |text: &str| text.chars().take_while(char::is_ascii_digit).count();
     if let Some(rest) = text.strip_prefix('I') {

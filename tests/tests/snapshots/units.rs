@@ -1,13 +1,13 @@
-//! Emitted texts cut into units (items of code, stages of a program, sections of a data sheet), and
-//! these into lines: statements and sentences, however they are broken and indented.
+//! Emitted texts split into units (items of code, stages of a program, sections of a data sheet),
+//! and these into lines: statements and sentences, however broken and indented.
 
 use crate::prose::Prose;
 use crate::shape::{Shape, shape};
 
-/// A piece of an emitted text that has a name.
+/// A named piece of an emitted text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unit {
-    /// What it is called in every drive that has it.
+    /// Its name in every drive.
     pub name: String,
     /// Its text as emitted.
     pub text: String,
@@ -31,7 +31,7 @@ impl Unit {
     }
 }
 
-/// Units of every kind of text; of C the code alone, since Rust has the same comments.
+/// Units of every kind of text; of C only the code, since Rust has the same comments.
 pub fn units(kind: &str, text: &str) -> Vec<Unit> {
     match kind {
         "c99" => with_definitions_joined(&of_code(&without_comments(text))),
@@ -49,7 +49,7 @@ fn without_comments(code: &str) -> String {
     code.collect::<Vec<_>>().join("\n")
 }
 
-/// Items of Rust or C, with what documents them. Blocks that hold items are none themselves.
+/// Items of Rust or C, with their documentation. Blocks of items are not items themselves.
 fn of_code(text: &str) -> Vec<Unit> {
     let (mut units, mut taken, mut depth) = (vec![], vec![], 0);
     let mut open = 0;
@@ -94,7 +94,7 @@ fn of_code(text: &str) -> Vec<Unit> {
     units
 }
 
-/// Brackets that a line opens, less those that it closes.
+/// Brackets opened by a line, minus those closed.
 pub fn balance(line: &str) -> i32 {
     let count = |brackets: [char; 3]| line.matches(brackets).count() as i32;
     count(['(', '[', '{']) - count([')', ']', '}'])
@@ -114,7 +114,7 @@ fn with_definitions_joined(units: &[Unit]) -> Vec<Unit> {
     joined.collect()
 }
 
-/// The name that an item of Rust or C declares; the whole line where it declares none.
+/// The name declared by an item of Rust or C; the whole line if it declares none.
 fn item_name(lines: &[&str]) -> String {
     let mut reader = Reader::default();
     // An attribute of C is a word alone.
@@ -140,7 +140,7 @@ fn item_name(lines: &[&str]) -> String {
     name.unwrap_or(code).to_owned()
 }
 
-/// What a line of code is part of.
+/// Context of a line of code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Code,
@@ -151,7 +151,7 @@ enum Part {
     Text,
 }
 
-/// What the lines read so far leave open.
+/// State of the lines read so far.
 #[derive(Default)]
 struct Reader {
     open: Option<Part>,
@@ -182,7 +182,7 @@ impl Reader {
     }
 }
 
-/// Statements of code and sentences of what documents it.
+/// Statements of code and sentences of its documentation.
 fn code_lines(text: &[&str]) -> Vec<String> {
     let (mut lines, mut statement) = (vec![], String::new());
     let mut prose = Prose::default();
@@ -218,8 +218,8 @@ fn code_lines(text: &[&str]) -> Vec<String> {
     lines.iter().flat_map(|line| by_element(line)).collect()
 }
 
-/// A long list by element, and no head of a function, whose parameters are what its body uses; any
-/// other line as it is.
+/// A long list by element, except a function's head, whose parameters are used in its body; any
+/// other line unchanged.
 fn by_element(line: &str) -> Vec<String> {
     const LONG: usize = 6;
     let heads = ["fn ", "static inline ", "HEXAGEN_COLD static "];
@@ -238,7 +238,7 @@ fn by_element(line: &str) -> Vec<String> {
     }
 }
 
-/// Whether a statement, or an element of a list of them, is at its end.
+/// Whether a statement, or an element of a list, is complete.
 fn is_whole(statement: &str) -> bool {
     let count = |bracket| statement.matches(bracket).count();
     let is_closed = count('(') == count(')') && count('[') == count(']');

@@ -1,5 +1,5 @@
-//! A crate with several motors, held by generic firmware code: what a right macro call gives, and what firmware makes
-//! of it.
+//! A crate with several motors and generic firmware code: the result of valid macro calls, and
+//! their use.
 
 use fixed::types::I16F16;
 use hexagen::{
@@ -93,7 +93,7 @@ controller! {
     }
 }
 
-/// The drive of this build: a cargo feature chooses it.
+/// The drive of this build, chosen by a cargo feature.
 #[cfg(feature = "front")]
 type Chosen = FrontHub;
 #[cfg(not(feature = "front"))]
@@ -107,7 +107,7 @@ fn sample(hall: u8) -> Sample {
     Sample::with_hall([2048, 2048], hall)
 }
 
-/// Firmware code that knows no motor.
+/// Firmware code independent of the motor.
 fn run<C: Control<Command = Legs>>(drive: &mut Drive<C>, milliamperes: i32) -> [LegState; 3] {
     drive.set_current_ma(milliamperes);
     let mut states = [LegState::Off; 3];
@@ -130,11 +130,11 @@ fn generic_code_holds_any_drive() {
         [LegState::Off; 3],
         "a trip is latched"
     );
-    // The set-point is taken through a shared reference, so that a drive may live in a static.
+    // The set-point is set through a shared reference, so that a drive may be static.
     REAR.set_current(I16F16::lit("3"));
 }
 
-/// What the control interrupt owns, whatever the motor.
+/// The control interrupt's part, for any motor.
 struct Interrupt<'drive, C: Control> {
     control: ControlLoop<'drive, C>,
     legs: C::Command,
@@ -146,8 +146,8 @@ impl<C: Control> Interrupt<'_, C> {
     }
 }
 
-/// The main program sets the current and sees what the drive is doing while the interrupt owns the
-/// control loop.
+/// The main program sets the current and reads the status while the interrupt owns the control
+/// loop.
 fn halves<C: Control<Command = Legs>>() {
     let mut drive = Drive::<C>::new();
     let (set_point, mut control) = drive.split();
@@ -160,7 +160,7 @@ fn halves<C: Control<Command = Legs>>() {
     interrupt.strikes(1);
     assert_eq!(interrupt.legs, Legs::LOW, "{}", C::NAME);
     (0..100).for_each(|_| interrupt.strikes(1));
-    // Nobody told the bus voltage yet, where it is to be told.
+    // A measured bus voltage has not been set yet.
     let status = set_point.status();
     assert_eq!(status.mode, Mode::Run, "{}", C::NAME);
     let is_measured = C::SPEC.contains("bus = \"measured\"");
@@ -191,7 +191,7 @@ fn generic_firmware_splits_any_drive() {
     halves::<motors_of_any_name::DynLoop>();
 }
 
-/// Two drives in one program, of which a switch on the board chooses one at run time.
+/// Two drives in one program, one of which a switch on the board selects at run time.
 #[test]
 fn a_drive_is_chosen_at_run_time() {
     let mut rear = Drive::<RearHub>::new();
@@ -236,7 +236,8 @@ fn a_drive_in_a_static_is_handed_over_in_halves() {
     assert!(set_point.status().is_running());
 }
 
-/// Both arrive: the current asks for voltage, and the lower bus for longer pulses than the nominal.
+/// Both take effect: the current demands voltage, and the lower bus longer pulses than the nominal
+/// one.
 #[test]
 fn current_and_bus_reach_the_step() {
     let mut drive = Drive::<FrontHub>::new();
@@ -261,7 +262,7 @@ fn a_reset_sets_the_set_point_to_0() {
     assert!(idle(rear.step(&sample(1))));
     rear.set_torque_mnm(500);
     assert!(!idle(rear.step(&sample(1))));
-    // While it starts up a reset is ignored, and so is what it does to the set-point.
+    // Start-up ignores a reset, and its effect on the set-point.
     rear.reset();
     rear.set_current_ma(5_000);
     rear.precharge();
@@ -270,7 +271,7 @@ fn a_reset_sets_the_set_point_to_0() {
         rear.step(&sample(1));
     }
     assert!(!idle(rear.step(&sample(1))));
-    // Of a speed loop it is the speed; the greatest current stays.
+    // With a speed loop the set-point is the speed; the current limit is kept.
     let mut conveyor = Drive::<Conveyor>::new();
     conveyor.set_speed_rpm(1_000);
     assert!(!idle(conveyor.step(&sample(1))));
@@ -285,7 +286,7 @@ fn signals_are_those_of_one_period() {
     let mut drive = Drive::<RearHub>::new();
     drive.set_current_ma(1_000);
     drive.step(&sample(1));
-    assert_eq!(drive.signals(), None, "nobody has asked before");
+    assert_eq!(drive.signals(), None, "the first request");
     let legs = drive.step(&Sample::with_hall([2098, 2048], 5));
     drive.step(&sample(1));
     let Some(Signals {
@@ -297,9 +298,9 @@ fn signals_are_those_of_one_period() {
         ..
     }) = drive.signals()
     else {
-        panic!("the period behind the question answers");
+        panic!("the period after the request answers");
     };
-    // 50 counts of 19.53 mA, and c as their negative.
+    // 50 counts of 19.53 mA, and c as their negative sum.
     let amperes = currents.map(I16F16::to_num::<f64>);
     assert!((amperes[0] - 0.9766).abs() < 1e-3, "{amperes:?}");
     assert_eq!(amperes[1], 0.0);
@@ -312,16 +313,16 @@ fn signals_are_those_of_one_period() {
     assert_eq!(speed, None, "it follows no edges");
     assert_eq!(sector, 2);
     assert_eq!(drive.signals(), None, "an answer is taken once");
-    // A drive that rests answers when it runs again.
+    // A resting drive answers when it runs again.
     drive.step(&sample(0));
     assert_eq!(drive.signals(), None);
 }
 
-/// Periods of 50 us for which a bus voltage that was told is fresh.
+/// Periods of 50 us until a bus voltage is stale.
 const FRESH: usize = 2000;
 
 #[test]
-fn the_status_shows_a_bus_voltage_that_is_no_longer_told() {
+fn the_status_reports_a_stale_bus_voltage() {
     let mut drive = Drive::<FrontHub>::new();
     let (set_point, mut control) = drive.split();
     let mut steps = |count: usize| {
@@ -344,7 +345,7 @@ fn the_status_shows_a_bus_voltage_that_is_no_longer_told() {
         assert_eq!(steps(FRESH - 1), 0);
     }
     assert!(drive.status().is_running(), "it is a warning");
-    // A reset keeps what was told, and so its age.
+    // A reset keeps the voltage and its age.
     drive.reset();
     assert!(!drive.status().bus_is_stale);
     // A fixed bus is never stale.
@@ -363,7 +364,7 @@ fn drives_know_their_motors() {
     assert!(Steering::SPEC.contains("modulation = \"pair\""));
 }
 
-/// Motors named like the types that emitted code uses, and like a word of the language.
+/// Motors named like types of emitted code, and like a word of the language.
 #[allow(dead_code, reason = "most only have to compile")]
 mod motors_of_any_name {
     use hexagen::controller;

@@ -1,5 +1,5 @@
 //! Diagnostics of `hexagen::controller!` as the compiler shows them: one case for each kind of
-//! place that is marked. The wording of all of them is tested in `codegen/src/spec/tests/diagnostics.rs`.
+//! marked place. Their wording is tested in `codegen/src/spec/tests/diagnostics.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn errors_read_as_expected() {
     cases.compile_fail("*.rs");
     cases.compile_fail("generation/*.rs");
     cases.compile_fail("motor_file/*.rs");
-    // What an option brings, of a drive without it: these messages are the compiler's.
+    // Calls of an option on a drive without it: these messages are the compiler's.
     cases.compile_fail("options/*.rs");
 }
 
@@ -33,7 +33,7 @@ fn copy_motor_files() {
     }
 }
 
-/// Expectations name no place on this machine, no follow-on error and no case that is gone.
+/// Expectations contain no path of this machine, no follow-on error and no obsolete case.
 #[test]
 fn expectations_tell_the_specification_only() {
     let machine = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -56,7 +56,7 @@ fn expectations_tell_the_specification_only() {
     }
 }
 
-/// What an option brings exists only where the option is on, and the message names it.
+/// Calls of an option exist only with that option, and the message names it.
 #[test]
 fn calls_of_options_name_the_option() {
     for (case, words) in [
