@@ -35,7 +35,6 @@ pub struct Bounded {
 
 /// The operation that made a word. Those of `a + b + c` are at one place: they differ in the number
 /// of earlier ones.
-/// come before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Made {
     pub(crate) location: &'static Location<'static>,

@@ -4,6 +4,7 @@
 //! and "keeps the spectrum" within the tolerances below.
 
 use super::data::Method::{self, FcsMpc, Pdcc, Phcc, PiPwm};
+use super::data::{Reading, Reproduction};
 use super::experiment::{AtSpeed, Experiment, Extreme, Of, lost, number, short};
 use super::judge::{Claim, Finding, Statement};
 use crate::closed_loop::harmonic_of_quasi_square;
@@ -48,6 +49,13 @@ fn hexagon(at: &AtSpeed) -> Option<f64> {
 
 fn switching(at: &AtSpeed) -> Option<f64> {
     at.switching_hz
+}
+
+impl Reproduction {
+    /// The paper's claims, judged.
+    pub fn claims(&self) -> Vec<Claim> {
+        claims(Reading::ALL.map(|reading| self.experiment(reading)))
+    }
 }
 
 /// All claims, judged by the figures of the literal and of the corrected reading.

@@ -1,8 +1,7 @@
 //! The experiment as data: four methods, each in two readings of the paper.
 
-use super::experiment::{AtSpeed, Experiment, Figures, Setting};
-use super::timing::{CLOCK_HZ, Times};
-use crate::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit, Trace, Trip};
+use super::timing::Times;
+use crate::closed_loop::{FiguresOfMerit, SpeedLimit, Trace, Trip};
 use crate::counted::Figures as StepCost;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
 
@@ -176,59 +175,4 @@ pub struct SwitchingTables {
     pub derived: [[u8; 8]; 6],
     /// The printed row of sector 1, turned through the sectors.
     pub printed: [[u8; 8]; 6],
-}
-
-impl Reproduction {
-    /// Settings of the claims.
-    pub fn setting(&self) -> Setting {
-        Setting {
-            torque: self.torque,
-            current: self.current,
-            speeds_rpm: self.speeds_rpm,
-            period_cycles: CLOCK_HZ * self.inverter.t_s,
-        }
-    }
-
-    /// Figures of a reading for the claims.
-    pub fn experiment(&self, reading: Reading) -> Experiment {
-        Experiment {
-            setting: self.setting(),
-            methods: [0, 1, 2, 3].map(|method| figures(self.methods[method].of(reading))),
-        }
-    }
-
-    /// The paper's claims, judged.
-    pub fn claims(&self) -> Vec<super::Claim> {
-        super::claims(Reading::ALL.map(|reading| self.experiment(reading)))
-    }
-}
-
-fn figures(run: &Run) -> Figures {
-    let [low, high] = [0, 1].map(|speed| {
-        let Point {
-            figures,
-            hexagon_rms_a,
-            trip,
-            ..
-        } = &run.points[speed];
-        AtSpeed {
-            mean_torque_nm: figures.mean_torque_nm,
-            h6_pct: figures.h6_pct,
-            h12_pct: figures.h12_pct,
-            i5_pct: figures.i5_pct,
-            i7_pct: figures.i7_pct,
-            hexagon_rms_a: trip.is_none().then_some(*hexagon_rms_a),
-            switching_hz: figures.switching_hz,
-        }
-    });
-    Figures {
-        limit_pct: match run.limit.outcome {
-            LimitOutcome::NeverHeld => 0.0,
-            // If the scan ended without a limit, its end is a lower bound.
-            LimitOutcome::Found | LimitOutcome::NotReached => run.limit.limit_pct.unwrap_or(0.0),
-        },
-        speeds: [low, high],
-        cycles: run.cost.worst_cycles(),
-        usual_cycles: run.usual_cycles(),
-    }
 }

@@ -3,9 +3,10 @@
 //! A drive with a mean torque below half of the demand at a speed has lost its current; its other
 //! figures there are meaningless, and comparisons with them have no outcome.
 
-use super::data::Method;
+use super::data::{Method, Point, Reading, Reproduction, Run};
 use super::judge::Finding;
-use crate::closed_loop::{Held, Side};
+use super::timing::CLOCK_HZ;
+use crate::closed_loop::{Held, LimitOutcome, Side};
 
 /// Fraction of the demand below which a drive has lost its current.
 const LOST: f64 = 0.5;
@@ -62,6 +63,56 @@ pub struct Experiment {
     pub setting: Setting,
     /// The drives, methods in the paper's order.
     pub methods: [Figures; 4],
+}
+
+impl Reproduction {
+    /// Settings of the claims.
+    pub fn setting(&self) -> Setting {
+        Setting {
+            torque: self.torque,
+            current: self.current,
+            speeds_rpm: self.speeds_rpm,
+            period_cycles: CLOCK_HZ * self.inverter.t_s,
+        }
+    }
+
+    /// Figures of a reading for the claims.
+    pub fn experiment(&self, reading: Reading) -> Experiment {
+        Experiment {
+            setting: self.setting(),
+            methods: [0, 1, 2, 3].map(|method| figures(self.methods[method].of(reading))),
+        }
+    }
+}
+
+fn figures(run: &Run) -> Figures {
+    let [low, high] = [0, 1].map(|speed| {
+        let Point {
+            figures,
+            hexagon_rms_a,
+            trip,
+            ..
+        } = &run.points[speed];
+        AtSpeed {
+            mean_torque_nm: figures.mean_torque_nm,
+            h6_pct: figures.h6_pct,
+            h12_pct: figures.h12_pct,
+            i5_pct: figures.i5_pct,
+            i7_pct: figures.i7_pct,
+            hexagon_rms_a: trip.is_none().then_some(*hexagon_rms_a),
+            switching_hz: figures.switching_hz,
+        }
+    });
+    Figures {
+        limit_pct: match run.limit.outcome {
+            LimitOutcome::NeverHeld => 0.0,
+            // If the scan ended without a limit, its end is a lower bound.
+            LimitOutcome::Found | LimitOutcome::NotReached => run.limit.limit_pct.unwrap_or(0.0),
+        },
+        speeds: [low, high],
+        cycles: run.cost.worst_cycles(),
+        usual_cycles: run.usual_cycles(),
+    }
 }
 
 /// A figure of a drive at a speed.
