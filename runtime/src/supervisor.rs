@@ -113,9 +113,9 @@ const fn is_hall_code(hall: u8) -> bool {
 /// first; the steps follow each other automatically:
 ///
 /// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor must be at
-/// rest. An offset too far from its nominal value trips the drive.
+///    rest. An offset too far from its nominal value trips the drive.
 /// 2. Pre-charge, if specified: periods with all lower switches on, which charge the bootstrap
-/// capacitors, and short-circuit a turning motor.
+///    capacitors, and short-circuit a turning motor.
 /// 3. Control with the present set-point.
 ///
 /// A fault ends start-up and discards its results; a reset leads to control, not back into
@@ -139,9 +139,9 @@ const fn is_hall_code(hall: u8) -> bool {
 /// - heat, shoot-through, and what is shorter than a control period;
 /// - a bus voltage, be it too high for the switches.
 ///
-/// So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog
-/// on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus
-/// voltage, too.
+/// So the board must have (a) a comparator of the current on the timer's break input, (b) a
+/// watchdog on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of
+/// the bus voltage, too.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Supervisor {
     mode: Mode,
