@@ -184,7 +184,7 @@ fn characters_that_compilers_refuse_in_comments_are_refused_here() {
     );
     assert_eq!(
         changed("[motor]\n", "[motor]\ndescription = \"Hub \\u202E\"\n"),
-        "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is U+202E (right-to-left override), which compilers refuse in comments; remove it"
+        "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is U+202E (right-to-left override), which compilers reject in comments; remove it"
     );
 }
 
