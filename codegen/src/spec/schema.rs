@@ -99,7 +99,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
 ];
 
-/// All fields with their sections. An option with a rule in each of two controllers is listed twice.
+/// All fields with their sections. Options with rules in several controllers are repeated.
 fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
     let motor = MOTOR.iter().map(|rule| ("motor", rule));
     let inverter = INVERTER.iter().map(|rule| ("inverter", rule));

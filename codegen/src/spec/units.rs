@@ -104,8 +104,8 @@ impl Unit {
         UNITS.iter().copied().find(|unit| unit.symbol == letters)
     }
 
-    /// The closest known spelling among units of the given quantities, within one letter in three or
-    /// a difference of case.
+    /// The closest known spelling among units of the given quantities, within one letter in three
+    /// or a difference of case.
     pub fn nearest(symbol: &str, dimensions: &[Dimension]) -> Option<&'static str> {
         let letters = in_letters(symbol);
         let folded = letters.to_lowercase();

@@ -34,7 +34,7 @@ pub struct FcsMpcSpec {
     /// Prediction horizon, 1 or 2 periods. With 2 no leg floats, and there is no modulation and no
     /// weight.
     pub horizon: u32,
-    /// Cost of one leg's change of state, as a current error, ampere; 0: none. Not with `modulated`.
+    /// Cost of a leg's change of state, as a current error, ampere; 0: none. Not with `modulated`.
     pub switching_weight: f64,
     /// Weight of the squared error along the sector's mean EMF; 0: none. Not with `modulated`.
     pub torque_weight: f64,
@@ -160,7 +160,7 @@ impl Options for FcsMpcSpec {
     }
 }
 
-/// Refuses `emf: held` where the EMF is needed by itself: a held one is known only as part of a sum.
+/// Refuses `emf: held` where the EMF is needed by itself: a held one is known only in a sum.
 fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     if options.floating() {
         let why = "the voltage of a floating leg follows from its EMF, which a held one does not give; choose `off_leg: nominal` or `candidates: three_phase`";

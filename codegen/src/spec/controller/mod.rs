@@ -63,7 +63,7 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
         0.0
     }
 
-    /// The error for a trip level that the currents reach; `parts`: largest set-point and trip level.
+    /// The error for a trip level that the currents reach; `parts`: largest set-point, trip level.
     fn refuse_trip(&self, _: &Drive, _rated: f64, _parts: [&Part; 2]) -> Option<Diagnostic> {
         None
     }
