@@ -20,7 +20,7 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
         Ok(unit.to_si(number))
     } else {
         Err(format!(
-            "`{symbol}` is the unit of {}, not of {}",
+            "`{symbol}` is {}, but {} is expected",
             unit.dimension.name(),
             dimension.name()
         ))
@@ -155,7 +155,7 @@ mod tests {
     fn mistakes_are_told() {
         assert_eq!(
             time("1 V"),
-            Err("`V` is the unit of a voltage, not of a time".to_owned())
+            Err("`V` is a voltage, but a time is expected".to_owned())
         );
         assert_eq!(
             voltage("48 v"),
