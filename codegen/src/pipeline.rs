@@ -1,7 +1,9 @@
 //! The pipeline behind all front ends: checked specification in, verified graph and interface out.
 
 use crate::at_once::at_once;
-use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue, engineering, percent};
+use crate::diagnostics::{
+    Code, Collector, Diagnostic, Diagnostics, catalogue, engineering, percent,
+};
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::laws::current_loop::{LinearLoop, LoopDesign};
@@ -93,7 +95,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     errors.into_result(Generated { graph, interface })
 }
 
-/// What the user should know of a drive that is generated as specified.
+/// Warnings about a drive that is generated nevertheless.
 pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     let mut warnings = vec![];
     if law(&spec.controller).loses_current() {
@@ -115,10 +117,10 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A written trip level is taken for a slip from this multiple of the largest set-point's peak on.
+/// Ratio of a stated trip current to the largest set-point's peak above which a warning is given.
 const TRIP_GIVEN: f64 = 3.0;
 
-/// A trip level that protects little, or that PHCC may reach in health.
+/// Warns of a trip current that protects little, or that PHCC may reach without a fault.
 fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     const TRIP: &str = "inverter.trip_current";
     const MAX: &str = "inverter.max_current";
@@ -128,11 +130,12 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     let usual = TRIP_BY_DEFAULT * peak;
     let (most, remedy) = if origins.is_given(TRIP) {
         let usual = engineering(usual, "A");
-        let remedy = format!("lower it to about {usual} unless switches and magnets bear more");
+        let remedy =
+            format!("lower it to about {usual} unless switches and magnets withstand more");
         (TRIP_GIVEN * peak, remedy)
     } else {
         let remedy = format!(
-            "the vectors of {}, which move the current by up to {} in a period, need it: a shorter period needs less",
+            "one vector of {} changes the current by up to {} per period; shorten the control period to lower it",
             spec.controller.kind(),
             engineering(drive.stride(1.0), "A")
         );
@@ -162,7 +165,7 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A vector that lasts a whole period must not move the current by more than the rated current.
+/// A vector that lasts a whole period must not change the current by more than the rated current.
 fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let stride = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
@@ -178,8 +181,8 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
     }
 }
 
-/// Where two vectors share a period, the wanted voltage may lie as far from the line between them as the centre of a
-/// triangle from its edges.
+/// With two vectors per period the voltage misses its reference by at most the distance of a
+/// triangle's centre from its edges.
 fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let side = 2.0 / 3.0 * inverter.greatest_bus();
@@ -240,25 +243,32 @@ fn check_stability(
         (1.0 - tolerance < low && low > 0.1) || (1.0 + tolerance > high && high < 10.0)
     };
     let motor = &spec.motor;
-    if leaves(motor.inductance_tolerance, stable.inductance) {
-        let path = "motor.inductance_tolerance";
-        let given = origins.given(path, &percent(motor.inductance_tolerance));
-        errors.push(catalogue::inductance_outside_stable_range(
-            origins.at(path),
-            &given,
+    for (code, quantity, tolerance, range) in [
+        (
+            Code::InductanceOutsideStableRange,
+            "inductance",
+            motor.inductance_tolerance,
             stable.inductance,
-            remedy,
-        ));
-    }
-    if leaves(motor.resistance_tolerance, stable.resistance) {
-        let path = "motor.resistance_tolerance";
-        let given = origins.given(path, &percent(motor.resistance_tolerance));
-        errors.push(catalogue::resistance_outside_stable_range(
-            origins.at(path),
-            &given,
+        ),
+        (
+            Code::ResistanceOutsideStableRange,
+            "resistance",
+            motor.resistance_tolerance,
             stable.resistance,
-            remedy,
-        ));
+        ),
+    ] {
+        if leaves(tolerance, range) {
+            let path = format!("motor.{quantity}_tolerance");
+            let given = origins.given(&path, &percent(tolerance));
+            errors.push(catalogue::outside_stable_range(
+                code,
+                origins.at(&path),
+                quantity,
+                &given,
+                range,
+                remedy,
+            ));
+        }
     }
     stable
 }
@@ -428,12 +438,12 @@ kind = "pdcc"
             (
                 &slow,
                 "pdcc",
-                "warning[HX0602]: `emf`: estimated (default), of an EMF that turns by 12 electrical degrees in a control period at rated speed; beyond 9 the torque may be more than 5 % off; choose `emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most 187.5 us",
+                "warning[HX0602]: `emf`: estimated (default), but the EMF turns 12 electrical degrees per control period at rated speed; above 9 the torque may be more than 5 % off; choose `emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most 187.5 us",
             ),
             (
                 &sine,
                 "pdcc:emf_filter=0.01",
-                "beyond 1.146 the estimate no longer follows; choose a greater `emf_filter`, `emf: model`",
+                "beyond 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf: model`",
             ),
         ] {
             let told = told(motor, variant);

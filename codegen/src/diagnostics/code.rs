@@ -5,7 +5,7 @@ use std::fmt;
 macro_rules! codes {
     ($($(#[$doc:meta])* $name:ident = $number:literal,)*) => {
         /// The kind of an error. 01xx: structure, 02xx: values, 03xx: motor and inverter,
-        /// 04xx: controller, 05xx: design and formats, 06xx: warnings, 09xx: faults of the generator itself.
+        /// 04xx: controller, 05xx: design and formats, 06xx: warnings, 09xx: internal errors.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $($(#[$doc])* $name,)*
@@ -15,7 +15,7 @@ macro_rules! codes {
             /// Every code, by number.
             pub const ALL: &'static [Self] = &[$(Self::$name,)*];
 
-            /// Whether the drive is generated all the same.
+            /// Whether it is a warning: the drive is generated nevertheless.
             pub fn is_warning(self) -> bool {
                 self.number() / 100 == 6
             }
@@ -47,11 +47,11 @@ codes! {
     MisplacedField = 107,
     /// A motor file cannot be read or its path is not relative.
     MotorFile = 108,
-    /// The drive's name is no type name.
+    /// The drive's name is not a type name.
     InvalidName = 109,
     /// Two fields that say the same thing.
     ExclusiveFields = 110,
-    /// A field that another field's value needs, or rules out.
+    /// A field that another field's value requires or excludes.
     DependentField = 111,
     /// A value that cannot be read.
     MalformedValue = 201,
@@ -67,13 +67,13 @@ codes! {
     WrongBasis = 206,
     /// A word that the field does not take.
     UnknownWord = 207,
-    /// A number where a word is wanted, or the reverse.
+    /// A number where a word is expected, or the reverse.
     WrongKind = 208,
-    /// Zero or negative where a positive value is wanted.
+    /// Zero or negative where a positive value is expected.
     NotPositive = 209,
     /// A value outside its plausible limits.
     OutOfRange = 210,
-    /// Hall codes that are no Hall sequence.
+    /// Hall codes that do not form a Hall sequence.
     HallCodes = 211,
     /// A unit on a plain number.
     UnwantedUnit = 212,
@@ -95,7 +95,7 @@ codes! {
     TimerPeriod = 308,
     /// The Hall capture timer does not fit the control period.
     HallTimer = 309,
-    /// The time of a sector at the least speed does not fit the counter.
+    /// A sector at the minimum speed lasts longer than the Hall timer counts.
     MinimumSpeed = 310,
     /// Speeds that are out of order.
     SpeedOrder = 311,
@@ -109,7 +109,7 @@ codes! {
     DeadTime = 315,
     /// The ADC offset leaves no room.
     AdcOffset = 316,
-    /// A converter's count is too much of what it measures.
+    /// An ADC count is too coarse for the quantity measured.
     AdcTooCoarse = 317,
     /// A controller that does not exist.
     UnknownController = 401,
@@ -121,7 +121,7 @@ codes! {
     OptionWithoutEffect = 404,
     /// A controller variant on the command line that cannot be read.
     Variant = 405,
-    /// One voltage vector moves the current by more than the rated current.
+    /// One voltage vector changes the current by more than the rated current.
     VectorTooStrong = 406,
     /// A hysteresis band that cannot work.
     Band = 407,
@@ -135,15 +135,15 @@ codes! {
     Unstable = 503,
     /// A signal or coefficient does not fit the word.
     WordTooNarrow = 504,
-    /// A switching table that is known to lose the current.
+    /// A switching table that loses control of the current.
     SwitchingTableLosesCurrent = 601,
-    /// The EMF turns further in a control period than its estimate is moved on rightly.
+    /// The EMF turns too far per control period for its estimate.
     EstimateTurnsTooFar = 602,
-    /// The trip current is far above what the drive is for.
+    /// The trip current is far above the largest set-point.
     TripFarAbove = 610,
-    /// Hysteresis control may reach the trip current in health.
+    /// Hysteresis control may reach the trip current without a fault.
     SwingAboveTrip = 611,
-    /// The generator broke one of its own invariants.
+    /// An internal error of the generator.
     Internal = 901,
 }
 

@@ -3,7 +3,7 @@
 //! Stages push into a [`Collector`] and turn it into a `Result` at their barrier; forgetting that
 //! panics in debug builds. Every text is built by a constructor of [`catalogue`], every kind of
 //! error has one [`Code`]. Rendering goes to text (`file:line:col: error[HX0203]: …`) and to
-//! `compile_error!` tokens that carry the spans of all fields that take part.
+//! `compile_error!` tokens with the spans of all fields involved.
 
 pub mod catalogue;
 mod code;
@@ -20,7 +20,7 @@ pub use number::{
     significant,
 };
 
-/// One error: its kind, its text and the places that take part in it.
+/// One error or warning: kind, text and the places involved.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     /// The kind of error.
@@ -29,11 +29,11 @@ pub struct Diagnostic {
     pub message: String,
     /// Where the error is reported.
     pub location: Location,
-    /// Further places that take part, each with a short text.
+    /// Further places involved, each with a short text.
     pub notes: Vec<Note>,
 }
 
-/// A further place that takes part in an error.
+/// A further place involved in an error.
 #[derive(Clone, Debug)]
 pub struct Note {
     /// What stands there, e.g. ``first `resistance` ``.
@@ -53,7 +53,7 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place that takes part.
+    /// Adds a place involved.
     #[must_use]
     pub(crate) fn with_note(mut self, location: &Location, message: impl Into<String>) -> Self {
         self.notes.push(Note {

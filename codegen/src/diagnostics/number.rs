@@ -5,19 +5,22 @@ pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    let scientific = format!("{value:.3e}");
-    let exponent: i32 = scientific
-        .rsplit('e')
-        .next()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(0);
+    let exponent = exponent(value);
     if (-3..9).contains(&exponent) {
         let decimals = usize::try_from(3 - exponent).unwrap_or(0);
         trim_zeros(&format!("{value:.decimals$}"))
     } else {
+        let scientific = format!("{value:.3e}");
         let mantissa = scientific.split('e').next().unwrap_or_default();
         format!("{}e{exponent}", trim_zeros(mantissa))
     }
+}
+
+/// Decimal exponent of `value` rounded to four significant digits.
+fn exponent(value: f64) -> i32 {
+    let scientific = format!("{value:.3e}");
+    let exponent = scientific.rsplit('e').next();
+    exponent.and_then(|text| text.parse().ok()).unwrap_or(0)
 }
 
 fn trim_zeros(text: &str) -> String {
@@ -47,13 +50,7 @@ pub fn engineering(value: f64, unit: &str) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}");
     }
-    let rounded = format!("{:.3e}", value.abs());
-    let exponent: i32 = rounded
-        .rsplit('e')
-        .next()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(0);
-    let step = (exponent.div_euclid(3) * 3).clamp(-12, 9);
+    let step = (exponent(value).div_euclid(3) * 3).clamp(-12, 9);
     let prefix = PREFIXES
         .iter()
         .find(|(power, _)| *power == step)
@@ -61,7 +58,7 @@ pub fn engineering(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", significant(value / 10f64.powi(step)))
 }
 
-/// A frequency with nine digits, so that what is said of a timer is what it does.
+/// A frequency with nine digits, exact enough for a timer.
 pub fn frequency(hertz: f64) -> String {
     let (scale, unit) = match hertz {
         f if f >= 1e9 => (1e9, "GHz"),
@@ -74,14 +71,12 @@ pub fn frequency(hertz: f64) -> String {
     format!("{} {unit}", trim_zeros(&format!("{scaled:.digits$}")))
 }
 
-/// A greatest value, to be shown: rounded down to the four digits that are shown, so that it is
-/// accepted.
+/// An upper limit for a message: rounded down to four digits, so that it is accepted when typed in.
 pub fn at_most(limit: f64) -> f64 {
     to_four_digits(limit, f64::floor)
 }
 
-/// A least value, to be shown: rounded up to the four digits that are shown, so that it is
-/// accepted.
+/// A lower limit for a message: rounded up to four digits, so that it is accepted when typed in.
 pub fn at_least(limit: f64) -> f64 {
     to_four_digits(limit, f64::ceil)
 }
@@ -92,7 +87,7 @@ fn to_four_digits(limit: f64, round: fn(f64) -> f64) -> f64 {
     }
     let exponent = 3 - limit.abs().log10().floor() as i32;
     let scaled = limit * 10_f64.powi(exponent);
-    // A limit of four digits but for its rounding to a floating-point number is that number.
+    // A limit of four decimal digits stays itself, whatever its binary rounding.
     let whole = if (scaled - scaled.round()).abs() <= 1e-6 {
         scaled.round()
     } else {
@@ -101,12 +96,12 @@ fn to_four_digits(limit: f64, round: fn(f64) -> f64) -> f64 {
     whole / 10_f64.powi(exponent)
 }
 
-/// A greatest speed in rad/s as revolutions per minute, rounded down.
+/// An upper speed limit, rad/s, in revolutions per minute, rounded down.
 pub fn rpm_at_most(omega: f64) -> String {
     format!("{} rpm", significant(at_most(in_rpm(omega))))
 }
 
-/// A least speed in rad/s as revolutions per minute, rounded up.
+/// A lower speed limit, rad/s, in revolutions per minute, rounded up.
 pub fn rpm_at_least(omega: f64) -> String {
     format!("{} rpm", significant(at_least(in_rpm(omega))))
 }
@@ -120,7 +115,7 @@ pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio))
 }
 
-/// An angular speed in rad/s as revolutions per minute.
+/// An angular speed, rad/s, in revolutions per minute.
 pub fn rpm(omega: f64) -> String {
     format!("{} rpm", significant(in_rpm(omega)))
 }

@@ -1,4 +1,5 @@
-//! Errors and warnings as text, errors as `compile_error!` tokens, warnings as uses of a deprecated constant.
+//! Errors and warnings as text; in macros errors as `compile_error!` and warnings as uses of a
+//! deprecated constant.
 
 use super::{Diagnostic, Diagnostics, Location};
 use proc_macro2::{Ident, Span, TokenStream};
@@ -39,8 +40,8 @@ impl fmt::Display for Diagnostics {
 }
 
 impl Diagnostics {
-    /// One `compile_error!` per error, and one per note whose place differs: the compiler has no
-    /// stable way to attach notes, and every field that takes part shall be marked.
+    /// One `compile_error!` per error and one per note in the macro call, so that every field
+    /// involved is marked: the compiler has no stable way to attach notes.
     ///
     /// Places outside the macro call (a motor file) are marked at `anchor`, the path literal or
     /// the type name, and named `file:line:col` in the message.
@@ -53,7 +54,7 @@ impl Diagnostics {
 }
 
 impl Diagnostic {
-    /// A warning of the compiler: stable Rust lets a macro warn only by the use of something deprecated.
+    /// A compiler warning. On stable Rust a macro can warn only by using something deprecated.
     pub fn to_compile_warning(&self, anchor: &TokenStream) -> TokenStream {
         let name = self.code.to_string();
         let (tokens, message) = match &self.location {

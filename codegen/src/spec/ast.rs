@@ -41,7 +41,7 @@ pub struct Section {
     pub location: Option<Location>,
     /// The fields; duplicates are kept.
     pub fields: Vec<Field>,
-    /// Part of the section could not be read: missing fields are no news then.
+    /// Part of the section could not be read: missing fields are not reported.
     pub incomplete: bool,
 }
 
@@ -145,7 +145,7 @@ impl SpecAst {
         }
     }
 
-    /// Notes a section that does not exist; the one that was probably meant is not missing then.
+    /// Reports a section that does not exist, and does not report the one meant as missing.
     pub(super) fn unknown_section(&mut self, at: &Location, name: &str, known: &[&str]) {
         self.malformed
             .push(catalogue::unknown_section(at, name, known));
@@ -154,7 +154,7 @@ impl SpecAst {
         }
     }
 
-    /// Takes it that the section is there but unreadable.
+    /// Marks a section as present but unreadable.
     pub(super) fn excuse(&mut self, name: &str) {
         match name {
             "motor" => self.motor.incomplete = true,
@@ -164,8 +164,8 @@ impl SpecAst {
         }
     }
 
-    /// Lays the fields of `over` on those of this tree, field by field; `over` wins, and gives the
-    /// name. A controller of another kind replaces the whole controller.
+    /// Replaces fields by those of `over`, and the name. A controller of another kind replaces the
+    /// whole controller.
     pub fn overlay(&mut self, over: Self) {
         self.name = over.name;
         self.motor.overlay(over.motor);
@@ -182,7 +182,7 @@ impl Section {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Replaces fields of the same meaning by those of `over`.
+    /// Replaces fields of the same quantity by those of `over`.
     pub(super) fn overlay(&mut self, over: Self) {
         self.fields.retain(|field| {
             !over
@@ -197,7 +197,7 @@ impl Section {
         }
     }
 
-    /// As [`Section::overlay`], but options of another kind of controller do not survive.
+    /// As [`Section::overlay`], but drops the options of another kind of controller.
     pub(super) fn overlay_controller(&mut self, over: Self) {
         let kind = |section: &Self| match section.field("kind").map(|field| &field.value) {
             Some(Value::Word(word)) => Some(word.clone()),

@@ -1,12 +1,12 @@
-//! What phase currents a drive in health reaches at its largest set-point, against its trip level.
+//! Phase currents at the largest set-point without a fault, for the checks of the trip level.
 
 use super::{ControllerSpec, EmfShape, Reference, Spec};
 
-/// The default trip level over the largest set-point: room for what a current overshoots by, and
-/// little enough for switches and magnets that were chosen for the motor. Vectors may need more.
+/// Default trip level over the largest set-point: above any overshoot, and safe for switches and
+/// magnets chosen for the motor. Whole vectors may need more.
 pub(crate) const TRIP_BY_DEFAULT: f64 = 2.0;
 
-/// What the currents of a drive depend on, SI.
+/// Values that the currents of a drive depend on, SI.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'a> {
     pub controller: &'a ControllerSpec,
@@ -21,7 +21,7 @@ pub(crate) struct Drive<'a> {
 }
 
 impl Spec {
-    /// What the currents of this drive depend on.
+    /// Values that the currents of this drive depend on.
     pub(crate) fn drive(&self) -> Drive<'_> {
         Drive {
             controller: &self.controller,
@@ -45,20 +45,19 @@ impl Drive<'_> {
             }
     }
 
-    /// Greatest change of a phase current under one vector that lasts so many periods, at
-    /// standstill, ampere.
+    /// Greatest change of a phase current by one vector applied for `periods`, at standstill,
+    /// ampere.
     pub fn stride(&self, periods: f64) -> f64 {
         let decay = self.resistance * periods * self.t_s / self.inductance;
         2.0 / 3.0 * self.v_bus * -(-decay).exp_m1() / self.resistance
     }
 
-    /// What the currents must be able to reach without a trip, ampere: the reference's peak, and what the controller
-    /// adds.
+    /// Greatest phase current without a fault, ampere: the reference's peak plus the overshoot.
     pub fn reach(&self) -> f64 {
         self.peak() + self.controller.overshoot(self)
     }
 
-    /// What the currents reach in the commutations of a rotor that turns slowly, ampere; 0 where that is no more than
+    /// Peak of the phase currents in commutations at low speed, ampere; 0 where it is not above
     /// [`Self::reach`].
     pub fn swing(&self) -> f64 {
         self.controller.swing(self)

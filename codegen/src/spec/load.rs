@@ -10,7 +10,7 @@ use std::path::Path;
 /// Messages name the relative path only. `at`: where the path was written.
 ///
 /// # Errors
-/// If the path is absolute, the file cannot be read, is not UTF-8 or is no TOML.
+/// If the path is absolute, or the file cannot be read, is not UTF-8 or is not TOML.
 pub fn load_motor_file(root: &Path, relative: &str, at: &Location) -> Result<SpecAst, Diagnostics> {
     if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
@@ -35,7 +35,7 @@ pub fn motor_text(bytes: Vec<u8>, file_name: &str) -> Result<String, Diagnostics
     })
 }
 
-/// Whether a path names a place outside of the crate's folder by itself, on any system.
+/// Whether a path is absolute on any system.
 pub(crate) fn is_absolute(path: &str) -> bool {
     Path::new(path).has_root() || path.contains(':')
 }

@@ -39,7 +39,7 @@ impl MacroInput {
     /// with the call's own fields laid over it.
     ///
     /// # Errors
-    /// If the file cannot be read or is no TOML.
+    /// If the file cannot be read or is not TOML.
     pub fn load(&self, root: &Path) -> Result<SpecAst, Diagnostics> {
         let Some(file) = &self.motor_file else {
             return Ok(self.ast.clone());
@@ -62,8 +62,8 @@ impl MacroInput {
 /// Parses the tokens of a macro call.
 ///
 /// # Errors
-/// If the call has not the shape `pub Name { … }`. Errors inside the braces are kept in the tree
-/// and come with [`super::check`].
+/// If the call does not have the form `pub Name { … }`. Errors inside the braces are kept in the
+/// tree and reported by [`super::check`].
 pub fn parse_macro(tokens: TokenStream) -> Result<MacroInput, Diagnostics> {
     let (attributes, visibility, name, body) = header
         .parse2(tokens)
@@ -82,7 +82,7 @@ pub fn parse_macro(tokens: TokenStream) -> Result<MacroInput, Diagnostics> {
     for entry in entries(body) {
         if let Err(error) = read_section(&mut input, &entry) {
             input.ast.malformed.push(error);
-            // What is there but unreadable is not missing.
+            // An unreadable section is not reported as missing.
             if let Some(TokenTree::Ident(name)) = entry.tokens.first() {
                 input.ast.excuse(&name.to_string());
             }
@@ -104,7 +104,7 @@ fn header(input: ParseStream) -> syn::Result<Header> {
     let name: syn::Ident = input.parse().map_err(|error| {
         syn::Error::new(
             error.span(),
-            "expected the name of the type to make, as in `pub HubDrive { motor: { … }, … }`",
+            "expected the name of the type, as in `pub HubDrive { motor: { … }, … }`",
         )
     })?;
     let body: proc_macro2::Group = input.parse().map_err(|error| {

@@ -6,7 +6,7 @@
 use crate::spec::{ControllerSpec, Reference};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// One drive: what to call it, and its motor, inverter and controller.
+/// One drive: name, motor, inverter and controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spec {
     /// Name of the emitted type, `UpperCamelCase`.
@@ -31,8 +31,8 @@ impl Spec {
             }
     }
 
-    /// Ticks of 60 electrical degrees at the least speed, at least 8: the greatest age of a Hall
-    /// edge that is trusted.
+    /// Greatest age of a valid Hall edge, ticks: 60 electrical degrees at the minimum speed, at
+    /// least 8.
     pub fn age_max(&self) -> u32 {
         let omega_e = self.inverter.minimum_speed * f64::from(self.motor.pole_pairs);
         (self.ticks_per_second() * FRAC_PI_3 / omega_e)
@@ -46,7 +46,7 @@ impl Spec {
         (self.ticks_per_second() * TAU / omega_e).floor().max(12.0) as u32
     }
 
-    /// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+    /// Sector 1 to 6 by Hall code; 0 for invalid codes.
     pub fn hall_sectors(&self) -> [u8; 8] {
         let mut sectors = [0; 8];
         for (sector, &code) in (1..).zip(&self.motor.hall_codes) {
@@ -108,15 +108,15 @@ pub struct MotorSpec {
 pub enum BusSource {
     /// The nominal value holds.
     Fixed,
-    /// `set_bus(counts)` tells it.
+    /// Measured, passed by `set_bus(counts)`.
     Measured {
         /// Volt per ADC count.
         gain: f64,
-        /// Converter bits.
+        /// ADC bits.
         adc_bits: u32,
-        /// Least voltage taken, volt.
+        /// Lower limit, volt.
         min: f64,
-        /// Greatest voltage taken, volt.
+        /// Upper limit, volt.
         max: f64,
     },
 }
@@ -124,9 +124,9 @@ pub enum BusSource {
 /// How rotor position reaches the controller between Hall edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HallCapture {
-    /// Edges are seen at sampling instants only.
+    /// Edges are detected at the sampling instants.
     Sampled,
-    /// A timer tells the whole ticks since the last edge.
+    /// A timer counts ticks since the last edge.
     Timer {
         /// Timer ticks per control period, 2 to 65535, whole or not.
         ticks: f64,
@@ -150,21 +150,20 @@ pub struct InverterSpec {
     pub v_bus: f64,
     /// Fixed or measured.
     pub bus: BusSource,
-    /// Control period = PWM period, second: that of the timer's whole counts where its clock is
-    /// given.
+    /// Control period = PWM period, second; of whole timer counts where the timer's clock is given.
     pub t_s: f64,
     /// Counts of the centre-aligned timer from 0 to its top: a compare value of this many counts
     /// is 100 % duty.
     pub timer_period: u32,
-    /// Dead time per edge, second (told to the data sheet and the simulation).
+    /// Dead time per edge, second.
     pub dead_time: f64,
-    /// Bits of the phase-current converters, 8 to 16.
+    /// Bits of the phase-current ADC, 8 to 16.
     pub adc_bits: u32,
     /// Ampere per count; negative for inverting amplifiers.
     pub adc_gain: f64,
     /// Count at zero current.
     pub adc_offset: u32,
-    /// Greatest distance of a calibrated offset from `adc_offset`, counts.
+    /// Greatest deviation of a calibrated offset from `adc_offset`, counts.
     pub offset_tolerance: u32,
     /// Current that trips the drive, ampere: a whole number of ADC counts.
     pub trip_current: f64,
@@ -184,17 +183,17 @@ pub struct InverterSpec {
     pub precharge_periods: u32,
 }
 
-/// How long a bus voltage that was told is fresh, s: a main program of some hundred Hertz has many tries, and a supply
-/// that sags does not go unnoticed for long.
+/// Time after which a measured bus voltage is stale, second: many cycles of a main program of some
+/// hundred hertz, and short enough to notice a sagging supply.
 pub const BUS_FRESH: f64 = 0.1;
 
-/// Whole periods that cover a time; a time that is whole but for its rounding is that number.
+/// Whole periods that cover a time; decimal units may round a whole number.
 pub(super) fn periods(time: f64, t_s: f64) -> u32 {
     (time / t_s - 1e-6).ceil().max(0.0) as u32
 }
 
 impl InverterSpec {
-    /// The lowest bus voltage that the controller reckons with, volt.
+    /// Lowest bus voltage of the controller, volt.
     pub fn lowest_bus(&self) -> f64 {
         match self.bus {
             BusSource::Fixed => self.v_bus,
@@ -202,12 +201,12 @@ impl InverterSpec {
         }
     }
 
-    /// The longest period of whole timer counts that is not longer than `limit`, second.
+    /// The longest period of whole timer counts within `limit`, second.
     pub fn period_within(&self, limit: f64) -> f64 {
         period_within(limit, self.t_s, self.timer_period)
     }
 
-    /// The greatest bus voltage that the controller reckons with, volt.
+    /// Greatest bus voltage of the controller, volt.
     pub fn greatest_bus(&self) -> f64 {
         match self.bus {
             BusSource::Fixed => self.v_bus,
@@ -229,7 +228,7 @@ impl InverterSpec {
         ]
     }
 
-    /// Least and greatest current of any count at any such offset, counts.
+    /// Least and greatest current of any count at any accepted offset, counts.
     pub fn current_counts(&self) -> [i32; 2] {
         let [least, most] = self.offsets().map(|offset| offset as i32);
         let top = self.adc_max() as i32;
@@ -240,15 +239,15 @@ impl InverterSpec {
         }
     }
 
-    /// Periods without a call of `set_bus` after which a measured bus voltage is stale: those of [`BUS_FRESH`].
+    /// [`BUS_FRESH`] in periods, where the bus is measured.
     pub fn bus_periods(&self) -> Option<u32> {
         let is_measured = matches!(self.bus, BusSource::Measured { .. });
         is_measured.then(|| periods(BUS_FRESH, self.t_s))
     }
 }
 
-/// The longest period of whole counts that is not longer than `limit`, of a timer that counts to
-/// `timer_period` in `t_s`.
+/// The longest period of whole counts within `limit`, of a timer that counts to `timer_period` in
+/// `t_s`.
 pub(super) fn period_within(limit: f64, t_s: f64, timer_period: u32) -> f64 {
     let count = t_s / f64::from(timer_period);
     (limit / count * (1.0 + 1e-9)).floor() * count

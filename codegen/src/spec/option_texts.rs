@@ -1,4 +1,4 @@
-//! What people read of the options: the program's help, and the page `options.md`, which a test writes.
+//! Texts about the options: the program's help, and the page `options.md`, which a test writes.
 
 use super::check::reader::quantity_text;
 use super::controller::{self, KINDS};
@@ -36,7 +36,7 @@ fn shared() -> impl Iterator<Item = &'static Rule> {
     rows.into_iter().flatten().map(|row| &row.rule)
 }
 
-/// The words with what they say, or the range.
+/// The words with their meanings, or the range.
 fn values(rule: &Rule) -> String {
     let listed = |words: &[Word]| {
         let words = words.iter().map(|word| match word.meaning {

@@ -1,9 +1,9 @@
-//! What a field of a specification takes: a row of the tables.
+//! Rules of the fields: rows of the tables.
 
 use super::units::Dimension as D;
 use super::words::{Word, Words};
 
-/// A field: its name, what it takes, an example for messages, and of an option its default and what it is.
+/// A field: name, kind of value, example for messages; for an option also default and meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
     /// Name of the field.
@@ -11,18 +11,19 @@ pub struct Rule {
     pub(crate) kind: Kind,
     pub(crate) example: &'static str,
     pub(crate) preset: Preset,
-    /// What an option is; empty for fields of motor and inverter, of which the reference page tells.
+    /// Meaning of an option; empty for fields of motor and inverter, which the reference page
+    /// explains.
     pub about: &'static str,
 }
 
-/// What holds where a field is not stated.
+/// The default of a field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Preset {
     /// This value, as it would be written.
     Value(&'static str),
-    /// What the checks find by this rule.
+    /// Computed by the checks; the text says how.
     Rule(&'static str),
-    /// What the checks and the reference page of motor and inverter say.
+    /// Stated in the checks and in the reference page of motor and inverter.
     Checked,
 }
 
@@ -37,19 +38,19 @@ impl Rule {
         }
     }
 
-    /// The same with this value by default.
+    /// Sets the default value.
     pub(crate) const fn preset(self, value: &'static str) -> Self {
         let preset = Preset::Value(value);
         Self { preset, ..self }
     }
 
-    /// The same with a default that follows from others.
+    /// Sets a default that follows from other fields.
     pub(crate) const fn by_default(self, rule: &'static str) -> Self {
         let preset = Preset::Rule(rule);
         Self { preset, ..self }
     }
 
-    /// The words that it takes; none for a field that takes others, or words that the checks know.
+    /// The words of a choice; none for other kinds.
     pub fn words(&self) -> &'static [Word] {
         match self.kind {
             Kind::Choice(words) | Kind::ChoiceOrList(words) => words,
@@ -57,7 +58,7 @@ impl Rule {
         }
     }
 
-    /// The value that holds where none is stated, as it would be written; none where it follows from others.
+    /// The default value as it would be written; none where it follows from other fields.
     pub fn preset_value(&self) -> Option<&'static str> {
         match self.preset {
             Preset::Value(value) => Some(value),
@@ -65,13 +66,13 @@ impl Rule {
         }
     }
 
-    /// The same with what it is, as a sentence without full stop.
+    /// Sets the meaning, a sentence without full stop.
     pub(crate) const fn about(self, about: &'static str) -> Self {
         Self { about, ..self }
     }
 }
 
-/// What a field takes.
+/// Kind of value of a field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
     /// A number with one of the units; limits in SI units of the first. A `low` of 0 allows 0.
@@ -86,7 +87,7 @@ pub(crate) enum Kind {
     Integer { low: u32, high: u32 },
     /// One of these whole numbers, without unit.
     OneOf(&'static [u32]),
-    /// One of some words, which the checks know.
+    /// One of the words in the checks.
     Word,
     /// One of these words.
     Choice(&'static [Word]),

@@ -1,7 +1,7 @@
-//! Which fields there are, what kind of value each takes and between which limits.
+//! The fields with their kinds of values and limits.
 //!
-//! The limits keep out slips of unit and decimal point; they are wider than any motor that this
-//! crate is made for. The reference table for users is the documentation of [`crate::spec`].
+//! The limits catch wrong units and decimal points; they are wider than any motor that this crate
+//! is made for. The reference table for users is the documentation of [`crate::spec`].
 
 use super::ast::Basis;
 use super::controller;
@@ -13,7 +13,7 @@ const RPM: f64 = std::f64::consts::PI / 30.0;
 
 const EMF: &[D] = &[D::EmfConstant, D::SpeedConstant, D::FluxLinkage];
 
-/// Fields of the motor. The limits of `back_emf` hold for the phase constant that it becomes.
+/// Fields of the motor. The limits of `back_emf` apply to its phase constant.
 pub(crate) const MOTOR: &[Rule] = &[
     text("name", "\"HubDrive\""),
     text("description", "\"Rear hub drive\""),
@@ -99,7 +99,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
 ];
 
-/// All fields with the names of their sections. An option that two controllers take in different ways stands there twice.
+/// All fields with their sections. Options with rules in several controllers are repeated.
 fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
     let motor = MOTOR.iter().map(|rule| ("motor", rule));
     let inverter = INVERTER.iter().map(|rule| ("inverter", rule));
@@ -134,7 +134,7 @@ pub(crate) fn is_text(name: &str) -> bool {
     find(name).is_some_and(|rule| matches!(rule.kind, Kind::Text))
 }
 
-/// The quantities that the field takes; none for what is no quantity.
+/// The quantities that the field takes; none for other kinds.
 pub(crate) fn dimensions(name: &str) -> &'static [D] {
     match find(name).map(|rule| rule.kind) {
         Some(Kind::Quantity { dimensions, .. }) => dimensions,
@@ -147,8 +147,8 @@ pub(crate) fn example(name: &str) -> &'static str {
     find(name).map_or("20 A", |rule| rule.example)
 }
 
-/// Examples of the field's value, one for each basis that it may have: none is put into the mouth
-/// of a user who did not name it. `named`: the basis words of the value as given.
+/// Examples of the field's value, one for each possible basis, so that no basis is suggested over
+/// another. `named`: the basis words of the given value.
 pub(crate) fn examples(name: &str, named: &[Basis]) -> Vec<String> {
     let example = example(name);
     let references = references(name);
@@ -166,7 +166,7 @@ pub(crate) fn examples(name: &str, named: &[Basis]) -> Vec<String> {
         .collect()
 }
 
-/// What the field's value can refer to, and what that means; empty where there is no choice.
+/// The possible bases of the field's value with their meanings; empty where there is no choice.
 pub(crate) fn references(name: &str) -> &'static [(Basis, &'static str)] {
     match name {
         "resistance" | "inductance" => &[

@@ -18,7 +18,7 @@ const SECTIONS: [&str; 5] = ["motor", "inverter", "controller", "assumed", "sour
 /// extension, as the default name of the drive.
 ///
 /// # Errors
-/// If the text is no TOML. Errors in fields are kept in the tree and come with [`super::check`].
+/// If the text is not TOML. Errors in fields are kept in the tree and come with [`super::check`].
 pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
     let file = File {
         name: file_name,
@@ -49,7 +49,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             _ => ast.unknown_section(&at, name, &SECTIONS),
         }
     }
-    // The drive's name is written beside the motor's data but is no datum of it.
+    // `name` stands in `[motor]` but belongs to the drive.
     if let Some(index) = ast
         .motor
         .fields
@@ -190,7 +190,7 @@ impl File<'_> {
                 return catalogue::duplicate_field(&at, &self.at(first), key.trim()).into();
             }
         }
-        catalogue::syntax(&at, &format!("no TOML: {}", error.message())).into()
+        catalogue::syntax(&at, &format!("invalid TOML: {}", error.message())).into()
     }
 
     /// Byte offset of the same key or section header before `end`; a key's search ends at its
@@ -240,7 +240,7 @@ impl File<'_> {
         };
         match item.as_value() {
             Some(toml_edit::Value::String(text)) => parse_value(field, text.value(), at),
-            // As written: of all that TOML takes for a number, decimal ones pass.
+            // As written: only decimal numbers are accepted.
             Some(number @ (toml_edit::Value::Integer(_) | toml_edit::Value::Float(_))) => {
                 plain_number(field, self.written(number), at)
             }
@@ -262,7 +262,7 @@ impl File<'_> {
         }
     }
 
-    /// A value as it stands in the file.
+    /// A value as written in the file.
     fn written(&self, value: &toml_edit::Value) -> &str {
         value
             .span()

@@ -1,5 +1,5 @@
-//! Units of the specification: a closed list of spellings, each with its quantity and SI factor. The signs of
-//! print stand for their letters: Ω for `ohm`, µ for `u`, ° for `deg`, ² for `2`.
+//! Units of the specification: a closed list of spellings with quantity and SI factor. The symbols
+//! Ω, µ, ° and ² are accepted for `ohm`, `u`, `deg` and `2`.
 //!
 //! Mechanical speed is in rad/s, so `V/krpm` and `V/(rad/s)` are one quantity; `V/Hz` and `Wb` are
 //! flux linkages per electrical angle, another one.
@@ -77,7 +77,7 @@ pub struct Unit {
     pub symbol: &'static str,
     /// What it measures.
     pub dimension: Dimension,
-    /// Units per SI unit or SI units per unit, whichever is the exact number (see `to_si`).
+    /// Units per SI unit or SI units per unit, whichever is exact (see `to_si`).
     factor: Factor,
 }
 
@@ -104,8 +104,8 @@ impl Unit {
         UNITS.iter().copied().find(|unit| unit.symbol == letters)
     }
 
-    /// The known spelling of one of some quantities closest to an unknown one, if any is close: a slip of one
-    /// letter in three, or of upper and lower case.
+    /// The closest known spelling among units of the given quantities, within one letter in three
+    /// or a difference of case.
     pub fn nearest(symbol: &str, dimensions: &[Dimension]) -> Option<&'static str> {
         let letters = in_letters(symbol);
         let folded = letters.to_lowercase();
@@ -113,7 +113,7 @@ impl Unit {
             .iter()
             .filter(|unit| dimensions.contains(&unit.dimension))
             .map(|unit| {
-                // A wrong case alone (`KHz`, `Ohm`) is the closest of mistakes.
+                // A wrong case alone (`KHz`, `Ohm`) is the closest mistake.
                 let cased = usize::from(unit.symbol != letters);
                 (
                     2 * strsim::levenshtein(&unit.symbol.to_lowercase(), &folded) + cased,
@@ -126,7 +126,7 @@ impl Unit {
     }
 }
 
-/// The spelling with letters in place of the signs of print, both code points of ohm and micro among them.
+/// The spelling with letters in place of symbols; ohm and micro have two code points each.
 fn in_letters(symbol: &str) -> String {
     let mut letters = String::new();
     for sign in symbol.chars() {

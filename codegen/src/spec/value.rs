@@ -26,9 +26,9 @@ pub(super) fn parse_value(field: &str, text: &str, at: &Location) -> Value {
     read(field, text, at).unwrap_or_else(|error| Value::Malformed(Box::new(error)))
 }
 
-/// Free text in one line. Texts become comments of emitted code: what compilers refuse there is
-/// refused here, where it was written. These are control characters, and those that turn the
-/// direction of writing (rustc's lint `text_direction_codepoint_in_literal`).
+/// Free text in one line. Texts become comments of emitted code, so characters that compilers
+/// reject there are rejected here: control characters and those that change the direction of
+/// writing (rustc's lint `text_direction_codepoint_in_literal`).
 pub(super) fn free_text(field: &str, text: &str, at: &Location) -> Result<String, Diagnostic> {
     let is_forbidden = |c: char| {
         matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
@@ -56,7 +56,7 @@ pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
     }
 }
 
-/// Something else where the field takes text.
+/// Another kind of value where the field takes text.
 pub(super) fn no_text(field: &str, given: &str, at: &Location) -> Value {
     let examples = schema::examples(field, &[]);
     Value::Malformed(Box::new(catalogue::wrong_kind(
@@ -64,7 +64,7 @@ pub(super) fn no_text(field: &str, given: &str, at: &Location) -> Value {
     )))
 }
 
-/// What no value is written like.
+/// A value that cannot be read.
 pub(super) fn unreadable(field: &str, text: &str, at: &Location) -> Value {
     Value::Malformed(Box::new(malformed(field, text, at)))
 }
@@ -110,7 +110,7 @@ fn is_based(zero: &str, word: &str) -> bool {
     zero == "0" && digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_hexdigit()))
 }
 
-/// The value of a decimal number; an underscore stands between two digits.
+/// The value of a decimal number; underscores only between two digits.
 fn number(digits: &str) -> Option<f64> {
     let groups: Vec<&str> = digits.split('_').collect();
     let is_between_digits = |pair: &[&str]| {
@@ -177,7 +177,7 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Unit and basis words behind a number: the longest unit that there is, then words alone.
+/// Unit and basis words behind a number: the longest known unit, then basis words.
 fn read_unit(
     field: &str,
     text: &str,
@@ -225,8 +225,8 @@ fn read_unit(
     ))
 }
 
-/// The first signs that mean nothing where they stand: a product's stands between two words, a
-/// power's before its number, a hyphen within a word.
+/// The first misplaced signs: a product's belongs between two words, a power's before its number, a
+/// hyphen within a word.
 fn stray_signs(lexemes: &[Lexeme]) -> Option<String> {
     let is_word = |lexeme: Option<&Lexeme>| matches!(lexeme, Some(Lexeme::Word(_)));
     let is_factor =
@@ -322,8 +322,7 @@ const BETWEEN_TERMINALS: [&str; 12] = [
     "leadtolead",
 ];
 
-/// What is unknown of the words behind a unit, and what to write: the basis that they are another
-/// word for, or the choice.
+/// The unknown words behind a unit, and the remedy: the basis that they stand for, or the choice.
 fn basis_remedy(field: &str, lexemes: &[Lexeme]) -> (String, String) {
     let spelt_without = |left_out: fn(Basis) -> bool| {
         let kept = lexemes
@@ -352,7 +351,7 @@ fn basis_remedy(field: &str, lexemes: &[Lexeme]) -> (String, String) {
         .iter()
         .map(|(basis, meaning)| (basis.word(), *meaning))
         .collect();
-    let mut remedy = format!("say {}", catalogue::with_meanings(&words));
+    let mut remedy = format!("write {}", catalogue::with_meanings(&words));
     if field == "back_emf" {
         remedy.push_str(", with `peak` (the amplitude)");
     }

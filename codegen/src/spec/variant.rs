@@ -4,12 +4,12 @@ use super::ast::{Field, Section, SpecAst, Value};
 use super::value::parse_value;
 use crate::diagnostics::{Collector, Diagnostics, Location, catalogue};
 
-/// Lays a controller variant over the controller of `ast`. Values carry their units attached
+/// Applies a controller variant to the controller of `ast`. Values have their units attached
 /// (`commutation_threshold=0.5A`); a controller of another kind replaces the whole controller.
 ///
 /// # Errors
-/// If the text has not the shape `name:key=value,key=value`. Unreadable values are kept in the
-/// tree and come with [`super::check`].
+/// If the text does not have the form `name:key=value,key=value`. Unreadable values are kept in the
+/// tree and reported by [`super::check`].
 pub fn apply_variant(ast: &mut SpecAst, variant: &str) -> Result<(), Diagnostics> {
     let mut errors = Collector::new();
     let at = |offset: usize| Location::Variant {
@@ -54,8 +54,8 @@ pub fn apply_variant(ast: &mut SpecAst, variant: &str) -> Result<(), Diagnostics
     Ok(())
 }
 
-/// The controller of `ast` with its options as [`apply_variant`] takes them, in the order in which
-/// they were written. The 48 numbers of a switching table are shown, but no variant can give them.
+/// The controller of `ast` with its options in the form of [`apply_variant`], in the order in which
+/// they were written. A listed switching table is shown, but no variant can give it.
 pub fn variant_of(ast: &SpecAst) -> String {
     let written = |field: &Field| {
         let value = field.value.to_string();

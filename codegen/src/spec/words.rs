@@ -1,15 +1,15 @@
-//! Choices that are written as one of some words.
+//! Choices written as words.
 
-/// A word that an option takes, and what it says: a phrase that goes behind the word.
+/// A word of an option and its meaning, a phrase that follows the word.
 #[derive(Clone, Copy, Debug)]
 pub struct Word {
     /// As it is written.
     pub word: &'static str,
-    /// What it says; empty where the word says it.
+    /// Meaning; empty where the word is clear.
     pub meaning: &'static str,
 }
 
-/// A choice that is written as one of some words.
+/// A choice written as one of several words.
 pub trait Words: Copy + PartialEq + 'static {
     /// All choices.
     const CHOICES: &'static [Self];

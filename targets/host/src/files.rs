@@ -1,10 +1,10 @@
-//! Files that are there as a whole or not at all.
+//! Files that are written completely or not at all.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Writes a file beside its place and renames it, so that no reader sees half of it. Makes the
-/// folder if it is missing; where the file cannot be written, nothing new is left.
+/// Writes a file under another name and renames it, so that no reader sees a part of it. Creates a
+/// missing folder, and removes it again where the file cannot be written.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -21,7 +21,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     std::fs::create_dir_all(folder)
         .and_then(|()| write_into(folder, path, contents))
         .inspect_err(|_| {
-            // The innermost first; one that somebody else uses meanwhile is not empty and stays.
+            // Innermost first; a folder that is no longer empty stays.
             for folder in &missing {
                 let _ = std::fs::remove_dir(folder);
             }

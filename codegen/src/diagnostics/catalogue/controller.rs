@@ -62,8 +62,8 @@ pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
     )
 }
 
-/// One vector moves the current by `stride` ampere in a period; `t_s`: the longest period of whole
-/// timer counts in which it is not more than the `rated` current.
+/// One vector changes the current by `stride` ampere per period, above `rated`. `t_s`: longest
+/// accepted period of whole timer counts, second.
 pub fn vector_too_strong(
     at: &Location,
     kind: &str,
@@ -75,9 +75,9 @@ pub fn vector_too_strong(
         Code::VectorTooStrong,
         at,
         format!(
-            "`kind`: {kind} applies one vector for a whole period, which moves the current of this motor by {}, more \
-             than its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, whose \
-             modulator divides the period",
+            "`kind`: {kind} applies one vector per period, which changes the current of this motor by {}, \
+             above its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, which \
+             modulates",
             engineering(stride, "A"),
             engineering(rated, "A"),
             engineering(at_most(t_s), "s"),
@@ -86,16 +86,16 @@ pub fn vector_too_strong(
     )
 }
 
-/// Two vectors that share a period miss the wanted current by up to `miss` ampere; `t_s`: the
-/// longest period of whole timer counts in which it is not more than the `rated` current.
+/// Two vectors per period miss the current reference by up to `miss` ampere, above `rated`.
+/// `t_s`: longest accepted period of whole timer counts, second.
 pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,
         at,
         format!(
-            "`modulated`: two vectors that share a period miss the wanted current of this motor by up to {}, more \
-             than its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, whose \
-             modulator reaches every voltage",
+            "`modulated`: two vectors per period miss the current reference of this motor by up to {}, \
+             above its rated current of {}; choose a control period of at most {} (`f_pwm`: {}), or `pdcc`, which \
+             reaches every voltage",
             engineering(miss, "A"),
             engineering(rated, "A"),
             engineering(at_most(t_s), "s"),
@@ -121,40 +121,40 @@ pub fn option_without_effect(
     .with_note(other_at, format!("`{other}`"))
 }
 
-/// A reference of three phase currents where only a pair of phases is switched.
+/// `reference: proportional` with `modulation: pair`.
 pub fn proportional_pair(at: &Location, modulation: &Location) -> Diagnostic {
     Diagnostic::new(
         Code::DependentField,
         at,
-        "`reference`: proportional asks for currents in all three phases, but `modulation: pair` turns one leg off outside of commutations: on motors of both EMF shapes the torque falls 7 to 8 % short with a ripple of 30 to 34 %; choose `modulation: three_phase` or `reference: quasi_square`",
+        "`reference`: proportional needs current in all three phases, but `modulation: pair` turns one leg off outside commutations (7 to 8 % less torque, 30 to 34 % ripple); choose `modulation: three_phase` or `reference: quasi_square`",
     )
     .with_note(modulation, "`modulation: pair`")
 }
 
-/// A hysteresis band that is as wide as the current.
+/// A hysteresis band as wide as the rated current.
 pub fn band_above_rated(band: &Part, rated: &Part) -> Diagnostic {
     Diagnostic::new(
         Code::Band,
         &band.location,
         format!(
-            "`band`: {} is not below the rated current of {}, so that the current would never be told to change; choose a tenth of the rated current or less",
+            "`band`: {} is not below the rated current of {}, so the controller would never correct the current; choose a tenth of the rated current or less",
             band.given, rated.given
         ),
     )
     .with_note(&rated.location, format!("`{}`: {}", rated.field, rated.given))
 }
 
-/// The printed switching table, which is there for study.
+/// The printed switching table, for study only.
 pub fn printed_table(at: &Location) -> Diagnostic {
     Diagnostic::new(
         Code::SwitchingTableLosesCurrent,
         at,
-        "`table`: the printed row of sector 1, turned through the sectors, loses the current until the drive trips; it is there for study, write `derived` for a drive",
+        "`table`: the printed table loses control of the current until the drive trips; it is for study only, use `derived` for a drive",
     )
 }
 
-/// An EMF that turns by `turn` in a period of `t_s` seconds, more than the estimate `given` stands, `limit`; angles in
-/// electrical degrees. `filtered`: the filter limits it.
+/// The EMF turns by `turn` in a period of `t_s` seconds, above the `limit` of the estimate; both in
+/// electrical degrees. `filtered`: the limit comes from the filter.
 pub fn estimate_turns_too_far(
     at: &Location,
     given: &str,
@@ -164,7 +164,7 @@ pub fn estimate_turns_too_far(
 ) -> Diagnostic {
     let [turned, limited] = [turn, limit].map(significant);
     let (consequence, remedy) = if filtered {
-        ("the estimate no longer follows", "a greater `emf_filter`, ")
+        ("the estimate cannot follow", "a greater `emf_filter`, ")
     } else {
         ("the torque may be more than 5 % off", "")
     };
@@ -173,12 +173,13 @@ pub fn estimate_turns_too_far(
         Code::EstimateTurnsTooFar,
         at,
         format!(
-            "`emf`: {given}, of an EMF that turns by {turned} electrical degrees in a control period at rated speed; beyond {limited} {consequence}; choose {remedy}`emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
+            "`emf`: {given}, but the EMF turns {turned} electrical degrees per control period at rated speed; above {limited} {consequence}; choose {remedy}`emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
         ),
     )
 }
 
-/// A switching table of the wrong length, or with an entry (position from 1, number) that is no vector.
+/// A switching table of the wrong length, or with an entry (position from 1, number) that is not
+/// a vector.
 pub fn switching_table(at: &Location, length: usize, wrong: Option<(usize, i64)>) -> Diagnostic {
     let what = match wrong {
         Some((position, number)) => {
@@ -190,7 +191,7 @@ pub fn switching_table(at: &Location, length: usize, wrong: Option<(usize, i64)>
         Code::SwitchingTable,
         at,
         format!(
-            "`table`: {what}; list 48 vector numbers: for S1 to S6 first otherwise, then in commutation, each for the wishes (alpha, beta) = 00, 01, 10, 11; or write `derived`"
+            "`table`: {what}; list 48 vector numbers, 8 per sector from S1 to S6: 4 outside commutation, then 4 in commutation, for comparator outputs (alpha, beta) = 00, 01, 10, 11; or write `derived`"
         ),
     )
 }

@@ -2,49 +2,31 @@
 
 use crate::diagnostics::{Code, Diagnostic, Location, percent, significant};
 
-/// The inductance may leave the range in which the loop is stable.
+/// The tolerance of a `quantity` leaves the range in which the loop is stable.
 ///
-/// `given`: the tolerance as written (or `10 % (default)`); `low`, `high`: ratios L_true/L_model
-/// between which the loop is stable; `remedy`: what widens them, a clause.
-pub fn inductance_outside_stable_range(
+/// `given`: the tolerance as written (or `10 % (default)`); `low`, `high`: ratios of true to stated
+/// value between which the loop is stable; `remedy`: a clause.
+pub fn outside_stable_range(
+    code: Code,
     at: &Location,
+    quantity: &str,
     given: &str,
     (low, high): (f64, f64),
     remedy: &str,
 ) -> Diagnostic {
     Diagnostic::new(
-        Code::InductanceOutsideStableRange,
+        code,
         at,
         format!(
-            "`inductance_tolerance`: {given}, but the loop is stable only while the true \
-             inductance is {} of the stated one; {remedy} or narrow the tolerance to {}",
+            "`{quantity}_tolerance`: {given}, but the loop is stable only while the true \
+             {quantity} is {} of the stated one; {remedy} or narrow the tolerance to {}",
             ratios(low, high),
             percent(narrowest(low, high)),
         ),
     )
 }
 
-/// The resistance may leave the range in which the loop is stable; arguments as for the
-/// inductance.
-pub fn resistance_outside_stable_range(
-    at: &Location,
-    given: &str,
-    (low, high): (f64, f64),
-    remedy: &str,
-) -> Diagnostic {
-    Diagnostic::new(
-        Code::ResistanceOutsideStableRange,
-        at,
-        format!(
-            "`resistance_tolerance`: {given}, but the loop is stable only while the true \
-             resistance is {} of the stated one; {remedy} or narrow the tolerance to {}",
-            ratios(low, high),
-            percent(narrowest(low, high)),
-        ),
-    )
-}
-
-/// The range in words; the search for it ends at 0.1 and 10.
+/// The range in words; its search ends at 0.1 and 10.
 fn ratios(low: f64, high: f64) -> String {
     if high >= 10.0 {
         format!("at least {}", percent(low))
@@ -63,7 +45,7 @@ fn narrowest(low: f64, high: f64) -> f64 {
         / 100.0
 }
 
-/// The loop is unstable even with the motor exactly as stated; `radius`: largest pole's magnitude;
+/// The loop is unstable with the nominal motor; `radius`: magnitude of the largest pole;
 /// `remedy`: a clause.
 pub fn unstable_loop(
     at: &Location,
@@ -85,8 +67,7 @@ pub fn unstable_loop(
 
 /// A signal needs more bits than the word has.
 ///
-/// `signal`: its name with the quantity, e.g. ``voltage `u_a` ``; `needed`: bits it needs, where
-/// they are known.
+/// `signal`: quantity and name, e.g. ``voltage `u_a` ``; `needed`: bits needed, where known.
 pub fn word_too_narrow(at: &Location, signal: &str, needed: Option<u32>, word: u32) -> Diagnostic {
     let remedy = if word < 32 {
         "choose `word: 32`, or lower `adc_bits`"
@@ -100,13 +81,13 @@ pub fn word_too_narrow(at: &Location, signal: &str, needed: Option<u32>, word: u
     Diagnostic::new(Code::WordTooNarrow, at, format!("`word`: {lack}; {remedy}"))
 }
 
-/// The generator broke one of its own invariants: a bug, reported without a panic.
+/// An internal error: a bug, reported without a panic.
 pub fn internal(at: &Location, what: &str) -> Diagnostic {
     Diagnostic::new(
         Code::Internal,
         at,
         format!(
-            "the generator broke its own invariant: {what}; this is a bug of hexagen, please report it with the specification"
+            "internal error of the generator: {what}; this is a bug in hexagen, please report it with the specification"
         ),
     )
 }
@@ -124,12 +105,21 @@ mod tests {
         };
         let cases = [
             (
-                inductance_outside_stable_range(&at, "30 %", (0.83, 1.257), "choose `emf: model`"),
+                outside_stable_range(
+                    Code::InductanceOutsideStableRange,
+                    &at,
+                    "inductance",
+                    "30 %",
+                    (0.83, 1.257),
+                    "choose `emf: model`",
+                ),
                 "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf: model` or narrow the tolerance to 17 %",
             ),
             (
-                resistance_outside_stable_range(
+                outside_stable_range(
+                    Code::ResistanceOutsideStableRange,
                     &at,
+                    "resistance",
                     "30 % (default)",
                     (0.1, 1.2),
                     "lower `bandwidth`",
@@ -150,7 +140,7 @@ mod tests {
             ),
             (
                 internal(&at, "node 7 has no interval"),
-                "m.toml:3:5: error[HX0901]: the generator broke its own invariant: node 7 has no interval; this is a bug of hexagen, please report it with the specification",
+                "m.toml:3:5: error[HX0901]: internal error of the generator: node 7 has no interval; this is a bug in hexagen, please report it with the specification",
             ),
         ];
         for (error, text) in cases {

@@ -5,7 +5,7 @@ use crate::diagnostics::{
     rpm_at_most, significant,
 };
 
-/// A field that takes part in a contradiction: where it stands and how it was written.
+/// A field involved in a contradiction: name, value and place.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The field's name.
@@ -73,12 +73,12 @@ pub fn period_too_long(
     )
 }
 
-/// What a bus that is too low for the rating allows.
+/// What the bus voltage allows where it is too low for the rating.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BusRemedy {
-    /// This mechanical speed in rad/s at rated current.
+    /// Speed reached at rated current, mechanical rad/s.
     Speed(f64),
-    /// No speed at rated current, and less than this current in ampere at standstill.
+    /// Current at standstill, ampere, below the rated current.
     Current(f64),
 }
 
@@ -121,8 +121,8 @@ pub fn bus_too_low(
     )
 }
 
-/// Rated torque against EMF constant and rated current; `expected` in Nm. `fitting`: what would
-/// fit, with the torque it gives.
+/// Rated torque against EMF constant and rated current; `expected` in Nm. `fitting`: changes that
+/// would fit, with the torque that each gives, Nm.
 pub fn torque_contradiction(
     torque: &Part,
     current: &Part,
@@ -241,7 +241,7 @@ pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic 
             Code::MaxCurrentAboveTrip,
             &max.location,
             format!(
-                "`max_current`: {} makes phase currents of up to {}, above the trip current of {}; lower it, or raise `trip_current`",
+                "`max_current`: {} gives phase currents of up to {}, above the trip current of {}; lower it, or raise `trip_current`",
                 max.given,
                 engineering(at_least(peak), "A"),
                 trip.given,
@@ -251,9 +251,9 @@ pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic 
     )
 }
 
-/// Hysteresis control reaches the trip current in health. `reach`: greatest phase current, ampere;
-/// `band`: half width of the bands, `stride`: greatest change of a current in `periods` periods,
-/// ampere.
+/// Hysteresis control reaches the trip current without a fault. `reach`: greatest phase current;
+/// `band`: half width of the bands; `stride`: greatest change of a current in `periods` periods;
+/// all in ampere.
 pub fn hysteresis_reaches_trip(
     max: &Part,
     trip: &Part,
@@ -271,7 +271,7 @@ pub fn hysteresis_reaches_trip(
             Code::MaxCurrentAboveTrip,
             &max.location,
             format!(
-                "`max_current`: {} makes phase currents of up to {} with phcc: a band of {} and the {} by which one vector moves the current in {duration} come on top, above the trip current of {}; lower it, shorten the control period, or raise `trip_current`, for which `adc_range` must have room",
+                "`max_current`: {} gives phase currents of up to {} with phcc (with a band of {} and a change of {} by one vector in {duration}), above the trip current of {}; lower it, shorten the control period, or raise `trip_current` within `adc_range`",
                 max.given,
                 engineering(at_least(reach), "A"),
                 engineering(band, "A"),
@@ -296,7 +296,7 @@ pub fn max_current_below_counts(
             Code::AdcTooCoarse,
             &max.location,
             format!(
-                "`max_current`: {} is {} counts of {} of the current sensors, below {least}, where half a count is 5 % of it; narrow `{}`, raise `adc_bits`, or give at least {}",
+                "`max_current`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); narrow `{}`, raise `adc_bits`, or give at least {}",
                 max.given,
                 significant(given / count),
                 engineering(count, "A"),
@@ -308,8 +308,8 @@ pub fn max_current_below_counts(
     )
 }
 
-/// A count of the bus converter is too much of the nominal voltage. `count` in volt, `share` of the
-/// nominal voltage and the `most` allowed; `range`: the widest range that these `bits` allow, volt.
+/// A count of the bus ADC is too coarse. `count` in volt, its `share` of the nominal voltage and
+/// the greatest share allowed, `most`; `widest`: widest accepted range with these `bits`, volt.
 pub fn bus_resolution(
     range: &Part,
     nominal: &Part,
@@ -322,7 +322,7 @@ pub fn bus_resolution(
             Code::AdcTooCoarse,
             &range.location,
             format!(
-                "`bus_adc_range`: {} in {bits} bits is {} a count, {} of `bus_voltage` {}, and the motor's voltages are off by half of that; at most {} are allowed: narrow the range to {} or raise `bus_adc_bits`",
+                "`bus_adc_range`: {} in {bits} bits is {} per count, {} of `bus_voltage` {}, above the {} allowed; narrow the range to {} or raise `bus_adc_bits`",
                 range.given,
                 engineering(count, "V"),
                 percent(share),
@@ -335,8 +335,8 @@ pub fn bus_resolution(
     )
 }
 
-/// The trip current is far above what the drive is for. `given` as written or by default, `times`
-/// the `peak` of the largest set-point in ampere; `remedy`: a clause.
+/// The trip current is `times` the `peak` current of the largest set-point, ampere. `given`: as
+/// written or by default; `remedy`: a clause.
 pub fn trip_far_above(
     at: &Location,
     given: &str,
@@ -348,29 +348,28 @@ pub fn trip_far_above(
         Code::TripFarAbove,
         at,
         format!(
-            "`trip_current`: {given} is {} times the {} of the largest set-point, and a fault makes as much before the drive trips; {remedy}",
+            "`trip_current`: {given} is {} times the {} of the largest set-point, and a fault reaches it before the drive trips; {remedy}",
             significant(times),
             engineering(peak, "A"),
         ),
     )
 }
 
-/// PHCC trips in the commutations of slow rotation. `trip`: the trip current; `swing`: the current
-/// that it reaches, ampere.
+/// PHCC reaches the trip current in commutations at low speed. `swing`: the current reached,
+/// ampere; `trip`: the trip current, ampere.
 pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Diagnostic {
     Diagnostic::new(
         Code::SwingAboveTrip,
         at,
         format!(
-            "`max_current`: {max} makes phcc reach about {} in the commutations of a rotor that turns slowly, above the trip current of {}: such a drive may trip in health; lower `max_current` or widen `adc_range`",
+            "`max_current`: {max} gives peaks of about {} with phcc in commutations at low speed, above the trip current of {}, so the drive may trip without a fault; lower `max_current` or widen `adc_range`",
             engineering(swing, "A"),
             engineering(trip, "A"),
         ),
     )
 }
 
-/// Timer clock and PWM frequency give no timer period from 100 to 65535, rounded to whole counts;
-/// `counts` is what they give; `clock`, `f_pwm` in hertz.
+/// The timer period, `counts`, is outside 100 to 65535; `clock`, `f_pwm` in hertz.
 pub fn timer_period(
     timer: &Part,
     period: &Part,
@@ -380,9 +379,9 @@ pub fn timer_period(
 ) -> Diagnostic {
     let whole = counts.round().clamp(100.0, 65535.0);
     let problem = if counts < whole {
-        "below 100, from which on the nearest whole number of counts is within 0.5 % of every frequency"
+        "below 100, where rounding to whole counts may change the frequency by more than 0.5 %"
     } else {
-        "above 65535, the end of a 16-bit timer"
+        "above 65535, the limit of a 16-bit timer"
     };
     with_parts(
         Diagnostic::new(
@@ -426,8 +425,8 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
     )
 }
 
-/// A sector at the least speed lasts longer than the Hall timer counts. `ticks`: its length;
-/// `least`: the least speed that fits, rad/s; `clock`: the fastest capture clock that fits, hertz
+/// A sector at the minimum speed lasts longer than the Hall timer counts. `ticks`: its length;
+/// `least`: the lowest accepted speed, rad/s; `clock`: the fastest accepted capture clock, hertz
 /// (none when edges are sampled).
 pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -> Diagnostic {
     let slower = clock.map_or_else(
@@ -451,7 +450,7 @@ pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -
     )
 }
 
-/// A speed on the wrong side of another one; `relation`: what it should be, `below` or `at least`.
+/// A speed on the wrong side of another; `relation`: the required one, `below` or `at least`.
 pub fn speed_order(speed: &Part, relation: &str, other: &Part) -> Diagnostic {
     with_parts(
         Diagnostic::new(
@@ -466,8 +465,8 @@ pub fn speed_order(speed: &Part, relation: &str, other: &Part) -> Diagnostic {
     )
 }
 
-/// Too few control periods per electrical turn at the greatest speed; `fastest`: the speed with
-/// six of them, rad/s; `f_pwm`: the frequency that gives six, hertz.
+/// Too few control periods per electrical turn at the maximum speed. `fastest`: speed with six
+/// periods, rad/s; `f_pwm`: frequency with six periods, hertz.
 pub fn too_few_periods(
     speed: &Part,
     period: &Part,
@@ -480,7 +479,7 @@ pub fn too_few_periods(
             Code::TooFewPeriods,
             &speed.location,
             format!(
-                "`maximum_speed`: {} leaves {} control periods in an electrical turn, below 6; lower it to {} or raise `f_pwm` to {}",
+                "`maximum_speed`: {} leaves {} control periods per electrical turn, below 6; lower it to {} or raise `f_pwm` to {}",
                 speed.given,
                 significant(periods),
                 rpm_at_most(fastest),
@@ -491,7 +490,7 @@ pub fn too_few_periods(
     )
 }
 
-/// A limit of the measured bus on the wrong side of the nominal voltage or the converter.
+/// A limit of the measured bus on the wrong side of the nominal voltage or the ADC range.
 pub fn bus_measurement(limit: &Part, relation: &str, other: &Part) -> Diagnostic {
     with_parts(
         Diagnostic::new(
@@ -513,7 +512,7 @@ pub fn threshold_above_rated(threshold: &Part, rated: &Part) -> Diagnostic {
             Code::CommutationThreshold,
             &threshold.location,
             format!(
-                "`commutation_threshold`: {} is not below the rated current of {}, so that a commutation would end at once; lower it to a tenth of the rated current or less",
+                "`commutation_threshold`: {} is not below the rated current of {}, so a commutation would end at once; lower it to a tenth of the rated current or less",
                 threshold.given, rated.given
             ),
         ),
@@ -548,13 +547,13 @@ pub fn dead_time(dead_time: &Part, t_s: f64) -> Diagnostic {
     )
 }
 
-/// The ADC offset lies outside the middle half of the converter's range; `full`: 2^bits.
+/// The ADC offset is outside the middle half of the ADC range; `full`: 2^bits.
 pub fn adc_offset(offset: &Part, full: u32) -> Diagnostic {
     Diagnostic::new(
         Code::AdcOffset,
         &offset.location,
         format!(
-            "`adc_offset`: {} lies outside {} to {}, the middle half of the converter's {full} counts; both signs of the current need room",
+            "`adc_offset`: {} lies outside {} to {}, the middle half of the ADC's {full} counts; move it there, so that both signs of the current fit",
             offset.given,
             full / 4,
             full - full / 4,

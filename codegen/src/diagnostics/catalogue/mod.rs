@@ -1,8 +1,8 @@
 //! The texts of all diagnostics, one constructor each.
 //!
 //! Wording: quantity, given value with unit, limit, what to change. Given values are quoted as
-//! written; computed numbers have four significant digits, and those that are limits are rounded to the side
-//! that is accepted (`at_most`, `at_least`). Field names stand in backticks.
+//! written; computed numbers have four significant digits, limits rounded to the accepted side
+//! (`at_most`, `at_least`). Field names stand in backticks.
 
 mod controller;
 mod design;

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Code, Diagnostic, Location, list};
 
-/// The macro call or the file does not parse; `what` is the parser's complaint.
+/// The macro call or the file does not parse; `what` is the parser's message.
 pub fn syntax(at: &Location, what: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, at, what)
 }
@@ -13,7 +13,7 @@ pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic 
         Code::UnknownSection,
         at,
         format!(
-            "unknown section `{name}`; there are {}{}",
+            "unknown section `{name}`; the sections are {}{}",
             list(known, "and"),
             did_you_mean(name, known)
         ),
@@ -58,7 +58,7 @@ pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -
     )
 }
 
-/// A name of data sheets for what a field takes in its own way; `remedy` is a clause.
+/// A field under another name common in data sheets; `remedy` is a clause.
 pub fn other_name(at: &Location, section: &str, name: &str, remedy: &str) -> Diagnostic {
     Diagnostic::new(
         Code::UnknownField,
@@ -161,14 +161,14 @@ pub fn exclusive_fields(at: &Location, name: &str, other_at: &Location, other: &
     .with_note(other_at, format!("`{other}` is given here"))
 }
 
-/// A field that only another value of a second field takes.
-///
-/// `condition`: the setting that it needs, e.g. ``v_bus: measured``.
+/// A field that has an effect only with another setting, `condition`, e.g. ``v_bus: measured``.
 pub fn needless_field(at: &Location, name: &str, given: &str, condition: &str) -> Diagnostic {
     Diagnostic::new(
         Code::DependentField,
         at,
-        format!("`{name}`: {given} is of use only with `{condition}`; set that or remove `{name}`"),
+        format!(
+            "`{name}`: {given} has an effect only with `{condition}`; set that or remove `{name}`"
+        ),
     )
 }
 
@@ -192,7 +192,7 @@ pub fn unreadable_motor_file(at: &Location, path: &str, why: &str) -> Diagnostic
     )
 }
 
-/// A motor file's bytes are no text; `offset` is that of the first byte that is none, from 0.
+/// A motor file is not UTF-8; `offset`: first invalid byte, from 0.
 pub fn motor_file_is_no_text(at: &Location, byte: u8, offset: usize) -> Diagnostic {
     Diagnostic::new(
         Code::MotorFile,
@@ -210,18 +210,18 @@ pub fn absolute_motor_file(at: &Location) -> Diagnostic {
     )
 }
 
-/// The drive's name is no type name.
+/// The drive's name is not a type name.
 pub fn invalid_name(at: &Location, name: &str) -> Diagnostic {
     Diagnostic::new(
         Code::InvalidName,
         at,
         format!(
-            "`name`: {name:?} is no name of a type; use a capital letter first, then letters and digits, for example \"HubDrive\""
+            "`name`: {name:?} is not a type name; use a capital letter first, then letters and digits, for example \"HubDrive\""
         ),
     )
 }
 
-/// ``; did you mean `x`?`` for the closest known word, or nothing. Where one word is known the
+/// ``; did you mean `x`?`` for the closest known word. Nothing where only one word is known: the
 /// message names it already.
 pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
     if known.len() < 2 {

@@ -12,7 +12,7 @@ pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[Stri
     )
 }
 
-/// Signs in a value that mean nothing where they stand.
+/// Misplaced signs in a value.
 pub fn stray_signs(
     at: &Location,
     field: &str,
@@ -30,8 +30,7 @@ pub fn stray_signs(
     )
 }
 
-/// A character that no text may have: compilers refuse it in the comments that texts become.
-/// `position`: in the text, from 1.
+/// A character that compilers reject in comments, where texts end up. `position`: from 1.
 pub fn forbidden_character(
     at: &Location,
     field: &str,
@@ -54,7 +53,7 @@ pub fn forbidden_character(
         Code::MalformedValue,
         at,
         format!(
-            "`{field}`: character {position} of the text is U+{:04X} ({name}), which compilers refuse in comments; remove it",
+            "`{field}`: character {position} of the text is U+{:04X} ({name}), which compilers reject in comments; remove it",
             u32::from(character)
         ),
     )
@@ -93,7 +92,7 @@ pub fn wrong_dimension(
         Code::WrongDimension,
         at,
         format!(
-            "`{field}`: {given} is {got}, but {wanted} is wanted; {}",
+            "`{field}`: {given} is {got}, but {wanted} is expected; {}",
             like(examples)
         ),
     )
@@ -113,11 +112,11 @@ pub fn unwanted_unit(at: &Location, field: &str, given: &str, plain: &str) -> Di
     Diagnostic::new(
         Code::UnwantedUnit,
         at,
-        format!("`{field}`: {given} has a unit, but a plain number is wanted; write `{plain}`"),
+        format!("`{field}`: {given} has a unit, but a plain number is expected; write `{plain}`"),
     )
 }
 
-/// A value without its basis; `forms` are the value with each basis that it may have, and what that means.
+/// A value without its basis; `forms`: the value with each possible basis, and its meaning.
 pub fn missing_basis(
     at: &Location,
     field: &str,
@@ -128,13 +127,13 @@ pub fn missing_basis(
         Code::MissingBasis,
         at,
         format!(
-            "`{field}`: {given} does not say its basis; write {}",
+            "`{field}`: {given} has no basis; write {}",
             with_meanings(forms)
         ),
     )
 }
 
-/// A word behind the unit that says no basis; `remedy` is a clause.
+/// An unknown word after the unit; `remedy` is a clause.
 pub fn unknown_basis(
     at: &Location,
     field: &str,
@@ -160,7 +159,7 @@ pub fn wrong_basis(
     Diagnostic::new(
         Code::WrongBasis,
         at,
-        format!("`{field}`: {given} cannot be taken as `{basis}`; {remedy}"),
+        format!("`{field}`: {given} cannot be stated as `{basis}`; {remedy}"),
     )
 }
 
@@ -189,13 +188,13 @@ pub fn wrong_kind(
         Code::WrongKind,
         at,
         format!(
-            "`{field}`: {given}, but {wanted} is wanted; {}",
+            "`{field}`: {given}, but {wanted} is expected; {}",
             like(examples)
         ),
     )
 }
 
-/// Zero or negative where a positive value is wanted; `low`, `high`: plausible limits.
+/// Zero or negative where a positive value is expected; `low`, `high`: plausible limits.
 pub fn not_positive(at: &Location, field: &str, given: &str, low: &str, high: &str) -> Diagnostic {
     Diagnostic::new(
         Code::NotPositive,
@@ -204,7 +203,7 @@ pub fn not_positive(at: &Location, field: &str, given: &str, low: &str, high: &s
     )
 }
 
-/// Zero or negative where a positive value is wanted, without stated limits.
+/// Zero or negative where a positive value is expected, without stated limits.
 pub fn not_above_zero(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(
         Code::NotPositive,
@@ -231,7 +230,7 @@ pub fn out_of_limits(at: &Location, field: &str, given: &str, low: &str, high: &
     )
 }
 
-/// A plain number that is not one of the few that are possible.
+/// A plain number that is not one of the accepted ones.
 pub fn not_one_of(at: &Location, field: &str, given: &str, choices: &[&str]) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
@@ -258,7 +257,7 @@ pub fn not_a_power_of_two(
     )
 }
 
-/// Hall codes that are no Hall sequence; `why` is a clause.
+/// Hall codes that do not form a Hall sequence; `why` is a clause.
 pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
     Diagnostic::new(
         Code::HallCodes,

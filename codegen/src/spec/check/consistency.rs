@@ -1,7 +1,7 @@
 //! The EMF constant against rated torque, rated current and torque constant.
 //!
-//! All of them say the same thing about a motor. Where they do not, some basis or shape is wrong:
-//! the commonest mistake of this field. The checks try the others and say which would fit.
+//! All of them state the same constant. Where they disagree, a basis or the EMF shape is usually
+//! wrong: the checks try the others and name those that would fit.
 
 use super::motor::{Motor, Winding, is_line_to_line, phase_constant};
 use super::reader::Given;
@@ -10,7 +10,7 @@ use crate::spec::EmfShape;
 use crate::spec::units::Dimension;
 use std::f64::consts::SQRT_2;
 
-/// Data sheets round, and rate torque with iron losses: so much is no contradiction.
+/// Accepted deviation: data sheets round, and rate torque with iron losses.
 const TOLERANCE: f64 = 0.15;
 
 pub(super) fn check(motor: &Motor, errors: &mut Collector) {
@@ -21,7 +21,7 @@ pub(super) fn check(motor: &Motor, errors: &mut Collector) {
     check_torque_constant(motor, &constants, errors);
 }
 
-/// What the EMF constant can be read as.
+/// The EMF constant and how it is stated.
 struct Constants<'a> {
     back_emf: &'a Given<'a>,
     line_to_line: bool,
@@ -30,7 +30,7 @@ struct Constants<'a> {
     pole_pairs: u32,
 }
 
-/// One reading: what is changed, and the torque per peak ampere that it gives.
+/// One reading of the EMF constant: the change, and the torque per peak ampere, Nm/A.
 struct Reading {
     change: String,
     quasi_square: f64,
@@ -64,8 +64,8 @@ impl<'a> Constants<'a> {
         self.reading("", self.line_to_line, self.shape, 1.0)
     }
 
-    /// The other basis, the other shape, rms for peak, and two of them together, in this order:
-    /// a single slip is likelier than two.
+    /// The other basis, the other shape, rms for peak, then two changes at once: one mistake is
+    /// likelier than two.
     fn others(&self) -> Vec<Reading> {
         let basis = !self.line_to_line;
         let basis_text = if basis {
@@ -93,7 +93,7 @@ impl<'a> Constants<'a> {
                 SQRT_2,
             ),
         ];
-        // Flux linkages and speed constants say their basis by themselves.
+        // Flux linkages and speed constants have a fixed basis.
         if self.back_emf.dimension == Some(Dimension::EmfConstant) && self.winding == Winding::Star
         {
             readings.insert(0, self.reading(basis_text, basis, self.shape, 1.0));
@@ -114,7 +114,7 @@ fn fits(expected: f64, given: f64) -> bool {
     (expected / given - 1.0).abs() <= TOLERANCE
 }
 
-/// Those readings that fit, single changes first; two changes only where no single one fits.
+/// The readings that fit; two changes only where no single one fits.
 fn fitting(candidates: Vec<(String, f64)>, given: f64) -> Vec<(String, f64)> {
     let (single, double): (Vec<_>, Vec<_>) = candidates
         .into_iter()

@@ -10,13 +10,13 @@ use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::{ControllerSpec, HallCapture};
 use std::f64::consts::TAU;
 
-/// Options that are known and that this version does not have.
+/// Options that are known but not available in this version.
 const PLANNED_OPTIONS: [&str; 1] = ["zero"];
 
-/// The controller of a drive that states none.
+/// The default controller.
 const DEFAULT_KIND: &str = "pdcc";
 
-/// The controller with its options, and how Hall edges reach it.
+/// The controller with its options, and the Hall edge capture.
 pub(super) fn read(
     section: &Section,
     fallback: &Location,
@@ -32,12 +32,12 @@ pub(super) fn read(
         None => KINDS.iter().find(|kind| kind.name == DEFAULT_KIND),
         Some(field) => read_kind(field, errors),
     };
-    // Without a kind the options are those of another controller: nothing can be said about them.
+    // Options cannot be checked without a kind.
     let Some(kind) = kind else {
         return (None, None);
     };
     check_takers(section, kind, errors);
-    // Its own rules come before those of others, whose names are known as well.
+    // Own rules first; the names of others' options are known as well.
     let rules = kind.rules().into_iter().chain(controller::rules());
     let reader = Reader::new("controller", section, rules, fallback);
     reader.check_fields(errors, |field, errors| {
@@ -107,8 +107,7 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static Kind> {
     known
 }
 
-/// Sampled edges by default; a capture timer needs a clock of at least two ticks in a control
-/// period.
+/// Sampled edges by default; a capture timer needs at least two ticks per control period.
 fn read_capture(
     reader: &Reader,
     inverter: &Inverter,
@@ -135,7 +134,7 @@ fn read_capture(
     };
     let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
     let ticks = clock.si * t_s;
-    // Whole but for the rounding of decimal units is whole.
+    // Decimal units may round a whole number.
     let is_whole = (ticks - ticks.round()).abs() <= 1e-6 * ticks.max(1.0);
     let ticks = if is_whole { ticks.round() } else { ticks };
     if (2.0..=65535.0).contains(&ticks) {

@@ -1,4 +1,4 @@
-//! Trip level and largest set-point against each other, the converters and the controller.
+//! Trip level and largest set-point against each other, the ADC and the controller.
 
 use super::inverter::{Adc, Inverter, usual_tolerance};
 use super::motor::Motor;
@@ -8,15 +8,15 @@ use crate::diagnostics::{Collector, engineering};
 use crate::spec::ControllerSpec;
 use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
 
-/// Room above what whole vectors reach where that is more than twice the largest set-point.
+/// Margin of the default trip level above the currents that whole vectors reach.
 const ROOM: f64 = 1.05;
 
-/// Least counts of the largest set-point: half a count of error is 5 % of it then.
+/// Minimum of the largest set-point, ADC counts: half a count is 5 % of it.
 const LEAST_COUNTS: f64 = 10.0;
 
-/// The levels as far as they are known without the controller's options.
+/// The levels that are known without the controller's options, ampere.
 struct Levels {
-    /// The topmost count is the last one that the converter can show.
+    /// Greatest current that the ADC can show.
     shown: f64,
     max: f64,
 }
@@ -54,8 +54,7 @@ pub(super) fn finish(
     Some((whole_counts(trip, adc.gain, f64::floor), levels.max))
 }
 
-/// The largest set-point, and what the converters show, against the rating and the trip level where
-/// that is written.
+/// Checks the largest set-point and the ADC range against the rating and a stated trip level.
 fn read(
     reader: &Reader,
     inverter: &Inverter,
@@ -99,9 +98,8 @@ fn read(
     Some(Levels { shown, max })
 }
 
-/// Twice the largest set-point, or what whole vectors need where that is more; as far as it is
-/// below what a converter at an end of its range says with the offsets that are usual, but not
-/// below what the drive reaches in health.
+/// Twice the largest set-point, or more where whole vectors need it. At most what a saturated ADC
+/// shows with the usual offset tolerance, but not below what the drive reaches without a fault.
 fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     let (peak, reach) = (drive.peak(), drive.reach());
     let vectors = if reach > peak {
@@ -115,8 +113,7 @@ fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     whole_counts(trip, adc.gain, f64::ceil).min(shown)
 }
 
-/// A level of so many ADC counts: one that is whole but for its rounding to a floating-point number
-/// is that one.
+/// A level rounded to whole ADC counts; binary rounding of a whole number is ignored.
 fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
     let counts = current / gain;
     let whole = if (counts - counts.round()).abs() <= 1e-6 {
@@ -127,8 +124,8 @@ fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
     whole * gain
 }
 
-/// Accepted: a trip level that neither the reference nor the vectors of a drive in health reach. A
-/// band or a vector that takes the current by more than the `rated` one is refused as such.
+/// Accepted: a trip level above what reference and vectors reach without a fault. A band or a
+/// vector that exceeds the `rated` current is an error of its own.
 fn check_health(reader: &Reader, drive: &Drive, rated: f64, trip: f64, errors: &mut Collector) {
     let (peak, reach) = (drive.peak(), drive.reach());
     let max_part = reader.part("max_current", || engineering(drive.max_current, "A"));

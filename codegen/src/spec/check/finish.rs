@@ -1,4 +1,4 @@
-//! The inverter of a specification, out of what was read of it.
+//! The checked inverter: defaults and checks that depend on motor and controller.
 
 use super::inverter::Inverter;
 use super::motor::Motor;
@@ -8,11 +8,11 @@ use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
 
-/// Pre-charge time where none is given, second.
+/// Default pre-charge time, second.
 const PRECHARGE: f64 = 1e-3;
 
-/// Fills in the defaults that depend on motor and controller and checks what follows from them.
-/// None if something is missing or in error.
+/// Fills in the defaults that depend on motor and controller, and checks them. None if something
+/// is missing or in error.
 pub(super) fn inverter(
     reader: &Reader,
     inverter: &Inverter,

@@ -1,4 +1,4 @@
-//! The inverter's data: bus, timer, converters, currents and speeds.
+//! The inverter's data: bus, timer, ADCs, currents and speeds.
 
 use super::reader::{Given, Reader};
 use crate::diagnostics::catalogue::{self, Part};
@@ -7,14 +7,14 @@ use crate::spec::BusSource;
 use crate::spec::model::period_within;
 use crate::spec::units::Dimension;
 
-/// The inverter as far as it could be read.
+/// The inverter data that could be read.
 pub(super) struct Inverter<'a> {
     pub v_bus: Option<Given<'a>>,
     pub bus: Option<BusSource>,
     /// `f_pwm` or `sampling_time` as written.
     pub period: Option<Given<'a>>,
-    /// The control period: that of the timer's whole counts where its clock is given, else as
-    /// written, second.
+    /// Control period, second: of whole timer counts where the timer's clock is given, else as
+    /// written.
     pub t_s: Option<f64>,
     pub timer_period: Option<u32>,
     pub dead_time: Option<Given<'a>>,
@@ -31,7 +31,7 @@ pub(super) struct Inverter<'a> {
     pub precharge: Option<Given<'a>>,
 }
 
-/// The phase-current converters.
+/// The phase-current ADC.
 #[derive(Clone, Debug)]
 pub(super) struct Adc {
     pub bits: u32,
@@ -39,20 +39,19 @@ pub(super) struct Adc {
     pub gain: f64,
     pub inverted: bool,
     pub offset: u32,
-    /// Greatest distance of a calibrated offset from `offset`, counts.
+    /// Greatest deviation of a calibrated offset from `offset`, counts.
     pub offset_tolerance: u32,
-    /// Greatest current that both signs can show, ampere, a count of slack included.
+    /// Greatest current of either sign, ampere, with one count of margin.
     pub reach: f64,
     /// `adc_range` or `adc_gain` as written.
     pub part: Part,
 }
 
-/// Tolerance of a calibrated offset where none is given, share of the range to either side.
+/// Default tolerance of a calibrated offset over the range of one sign.
 const OFFSET_TOLERANCE: f64 = 0.05;
 
-/// Coarsest count of a measured bus over its nominal voltage. The controller's voltages are shares
-/// of the bus that is measured: half a count off is then less than the 1 % of a voltage divider's
-/// resistors.
+/// Greatest count of a measured bus over its nominal voltage. Output voltages are scaled by the
+/// measured bus: half a count is then less than the 1 % of a voltage divider's resistors.
 const COARSEST_BUS: f64 = 0.01;
 
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<'a> {
@@ -86,7 +85,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
     }
 }
 
-/// Fixed or measured bus; a measured one needs its converter and takes limits.
+/// Fixed or measured bus; a measured one needs its ADC and takes limits.
 fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> Option<BusSource> {
     const NEEDED: [(&str, &str); 2] = [("bus_adc_bits", "12"), ("bus_adc_range", "80 V")];
     let adc_bits = reader.integer(errors, "bus_adc_bits");
@@ -167,9 +166,9 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
     })
 }
 
-/// Counts of the centre-aligned timer, the nearest whole number to clock/(2 f_pwm), and the control
-/// period that they make, 2 counts/clock: from 100 counts on within 0.5 % of the one that was asked
-/// for. Where the counts are given in place of the clock, the period is the one that was asked for.
+/// Counts of the centre-aligned timer, clock/(2 f_pwm) rounded, and its control period,
+/// 2 counts/clock: within 0.5 % of the stated one from 100 counts on. Where counts are given in
+/// place of the clock, the period is the stated one.
 fn read_timer(
     reader: &Reader,
     period: Option<&Given>,
@@ -188,7 +187,7 @@ fn read_timer(
         return (given, Some(asked));
     };
     let counts = clock.si * asked / 2.0;
-    // 100 but for the rounding of decimal units.
+    // Decimal units may round the limits.
     if !(100.0 - 1e-6..=65535.0 + 1e-6).contains(&counts) {
         errors.push(catalogue::timer_period(
             &clock.part,
@@ -238,13 +237,12 @@ fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
     })
 }
 
-/// Greatest distance of a calibrated offset where none is given, counts of a converter of `full`
-/// counts.
+/// Default offset tolerance of an ADC of `full` counts, counts.
 pub(super) fn usual_tolerance(full: u32) -> f64 {
     (OFFSET_TOLERANCE * f64::from(full / 2)).round()
 }
 
-/// Whole counts; by default 5 % of the range to either side.
+/// Offset tolerance in whole counts; by default 5 % of the range of one sign.
 fn read_offset_tolerance(
     reader: &Reader,
     gain: f64,
@@ -294,8 +292,7 @@ fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
 }
 
 impl Inverter<'_> {
-    /// The longest period of whole timer counts that is not longer than `limit`; `limit` where the
-    /// timer is not known.
+    /// The longest period of whole timer counts within `limit`; `limit` where the timer is unknown.
     pub fn period_within(&self, limit: f64) -> f64 {
         match (self.t_s, self.timer_period) {
             (Some(t_s), Some(timer_period)) => period_within(limit, t_s, timer_period),

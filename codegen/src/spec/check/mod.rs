@@ -1,7 +1,7 @@
-//! The first barrier: from what was written to a [`Spec`] in SI units, or all errors at once.
+//! The first barrier: from the syntax tree to a [`Spec`] in SI units, or all errors at once.
 //!
-//! Single fields first (`reader`), then motor, inverter and controller each by itself, then what
-//! must fit together (`relations`, `consistency`). A value in error never causes a second error.
+//! Single fields first (`reader`), then motor, inverter and controller, then their relations
+//! (`relations`, `consistency`). A value in error never causes a second error.
 
 mod consistency;
 mod controller;
@@ -23,7 +23,7 @@ use reader::Reader;
 /// Checks a specification and fills in every default.
 ///
 /// # Errors
-/// Everything that is wrong with it, at the places where it was written.
+/// All errors, at the places where they were written.
 pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let mut errors = Collector::new();
     errors.extend(ast.malformed.iter().cloned());
@@ -65,7 +65,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
             ))
         }
         _ => Err(errors.finish().unwrap_or_else(|| {
-            catalogue::internal(fallback, "a specification without error is incomplete").into()
+            catalogue::internal(fallback, "a specification without errors is incomplete").into()
         })),
     }
 }

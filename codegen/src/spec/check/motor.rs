@@ -14,7 +14,7 @@ pub(super) enum Winding {
     Delta,
 }
 
-/// The motor as far as it could be read.
+/// The motor data that could be read.
 pub(super) struct Motor<'a> {
     pub description: String,
     pub pole_pairs: Option<u32>,
@@ -252,7 +252,7 @@ fn read_back_emf<'a>(
     None
 }
 
-/// Whether the constant is the line-to-line peak; the phase of a delta lies between two lines.
+/// Whether the constant is the line-to-line peak, as the phase value of a delta is.
 pub(super) fn is_line_to_line(given: &Given, winding: Winding) -> bool {
     match given.dimension {
         Some(Dimension::SpeedConstant) => true,
@@ -335,7 +335,7 @@ fn read_torque_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Opti
     }
 }
 
-/// Each of 1 to 6 once, neighbours (and last and first) one bit apart.
+/// Each code from 1 to 6 once, neighbours one bit apart, last and first included.
 fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
     let (list, part) = reader.integers(errors, "hall_codes")?;
     let codes: Vec<u8> = list

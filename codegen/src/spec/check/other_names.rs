@@ -1,5 +1,5 @@
-//! Names of data sheets for what a field takes in its own way. Spelling says nothing about them:
-//! a speed constant is nearer to `torque_constant` by its letters, and its reciprocal by its sense.
+//! Other names for fields, common in data sheets. Spelling cannot find them: `speed_constant` is
+//! spelt like `torque_constant`, but means the reciprocal of `back_emf`.
 
 use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
@@ -30,7 +30,7 @@ const EMF_CONSTANT: [&str; 7] = [
     "k_e",
 ];
 
-/// The field that takes what the name stands for.
+/// The field that a name stands for.
 pub(super) fn meant(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
     let is_in = |names: &[&str]| names.contains(&name.as_str());
@@ -43,7 +43,7 @@ pub(super) fn meant(name: &str) -> Option<&'static str> {
     }
 }
 
-/// What to write in the field `meant` for the value of another one, a clause.
+/// What to write in the field `meant` in place of `field`, a clause.
 pub(super) fn remedy(meant: &str, field: &Field) -> String {
     let number = match &field.value {
         Value::Number(number) => Some(number),

@@ -1,5 +1,4 @@
-//! Typed access to the fields of a section: reports what is wrong with a single field, and hands
-//! out values in SI units.
+//! Typed access to the fields of a section: checks single fields, and returns values in SI units.
 
 use super::other_names;
 use crate::diagnostics::catalogue::{self, Part};
@@ -16,7 +15,7 @@ pub(crate) struct Reader<'a> {
     name: &'static str,
     section: &'a Section,
     rules: Vec<&'static Rule>,
-    /// Where to report what is missing.
+    /// Where missing fields are reported.
     at: Location,
 }
 
@@ -36,7 +35,7 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The first of two rules of one name holds. `fallback`: where to report a missing section.
+    /// Of two rules with one name the first applies. `fallback`: where to report a missing section.
     pub fn new(
         name: &'static str,
         section: &'a Section,
@@ -59,7 +58,7 @@ impl<'a> Reader<'a> {
 
     /// Reports a missing section, unknown and repeated fields, and unreadable values.
     ///
-    /// `elsewhere` reports a field that is known to others; it returns whether it did.
+    /// `elsewhere` may report a field that has no rule; it returns whether it did.
     pub fn check_fields(
         &self,
         errors: &mut Collector,
@@ -99,7 +98,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports each field that is missing, if the section is there at all.
+    /// Reports missing fields of a section that exists.
     pub fn require(&self, errors: &mut Collector, names: &[&str]) {
         for name in names {
             if self.may_lack(name) {
@@ -139,7 +138,7 @@ impl<'a> Reader<'a> {
             && !self.is_misspelt(name)
     }
 
-    /// Whether an unknown field was probably meant to be this one: it is reported by itself.
+    /// Whether an unknown field, which is reported by itself, was probably meant to be this one.
     fn is_misspelt(&self, name: &str) -> bool {
         let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
         self.section.fields.iter().any(|field| {
@@ -150,7 +149,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// What to write for a field of this section that stands under another name.
+    /// What to write for a field of this section that is given under another name.
     fn remedy(&self, field: &Field) -> Option<String> {
         let meant = other_names::meant(&field.name)?;
         let is_here = self.rules.iter().any(|rule| rule.name == meant);
@@ -162,7 +161,7 @@ impl<'a> Reader<'a> {
         self.section.field(name)
     }
 
-    /// How a field takes part in a message: as written, or as the default says.
+    /// The field for messages: as written, or with its default.
     pub fn part(&self, name: &'static str, default: impl FnOnce() -> String) -> Part {
         match self.field(name) {
             Some(field) => Part {
@@ -264,7 +263,7 @@ impl<'a> Reader<'a> {
         refuse_basis(errors, &given, "remove the word").then_some(given)
     }
 
-    /// A time or a number of control periods (bare or with its unit), not yet limited.
+    /// A time or a number of control periods (bare or with its unit), without limits.
     pub fn timespan(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
         let (given, _) = self.number(errors, name)?;
         let (at, text) = (&given.part.location, &given.part.given);
@@ -346,7 +345,7 @@ impl<'a> Reader<'a> {
         self.choice(errors, name, &[])
     }
 
-    /// A word of the option's table. `planned`: words that are known, and that this version does not have.
+    /// A word of the option's table. `planned`: words that are known but not available.
     pub fn choice<T: Words>(
         &self,
         errors: &mut Collector,
@@ -389,7 +388,7 @@ impl<'a> Reader<'a> {
         Some(rule.preset)
     }
 
-    /// The default of a number, in SI units; NaN where the table has none, which a test rules out.
+    /// The default of a number, in SI units; NaN where the table has none (excluded by a test).
     pub fn preset_number(&self, name: &'static str) -> f64 {
         let Some(Preset::Value(text)) = self.preset(name) else {
             return f64::NAN;
@@ -494,7 +493,7 @@ fn refuse_unit(errors: &mut Collector, given: &Given) -> bool {
     plain
 }
 
-/// Reports a number that is none of these; returns whether it is one.
+/// Reports a number that is not in the list; returns whether it is.
 fn is_one_of(errors: &mut Collector, given: &Given, numbers: &[u32]) -> bool {
     let found = numbers.iter().any(|number| f64::from(*number) == given.si);
     if !found {
@@ -518,11 +517,11 @@ fn within(
     [low, high]: [f64; 2],
     [low_text, high_text]: [String; 2],
 ) -> bool {
-    // A decimal limit and the same decimal value may differ in the last bit.
+    // A decimal limit and the same value in another unit may differ in the last bit.
     let slack = 1e-9;
     let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
     if given.si < 0.0 || (given.si == 0.0 && low > 0.0) {
-        // Limits that are only set to refuse zero are no help.
+        // Limits that only exclude zero are not shown.
         let bounded = high < f64::MAX;
         let error = if low > 0.0 && bounded {
             catalogue::not_positive(at, name, text, &low_text, &high_text)
@@ -536,7 +535,7 @@ fn within(
     }
     let inside = given.si >= low * (1.0 - slack) && given.si <= high * (1.0 + slack);
     if !inside {
-        // Without a unit there is no slip of the unit.
+        // Only a number with a unit can have a wrong one.
         let error = match given.dimension {
             Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
             None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
@@ -546,7 +545,7 @@ fn within(
     inside
 }
 
-/// A limit as it is shown: in the unit that users of the field think in.
+/// A limit for messages, in the field's usual unit.
 pub(crate) fn quantity_text(si: f64, dimension: Dimension) -> String {
     match dimension {
         Dimension::Resistance => engineering(si, "ohm"),

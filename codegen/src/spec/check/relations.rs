@@ -8,13 +8,13 @@ use crate::diagnostics::catalogue::{self, Part};
 use crate::spec::HallCapture;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Greatest R Ts/L: beyond it the current decays within a period and prediction is pointless.
+/// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
 const GREATEST_DECAY: f64 = 0.5;
 
-/// Greatest ticks of the Hall timer in 60 electrical degrees; it counts in 16 bits.
+/// Most ticks of the 16-bit Hall timer in 60 electrical degrees.
 const GREATEST_AGE: f64 = 65_000.0;
 
-/// Least control periods in an electrical turn, one per sector.
+/// Fewest control periods per electrical turn: one per sector.
 const LEAST_PERIODS: f64 = 6.0;
 
 pub(super) fn check(
@@ -27,7 +27,7 @@ pub(super) fn check(
     check_bus(motor_reader, motor, inverter, errors);
 }
 
-/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
+/// Accepted: R Ts/L <= 0.5.
 fn check_period(
     reader: &Reader,
     motor: &Motor,
@@ -51,9 +51,8 @@ fn check_period(
     Some(())
 }
 
-/// Accepted: a bus that covers the line-to-line EMF at rated speed and what rated current drops in
-/// two phases. Refused: a rating that no steady state of this bus reaches. Commutations need more
-/// than that, so an accepted rating is not promised to be held.
+/// Accepted: a bus of at least the line-to-line EMF at rated speed plus the resistive drop of rated
+/// current in two phases. Commutations need more, so an accepted rating may still not be reached.
 fn check_bus(
     reader: &Reader,
     motor: &Motor,
@@ -87,7 +86,7 @@ fn check_bus(
     Some(())
 }
 
-/// Least, rated and greatest speed in this order, each of them countable.
+/// Minimum, rated and maximum speed in ascending order, within the Hall timer and the period.
 pub(super) fn check_speeds(
     inverter: &Inverter,
     motor: &Motor,

@@ -9,24 +9,24 @@ use crate::spec::units::Dimension as D;
 use crate::spec::words::words;
 
 words! {
-    /// Where the EMF comes from.
+    /// Source of the EMF.
     pub enum EmfSource {
-        "estimated" = Estimated: "from the last period's voltage and currents",
+        "estimated" = Estimated: "from the voltage and currents of the last period",
         "model" = Model: "from the motor's EMF shape at the Hall angle and speed",
-        "held" = Held: "that of the last period, folded into what past samples and commands add to the voltage: least instructions, more ripple",
+        "held" = Held: "taken as unchanged since the last period: fewest instructions, more ripple",
     }
 }
 
 words! {
-    /// What the currents shall follow.
+    /// Current reference.
     pub enum Reference {
-        "quasi_square" = QuasiSquare: "the sector's corner: two phases carry the current",
-        "proportional" = Proportional: "parallel to the EMF, in three phases: constant torque at least copper loss",
+        "quasi_square" = QuasiSquare: "two phases carry the current",
+        "proportional" = Proportional: "in three phases, proportional to their EMFs: constant torque at minimum copper loss",
     }
 }
 
 words! {
-    /// How the plant is discretised.
+    /// Discretisation of the plant.
     pub enum Discretisation {
         "exact" = Exact: "a = exp(-R Ts/L), b = (1 - a)/R",
         "euler" = Euler: "the paper's (7): a = 1 - R Ts/L, b = Ts/L",
@@ -34,28 +34,28 @@ words! {
 }
 
 words! {
-    /// What gives way where the voltage is beyond the hexagon.
+    /// Limiting of voltages outside the hexagon.
     pub enum LimitRule {
-        "keep_angle" = KeepAngle: "the voltage is scaled: shortest code; past the speed limit 10 to 30 % less torque of a quasi-square reference than with the others",
+        "keep_angle" = KeepAngle: "the voltage is scaled: shortest code; above the speed limit 10 to 30 % less torque with a quasi-square reference than with the others",
         "nearest" = Nearest: "nearest point of the hexagon",
-        "torque_priority" = TorquePriority: "what makes torque is kept: highest limit",
+        "torque_priority" = TorquePriority: "the torque-producing component is kept: highest speed limit",
     }
 }
 
 words! {
-    /// How Hall edges are timed.
+    /// Timing of Hall edges.
     pub(crate) enum HallEdges {
-        "sampled" = Sampled: "by the samples, in whole periods",
+        "sampled" = Sampled: "at the sampling instants",
         "timer" = Timer: "by a capture timer; needs `hall_timer_clock`",
     }
 }
 
 words! {
-    /// The core for which the word length is chosen.
+    /// Core for which the word length is chosen.
     pub enum Target {
-        "portable" = Portable: "any",
-        "cortex_m4" = CortexM4: "the upper half of a product of two 32-bit words is one instruction, as on RV32IM",
-        "cortex_m0" = CortexM0: "such a product is a call: words of 16 bits where they suffice; the type's documentation says what that costs in accuracy",
+        "portable" = Portable: "any core",
+        "cortex_m4" = CortexM4: "one instruction for the upper half of a 32-bit product, as on RV32IM",
+        "cortex_m0" = CortexM0: "no such instruction: words of 16 bits where they suffice; the type's documentation states the loss of accuracy",
     }
 }
 
@@ -73,7 +73,7 @@ pub struct SpeedLoop {
 pub struct LoopOptions {
     /// EMF source.
     pub emf: EmfSource,
-    /// Share that the EMF estimate takes over of what is seen in a period, above 0 to 1 (1: all, no filter).
+    /// Filter coefficient of the EMF estimate, above 0 to 1 (1: no filter).
     pub emf_filter: f64,
     /// Current reference.
     pub reference: Reference,
@@ -85,13 +85,13 @@ pub struct LoopOptions {
     pub discretisation: Discretisation,
     /// Word length of the control arithmetic, 16 or 32 bits.
     pub word: u32,
-    /// Whether words of 16 bits are the target's choice, in place of which 32 bits stand where 16 do not suffice.
+    /// Whether the target chose words of 16 bits; 32 bits replace them where they do not suffice.
     pub word_by_target: bool,
     /// Outgoing current below which a commutation ends, ampere.
     pub commutation_threshold: f64,
-    /// Periods after which a commutation is taken as ended, 1 to 255.
+    /// Commutation time-out, 1 to 255 periods.
     pub commutation_timeout: u32,
-    /// Whether a regulator of the speed asks for the current.
+    /// Speed loop, if any.
     pub speed: Option<SpeedLoop>,
 }
 
@@ -103,68 +103,68 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<EmfSource>("emf", "estimated")
             .preset("estimated")
-            .about("Where the EMF comes from; `held` with `modulation: three_phase` of `pdcc`, and of `fcs-mpc` and `phcc` where no off leg is `physical`"),
+            .about("Source of the EMF; `held` only with `modulation: three_phase` of `pdcc`, and with `fcs-mpc` and `phcc` unless `off_leg: physical` applies"),
         |options| Some(word(options.emf)),
     ),
     Row::of(
         rule::plain("emf_filter", 1e-3, 1.0, "0.5")
-            // Stable from 60 % of the stated inductance up, and quick enough for what the motor's shape does not foresee.
+            // Stable from 60 % of the stated inductance up, and fast enough for real EMF shapes.
             .preset("0.25")
-            .about("Share that the EMF estimate takes over of what one period shows (1: all, no filter); only with `emf: estimated`"),
+            .about("Filter coefficient of the EMF estimate (1: no filter); only with `emf: estimated`"),
         |options| Some(number(options.emf_filter)),
     ),
     Row::of(
         rule::choice::<Reference>("reference", "quasi_square")
             .preset("quasi_square")
-            .about("What the currents follow; `proportional` not with `modulation: pair`"),
+            .about("Current reference; `proportional` not with `modulation: pair`"),
         |options| Some(word(options.reference)),
     ),
     Row::of(
         rule::choice::<bool>("speed_loop", "on")
             .preset("off")
-            .about("Whether a PI regulator of the speed from Hall timing asks for the current: `set_speed` sets rpm, `set_current` and `set_torque` the greatest current that it asks for (`max_current` until then); needs `inertia` of rotor and load"),
+            .about("PI speed controller on the speed from Hall timing: `set_speed` sets rpm, `set_current` and `set_torque` limit its current (`max_current` by default); needs `inertia` of rotor and load"),
         |_| None,
     ),
     Row::of(
         rule::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz")
-            .by_default("a fiftieth of the electrical turns per second at rated speed")
-            .about("Bandwidth of the speed loop, at most an eighth of the electrical turns per second at rated speed: the speed is a mean over a turn; only with `speed_loop: on`"),
+            .by_default("1/50 of the electrical frequency at rated speed")
+            .about("Bandwidth of the speed loop, at most 1/8 of the electrical frequency at rated speed; only with `speed_loop: on`"),
         |options| Some(number(options.speed?.bandwidth)),
     ),
     Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
             .preset("0")
-            .about("Phase advance, control periods of electrical angle; not with `proportional` where no pair of phases is switched"),
+            .about("Phase advance, control periods; not with `reference: proportional` where no leg is turned off"),
         |options| Some(number(options.advance)),
     ),
     Row::of(
         rule::integer("delay", 0, 1, "1")
             .preset("1")
-            .about("Periods between a sample and the effect of the command that answers it"),
+            .about("Periods between a sample and the effect of its command"),
         |options| Some(number(options.delay)),
     ),
     Row::of(
         rule::choice::<Discretisation>("discretisation", "exact")
             .preset("exact")
-            .about("How the plant is discretised"),
+            .about("Discretisation of the plant"),
         |options| Some(word(options.discretisation)),
     ),
     Row::of(
         rule::choice::<Target>("target", "cortex_m0")
             .preset("portable")
-            .about("The core for which the word length is chosen"),
+            .about("Core for which the word length is chosen"),
         |_| None,
     ),
     Row::of(
         rule::one_of("word", &[16, 32], "32")
-            .by_default("32; 16 as `target` chooses")
-            .about("Bits of the words of control arithmetic"),
+            .by_default("32; with `target: cortex_m0` 16 where they suffice")
+            .about("Word length of the control arithmetic, bits"),
         |options| Some(number(options.word)),
     ),
     Row::of(
         rule::choice::<HallEdges>("hall_capture", "sampled")
             .preset("sampled")
-            .about("How Hall edges are timed"),
+            .about("Timing of Hall edges"),
         |_| None,
     ),
 ];
@@ -174,13 +174,13 @@ pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
     Row::of(
         rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
             .by_default("0.5 A, at most a quarter of `rated_current`")
-            .about("Outgoing current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
+            .about("Outgoing phase current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
         |options| Some(number(options.commutation_threshold)),
     ),
     Row::of(
         rule::quantity("commutation_timeout", &[D::Periods, D::Time], 1.0, 255.0, "8 periods")
             .by_default("4 L I/(v_bus Ts), 4 to 255 periods")
-            .about("Periods, or time, after which a commutation is taken as ended; only where a leg is turned off"),
+            .about("Commutation time-out, periods or time; only where a leg is turned off"),
         |options| Some(number(options.commutation_timeout)),
     ),
 ];
@@ -189,16 +189,20 @@ pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
 pub(crate) const fn saturation(preset: &'static str) -> Rule {
     rule::choice::<LimitRule>("saturation", "torque_priority")
         .preset(preset)
-        .about("What gives way where the voltage is beyond the hexagon")
+        .about("Limiting of voltages outside the hexagon")
 }
 
 /// The rule of the compensation of the dead time.
-pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>("dead_time_compensation", "on")
-    .preset("off")
-    .about("Whether compare values are shifted by what `dead_time` costs, by the sign of the current; needs `dead_time`");
+pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
+    "dead_time_compensation",
+    "on",
+)
+.preset("off")
+.about(
+    "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
+);
 
-/// What the defaults and limits of the options need to know of the drive; none where it is itself
-/// in error.
+/// Values of the drive for defaults and limits of the options; none where they are in error.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     /// Control period, second.
@@ -221,10 +225,10 @@ pub(crate) struct Surroundings {
     pub rated_frequency: Option<f64>,
 }
 
-/// The default threshold where the motor is not too small for it, ampere.
+/// Default commutation threshold, ampere; less for small motors.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
 
-/// Refuses the option `name`, if it is stated, beside another setting.
+/// Refuses the option `name`, if it is stated, because of another setting.
 pub(crate) fn refuse(
     reader: &Reader,
     name: &str,
@@ -246,7 +250,7 @@ pub(crate) fn refuse(
     }
 }
 
-/// Refuses `emf: held` where a law uses more of the EMF than its sum over the delay.
+/// Refuses `emf: held` where a law needs the EMF by itself.
 pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Collector) {
     if common.emf == EmfSource::Held
         && let Some(field) = reader.field("emf")
@@ -260,7 +264,7 @@ pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Co
     }
 }
 
-/// Reads and checks the shared options; `advance_idle` says that an advance has no effect under
+/// Reads and checks the shared options. `advance_idle`: an advance has no effect with
 /// `reference: proportional`. None only together with an error.
 pub(crate) fn read_common(
     reader: &Reader,
@@ -290,7 +294,7 @@ pub(crate) fn read_common(
             &advance.part.given,
             reader.field("reference").map_or(reader.location(), |field| &field.location),
             "reference: proportional",
-            "advance moves sectors and commutations, and where no leg is turned off this reference has neither",
+            "advance shifts sectors and commutations, which this reference does not use unless a leg is turned off",
         ));
     }
     Some(LoopOptions {
@@ -308,7 +312,7 @@ pub(crate) fn read_common(
     })
 }
 
-/// The share of an estimate; 1 where none is made, and the option has no effect.
+/// The filter coefficient of the estimate; 1 without an estimate, where the option has no effect.
 fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
     let filter = reader.plain(errors, "emf_filter");
     let (other, reason) = match emf {
@@ -317,11 +321,11 @@ fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
         }
         EmfSource::Model => (
             "emf: model",
-            "it smooths the estimate, and the model needs none",
+            "the filter smooths the estimate, which the model does not use",
         ),
         EmfSource::Held => (
             "emf: held",
-            "it smooths the estimate, and what the last period showed is held as it is",
+            "the filter smooths the estimate, and a held EMF is not filtered",
         ),
     };
     if let Some(filter) = &filter {
@@ -339,8 +343,8 @@ fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
     1.0
 }
 
-/// The speed is a mean over an electrical turn: by default a loop of a fiftieth of the turns per second at
-/// rated speed, at most of an eighth.
+/// The speed is averaged over an electrical turn, which limits the bandwidth to 1/8 of the
+/// electrical frequency at rated speed; 1/50 by default.
 fn read_speed_loop(
     reader: &Reader,
     drive: &Surroundings,
@@ -350,7 +354,7 @@ fn read_speed_loop(
     let bandwidth = reader.plain_quantity(errors, "speed_bandwidth");
     if !is_on {
         if let Some(bandwidth) = bandwidth {
-            let why = "there is no speed to regulate";
+            let why = "no speed controller is generated";
             errors.push(catalogue::option_without_effect(
                 &bandwidth.part.location,
                 "speed_bandwidth",
@@ -374,7 +378,7 @@ fn read_speed_loop(
             &bandwidth.part.given,
             "10 mHz",
             &format!(
-                "{}, an eighth of the electrical turns per second at rated speed",
+                "{}, 1/8 of the electrical frequency at rated speed",
                 engineering(at_most(frequency / 8.0), "Hz")
             ),
         ));
@@ -397,17 +401,15 @@ fn read_speed_loop(
     })
 }
 
-/// Refuses the options of commutations where the controller does not know of any; `other` is the setting that
-/// it follows from.
+/// Refuses the commutation options where no leg is turned off, because of `setting`.
 pub(crate) fn refuse_commutation(reader: &Reader, setting: [&str; 2], errors: &mut Collector) {
-    let why = "where no leg is turned off, no commutation has to end";
+    let why = "no leg is turned off, so no commutation is timed";
     for name in ["commutation_threshold", "commutation_timeout"] {
         refuse(reader, name, setting, why, errors);
     }
 }
 
-/// The word length as it is given, else as the target prefers it; whether it is the target's choice. A core without long
-/// products takes words of 16 bits.
+/// Word length, and whether the target chose it. A core without long products gets 16 bits.
 fn read_word_length(reader: &Reader, errors: &mut Collector) -> (u32, bool) {
     let target: Target = reader.choice_or_preset(errors, "target", &[]);
     let preferred = (target == Target::CortexM0).then_some(16);
@@ -449,7 +451,7 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
         Some(D::Time) => given.si / drive.t_s?,
         _ => given.si,
     };
-    // A time that is a whole number of periods but for its rounding is that number.
+    // Decimal units may round a whole number of periods.
     let whole = (periods - 1e-6).ceil();
     if !(1.0..=255.0).contains(&whole) {
         errors.push(catalogue::out_of_limits(
@@ -464,7 +466,7 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
     Some(whole as u32)
 }
 
-/// Whether compare values are shifted against the dead time, which must be stated for it.
+/// Dead-time compensation, which needs a stated dead time.
 pub(crate) fn read_dead_time_compensation(
     reader: &Reader,
     drive: &Surroundings,

@@ -14,9 +14,9 @@ use crate::spec::units::Dimension as D;
 use crate::spec::words::words;
 
 words! {
-    /// The vectors among which the controller chooses.
+    /// Candidate vectors.
     pub enum Candidates {
-        "table2" = Table2: "Table 2's: V0 to V6 in commutation, else V0 and V12 to V61",
+        "table2" = Table2: "as in Table 2: V0 to V6 in commutation, else V0 and V12 to V61",
         "three_phase" = ThreePhase: "V0 to V6 always",
         "all" = All: "V0 to V6 and V12 to V61 always",
     }
@@ -31,11 +31,12 @@ pub struct FcsMpcSpec {
     pub off_leg: OffLegModel,
     /// Whether a second vector shares the period with the chosen one.
     pub modulated: bool,
-    /// Periods that the cost looks ahead, 1 or 2. With 2 no leg floats, nothing is modulated and nothing weighs.
+    /// Prediction horizon, 1 or 2 periods. With 2 no leg floats, and there is no modulation and no
+    /// weight.
     pub horizon: u32,
-    /// Error of current, ampere, that a leg's change of state weighs as much as; 0: nothing. Not with `modulated`.
+    /// Cost of a leg's change of state, as a current error, ampere; 0: none. Not with `modulated`.
     pub switching_weight: f64,
-    /// Weight of the square of the error's component along the sector's mean EMF; 0: nothing. Not with `modulated`.
+    /// Weight of the squared error along the sector's mean EMF; 0: none. Not with `modulated`.
     pub torque_weight: f64,
     /// Options that all controllers share.
     pub common: LoopOptions,
@@ -47,12 +48,12 @@ impl FcsMpcSpec {
         self.candidates != Candidates::ThreePhase
     }
 
-    /// Whether the cost has more than the current's error.
+    /// Whether the cost has weights beside the current error.
     pub fn weighted(&self) -> bool {
         self.switching_weight > 0.0 || self.torque_weight > 0.0
     }
 
-    /// Whether a command may turn a leg off whose real voltage the prediction follows.
+    /// Whether the prediction models the terminal voltage of a leg that is turned off.
     pub fn floating(&self) -> bool {
         self.pairs() && self.off_leg == OffLegModel::Physical
     }
@@ -61,37 +62,37 @@ impl FcsMpcSpec {
 impl Options for FcsMpcSpec {
     const KIND: &'static str = "fcs-mpc";
     const TITLE: &'static str = "finite-control-set model predictive control";
-    const NOTES: &'static str = "Refused where one vector moves the current by more than the rated current in a period, unless modulated.";
+    const NOTES: &'static str = "Refused where one vector changes the current by more than the rated current per period, unless modulated.";
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::choice::<Candidates>("candidates", "table2")
                 .by_default("`table2`; with `horizon: 2` `three_phase`")
-                .about("The vectors among which the controller chooses"),
+                .about("Candidate vectors"),
             |options| Some(word(options.candidates)),
         ),
         Row::of(OFF_LEG, |options| Some(word(options.off_leg))),
         Row::of(
             rule::choice::<bool>("modulated", "off")
                 .preset("off")
-                .about("Whether the vector shares its period with the best other one, each for the time of the least predicted error. Three compare values and one state per leg allow what differs in one direction: V0 and any of V1 to V6, two neighbours of these, a pair vector and its own zero"),
+                .about("Whether two vectors share a period, with the duty of the least predicted error. Possible pairs, by three compare values and one state per leg: V0 and any of V1 to V6, two neighbours of these, a pair vector and its own zero"),
             |options| Some(word(options.modulated)),
         ),
         Row::of(
             rule::integer("horizon", 1, 2, "2")
                 .preset("1")
-                .about("Periods that the cost looks ahead: of all sequences of two vectors (49 of `three_phase`, 169 of `all` with `off_leg: nominal`) the best one's first vector is applied; with neither `modulated: on` nor weights"),
+                .about("Prediction horizon, periods. With 2 all sequences of two vectors are compared (49 of `three_phase`, 169 of `all` with `off_leg: nominal`) and the first vector of the best one is applied; not with `modulated: on` or weights"),
             |options| (options.horizon > 1).then(|| number(options.horizon)),
         ),
         Row::of(
             rule::quantity("switching_weight", &[D::Current], 1e-4, 1e4, "0.5 A")
                 .by_default("none")
-                .about("Error of current that a leg's change of state weighs as much as in the cost: fewer changes for more ripple; below what one vector moves the current by in a period; not with `modulated: on`"),
+                .about("Cost of one leg's change of state, as a current error: fewer changes, more ripple; below the change of current by one vector per period; not with `modulated: on`"),
             |options| if_any(options.switching_weight),
         ),
         Row::of(
             rule::plain("torque_weight", 1e-3, 100.0, "2")
                 .by_default("none")
-                .about("Weight of the square of the error's component along the sector's mean EMF, which makes torque: torque comes before the shape of the currents; not with `modulated: on`"),
+                .about("Weight of the squared torque-producing error, along the sector's mean EMF: torque accuracy before the currents' shape; not with `modulated: on`"),
             |options| if_any(options.torque_weight),
         ),
     ];
@@ -115,7 +116,7 @@ impl Options for FcsMpcSpec {
         let torque_weight = reader.plain(errors, "torque_weight");
         if modulated {
             for name in ["switching_weight", "torque_weight"] {
-                let why = "two vectors share the period by the current's error alone";
+                let why = "the duty of two vectors minimises the current error alone";
                 refuse(reader, name, ["modulated", "on"], why, errors);
             }
         }
@@ -149,7 +150,7 @@ impl Options for FcsMpcSpec {
         self.modulated
     }
 
-    /// Whole vectors miss by one vector's change, and by the error that a change of state may weigh as much as.
+    /// Whole vectors miss by one vector's change, plus the cost of a change of state.
     fn overshoot(&self, drive: &Drive) -> f64 {
         if self.modulated {
             0.0
@@ -159,10 +160,10 @@ impl Options for FcsMpcSpec {
     }
 }
 
-/// A held EMF is known as part of a sum only.
+/// Refuses `emf: held` where the EMF is needed by itself: a held one is known only in a sum.
 fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     if options.floating() {
-        let why = "where a floating leg sits follows from its EMF; choose `off_leg: nominal` or `candidates: three_phase`";
+        let why = "the voltage of a floating leg follows from its EMF, which a held one does not give; choose `off_leg: nominal` or `candidates: three_phase`";
         refuse(reader, "emf", ["off_leg", "physical"], why, errors);
     }
     let why = "the cost needs the EMF by itself; choose `emf: estimated` or `emf: model`";
@@ -174,8 +175,8 @@ fn check_held(reader: &Reader, options: &FcsMpcSpec, errors: &mut Collector) {
     }
 }
 
-/// At most what a vector moves the current by in a period, 2/3 v_bus Ts/L, rounded down: beyond it
-/// no vector would follow another.
+/// At most the change of current by one vector per period, 2/3 v_bus Ts/L, rounded down: above it
+/// the controller would never change the vector.
 fn read_switching_weight(
     reader: &Reader,
     surroundings: &Surroundings,
@@ -198,7 +199,7 @@ fn read_switching_weight(
                 &given.part.given,
                 "0 A",
                 &format!(
-                    "{}, what one vector moves the current by in a period",
+                    "{}, the change of current by one vector per period",
                     engineering(stride, "A")
                 ),
             ));
@@ -207,14 +208,15 @@ fn read_switching_weight(
     given.si
 }
 
-/// Two steps are judged where the list of the second one and the voltages of its vectors are known in the first.
+/// Checks the options of a horizon of 2, which needs the candidates of the second period and their
+/// voltages in the first.
 fn check_two_steps(
     reader: &Reader,
     candidates: Candidates,
     off_leg: OffLegModel,
     errors: &mut Collector,
 ) {
-    let own = "a sequence of two vectors is judged by the current's error alone";
+    let own = "sequences of two vectors are compared by the current error alone";
     for (name, value) in [
         ("modulated", Some("on")),
         ("switching_weight", None),
@@ -228,7 +230,7 @@ fn check_two_steps(
             refuse(reader, name, ["horizon", "2"], own, errors);
         }
     }
-    let ahead = "which vectors and off legs the second period has is not known in the first; choose `candidates: three_phase`, \
+    let ahead = "the vectors and off legs of the second period are not known in the first; choose `candidates: three_phase`, \
                  or `all` with `off_leg: nominal`";
     match (candidates, off_leg) {
         (Candidates::Table2, _) => refuse(reader, "candidates", ["horizon", "2"], ahead, errors),

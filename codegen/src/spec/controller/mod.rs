@@ -1,6 +1,7 @@
 //! The choice of controller and its options; a file per kind holds its table and its checks.
 //!
-//! Adding a controller adds a file here, and a line to [`ControllerSpec`], to [`with_options`] and to [`KINDS`].
+//! A new controller adds a file here and a line each to [`ControllerSpec`], [`with_options`] and
+//! [`KINDS`].
 
 pub(crate) mod common;
 pub(crate) mod fcs_mpc;
@@ -26,17 +27,17 @@ use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Collector, Diagnostic};
 use common::Surroundings;
 
-/// The options of one kind of controller: their table, how they are read, and what the checks ask of them.
+/// The options of one kind of controller: table, reader and checks.
 pub(crate) trait Options: Into<ControllerSpec> + 'static {
-    /// The name that a specification calls it by.
+    /// The name in a specification.
     const KIND: &'static str;
     /// The method.
     const TITLE: &'static str;
-    /// What else the reference page says; empty for nothing.
+    /// Notes for the reference page.
     const NOTES: &'static str = "";
     /// Options of this kind, in the order of the normalised specification.
     const OWN: &'static [Row<Self>];
-    /// Options that it shares with others, which follow.
+    /// Options shared with others; they follow the own ones.
     const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP, common::COMMUTATION];
 
     /// Reads and checks the options. None only together with an error.
@@ -48,21 +49,21 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
     /// The same, to change them.
     fn common_mut(&mut self) -> &mut LoopOptions;
 
-    /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
+    /// Whether it uses pulse-width modulation, instead of one vector per period.
     fn modulates(&self) -> bool;
 
-    /// What phase currents of a drive in health go beyond the reference by, ampere.
+    /// Greatest excess of phase currents over the reference without a fault, ampere.
     fn overshoot(&self, _: &Drive) -> f64 {
         0.0
     }
 
-    /// What phase currents reach in the commutations of a rotor that turns slowly, ampere; 0 where that is no more than
-    /// what they reach otherwise.
+    /// Peak of the phase currents in commutations at low speed, ampere; 0 where it is not above the
+    /// peak elsewhere.
     fn swing(&self, _: &Drive) -> f64 {
         0.0
     }
 
-    /// Why a trip level that the currents reach is refused, if it is; `parts`: largest set-point and trip level.
+    /// The error for a trip level that the currents reach; `parts`: largest set-point, trip level.
     fn refuse_trip(&self, _: &Drive, _rated: f64, _parts: [&Part; 2]) -> Option<Diagnostic> {
         None
     }
@@ -83,7 +84,7 @@ pub enum ControllerSpec {
     PiPwm(PiPwmSpec),
 }
 
-/// Names the options of whichever controller it is in an expression: the one place that tells them apart.
+/// Binds the options of any controller in an expression: the only match on the variants.
 macro_rules! with_options {
     ($controller:expr, $options:ident => $use:expr) => {
         match $controller {
@@ -100,7 +101,7 @@ pub(crate) use with_options;
 /// A kind of controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// The name that a specification calls it by.
+    /// The name in a specification.
     pub name: &'static str,
     /// The method.
     pub title: &'static str,
@@ -136,13 +137,13 @@ impl Kind {
         }
     }
 
-    /// All its options: its own, then those that it shares with others.
+    /// All options: its own, then the shared ones.
     pub fn rules(&self) -> Vec<&'static Rule> {
         [(self.own)(), (self.shared)()].concat()
     }
 }
 
-/// The rules of the options of all controllers, and of their choice; one that several take may stand there several times.
+/// The rules of `kind` and of the options of all controllers; shared options are repeated.
 pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
     const KIND: &Rule = &common::KIND;
     std::iter::once(KIND).chain(KINDS.iter().flat_map(Kind::rules))
@@ -154,19 +155,19 @@ impl ControllerSpec {
         with_options!(self, options => options.common())
     }
 
-    /// The same with words of so many bits.
+    /// The same with another word length, bits.
     #[must_use]
     pub fn with_word(mut self, word: u32) -> Self {
         with_options!(&mut self, options => options.common_mut().word = word);
         self
     }
 
-    /// Whether it divides the period by pulse-width modulation, instead of applying one vector.
+    /// Whether it uses pulse-width modulation, instead of one vector per period.
     pub fn modulates(&self) -> bool {
         with_options!(self, options => options.modulates())
     }
 
-    /// The name that the specification calls it by.
+    /// The name in a specification.
     pub fn kind(&self) -> &'static str {
         fn of<S: Options>(_: &S) -> &'static str {
             S::KIND
@@ -174,7 +175,7 @@ impl ControllerSpec {
         with_options!(self, options => of(options))
     }
 
-    /// Its options in the order of the normalised specification, with the values that stand there.
+    /// Its options with their values, in the order of the normalised specification.
     pub(crate) fn lines(&self) -> Vec<(&'static Rule, String)> {
         fn of<S: Options>(options: &S) -> Vec<(&'static Rule, String)> {
             let shared = S::SHARED

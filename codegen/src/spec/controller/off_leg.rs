@@ -1,4 +1,4 @@
-//! The option `off_leg`, of controllers that apply whole vectors.
+//! The option `off_leg` of controllers that apply whole vectors.
 
 use crate::diagnostics::{Collector, catalogue};
 use crate::spec::ast::Value;
@@ -7,19 +7,19 @@ use crate::spec::rule::{self, Rule};
 use crate::spec::words::words;
 
 words! {
-    /// Where the prediction takes the terminal of a leg to be that a pair vector turns off.
+    /// Terminal voltage, in the prediction, of a leg that a pair vector turns off.
     pub enum OffLegModel {
-        "physical" = Physical: "where its diodes or its EMF put it",
-        "nominal" = Nominal: "midway, as Table 2's vectors have it",
+        "physical" = Physical: "set by its diodes or its EMF",
+        "nominal" = Nominal: "half the bus voltage, as in Table 2",
     }
 }
 
 /// The option's rule.
 pub(super) const OFF_LEG: Rule = rule::choice::<OffLegModel>("off_leg", "physical")
     .preset("physical")
-    .about("Where the prediction takes an off leg to be");
+    .about("Voltage of an off leg in the prediction");
 
-/// Reads the option `off_leg`; physical by default. `three_phase` says that all candidates drive all legs.
+/// Reads the option `off_leg`; physical by default. `three_phase`: all candidates drive all legs.
 pub(super) fn read_off_leg(
     reader: &Reader,
     three_phase: bool,
@@ -38,7 +38,7 @@ pub(super) fn read_off_leg(
                 .field("candidates")
                 .map_or(reader.location(), |field| &field.location),
             "candidates: three_phase",
-            "these vectors turn no leg off",
+            "these candidates turn no leg off",
         ));
     }
     model

@@ -31,8 +31,8 @@ impl PPwmSpec {
 impl Options for PPwmSpec {
     const KIND: &'static str = "p-pwm";
     const TITLE: &'static str = "proportional control with pulse-width modulation";
-    const NOTES: &'static str = "The smallest controller: the EMF and a proportional gain. Without an integral the current stays below its reference,\n\
-         by the part of the gain that the resistance takes.";
+    const NOTES: &'static str = "The smallest controller: EMF and proportional gain. Without an integral the current stays below its reference,\n\
+         by the resistive drop over the gain.";
     const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP];
     const OWN: &'static [Row<Self>] = &[
         Row::of(

@@ -13,10 +13,10 @@ use crate::spec::rule;
 use crate::spec::words::words;
 
 words! {
-    /// How the deadbeat voltage becomes leg commands.
+    /// Modulation of the deadbeat voltage.
     pub enum Modulation {
         "three_phase" = ThreePhase: "three duties in every period",
-        "pair" = Pair: "three duties in commutation, else only the conducting pair is pulsed",
+        "pair" = Pair: "three duties in commutation, else the conducting pair only",
     }
 }
 
@@ -27,9 +27,9 @@ pub struct PdccSpec {
     pub modulation: Modulation,
     /// Saturation rule.
     pub saturation: LimitRule,
-    /// Whether what the modelled EMF lacks is integrated.
+    /// Whether an integrator corrects the modelled EMF.
     pub integral: bool,
-    /// Whether compare values are shifted against the dead time.
+    /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
     /// Options that all controllers share.
     pub common: LoopOptions,
@@ -42,7 +42,7 @@ impl Options for PdccSpec {
         Row::of(
             rule::choice::<Modulation>("modulation", "three_phase")
                 .preset("three_phase")
-                .about("How the deadbeat voltage becomes leg commands"),
+                .about("Modulation of the deadbeat voltage"),
             |options| Some(word(options.modulation)),
         ),
         Row::of(common::saturation("torque_priority"), |options| {
@@ -54,12 +54,12 @@ impl Options for PdccSpec {
         Row::of(
             rule::choice::<bool>("integral", "on")
                 .preset("off")
-                .about("Whether a slow estimate of what the modelled EMF lacks is added, for a k_b, angle, R or L that is off; only with `emf: model`"),
+                .about("Whether a slow integrator corrects the modelled EMF for errors of k_b, angle, R and L; only with `emf: model`"),
             |options| if_on(options.integral),
         ),
     ];
 
-    /// `table2` is a modulation of this controller in the literature, but not in this version.
+    /// The modulation `table2` is known from the literature, but not available.
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let modulation = reader.choice_or_preset(errors, "modulation", &["table2"]);
         let saturation = reader.choice_or_preset(errors, "saturation", &[]);
@@ -70,7 +70,7 @@ impl Options for PdccSpec {
         }
         let common = read_common(reader, surroundings, without_sectors, errors)?;
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
-            let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `emf: estimated` or `emf: model`";
+            let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated` or `emf: model`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
         }
         if common.reference == Reference::Proportional
@@ -105,7 +105,7 @@ impl Options for PdccSpec {
     }
 }
 
-/// An integral needs the modelled EMF: an estimate finds by itself what it would.
+/// An integral needs the modelled EMF: an estimate already contains what it would add.
 fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> bool {
     let is_on = reader.switch(errors, "integral") == Some(true);
     let other = match emf {
@@ -122,7 +122,7 @@ fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> boo
                 .field("emf")
                 .map_or(reader.location(), |field| &field.location),
             other,
-            "the estimate finds by itself what the integral adds to `emf: model`",
+            "the estimate already contains what the integral adds to `emf: model`",
         ));
     }
     is_on

@@ -13,20 +13,20 @@ use crate::spec::rule;
 use crate::spec::units::Dimension as D;
 use crate::spec::words::{Word, Words, words};
 
-/// Entries of a switching table that the specification gives: 6 sectors, 2 states, 4 wishes.
+/// Entries of a listed switching table: 6 sectors, 2 states, 4 comparator outputs.
 pub(crate) const GIVEN: usize = 48;
 
-/// Share of the rated current that the band has by default.
+/// Default band over the rated current.
 const BAND: f64 = 0.025;
 
-/// Where the switching table comes from.
+/// Switching table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SwitchingTable {
     /// From the geometry of the vectors.
     Derived,
-    /// The row that the paper prints, turned through the sectors; it loses the current.
+    /// The paper's row of sector 1, rotated for the other sectors; loses control of the current.
     Printed,
-    /// As the specification lists it: vector numbers by sector, commutation, H_a, H_b.
+    /// As listed: vector numbers by sector, commutation, H_a, H_b.
     Given([u8; GIVEN]),
 }
 
@@ -39,13 +39,13 @@ impl Words for SwitchingTable {
         },
         Word {
             word: "printed",
-            meaning: "the paper's row of sector 1, turned through the sectors: it loses the current, for study only",
+            meaning: "the paper's row of sector 1, rotated for the other sectors: loses control of the current, for study only",
         },
     ];
 }
 
 words! {
-    /// The vectors among which the derived table chooses.
+    /// Candidate vectors of the derived table.
     pub enum PhccCandidates {
         "table2" = Table2: "V0 to V6 in commutation, else the sector's pair, its reverse and its zero",
         "three_phase" = ThreePhase: "V0 to V6 always",
@@ -68,7 +68,7 @@ pub struct PhccSpec {
 }
 
 impl PhccSpec {
-    /// Whether a command may turn a leg off whose real voltage the prediction follows.
+    /// Whether the prediction models the terminal voltage of a leg that is turned off.
     pub fn floating(&self) -> bool {
         self.common.delay == 1
             && self.candidates == PhccCandidates::Table2
@@ -79,13 +79,13 @@ impl PhccSpec {
 impl Options for PhccSpec {
     const KIND: &'static str = "phcc";
     const TITLE: &'static str = "predictive hysteresis current control";
-    const NOTES: &'static str = "Refused where one vector moves the current by more than the rated current in a period. With `delay: 0` nothing is\n\
-         predicted, and `emf`, `emf_filter` and `off_leg` have no effect.";
+    const NOTES: &'static str = "Refused where one vector changes the current by more than the rated current per period. With `delay: 0` there is no\n\
+         prediction, and `emf`, `emf_filter` and `off_leg` have no effect.";
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::choice_or_list::<SwitchingTable>("table", "derived")
                 .preset("derived")
-                .about("Where the switching table comes from. A list gives it: 48 vector numbers, S1 to S6, first otherwise, then in commutation, each for the wishes (alpha, beta) = 00, 01, 10, 11"),
+                .about("Switching table. A list gives it: 48 vector numbers, 8 per sector from S1 to S6: 4 outside commutation, then 4 in commutation, for comparator outputs (alpha, beta) = 00, 01, 10, 11"),
             |options| {
                 Some(match options.table {
                     SwitchingTable::Given(numbers) => number(numbers),
@@ -102,7 +102,7 @@ impl Options for PhccSpec {
         Row::of(
             rule::choice::<PhccCandidates>("candidates", "table2")
                 .preset("table2")
-                .about("The vectors among which the derived table chooses"),
+                .about("Candidate vectors of the derived table"),
             |options| Some(word(options.candidates)),
         ),
         Row::of(OFF_LEG, |options| Some(word(options.off_leg))),
@@ -121,7 +121,7 @@ impl Options for PhccSpec {
                 "three_phase",
                 &cause.location,
                 "a table that is not derived",
-                "it says among which vectors the derivation chooses",
+                "they are the candidates of the derived table",
             ));
         }
         let three_phase = candidates == PhccCandidates::ThreePhase;
@@ -130,11 +130,11 @@ impl Options for PhccSpec {
         let common = read_common(reader, surroundings, false, errors)?;
         let floats = !three_phase && off_leg == OffLegModel::Physical && common.delay == 1;
         if common.emf == EmfSource::Held && floats {
-            let why = "a leg that floats shows nothing of its EMF, so none can be held; choose `off_leg: nominal` or `candidates: three_phase`";
+            let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `off_leg: nominal` or `candidates: three_phase`";
             refuse(reader, "emf", ["off_leg", "physical"], why, errors);
         }
         if common.delay == 0 {
-            let why = "without delay the present current is compared, and nothing is predicted";
+            let why = "without delay nothing is predicted";
             for name in ["emf", "emf_filter", "off_leg"] {
                 refuse(reader, name, ["delay", "0"], why, errors);
             }
@@ -167,7 +167,7 @@ impl Options for PhccSpec {
         false
     }
 
-    /// Vectors carry a current out of its band until the command that answers takes effect.
+    /// A vector drives a current out of its band until the next command takes effect.
     fn overshoot(&self, drive: &Drive) -> f64 {
         let answered = 1.0 + f64::from(self.common.delay);
         phase_band(self.band) + drive.stride(answered)
@@ -184,7 +184,8 @@ impl Options for PhccSpec {
             + 0.75 * drive.stride(1.0)
     }
 
-    /// The band's switching carries the current to the trip level; a wide band is refused as such.
+    /// Refuses a band whose switching reaches the trip level; a band above the rated current is
+    /// another error.
     fn refuse_trip(&self, drive: &Drive, rated: f64, parts: [&Part; 2]) -> Option<Diagnostic> {
         let periods = 1 + self.common.delay;
         let adds = [self.band, drive.stride(f64::from(periods))];
@@ -194,8 +195,8 @@ impl Options for PhccSpec {
     }
 }
 
-/// By how much bands of this half width on alpha and beta let a phase current be off: b = -alpha/2
-/// + sqrt(3)/2 beta.
+/// Greatest error of a phase current within bands of this half width on alpha and beta:
+/// b = -alpha/2 + sqrt(3)/2 beta.
 fn phase_band(band: f64) -> f64 {
     f64::midpoint(1.0, 3_f64.sqrt()) * band
 }

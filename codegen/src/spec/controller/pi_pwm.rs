@@ -16,7 +16,7 @@ use crate::spec::{MotorSpec, Spec};
 use std::f64::consts::TAU;
 
 words! {
-    /// The modulation that there is.
+    /// The only modulation.
     enum PiModulation {
         "three_phase" = ThreePhase: "three duties in every period",
     }
@@ -29,13 +29,13 @@ pub struct PiPwmSpec {
     pub bandwidth: f64,
     /// Integral time, second.
     pub integral_time: f64,
-    /// Whether the EMF is added to the voltage.
+    /// EMF feed-forward.
     pub feed_forward: bool,
-    /// Whether one regulator holds the current of the conducting pair, instead of one per axis.
+    /// Whether one PI controller holds the current of the conducting pair, instead of one per axis.
     pub six_step: bool,
     /// Saturation rule; of no effect with [`Self::six_step`].
     pub saturation: LimitRule,
-    /// Whether compare values are shifted against the dead time.
+    /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
     /// Options that all controllers share.
     pub common: LoopOptions,
@@ -73,19 +73,19 @@ impl Options for PiPwmSpec {
         Row::of(
             rule::choice::<bool>("feed_forward", "on")
                 .by_default("`on`; with `six_step: on` `off`")
-                .about("Whether the EMF is added to the voltage"),
+                .about("EMF feed-forward"),
             |options| Some(word(options.feed_forward)),
         ),
         Row::of(
             rule::choice::<bool>("six_step", "off")
                 .preset("off")
-                .about("The conventional drive, one regulator on the conducting pair's current; takes no `saturation`, follows `quasi_square` without feed-forward"),
+                .about("Conventional six-step drive: one PI controller of the conducting pair's current; without `saturation` and feed-forward, with `quasi_square` only"),
             |options| Some(word(options.six_step)),
         ),
         Row::of(
             rule::choice::<PiModulation>("modulation", "three_phase")
                 .preset("three_phase")
-                .about("How the voltage becomes leg commands"),
+                .about("Modulation"),
             |_| None,
         ),
         Row::of(common::saturation("nearest"), |options| {
@@ -96,7 +96,7 @@ impl Options for PiPwmSpec {
         }),
     ];
 
-    /// Modulations of other controllers are known, but not in this version.
+    /// Modulations of other controllers are known, but not available.
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
         let integral_time = reader.plain_quantity(errors, "integral_time");
@@ -106,7 +106,7 @@ impl Options for PiPwmSpec {
         let saturation = reader.choice_or_preset(errors, "saturation", &[]);
         if saturation == LimitRule::TorquePriority && !feed_forward {
             let why =
-                "it keeps the component along the EMF, which is known with `feed_forward: on` only";
+                "it keeps the component along the EMF, which is known only with `feed_forward: on`";
             refuse(reader, "saturation", ["feed_forward", "off"], why, errors);
         }
         if six_step {
@@ -125,7 +125,7 @@ impl Options for PiPwmSpec {
                         .field("feed_forward")
                         .map_or(reader.location(), |field| &field.location),
                     "feed_forward: off",
-                    "the regulator needs no EMF then",
+                    "the EMF is used only for feed-forward",
                 ));
             }
         }
@@ -156,23 +156,23 @@ impl Options for PiPwmSpec {
     }
 }
 
-/// What a six-step drive has no use for.
+/// Refuses options without effect on a six-step drive.
 fn check_six_step(reader: &Reader, errors: &mut Collector) {
     let idle = [
         (
             "saturation",
             None,
-            "one line voltage has a size only, which the bus limits",
+            "a single line voltage is limited by the bus voltage alone",
         ),
         (
             "feed_forward",
             Some("on"),
-            "the leg that is off hides its EMF, and the regulator does without",
+            "the EMF of the off leg cannot be seen, and the controller works without it",
         ),
         (
             "reference",
             Some("proportional"),
-            "one current through two windings is quasi-square",
+            "the current through two windings is quasi-square",
         ),
     ];
     for (name, value, why) in idle {

@@ -184,7 +184,7 @@ fn characters_that_compilers_refuse_in_comments_are_refused_here() {
     );
     assert_eq!(
         changed("[motor]\n", "[motor]\ndescription = \"Hub \\u202E\"\n"),
-        "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is U+202E (right-to-left override), which compilers refuse in comments; remove it"
+        "hub.toml:2:15: error[HX0201]: `description`: character 5 of the text is U+202E (right-to-left override), which compilers reject in comments; remove it"
     );
 }
 
@@ -204,7 +204,7 @@ fn bytes_that_are_no_text_are_told_with_their_place() {
 }
 
 const BOTH: &str = "`135 mohm per_phase` or `135 mohm line_to_line`";
-const CHOICE: &str = "say `per_phase` (of one winding) or `line_to_line` (between two terminals)";
+const CHOICE: &str = "write `per_phase` (of one winding) or `line_to_line` (between two terminals)";
 
 #[test]
 fn no_remedy_offers_a_basis_that_was_not_named() {
@@ -249,7 +249,7 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
         ("17.3 V/krpm per phase peak", "did you mean `phase`?".to_owned()),
         (
             "17.3 V/krpm pk",
-            "say `phase` (of one phase) or `line_to_line` (between two terminals), with `peak` (the amplitude)".to_owned(),
+            "write `phase` (of one phase) or `line_to_line` (between two terminals), with `peak` (the amplitude)".to_owned(),
         ),
         (
             "12.2 V/krpm rms",

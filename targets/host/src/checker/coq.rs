@@ -1,7 +1,7 @@
-//! Certificates: Gappa's proofs as terms that Coq, whose kernel is a few thousand lines, checks again.
+//! Certificates: Gappa's proofs, checked again by Coq with its small kernel.
 //!
-//! A certificate is one file that stands for itself. It ends by asking what it rests on: nothing but the
-//! axioms of Coq's real numbers is let through, so neither an admitted lemma nor an axiom of its own passes.
+//! A certificate is one self-contained file that ends with `Print Assumptions`: only the axioms of
+//! Coq's real numbers are accepted, no admitted lemma and no other axiom.
 
 use super::program::{Ended, run_within};
 use super::run::gappa;
@@ -10,16 +10,16 @@ use hexagen_codegen::emit::gappa::Script;
 use std::process::Command;
 use std::time::Duration;
 
-/// A check may take so long; the longest of the 660 W motor's takes a hundredth of it on an idle core.
+/// Time limit of a check; the longest of the 660 W motor takes 1 % of it on an idle core.
 const CHECK_LIMIT: Duration = Duration::from_secs(300);
 
-/// What Gappa's output calls half-up rounding, and what the library lacks of it.
+/// Gappa's name of half-up rounding, and its definition, which the library lacks.
 const HALF_UP: (&str, &str) = ("rndNU", include_str!("half_up.v"));
 
-/// The theorem at the end of Gappa's output: hypotheses and a goal that does not hold contradict each other.
+/// The theorem at the end of Gappa's output: the hypotheses contradict the negated goal.
 const THEOREM: &str = "Lemma l1 : s1 -> False.";
 
-/// What Coq's library takes for granted of real numbers, functions and truth.
+/// Axioms of Coq's library on real numbers, functions and logic.
 const AXIOMS: [&str; 4] = [
     "ClassicalDedekindReals.sig_forall_dec",
     "ClassicalDedekindReals.sig_not_dec",
@@ -37,7 +37,7 @@ pub struct MissingCoq(String);
 /// Version of Coq.
 ///
 /// # Errors
-/// When there is none, or it has no library of Gappa.
+/// Without Coq or its Gappa library.
 pub fn coq_version() -> Result<String, MissingCoq> {
     let run = |program: &str, arguments: &[&str]| {
         let ended = run_within(Command::new(program).args(arguments), "", CHECK_LIMIT)
@@ -58,7 +58,7 @@ pub fn coq_version() -> Result<String, MissingCoq> {
 /// The certificate of a script.
 ///
 /// # Errors
-/// What Gappa says where it does not prove the script, or that there is no Gappa.
+/// Gappa's reason for not proving the script, or that Gappa is missing.
 pub fn certificate(script: &Script) -> Result<String, String> {
     let ended = run_within(gappa().arg("-Bcoq"), &script.to_string(), TIME_LIMIT)
         .map_err(|error| Missing::of(&error).to_string())?;
@@ -86,13 +86,13 @@ pub fn certificate(script: &Script) -> Result<String, String> {
     ))
 }
 
-/// Has Coq check a certificate; how long that took.
+/// Checks a certificate with Coq; returns the time.
 ///
 /// # Errors
-/// Why it does not hold.
+/// Why it is refused.
 pub fn check_certificate(certificate: &str) -> Result<Duration, String> {
     let failed = |error: std::io::Error| format!("certificate not checked: {error}");
-    // Coq writes beside what it reads.
+    // Coq writes files next to its input.
     let folder = tempfile::tempdir().map_err(failed)?;
     std::fs::write(folder.path().join("certificate.v"), certificate).map_err(failed)?;
     let mut coqc = Command::new("coqc");
@@ -109,7 +109,7 @@ pub fn check_certificate(certificate: &str) -> Result<Duration, String> {
     }
 }
 
-/// Looks at what a certificate that has been checked assumes.
+/// Checks the assumptions of an accepted certificate.
 fn rests_on_axioms_alone(ended: &Ended) -> Result<Duration, String> {
     let mut lines = ended.printed.lines();
     let assumed: Vec<&str> = match lines.next() {
@@ -121,7 +121,7 @@ fn rests_on_axioms_alone(ended: &Ended) -> Result<Duration, String> {
             .collect(),
         said => {
             return Err(format!(
-                "certificate does not tell what it assumes: {}",
+                "certificate without a list of assumptions: {}",
                 said.unwrap_or_default()
             ));
         }

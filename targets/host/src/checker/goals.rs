@@ -1,5 +1,4 @@
-//! Goals that a controller's scripts must have, counted from its graph: what no script asks for,
-//! nobody proves.
+//! Goals that a controller's scripts must state, counted from its graph, so that none is forgotten.
 
 use hexagen_codegen::emit::gappa::{Script, Subject, gap, variable};
 use hexagen_codegen::ir::{
@@ -7,7 +6,7 @@ use hexagen_codegen::ir::{
 };
 use std::collections::HashMap;
 
-/// What must be proved of an operator's result.
+/// The goals of an operator's result.
 enum Duty {
     /// That it stays in its interval, and how far it is from the ideal where something relies on
     /// that.
@@ -63,7 +62,7 @@ fn duty(op: Op) -> Duty {
     }
 }
 
-/// The goals that a controller's graph asks for and no script has: of every stage in every case in
+/// The goals of a controller's graph that no script states: of every stage in every case in
 /// which it runs, the interval of every sum, product and shift, the error of what leaves the
 /// stage's arithmetic, and the tie band of every inexact decision.
 pub fn missing_goals(graph: &VerifiedGraph, scripts: &[Script]) -> Vec<String> {
@@ -132,7 +131,7 @@ impl Twins {
             let operands = op.operands().into_iter();
             let seen: Vec<Interval> = operands.map(|x| bounds.operand(value, x)).collect();
             op.map_operands(|operand| twins[operand.index()]);
-            // A number is the same wherever it stands.
+            // Equal numbers are one expression.
             let number = |raw: i32, exact: Exact| format!("{raw} {exact:?}");
             let key = match (op, duty(op)) {
                 (Op::Literal(raw), _) => number(raw, Exact::Itself),

@@ -1,8 +1,8 @@
-//! Proofs by Gappa, a checker that others wrote: runs it, reads the bounds that it finds, proves them again
-//! as stated goals, and compares them with the generator's own.
+//! Proofs by Gappa: runs it, reads the bounds that it finds, proves them again as goals, and
+//! compares them with the generator's own.
 //!
-//! A script that asks for bounds succeeds whatever they are, and says them on stderr. So the number of
-//! bounds that are read must be the number that was asked, and what counts is that they hold as goals.
+//! A script that asks for bounds always succeeds and prints them on stderr. So the number of bounds
+//! read must match, and only bounds proved as goals count.
 
 mod coq;
 mod goals;
@@ -18,16 +18,17 @@ pub use coq::{MissingCoq, certificate, check_certificate, coq_version};
 pub use goals::missing_goals;
 pub use run::{Missing, gappa_version};
 
-/// A proof may take so long; the longest of the library's takes a hundredth of it.
+/// Time limit of a proof; the longest of the library takes 1 % of it.
 pub const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// The generator's own bounds are at most so many times those that Gappa finds.
+/// Greatest ratio of the generator's own bounds to those that Gappa finds.
 pub const WIDEST: f64 = 4.0;
 
-/// Errors below this, in units of the last place, are no matter: own bounds are rounded outward in these steps.
+/// Errors below this, in units of the last place, are ignored: own bounds are rounded outward in
+/// these steps.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// What came of a script.
+/// Result of a script.
 #[derive(Clone, Debug)]
 pub struct Proof {
     /// Goals.
@@ -38,14 +39,14 @@ pub struct Proof {
     pub widest: f64,
     /// Time of all runs.
     pub took: Duration,
-    /// What is not as it should be.
+    /// The failure, if any.
     pub failure: Option<String>,
 }
 
-/// Has a script checked.
+/// Proves a script.
 ///
 /// # Errors
-/// When there is no Gappa.
+/// Without Gappa.
 pub fn prove(script: &Script) -> Result<Proof, Missing> {
     let mut took = Duration::ZERO;
     let mut run = |text: &str| -> Result<Run, Missing> {
@@ -106,7 +107,7 @@ pub fn prove(script: &Script) -> Result<Proof, Missing> {
 /// Whether all goals of a script are proved.
 ///
 /// # Errors
-/// When there is no Gappa.
+/// Without Gappa.
 pub fn is_proved(script: &str) -> Result<bool, Missing> {
     Ok(Run::new(script, TIME_LIMIT)?.finding == Finding::Proved)
 }

@@ -1,11 +1,11 @@
-//! A program that others wrote, run on a text within a time.
+//! Runs an external program on a text, with a time limit.
 
 use std::io::{self, Read, Seek, Write};
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How long to wait before a look at whether the program is done: a hundredth of what the shortest takes.
+/// Polling interval: 1 % of the shortest run.
 const LOOK: Duration = Duration::from_micros(500);
 
 /// A run that has ended, or was ended.
@@ -34,7 +34,7 @@ impl Ended {
 
 /// Runs a command with `input` on its standard input.
 pub(super) fn run_within(command: &mut Command, input: &str, limit: Duration) -> io::Result<Ended> {
-    // Files, not pipes: nothing blocks, however much is said.
+    // Files instead of pipes, which block when they are full.
     let mut file = tempfile::tempfile()?;
     file.write_all(input.as_bytes())?;
     file.rewind()?;

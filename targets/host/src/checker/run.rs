@@ -1,4 +1,4 @@
-//! One run of Gappa, and what it says.
+//! One run of Gappa and its output.
 
 use super::program::run_within;
 use hexagen_codegen::emit::gappa::Script;
@@ -36,15 +36,15 @@ pub fn gappa_version() -> Result<String, Missing> {
     Ok(String::from_utf8_lossy(&text).trim().to_owned())
 }
 
-/// The checker, which by itself does not look at a bound that is less than 1 % tighter than one that it has: the goals
-/// are what the generator reckons, to the last digit.
+/// The checker. By default it ignores a bound less than 1 % tighter than a known one; the goals are
+/// the generator's bounds to the last digit.
 pub(super) fn gappa() -> Command {
     let mut command = Command::new("gappa");
     command.arg("-Echange-threshold=0.0001");
     command
 }
 
-/// What the checker makes of goals.
+/// Result of goals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
     /// All hold.
@@ -74,7 +74,7 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Has a script checked within a time.
+    /// Checks a script within a time limit.
     pub(super) fn new(script: &str, limit: Duration) -> Result<Self, Missing> {
         let ended = run_within(&mut gappa(), script, limit).map_err(|error| Missing::of(&error))?;
         let finding = match ended.status {
@@ -89,7 +89,7 @@ impl Run {
         })
     }
 
-    /// The bounds of all goals of the script that was run, in their order.
+    /// The bounds of all goals of the script, in order.
     pub(super) fn bounds(&self, script: &Script) -> Result<Vec<[Real; 2]>, String> {
         if self.finding != Finding::Proved {
             return Err(format!("no bounds found: {}", self.finding));
@@ -133,7 +133,7 @@ fn renaming(line: &str) -> Option<(&str, &str)> {
     Some((old, rest.split_once('\'')?.0))
 }
 
-/// Both ends of `-3b-1 {-1.5, -2^(0.58)}, 4 {4, 2^(2)}]`; what stands in braces says the number again.
+/// Both ends of `-3b-1 {-1.5, -2^(0.58)}, 4 {4, 2^(2)}]`; braces repeat the number.
 fn ends(range: &str) -> Option<[Real; 2]> {
     let mut text = String::new();
     let mut inside = false;

@@ -39,15 +39,15 @@ pub enum Command {
     Generate(generate::Options),
     /// Runs a controller on the simulated motor and measures torque and currents
     Simulate(simulate::Options),
-    /// Finds the speed up to which a controller holds the torque
+    /// Finds the highest speed at which a controller holds the torque
     Limit(limit::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
-    /// Proves by Gappa that nothing overflows and how far values are from the ideal ones
+    /// Proves the absence of overflow and the error bounds with Gappa
     Prove(prove::Options),
     /// Compares fixed-point with floating-point accuracy, per controller and word length
     Compare(compare::Options),
-    /// Runs the paper's experiment, judges its claims and writes a page with its figures
+    /// Repeats the paper's experiment, checks its claims and writes a page with its figures
     Reproduce(reproduce::Options),
     /// Lists the motors of the library
     Motors(motors::Options),
@@ -58,13 +58,13 @@ pub enum Command {
 pub enum Emit {
     /// The Rust module
     Rust,
-    /// Header and source in C99, into a folder: for toolchains without Rust
+    /// Header and source in C99, into a folder, for toolchains without Rust
     C99,
     /// The intermediate form, as text
     Ir,
     /// The data sheet, in Markdown
     Datasheet,
-    /// Gappa scripts of one implication each, into a folder
+    /// Gappa scripts, one implication each, into a folder
     Gappa,
 }
 
@@ -118,17 +118,17 @@ pub struct PlantArguments {
     /// Dead time of the inverter's legs [default: the motor file's]
     #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     pub dead_time: Option<f64>,
-    /// Bits of the current ADCs, of plant and controller alike: the specification changes
+    /// Bits of the current ADCs, in the plant and in the controller's specification
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub adc_bits: Option<u32>,
-    /// Range of the current ADCs, of plant and controller alike: the specification changes
+    /// Range of the current ADCs, in the plant and in the controller's specification
     #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text, allow_hyphen_values = true)]
     pub adc_range: Option<String>,
-    /// Error of the current ADCs' zero, which the controller does not know of: one current for both
-    /// phases, or two for a and b
+    /// Offset error of the current ADCs, unknown to the controller: one current for both phases, or
+    /// two for a and b
     #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
     pub adc_offset: Option<[f64; 2]>,
-    /// True bus voltage; the controller reckons with the motor file's, or measures
+    /// True bus voltage; the controller uses the motor file's or the measured one
     #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
     /// True over stated resistance
@@ -144,13 +144,13 @@ pub struct PlantArguments {
     /// three for Ha, Hb and Hc; positive is late in forward rotation
     #[arg(long, value_name = "ANGLE", value_parser = quantity::hall_error, allow_hyphen_values = true)]
     pub hall_error: Option<[f64; 3]>,
-    /// Inertia of rotor and load: the speed is free, starting at the given one
+    /// Inertia of rotor and load: a free shaft that starts at the given speed
     #[arg(long, value_name = "KGM2", value_parser = quantity::inertia, allow_hyphen_values = true)]
     pub inertia: Option<f64>,
     /// Load torque that opposes the motion
     #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true, requires = "inertia")]
     pub load: Option<f64>,
-    /// Electrical angle at the start, in rad: one run in place of three [default: 0.1, 0.117, 0.134]
+    /// Initial electrical angle in rad: one run instead of three [default: 0.1, 0.117, 0.134]
     #[arg(long, value_name = "RAD", value_parser = quantity::radians, allow_hyphen_values = true)]
     pub start_angle: Option<f64>,
 }
@@ -183,7 +183,7 @@ impl PlantArguments {
         plant.map_err(|error| self.blame(error.into()))
     }
 
-    /// The failure that an error of the laboratory is, with the option that it comes from, where one was given.
+    /// The failure of an error of the laboratory, named after the option that caused it, if any.
     pub fn blame(&self, error: LabError) -> Failure {
         let Some(option) = self.option_of(&error) else {
             return error.into();
@@ -212,13 +212,13 @@ impl PlantArguments {
         })
     }
 
-    /// The drive's set-point for a torque in newton metres; warns when it is beyond its limit.
+    /// The drive's set-point for a torque, Nm; warns when it exceeds the drive's limit.
     pub fn set_point(&self, drive: &Prepared, torque: f64) -> SetPoint {
         let set_point = self.options().set_point(drive, torque);
         let (current, max) = (set_point.current, drive.spec.inverter.max_current);
         if current.abs() > max * (1.0 + 1e-9) {
             warn(&format!(
-                "{torque} Nm take {current:.2} A: the drive limits its set-point to max_current = {max} A"
+                "{torque} Nm need {current:.2} A; the drive limits its set-point to max_current = {max} A"
             ));
         }
         set_point
@@ -256,13 +256,13 @@ pub struct RunArguments {
     /// Controller variant [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<String>,
-    /// Which model of the controller runs
+    /// Model of the controller
     #[arg(long, value_enum, default_value_t)]
     pub model: ModelName,
-    /// Demanded torque; braking torque is negative [default: rated torque, as far as max_current reaches]
+    /// Torque demand, negative for braking [default: rated torque, limited by max_current]
     #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub torque: Option<f64>,
-    /// What the plant differs in
+    /// Changes of the plant
     #[command(flatten)]
     pub plant: PlantArguments,
     /// Print one JSON object
@@ -282,10 +282,10 @@ impl RunArguments {
         Ok(drive)
     }
 
-    /// As [`Self::prepare`], for commands that measure the torque that is set.
+    /// As [`Self::prepare`], for commands that measure a given torque.
     ///
     /// # Errors
-    /// All diagnostics, or a drive that regulates its speed.
+    /// All diagnostics, or a drive with a speed loop.
     pub fn prepare_for_torque(&self) -> Result<Prepared, Failure> {
         let motor = SelectedMotor::find(&self.motor, &self.plant.options())?;
         let drive = motor.prepare_for_torque(self.controller.as_deref())?;
@@ -298,8 +298,7 @@ impl RunArguments {
         self.model.into()
     }
 
-    /// The demanded torque in newton metres: as given, else the rated one as far as the drive's
-    /// set-point reaches.
+    /// The torque demand, Nm: as given, else the rated torque, limited by the drive's set-point.
     pub fn torque(&self, drive: &Prepared) -> f64 {
         self.torque.unwrap_or_else(|| drive.demand())
     }
@@ -308,7 +307,7 @@ impl RunArguments {
 /// Revolutions per minute of a text; other units of speed are converted.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Why the text is not a speed.
 pub fn parse_rpm(text: &str) -> Result<f64, String> {
     quantity::rpm(text)
 }

@@ -15,10 +15,10 @@ pub enum Failure {
     /// A check failed; its result is already on stdout. The text is for stderr.
     #[error("{0}")]
     Check(String),
-    /// What the laboratory was asked for cannot be done.
+    /// An error of the laboratory.
     #[error(transparent)]
     Lab(#[from] LabError),
-    /// An argument makes no sense beside the others.
+    /// An argument that contradicts the others.
     #[error("error: {0}")]
     Argument(String),
     /// A file cannot be written.
@@ -26,16 +26,16 @@ pub enum Failure {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's reason.
         reason: String,
     },
-    /// There is no checker of proofs.
+    /// The proof checker is missing.
     #[error("error: {0}")]
     Checker(#[from] Missing),
     /// Emitted code cannot be compiled.
     #[error("error: {0}")]
     Compiler(#[from] BuildError),
-    /// The report's page cannot be made.
+    /// The report's page cannot be written.
     #[error("error: {0}")]
     Report(#[from] RenderError),
 }
@@ -47,15 +47,15 @@ impl From<PlantError> for Failure {
 }
 
 impl Failure {
-    /// The failure that a trip is, where a drive tripped.
+    /// A failed check where a drive tripped.
     ///
     /// # Errors
-    /// When it did.
+    /// The trip.
     pub fn of_trip(trip: Option<Trip>) -> Result<(), Self> {
         trip.map_or(Ok(()), |trip| Err(Self::Check(format!("error: {trip}"))))
     }
 
-    /// Tells the failure on stderr.
+    /// Prints the failure on stderr.
     pub fn print(&self) {
         super::note(&self.to_string());
     }

@@ -1,7 +1,8 @@
 //! The command line: arguments in, exit code out.
 //!
-//! 0: fine; 1: a check failed, or the drive tripped; 2: bad input, or no place for the result. Results go to stdout, everything else to stderr.
-//! With `--json`, stdout carries exactly one JSON object.
+//! Exit codes: 0: success; 1: a check failed, or the drive tripped; 2: bad input, or the result
+//! cannot be written. Results go to stdout, everything else to stderr. With `--json`, stdout holds
+//! exactly one JSON object.
 
 mod arguments;
 mod failure;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        // Help and version are no errors; clap tells them apart and knows where each goes.
+        // clap prints help and version this way as well.
         Err(error) => {
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
             return match error.print() {

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Prints text to stdout, with a line end. A closed pipe is no error: the reader has enough.
+/// Prints text to stdout, with a line end. A closed pipe is not an error.
 ///
 /// # Errors
 /// When the text cannot be written.
@@ -25,7 +25,7 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line to stderr. There is no place to tell that this failed.
+/// Prints a line to stderr; errors of stderr are ignored.
 pub fn note(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
@@ -33,10 +33,10 @@ pub fn note(text: &str) {
 /// Prints one JSON object to stdout.
 ///
 /// # Errors
-/// A value that JSON has no words for, or as [`print_text`].
+/// A value that JSON cannot represent, or as [`print_text`].
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
-        .map_err(|error| Failure::Argument(format!("no JSON: {error}")))?;
+        .map_err(|error| Failure::Argument(format!("cannot write JSON: {error}")))?;
     print_text(&text)
 }
 
@@ -56,7 +56,7 @@ pub fn print_table(table: &Table) -> Result<(), Failure> {
     print_text(&terminal::table(table))
 }
 
-/// A note on stderr.
+/// A warning on stderr.
 pub fn warn(text: &str) {
     note(&format!("warning: {text}"));
 }
@@ -68,7 +68,7 @@ pub fn tell_warnings(drive: &Prepared) {
     }
 }
 
-/// Writes a file as a whole or not at all.
+/// Writes a file completely or not at all.
 ///
 /// # Errors
 /// When the file cannot be written.

@@ -4,7 +4,7 @@ use hexagen_lab::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// A bar that follows work in the laboratory and is gone when it is dropped; nothing is drawn when stderr is no
+/// A progress bar for work of the laboratory, removed when dropped; drawn only if stderr is a
 /// terminal.
 pub struct Bar(ProgressBar);
 
@@ -37,7 +37,7 @@ impl Drop for Bar {
     }
 }
 
-/// A sign of life for work without a known length.
+/// A spinner for work of unknown length.
 pub fn spinner(message: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner();
     spinner.set_message(message.to_owned());

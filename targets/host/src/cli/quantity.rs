@@ -20,7 +20,7 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
         Ok(unit.to_si(number))
     } else {
         Err(format!(
-            "`{symbol}` is {}, {} is needed",
+            "`{symbol}` is {}, but {} is expected",
             unit.dimension.name(),
             dimension.name()
         ))
@@ -41,8 +41,8 @@ fn split(text: &str) -> Option<(f64, &str)> {
     })
 }
 
-/// A value within a range of magnitudes, which the message names: what no motor has is a slip of
-/// the pen, and would take the simulation hours.
+/// A value within a range of magnitudes, which the message names: values beyond it are mistakes,
+/// and may take the simulation hours.
 fn within(value: f64, least: f64, most: f64, unit: &str) -> Result<f64, String> {
     if (least..=most).contains(&value.abs()) {
         Ok(value)
@@ -85,7 +85,7 @@ pub(super) fn adc_offset(text: &str) -> Result<[f64; 2], String> {
     match list[..] {
         [both] => Ok([both; 2]),
         [a, b] => Ok([a, b]),
-        _ => Err("one current for both phases, or two for a and b".to_owned()),
+        _ => Err("give one current for both phases, or two for a and b".to_owned()),
     }
 }
 
@@ -127,7 +127,7 @@ pub(super) fn hall_error(text: &str) -> Result<[f64; 3], String> {
     match list[..] {
         [all] => Ok([all; 3]),
         [a, b, c] => Ok([a, b, c]),
-        _ => Err("one angle for all sensors, or three for Ha, Hb and Hc".to_owned()),
+        _ => Err("give one angle for all sensors, or three for Ha, Hb and Hc".to_owned()),
     }
 }
 
@@ -155,7 +155,7 @@ mod tests {
     fn mistakes_are_told() {
         assert_eq!(
             time("1 V"),
-            Err("`V` is a voltage, a time is needed".to_owned())
+            Err("`V` is a voltage, but a time is expected".to_owned())
         );
         assert_eq!(
             voltage("48 v"),

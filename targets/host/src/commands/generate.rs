@@ -16,15 +16,16 @@ pub struct Options {
     /// Controller variant [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<String>,
-    /// What to print
+    /// Text to print
     #[arg(long, value_enum, default_value = "rust")]
     pub emit: Emit,
-    /// Write MOTOR.rs, .ir or .md, all MOTOR.*.g, or the drive's .h and .c with hexagen.h and hexagen.c into this folder in place of stdout
+    /// Write MOTOR.rs, .ir or .md, all MOTOR.*.g, or the drive's .h and .c with hexagen.h and
+    /// hexagen.c into this folder instead of stdout
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
-/// One of the texts of a drive: the same drive gives the same bytes.
+/// A text of a drive; the same drive gives the same bytes.
 pub fn text_of(drive: &Prepared, emit: Emit) -> String {
     let generated = &drive.generated;
     match emit {
@@ -76,11 +77,10 @@ fn c99_of(drive: &Prepared) -> Sources {
     )
 }
 
-/// Writes header and source to files of their own, and beside them what all drives share: the source includes the headers
-/// by their names.
+/// Writes header and source of the drive and of the runtime; the source includes both headers.
 fn write_c99(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
     let folder = folder.ok_or_else(|| {
-        Failure::Argument("`--emit c99` writes four files: say where, `--out DIR`".to_owned())
+        Failure::Argument("`--emit c99` writes four files; add `--out DIR`".to_owned())
     })?;
     let Sources {
         name,
@@ -98,10 +98,10 @@ fn write_c99(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes each script to a file of its own: a checker takes one at a time.
+/// Writes one file per script, as the checker reads them.
 fn write_scripts(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
     let folder = folder.ok_or_else(|| {
-        Failure::Argument("`--emit gappa` writes many files: say where, `--out DIR`".to_owned())
+        Failure::Argument("`--emit gappa` writes several files; add `--out DIR`".to_owned())
     })?;
     for script in emit_gappa(&drive.generated.graph) {
         let path = folder.join(format!("{}.{}.g", drive.motor, script.name));

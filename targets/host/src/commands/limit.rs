@@ -1,4 +1,4 @@
-//! `hexagen limit`: the speed up to which a controller holds the torque.
+//! `hexagen limit`: the highest speed at which a controller holds the torque.
 
 use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
 use clap::Args;
@@ -15,8 +15,7 @@ pub struct Options {
     pub run: RunArguments,
 }
 
-/// A limit and what it is about. The torque counts as held while its mean is within 3 % of the demand
-/// on either side.
+/// A speed limit with its run. A torque is held while its mean is within 3 % of the demand.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor.
@@ -25,9 +24,9 @@ pub struct Outcome {
     pub controller: String,
     /// Model that ran.
     pub model: Model,
-    /// What ran the fixed-point program; none for the references.
+    /// Engine of the fixed-point program; none for the references.
     pub engine: Option<EngineKind>,
-    /// Demanded torque, Nm.
+    /// Torque demand, Nm.
     pub torque_nm: f64,
     /// The limit.
     #[serde(flatten)]
@@ -44,12 +43,12 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
     let torque = arguments.torque(&drive);
     if torque == 0.0 {
         return Err(Failure::Argument(
-            "--torque 0: every speed holds no torque; give the torque to be held".to_owned(),
+            "--torque 0: the limit needs a torque; give one that is not 0".to_owned(),
         ));
     }
     if arguments.plant.inertia.is_some() {
         return Err(Failure::Argument(
-            "--inertia: the limit is found at fixed speeds; leave the inertia out".to_owned(),
+            "--inertia: the limit is measured at fixed speeds; remove it".to_owned(),
         ));
     }
     let plant = arguments.plant.plant(&drive)?;
@@ -70,7 +69,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`collect`], or a drive that tripped where it no longer held the torque.
+/// As [`collect`], or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, limit) = collect(options)?;
     let model = options.run.model();

@@ -1,4 +1,4 @@
-//! What the program does: one module per command.
+//! The commands, one module each.
 //!
 //! Each has its options, a function that collects plain data, and one that prints them as a table
 //! or as JSON.

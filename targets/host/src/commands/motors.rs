@@ -1,4 +1,4 @@
-//! `hexagen motors`: the library, and whether each motor's default drive holds its rating.
+//! `hexagen motors`: the library, and whether each motor's default drive reaches its rating.
 
 use crate::cli::{Bar, Failure, note, print_json, print_table, print_text};
 use clap::Args;
@@ -31,8 +31,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     print_table(&table(&motors))?;
     print_text(&format!(
-        "R, L per phase of the star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
-         speed from the nominal bus, in percent of the rated one; it holds it within {:.0} % on either side.",
+        "R, L: per phase, star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
+         speed and nominal bus voltage, in percent of the rated torque; holds: within {:.0} % of it.",
         100.0 * TOLERANCE
     ))?;
     for motor in &motors {

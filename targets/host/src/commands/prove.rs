@@ -1,4 +1,4 @@
-//! `hexagen prove`: that nothing overflows and how far values are from the ideal ones, checked by Gappa.
+//! `hexagen prove`: absence of overflow and error bounds, proved with Gappa.
 
 mod certificates;
 
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Where certificates go if nothing is said.
+/// Default folder of certificates.
 const FOLDER: &str = "target/hexagen/coq";
 
 /// Options of `prove`.
@@ -31,8 +31,8 @@ pub struct Options {
     /// Controller variant, or `all`, with 32-bit and with 16-bit words [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
-    /// Write the proofs for Coq, MOTOR/CONTROLLER/*.v in a folder [default: target/hexagen/coq], and check them where
-    /// there is a coqc
+    /// Write Coq proofs, MOTOR/CONTROLLER/*.v, into a folder [default: target/hexagen/coq], and check
+    /// them if coqc is installed
     #[arg(
         long,
         value_name = "DIR",
@@ -53,23 +53,23 @@ pub struct Proved {
     pub motor: String,
     /// Controller variant.
     pub controller: String,
-    /// Scripts of one implication each.
+    /// Scripts, one implication each.
     pub scripts: usize,
-    /// Bounds that they state.
+    /// Stated bounds.
     pub goals: usize,
-    /// Of these, those that are proved.
+    /// Proved bounds.
     pub proved: usize,
     /// Largest ratio of the generator's own bound on an error to the one that Gappa finds.
     pub widest: f64,
     /// Time of the longest script, seconds.
     pub longest_s: f64,
-    /// Proofs for Coq, where they are asked for.
+    /// Coq proofs, if requested.
     pub certificates: Option<Certificates>,
     /// Bounds on the distance from the ideal computation.
     pub errors: Vec<Stated>,
     /// Whether everything is proved.
     pub passed: bool,
-    /// What is not.
+    /// Unproved goals.
     pub failures: Vec<String>,
 }
 
@@ -88,11 +88,11 @@ pub struct Stated {
     pub limited: Option<f64>,
 }
 
-/// Proves all drives; the scripts of all of them share the cores. A goal that a drive's graph asks
-/// for and its scripts do not have is a failure, too.
+/// Proves all drives, all scripts in parallel. A goal of a drive's graph that no script states is a
+/// failure as well.
 ///
 /// # Errors
-/// When there is no Gappa, or a certificate cannot be written.
+/// Without Gappa, or if a certificate cannot be written.
 pub fn collect(drives: &[Prepared], certify: Option<Certify>) -> Result<Vec<Proved>, Failure> {
     let scripts = drives
         .iter()
@@ -100,7 +100,7 @@ pub fn collect(drives: &[Prepared], certify: Option<Certify>) -> Result<Vec<Prov
     collect_scripts(drives, scripts.collect(), certify)
 }
 
-/// As [`collect`], from these scripts of each drive: a goal that they lack is not proved.
+/// As [`collect`], with the given scripts of each drive.
 ///
 /// # Errors
 /// As [`collect`].
@@ -176,7 +176,7 @@ fn stated(drive: &Prepared) -> Vec<Stated> {
 /// Runs the command.
 ///
 /// # Errors
-/// Diagnostics, a missing checker, or what is not proved.
+/// Diagnostics, a missing checker, or unproved goals.
 pub fn run(options: &Options) -> Result<(), Failure> {
     #[derive(Serialize)]
     struct Proofs {

@@ -8,7 +8,7 @@ use hexagen_lab::results::{PAPER_MOTOR, Plan};
 use hexagen_lab::verification::mismatches;
 use std::path::PathBuf;
 
-/// Where the page goes.
+/// Default folder of the page.
 pub(super) const FOLDER: &str = "target/hexagen";
 
 /// Options of `report`.
@@ -32,7 +32,7 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     let plan = Plan::of(options.motor.as_deref().unwrap_or(PAPER_MOTOR))?;
-    // A folder that cannot be written into is told before the long work.
+    // An unwritable folder is reported before the long run.
     render::prepare_folder(&folder)?;
     let (data, checked) = plan.run(&Bar::default())?;
     let page = results_page(&data);

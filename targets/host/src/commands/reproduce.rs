@@ -1,6 +1,6 @@
 //! `hexagen reproduce`: the paper's experiment, its claims and a page with its figures.
 //!
-//! Both readings of each controller are generated drives in closed loop on the paper's motor.
+//! Both variants of each controller run as generated drives in closed loop on the paper's motor.
 
 use super::report::FOLDER;
 use crate::cli::{Bar, Failure, print_blocks, print_json, print_text};
@@ -24,7 +24,7 @@ pub struct Options {
 /// Runs the command.
 ///
 /// # Errors
-/// A drive or its plant that cannot be, or a page that cannot be written.
+/// Diagnostics, a plant parameter out of range, or a page that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     render::prepare_folder(&folder)?;

@@ -1,10 +1,10 @@
-//! The drives that a command line asks for.
+//! The drives selected on the command line.
 
 use crate::cli::{Failure, tell_warnings, warn};
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use serde::Serialize;
 
-/// A controller that cannot be made for a motor.
+/// A controller that cannot be generated for a motor.
 #[derive(Clone, Debug, Serialize)]
 pub struct Refused {
     /// Name of the motor.
@@ -15,11 +15,11 @@ pub struct Refused {
     pub reason: String,
 }
 
-/// The motors (none: the library) under each of the variants (none: that of the motor's file), and what is refused of
-/// `all` controllers: of those some cannot work with some motors. One that was named must.
+/// The motors (none: the library) with each of the variants (none: that of the motor's file), and
+/// the refused ones of `all` controllers. A controller that is named must not be refused.
 ///
 /// # Errors
-/// Motors that there are not, and all diagnostics.
+/// Unknown motors, and all diagnostics.
 pub fn select(
     motors: &[String],
     variants: &[Option<String>],
@@ -43,7 +43,7 @@ pub fn select(
                     drives.push(drive);
                 }
                 (Err(reason), Some(controller)) if takes_all => {
-                    warn(&format!("{controller} is left out: {reason}"));
+                    warn(&format!("{controller} is skipped: {reason}"));
                     refused.push(Refused {
                         motor: motor.source.name.clone(),
                         controller: controller.clone(),

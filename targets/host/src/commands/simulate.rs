@@ -24,17 +24,17 @@ pub struct Options {
     /// Mechanical speed in rpm; negative is backward
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
     pub rpm: f64,
-    /// Speed in rpm that the drive's speed loop holds, with `speed_loop=on`: --torque is then the greatest that it asks
-    /// for, the run starts at --rpm, and what is measured begins when the speed has had the time to be there; a warning
-    /// tells where it has not settled within 2 % of it
+    /// Speed set-point in rpm, with `speed_loop=on`: the run starts at --rpm, --torque is the limit
+    /// of the speed loop, and the measurement begins after the run-up; warns if the speed has not
+    /// settled within 2 %
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, requires = "inertia")]
     pub speed_set: Option<f64>,
-    /// Write the measured window of the first start, one row per period
+    /// Write the measurement of the first run, one row per period
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 }
 
-/// What a run was and what came out: figures of merit by their keys.
+/// A run and its figures of merit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor.
@@ -43,18 +43,18 @@ pub struct Outcome {
     pub controller: String,
     /// Model that ran.
     pub model: Model,
-    /// What ran the fixed-point program; none for the references.
+    /// Engine of the fixed-point program; none for the references.
     pub engine: Option<EngineKind>,
     /// Mechanical speed, rpm.
     pub rpm: f64,
-    /// Demanded torque, Nm.
+    /// Torque demand, Nm.
     pub torque_nm: f64,
-    /// What tripped the drive; none if nothing did. A drive that tripped has no figures of merit.
+    /// Trip of the drive, if any. A drive that tripped has no figures of merit.
     pub tripped: Option<Trip>,
-    /// What speed a free shaft reached.
+    /// Speed reached by a free shaft.
     #[serde(flatten)]
     pub speed: Option<Speed>,
-    /// What was measured; null where there is no such figure.
+    /// Figures of merit; null where one does not exist.
     #[serde(flatten)]
     pub figures: FiguresOfMerit,
 }
@@ -78,15 +78,15 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     progress.finish_and_clear();
     let mut measured = measured?;
     if let (Some(_), Some(mean)) = (run.aim, measured.figures.mean_torque_nm) {
-        // The reference is what the speed loop asked for, not the most that it may.
+        // The reference is the speed loop's current, not its limit.
         run.current = run_of(&drive.spec, run.omega_m, mean).current;
         measured = Measurement::of(measured.traces, measured.tripped, &run);
     }
     Ok((drive, run, measured))
 }
 
-/// What the speed loop is to reach, and the time for it: until its integral bears the load, that of the run-up at the
-/// torque that the load leaves, and that of the loop.
+/// The speed set-point and the time until it is reached: settling of the integral to the load,
+/// run-up at the remaining torque, settling of the loop.
 fn aim(
     options: &Options,
     drive: &Prepared,
@@ -101,10 +101,10 @@ fn aim(
     ) {
         (None, None, _) => Ok(None),
         (Some(_), None, _) => {
-            wrong("--speed-set: the drive has no speed loop; give the controller `speed_loop=on`")
+            wrong("--speed-set: the drive has no speed loop; set `speed_loop=on` in --controller")
         }
         (None, Some(_), _) | (_, _, None) => wrong(
-            "`speed_loop: on`: the drive regulates its speed; give --speed-set and --inertia, or the controller `speed_loop=off`",
+            "`speed_loop: on`: the drive controls its speed; add --speed-set and --inertia, or set `speed_loop=off` in --controller",
         ),
         (Some(rpm), Some(speed), Some(mechanics)) => {
             let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
@@ -119,13 +119,13 @@ fn aim(
     }
 }
 
-/// Most control periods of a run, settling included: minutes.
+/// Most control periods of a run, with settling: minutes of computing time.
 const MOST_PERIODS: usize = 2_000_000;
 
-/// Fewest control periods of an electrical turn: one per sector.
+/// Fewest control periods per electrical turn: one per sector.
 const LEAST_PERIODS_PER_TURN: f64 = 6.0;
 
-/// Whether the run's electrical turns fit into the record of a run.
+/// Checks that the run's electrical turns fit into its record.
 fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> Result<(), Failure> {
     let (name, rpm) = match options.speed_set {
         Some(set) => ("--speed-set", set),
@@ -133,10 +133,10 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
     };
     let pole_pairs = f64::from(plant.pole_pairs);
     let most = 60.0 / (LEAST_PERIODS_PER_TURN * plant.t_s * pole_pairs);
-    // The greatest speed itself, which the message gives, is accepted in spite of its rounding.
+    // The limit in the message is accepted in spite of its rounding.
     if rpm.abs() > most * (1.0 + 1e-9) {
         return Err(Failure::Argument(format!(
-            "{name} {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, so that angles and speeds cannot be told from samples; give at most {} rpm",
+            "{name} {rpm:e}: an electrical turn takes less than {LEAST_PERIODS_PER_TURN} control periods, too few for angle and speed; give at most {} rpm",
             (most * (1.0 + 1e-9)).floor()
         )));
     }
@@ -150,13 +150,13 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
         .filter(|aim| aim.within > periods as f64 * plant.t_s / 2.0)
     {
         return Err(Failure::Argument(format!(
-            "{name} {rpm}: getting there takes {:.0} s; give a smaller --inertia or --load, a higher --torque, or an --rpm nearer to it",
+            "{name} {rpm}: the run-up takes {:.0} s; give a smaller --inertia or --load, a higher --torque, or an --rpm closer to it",
             aim.within
         )));
     }
     let least = rpm.abs() * measured as f64 / MOST_RECORDED as f64;
     Err(Failure::Argument(format!(
-        "{name} {rpm}: an electrical turn takes {:.0} s, and a record holds {:.1} s; give 0 or at least {} rpm",
+        "{name} {rpm}: an electrical turn takes {:.0} s, longer than the {:.1} s of a record; give 0 or at least {} rpm",
         measured as f64 * plant.t_s,
         MOST_RECORDED as f64 * plant.t_s,
         significant(least * 1.01, 3)
@@ -241,7 +241,7 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
             Some(false) => ", NOT settled",
         };
         print_text(&format!(
-            "{of}: {} rpm in the mean of what was measured, {} rpm at its end{settled}",
+            "{of}: {} rpm on average, {} rpm at the end{settled}",
             significant(speed.mean_rpm, 5),
             significant(speed.final_rpm, 5)
         ))?;

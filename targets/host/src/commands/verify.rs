@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::env;
 
-/// Most steps of a check: hours on one core.
+/// Greatest number of steps: hours on one core.
 const MOST_STEPS: u64 = 100_000_000_000;
 
 /// Options of `verify`.
@@ -29,7 +29,7 @@ pub struct Options {
     /// Seed of the inputs
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// The emitted code that is compared; C is compiled by `CC`, with `CFLAGS`
+    /// Language of the emitted code; C is compiled by `CC` with `CFLAGS`
     #[arg(long, value_enum, default_value_t)]
     pub language: Language,
     /// Print one JSON object
@@ -42,11 +42,11 @@ fn parse_steps(text: &str) -> Result<u64, String> {
     steps
         .filter(|steps| (1..=MOST_STEPS).contains(steps))
         .ok_or_else(|| {
-            format!("give a whole number from 1 to {MOST_STEPS}; more steps are further runs, each with a --seed of its own")
+            format!("give a whole number from 1 to {MOST_STEPS}; for more steps, run again with another --seed")
         })
 }
 
-/// A language that drives are emitted in.
+/// Language of emitted code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Language {
     /// Rust
@@ -57,10 +57,10 @@ pub enum Language {
 }
 
 impl Language {
-    /// What runs each drive's code in this language.
+    /// A verifier of each drive's code; the interpreter replaces a missing Rust compiler.
     ///
     /// # Errors
-    /// No C compiler, or what it said; without one of Rust, the interpreter runs.
+    /// A missing C compiler, or its error.
     fn verifiers(self, drives: &[Prepared]) -> Result<Vec<Verifier<'_>>, Failure> {
         match self {
             Self::Rust => Ok(drives.par_iter().map(Prepared::verifier).collect()),
@@ -77,7 +77,7 @@ impl Language {
 /// Runs the command.
 ///
 /// # Errors
-/// Diagnostics, or the difference that was found.
+/// Diagnostics, or a difference.
 pub fn run(options: &Options) -> Result<(), Failure> {
     #[derive(Serialize)]
     struct Verification {

@@ -1,4 +1,4 @@
-//! Pages as HTML: one file, complete in itself; no script, nothing from outside.
+//! Pages as HTML: one self-contained file without scripts or external resources.
 
 use super::svg::svg;
 use super::texts::{code, markdown};
@@ -10,10 +10,10 @@ use hexagen_lab::report::{
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::fmt::Write;
 
-/// Style sheet, without the rules for plots on a dark ground.
+/// Style sheet, without the rules for plots in the dark scheme.
 const STYLE: &str = include_str!("page.css");
 
-/// Colours that the dark scheme replaces; the others read well on both grounds.
+/// Colours that the dark scheme replaces; the others are readable in both.
 const DARK: [(Color, &str); 13] = [
     (INK, "#D7DCE2"),
     (AXIS, "#8B949E"),
@@ -130,7 +130,7 @@ fn block(block: &Block) -> Result<Markup, RenderError> {
     })
 }
 
-/// A text with its marks; percentages do not break before their sign, code may break after commas.
+/// A marked-up text; no line break before a percent sign, breaks after commas in code.
 pub fn prose(text: &str) -> Markup {
     let text = text.replace(" %", "\u{a0}%");
     html! {
@@ -162,7 +162,7 @@ fn legend(keys: &[Key]) -> Markup {
     }
 }
 
-/// A sign as legends, captions and tables show it.
+/// A legend's sign, as in captions and tables.
 pub fn sign(sign: Sign) -> Markup {
     let drawn = match sign {
         Sign::Cell(tone) => return html! { span.heat.(tone.name()) {} },
@@ -189,7 +189,7 @@ const NARROW: f64 = 620.0;
 
 /// Figures side by side.
 fn row_of_figures(columns: usize, figures: &[Figure]) -> Result<Markup, RenderError> {
-    // A single column is as wide as the page only for plots that are.
+    // A single column is as wide as the page only for wide plots.
     let is_wide = |of: &Figure| of.plot.as_ref().is_some_and(|plot| plot.size.0 > NARROW);
     let class = match columns {
         1 if figures.iter().any(is_wide) => "full",

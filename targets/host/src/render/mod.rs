@@ -1,4 +1,4 @@
-//! Renderers of the laboratory's reports: HTML and terminals; of JSON they are as they stand.
+//! Renderers of the laboratory's reports for HTML and terminals; JSON needs none.
 
 mod html;
 mod svg;
@@ -14,7 +14,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why there is no page.
+/// Error of a page.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The file could not be written.
@@ -46,11 +46,11 @@ pub fn write(page: &Page, dir: &Path) -> Result<PathBuf, RenderError> {
     }
 }
 
-/// Makes the folder of a page where it is missing, and sees whether files can be made in it: a
-/// reason to stop is better known before the work than after it.
+/// Creates the folder of a page if it is missing, and checks before the long run that files can be
+/// written into it.
 ///
 /// # Errors
-/// A folder that cannot be made or written into.
+/// A folder that cannot be created or written into.
 pub fn prepare_folder(dir: &Path) -> Result<(), RenderError> {
     let tried = fs::create_dir_all(dir).and_then(|()| tempfile::tempfile_in(dir));
     tried.map(|_| ()).map_err(|source| RenderError::Write {

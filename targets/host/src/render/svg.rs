@@ -95,7 +95,7 @@ fn text(color: Color, relative: f64) -> TextStyle<'static> {
 /// A plot as a picture.
 ///
 /// # Errors
-/// What plotters cannot draw.
+/// An error of plotters.
 pub fn svg(plot: &Plot) -> Result<Markup, RenderError> {
     let mut drawn = String::new();
     let (width, height) = (px(plot.size.0) as u32, px(plot.size.1) as u32);

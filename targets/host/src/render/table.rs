@@ -27,7 +27,7 @@ fn columns(columns: &[Column]) -> Vec<(&Column, bool)> {
         .collect()
 }
 
-/// Names of columns; names of groups stand above those of their columns.
+/// Names of columns, below the names of their groups.
 fn head(columns: &[(&Column, bool)]) -> Markup {
     let groups = columns.chunk_by(|(a, _), (b, _)| !a.group.is_empty() && a.group == b.group);
     let lower: Vec<_> = columns
@@ -51,7 +51,7 @@ fn head(columns: &[(&Column, bool)]) -> Markup {
     }
 }
 
-/// The names by which the style sheet knows a cell, where there are any.
+/// Classes of a cell in the style sheet.
 fn class(is_number: bool, is_edge: bool, tone: &str) -> Option<String> {
     let names = [
         if is_number { "number" } else { "" },

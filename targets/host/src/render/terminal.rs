@@ -9,7 +9,7 @@ use hexagen_lab::report::{Block, Cell, Column, Group, Key, Label, Sign, Table, T
 /// Longest line in a column of text.
 const WIDEST: usize = 60;
 
-/// Blocks below each other. Figures are told by their captions.
+/// Blocks one after another; figures are represented by their captions.
 pub fn text(blocks: &[Block]) -> String {
     let parts = blocks.iter().map(block).filter(|part| !part.is_empty());
     parts.collect::<Vec<_>>().join("\n")
@@ -63,17 +63,17 @@ fn legend(keys: &[Key]) -> String {
     }
 }
 
-/// A text as it is typed: marks of code, plain minus signs and spaces.
+/// A text in plain characters: code marks, minus signs and spaces.
 fn typed(text: &str) -> String {
     let text = plain(text).replace('\u{2212}', "-").replace('\u{ad}', "");
     text.replace(['\u{a0}', '\u{202f}'], " ")
 }
 
-/// A table in Markdown. What its cells say besides on further lines is left to pages.
+/// A table in Markdown, with the first line of each cell only.
 pub fn table(table: &Table) -> String {
     let mut drawn = comfy_table::Table::new();
     drawn.load_style(ASCII_MARKDOWN);
-    // NO_COLOR, CLICOLOR and the kind of stdout decide.
+    // Depends on NO_COLOR, CLICOLOR and stdout.
     match AutoStream::choice(&std::io::stdout()) {
         ColorChoice::Never => drawn.force_no_tty(),
         _ => drawn.enforce_styling(),

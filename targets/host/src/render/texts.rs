@@ -17,13 +17,13 @@ static SYNTAXES: LazyLock<SyntaxSet> = LazyLock::new(SyntaxSet::load_defaults_ne
 /// Source as a code block, coloured where its language is known.
 ///
 /// # Errors
-/// A fault of the syntax's own rules.
+/// An error in the rules of the syntax.
 pub fn code(language: &str, source: &str) -> Result<Markup, RenderError> {
     let Some(syntax) = SYNTAXES.find_syntax_by_extension(language) else {
         return Ok(html! { pre { (source) } });
     };
     let mut generator = ClassedHTMLGenerator::new_with_class_style(syntax, &SYNTAXES, STYLE);
-    // The generator needs every line ended.
+    // The generator needs a line end after every line.
     let source = format!("{}\n", source.trim_end());
     for line in LinesWithEndings::from(&source) {
         generator
@@ -33,10 +33,10 @@ pub fn code(language: &str, source: &str) -> Result<Markup, RenderError> {
     Ok(html! { pre.code { code { (PreEscaped(generator.finalize())) } } })
 }
 
-/// Levels by which headings of a text go down, to stay below the section's own.
+/// Levels by which headings of a text are lowered, below the section's own heading.
 const BELOW: usize = 2;
 
-/// Markdown as HTML. HTML inside of it is shown as text, so that the page stays its own.
+/// Markdown as HTML. Embedded HTML is shown as text.
 pub fn markdown(text: &str) -> Markup {
     let lower = |level: HeadingLevel| {
         HeadingLevel::try_from(level as usize + BELOW).unwrap_or(HeadingLevel::H6)

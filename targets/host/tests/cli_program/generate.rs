@@ -136,7 +136,7 @@ fn a_warning_goes_to_stderr_and_the_drive_is_generated() {
         assert!(
             run.stderr
                 .contains("phcc:table=printed:1:12: warning[HX0601]: `table`: ")
-                && run.stderr.contains("write `derived`"),
+                && run.stderr.contains("use `derived`"),
             "{command}: {}",
             run.stderr
         );

@@ -241,7 +241,7 @@ fn options_out_of_range_or_at_odds_are_told() {
                 "--inertia",
                 "50",
             ],
-            "getting there takes",
+            "the run-up takes",
         ),
         (
             &["limit", WITH_INERTIA, "--controller", REGULATED],

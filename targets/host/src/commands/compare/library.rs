@@ -1,5 +1,5 @@
-//! Words of 16 bits over the library: the formats that the generator chooses for each motor, against one saturating
-//! format of SI units that holds them all.
+//! 16-bit words over the library: the formats chosen per motor against one saturating format in SI
+//! units for all motors.
 
 use crate::cli::{Failure, PlantArguments, print_json, print_table, print_text, spinner};
 use hexagen_lab::accuracy::{LAW, compare_library};
@@ -51,8 +51,8 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
     }
     print_text(&format!(
         "Deadbeat voltage of {LAW} with 16-bit words, one step from the same state, 20 and 75 % of rated speed: signal over error in the \
-         formats that the generator chose, and in one saturating 16-bit format of SI units with {} fraction bits, which just holds bus \
-         voltages, currents and coefficients of all of these motors. Better by {:.1} dB in the mean.",
+         formats chosen by the generator, and in one saturating 16-bit format in SI units with {} fraction bits, the most that holds bus \
+         voltages, currents and coefficients of all these motors. Better by {:.1} dB on average.",
         library.uniform_frac_bits, library.better_by_db
     ))
 }

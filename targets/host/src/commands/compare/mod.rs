@@ -1,5 +1,5 @@
-//! `hexagen compare`: fixed against floating point, per controller and word length; without a motor, words of 16 bits
-//! against one format for the whole library.
+//! `hexagen compare`: fixed against floating point, per controller and word length; without a motor,
+//! 16-bit formats per motor against one format for the whole library.
 
 mod library;
 mod print;
@@ -17,22 +17,22 @@ use std::path::PathBuf;
 /// Options of `compare`.
 #[derive(Args, Clone, Debug)]
 pub struct Options {
-    /// Motor file, or name of a library motor. Without one: words of 16 bits against one 16-bit format for the whole
-    /// library
+    /// Motor file, or name of a library motor. Without one: 16-bit formats per motor against one
+    /// format for the whole library
     #[arg(value_name = "MOTOR")]
     pub motor: Option<String>,
-    /// Controller variant, whose figures of merit are printed one by one; or `all` [default: all]
+    /// Controller variant, with all figures of merit, or `all` [default: all]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]", requires = "motor")]
     pub controller: Option<Selection>,
-    /// Run controllers on plants that differ from the motor file instead: R, L, k_b +-30 %, bus -10 %,
-    /// dead time 0 to 2 us, Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset. The plant
-    /// options then say what all of these plants have in common
+    /// Run controllers on disturbed plants instead: R, L, k_b +-30 %, bus -10 %, dead time 0 to 2 us,
+    /// Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset. The plant options apply to all
+    /// of these plants
     #[arg(long, requires = "motor")]
     pub robustness: bool,
-    /// Write the sheet of --robustness, one row per controller, disturbance and speed
+    /// Write the table of --robustness, one row per controller, disturbance and speed
     #[arg(long, value_name = "FILE", requires = "robustness")]
     pub csv: Option<PathBuf>,
-    /// What the plant differs in
+    /// Changes of the plant
     #[command(flatten)]
     pub plant: PlantArguments,
     /// Print one JSON object
@@ -70,14 +70,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     within_bounds(&rows)
 }
 
-/// Whether no error was larger than what is proven of it.
+/// Checks all errors against their proven bounds.
 fn within_bounds(rows: &[Row]) -> Result<(), Failure> {
     let beyond = rows.iter().filter_map(|row| {
         let one_step = &row.accuracy.as_ref()?.one_step;
-        // Also where there is no number at all.
+        // NaN counts as out of bounds.
         (!one_step.is_within_bounds()).then(|| {
             format!(
-                "{}: errors of {:e} V, of {} and (limited) {} timer counts were seen, and proven are at most {:e} V, {} and {}",
+                "{}: errors of {:e} V, {} and (limited) {} timer counts exceed the proven bounds of {:e} V, {} and {}",
                 row.controller,
                 one_step.largest_v,
                 one_step.duty_largest_counts,

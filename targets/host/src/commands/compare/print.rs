@@ -5,7 +5,7 @@ use hexagen_lab::accuracy::{Accuracy, FigureDifference, Row};
 use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
 
-/// Prints the rows, and every figure of merit where they are of one controller.
+/// Prints the rows, with all figures of merit for a single controller.
 ///
 /// # Errors
 /// As [`print_text`].
@@ -15,13 +15,13 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
         print_text(reason)?;
     }
     print_text(
-        "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage that the regulator asks for; phcc: the predicted error of the current times K), \
+        "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage of the current controller; phcc: the predicted error of the current times K), \
          one step from the same state, phases a and b.\n\
-         Decisions: sector, commutation, limit, vector. Where they differ (a tie that rounding broke) no errors are compared.\n\
-         Closed loop: the figure that differs most, by what may differ (0.5 %, or 0.05 points of percentages), same starts and ADC words. \
-         A controller of whole vectors takes another course from a broken tie on.\n\
-         Duty: compare value less exact duty, timer counts, while no limit acts and where one does, each with its proven bound and \
-         half a count for the compare value's own rounding.\n",
+         Decisions: sector, commutation, limit, vector. Where they differ (by rounding of a tie), errors are not compared.\n\
+         Closed loop: the figure that differs most, relative to its tolerance (0.5 %, or 0.05 percentage points), same starts and ADC words. \
+         Controllers of whole vectors diverge after a tie.\n\
+         Duty: compare value minus exact duty, timer counts, without and with limiting, each with its proven bound and \
+         half a count for the rounding of the compare value.\n",
     )?;
     print_table(&step_table(rows))?;
     if !with_figures {
@@ -45,7 +45,7 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
         }
     }
     print_text(
-        "\nideal: on the words that the fixed-point drive read and from its state; alone: in a loop of its own.",
+        "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop.",
     )
 }
 

@@ -1,4 +1,4 @@
-//! Proofs for Coq: one file a script, checked where there is a Coq.
+//! Coq proofs: one file per script, checked if Coq is installed.
 
 use crate::checker::{certificate, check_certificate};
 use crate::cli::{Failure, write_file};
@@ -8,19 +8,19 @@ use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
 
-/// Proofs of one drive for Coq.
+/// Coq proofs of one drive.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Certificates {
-    /// Files, one a script.
+    /// Files, one per script.
     pub written: usize,
-    /// Of these, files that Coq has checked to the end and that assume nothing of their own.
+    /// Files that Coq has accepted and that add no axioms.
     pub checked: usize,
     /// Time of the longest check, seconds.
     pub longest_s: f64,
 }
 
 impl Certificates {
-    /// What came of a drive's scripts.
+    /// Totals of a drive's scripts.
     pub(super) fn of<'a>(certified: impl Iterator<Item = &'a Certified>) -> Self {
         let mut all = Self {
             written: 0,
@@ -38,30 +38,30 @@ impl Certificates {
     }
 }
 
-/// What to do about certificates.
+/// Options for certificates.
 #[derive(Clone, Copy, Debug)]
 pub struct Certify<'a> {
-    /// Where they go.
+    /// Their folder.
     pub folder: &'a Path,
-    /// Whether there is a Coq that can check them.
+    /// Whether Coq can check them.
     pub checks: bool,
 }
 
-/// What came of a script's certificate.
+/// Result of a script's certificate.
 #[derive(Clone, Debug)]
 pub(super) enum Certified {
-    /// There is none, and why.
+    /// No certificate, with the reason.
     Missing(String),
-    /// Nobody checked it.
+    /// Not checked.
     Written,
-    /// It holds; how long the check took.
+    /// Accepted, with the time of the check.
     Checked(Duration),
-    /// It does not, and why.
+    /// Refused, with the reason.
     Refused(String),
 }
 
 impl Certified {
-    /// What is not as it should be.
+    /// The failure, if any.
     pub(super) fn failure(&self, script: &str) -> Option<String> {
         match self {
             Self::Missing(reason) | Self::Refused(reason) => Some(format!("{script}: {reason}")),
@@ -88,7 +88,7 @@ impl Certify<'_> {
     }
 }
 
-/// A name of which Coq can make one of a module.
+/// A name that is valid for a Coq module.
 fn file_name(name: &str) -> String {
     name.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_")
 }
