@@ -1,4 +1,4 @@
-//! The pipeline behind all front ends: checked specification in, verified graph and interface out.
+//! The pipeline: from a checked specification to a verified graph and its interface.
 
 use crate::at_once::at_once;
 use crate::diagnostics::{
@@ -16,7 +16,7 @@ use crate::spec::health::TRIP_BY_DEFAULT;
 use crate::spec::{Origins, Spec};
 use crate::stopwatch::Part;
 
-/// What emitters take.
+/// Input of the emitters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generated {
     /// The verified program.
@@ -39,8 +39,7 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
     })
 }
 
-/// Words as the target prefers them where they suffice, else of 32 bits; the type's documentation says what the choice
-/// costs.
+/// Words of the target's length if they suffice, else of 32 bits; documented in the type.
 fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let wide = Spec {
         controller: spec.controller.clone().with_word(32),
@@ -101,7 +100,7 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     if law(&spec.controller).loses_current() {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
     }
-    // Round numbers put motors right on the limit.
+    // Round numbers in a specification may lie exactly on the limit.
     if let Some(trust) = trust_in_estimate(spec)
         && trust.turn > trust.limit * (1.0 + 1e-9)
     {
@@ -307,7 +306,7 @@ kind = "pdcc"
 
     #[test]
     fn every_controller_generates_for_the_paper_motor() {
-        // The second is for regulators that have no use for the EMF.
+        // The second is for regulators without EMF options.
         let common = [
             "emf=estimated",
             "discretisation=exact",
