@@ -36,10 +36,26 @@ pub fn pack(verify: bool) -> Result<Step, String> {
     } else {
         pack.arguments.push("--no-verify".to_owned());
     }
+    of_published(pack)
+}
+
+/// The documentation of all published crates, without warnings.
+///
+/// # Errors
+/// Errors of reading the workspace.
+pub fn documentation() -> Result<Step, String> {
+    of_published(Step {
+        environment: vec![("RUSTDOCFLAGS", "-D warnings")],
+        ..step("documentation", &["doc", "--workspace", "--no-deps"])
+    })
+}
+
+/// A step of the whole workspace, without the crates that are not published.
+fn of_published(mut step: Step) -> Result<Step, String> {
     let unpublished = members()?.into_iter().filter(|member| !member.is_published);
-    pack.arguments
+    step.arguments
         .extend(unpublished.flat_map(|member| ["--exclude".to_owned(), member.name]));
-    Ok(pack)
+    Ok(step)
 }
 
 /// Checks that each package holds both licences, word for word, and a README.

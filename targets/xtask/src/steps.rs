@@ -36,10 +36,7 @@ pub fn checks() -> Result<Vec<Step>, String> {
                 ],
             )
         },
-        Step {
-            environment: vec![("RUSTDOCFLAGS", "-D warnings")],
-            ..step("documentation", &["doc", "--workspace", "--no-deps"])
-        },
+        packages::documentation()?,
         step("tests", &["test", "--workspace", "--no-fail-fast"]),
         step(
             "a drive chosen by a feature",
@@ -191,22 +188,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         "all",
         "--coq",
     ];
-    let tampered = [
-        "test",
-        "--package",
-        "hexagen-host",
-        "--test",
-        "proofs",
-        "certificates",
-    ];
-    let random = [
-        "test",
-        "--package",
-        "hexagen-host",
-        "--test",
-        "proofs",
-        "random",
-    ];
+    let checked = ["test", "--package", "hexagen-host", "--test", "proofs"];
     let interpreter = [
         "test",
         "--package",
@@ -241,12 +223,12 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),
         Step {
-            environment: vec![("HEXAGEN_COQ", "1")],
-            ..step("false certificates", &tampered)
-        },
-        Step {
-            environment: vec![("HEXAGEN_RANDOM_MOTORS", "1000")],
-            ..step("proofs of random motors", &random)
+            environment: vec![
+                ("HEXAGEN_COQ", "1"),
+                ("HEXAGEN_ALL_FAULTS", "1"),
+                ("HEXAGEN_RANDOM_MOTORS", "1000"),
+            ],
+            ..step("proofs of random motors, false proofs", &checked)
         },
     ])
 }

@@ -3,6 +3,7 @@
 use crate::support::{PAPER, Said, hexagen, keys, number, run};
 use serde_json::Value;
 use std::ffi::OsStr;
+use std::sync::OnceLock;
 
 /// Runs the program with a variable of its environment set.
 fn run_with(arguments: &[&str], variable: &str, value: &OsStr) -> Said {
@@ -209,9 +210,15 @@ fn modulates(row: &Value) -> bool {
         .any(|kind| controller.starts_with(kind))
 }
 
+/// What `compare` says of the paper's motor: one run serves several tests.
+fn compared() -> &'static Value {
+    static COMPARED: OnceLock<Value> = OnceLock::new();
+    COMPARED.get_or_init(|| run(["compare", PAPER, "--json"]).json())
+}
+
 #[test]
 fn compare_tells_accuracy_per_controller_and_word_length() {
-    let result = run(["compare", PAPER, "--json"]).json();
+    let result = compared();
     let rows = result["rows"].as_array().expect("a list");
     let named = |row: &Value| row["controller"].as_str().map(str::to_owned);
     let names: Vec<String> = rows.iter().filter_map(named).collect();
@@ -244,7 +251,7 @@ fn compare_tells_accuracy_per_controller_and_word_length() {
 
 #[test]
 fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
-    let result = run(["compare", PAPER, "--json"]).json();
+    let result = compared();
     let rows = result["rows"].as_array().expect("a list");
     let of_32_bits = rows.iter().filter(|row| number(row, "word") == 32.0);
     let mut compared = 0;

@@ -5,6 +5,7 @@ use crate::generated;
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_host::checker::is_proved;
 use hexagen_lab::engine::library;
+use std::env;
 
 /// Stages whose scripts get faults.
 const STAGES: [&str; 5] = [
@@ -66,6 +67,7 @@ fn planted(script: &str, fault: fn(&str) -> Option<String>) -> Option<String> {
     Some(lines.join("\n"))
 }
 
+/// Every third fault in a push; all of them where `HEXAGEN_ALL_FAULTS` is set, as in the nightly run.
 #[test]
 fn planted_faults_are_refused() {
     let library = library();
@@ -75,7 +77,8 @@ fn planted_faults_are_refused() {
     let motor = motor.expect("the paper's motor");
     let generated = generated(motor.text, "pdcc").expect("the default drive");
     let scripts = emit_gappa(&generated.graph);
-    let (mut count, mut wrong) = (0, vec![]);
+    let all = env::var_os("HEXAGEN_ALL_FAULTS").is_some();
+    let (mut found, mut count, mut wrong) = (0, 0, vec![]);
     for script in &scripts {
         if !STAGES.iter().any(|stage| script.name.starts_with(stage)) {
             continue;
@@ -84,6 +87,10 @@ fn planted_faults_are_refused() {
         assert!(is_proved(&text).expect("gappa runs"), "{}", script.name);
         for (what, fault) in FAULTS {
             if let Some(faulty) = planted(&text, fault) {
+                found += 1;
+                if !all && found % 3 != 0 {
+                    continue;
+                }
                 count += 1;
                 if is_proved(&faulty).expect("gappa runs") {
                     wrong.push(format!("{}: {what}: proved\n{faulty}", script.name));
@@ -93,5 +100,8 @@ fn planted_faults_are_refused() {
     }
     println!("{count} faults planted");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(count >= 30, "{count} faults planted");
+    assert!(
+        found >= 30 && count * 3 >= 30,
+        "{count} faults planted of {found}"
+    );
 }
