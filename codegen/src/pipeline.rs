@@ -6,7 +6,7 @@ use crate::diagnostics::{
 };
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
-use crate::laws::current_loop::{LinearLoop, LoopDesign};
+use crate::laws::current_loop::{LinearLoop, LoopDesign, SEARCHED};
 use crate::laws::{
     Cause, Period, StableRange, accuracy_constants, interface, law, narrow_words,
     trust_in_estimate, wide_words,
@@ -238,8 +238,9 @@ fn check_stability(
     }
     let remedy = law.steadier(spec);
     let leaves = |tolerance: f64, (low, high): (f64, f64)| {
-        // The search ends at 0.1 and 10; beyond it nothing is known to be unstable.
-        (1.0 - tolerance < low && low > 0.1) || (1.0 + tolerance > high && high < 10.0)
+        // Beyond the searched range nothing is known to be unstable.
+        let [least, most] = SEARCHED;
+        (1.0 - tolerance < low && low > least) || (1.0 + tolerance > high && high < most)
     };
     let motor = &spec.motor;
     for (code, quantity, tolerance, range) in [

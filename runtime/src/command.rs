@@ -177,7 +177,7 @@ impl defmt::Format for Legs {
 /// let two = Intervals::new([900, 1500, 1800], [[Pulsed, Low, Off], [Low; 3], [Pulsed, Off, Off]]);
 /// assert_eq!(two.state()[0], [Pulsed, Low, Off]);
 /// assert_eq!(two.on(), [Some(1200), Some(0), Some(0)]);
-/// A descending instant counts as the one before.
+/// // A descending instant counts as the one before.
 /// assert_eq!(Intervals::new([900, 100, 0], [[Off; 3]; 3]).ends(), [900; 3]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

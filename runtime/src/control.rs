@@ -26,12 +26,12 @@ pub trait State: Send + 'static {
 /// ```
 /// use hexagen::{Control, ControlLoop, DynLoop, Fault, Legs, Sample, SetPoint};
 ///
-/// The PWM interrupt, for any drive.
+/// /// The PWM interrupt, for any drive.
 /// fn interrupt<C: Control<Command = Legs>>(control: &mut ControlLoop<'_, C>, adc: [u16; 2], hall: u8) -> Legs {
 ///     control.step(&Sample::with_hall(adc, hall))
 /// }
 ///
-/// The main program, for any drive.
+/// /// The main program, for any drive.
 /// fn main_program<C: Control>(set_point: &SetPoint<C>) -> Result<(), Fault> {
 ///     set_point.set_current_ma(5_000);
 ///     set_point.status().fault.map_or(Ok(()), Err)

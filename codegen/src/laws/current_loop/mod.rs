@@ -12,7 +12,7 @@ mod words;
 
 pub use design::LoopDesign;
 pub use held::{Held, LeftOver};
-pub use stability::{LinearLoop, StableRange, estimate};
+pub use stability::{LinearLoop, SEARCHED, StableRange, estimate};
 pub use words::{EmfUse, Needs, Words};
 
 use crate::blocks::set_point::{Gain, SetPointWords};

@@ -180,7 +180,10 @@ pub fn estimate(share: f64, design: &LoopDesign, i: [f64; 2], v_prev: f64, e_pre
     }
 }
 
-/// The interval around 1 where the loop is stable, between 0.1 and 10, to 1e-4 relative.
+/// Least and greatest multiple of a parameter that are searched: a range that ends here may go on.
+pub const SEARCHED: [f64; 2] = [0.1, 10.0];
+
+/// The interval around 1 where the loop is stable, within [`SEARCHED`], to 1e-4 relative.
 fn stable_interval(is_stable: impl Fn(f64) -> bool) -> (f64, f64) {
     if !is_stable(1.0) {
         return (1.0, 1.0);
@@ -191,8 +194,9 @@ fn stable_interval(is_stable: impl Fn(f64) -> bool) -> (f64, f64) {
         while is_stable(outside) {
             inside = outside;
             outside *= stride;
-            if !(0.1..=10.0).contains(&outside) {
-                return outside.clamp(0.1, 10.0);
+            let [least, most] = SEARCHED;
+            if !(least..=most).contains(&outside) {
+                return outside.clamp(least, most);
             }
         }
         while (outside / inside - 1.0).abs() > 1e-4 {

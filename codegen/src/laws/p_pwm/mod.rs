@@ -1,7 +1,7 @@
 #![doc = include_str!("semantics.md")]
 
+mod linear;
 mod lower;
-mod stability;
 
 use super::current_loop::{LinearLoop, LoopDesign};
 use super::{Cause, Description, Law, Period, StableRange, Start};
@@ -9,7 +9,7 @@ use crate::blocks::Scale;
 use crate::diagnostics::{engineering, percent};
 use crate::scaling::Lowered;
 use crate::spec::{EmfSource, PPwmSpec, Spec};
-use stability::ProportionalLoop;
+use linear::ProportionalLoop;
 
 impl Law for PPwmSpec {
     fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered {

@@ -1,7 +1,7 @@
 #![doc = include_str!("semantics.md")]
 
+mod linear;
 mod lower;
-mod stability;
 
 use super::current_loop::{LinearLoop, LoopDesign};
 use super::start::INTEGRATED_EMF;
@@ -9,7 +9,7 @@ use super::{Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::scaling::Lowered;
 use crate::spec::{Modulation, PdccSpec, Spec};
-use stability::DeadbeatLoop;
+use linear::DeadbeatLoop;
 
 impl Law for PdccSpec {
     fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered {

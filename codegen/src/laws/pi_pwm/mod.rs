@@ -1,7 +1,7 @@
 #![doc = include_str!("semantics.md")]
 
+mod linear;
 mod lower;
-mod stability;
 
 use super::current_loop::{LinearLoop, LoopDesign};
 use super::start::INTEGRATED_EMF;
@@ -10,7 +10,7 @@ use crate::blocks::Scale;
 use crate::diagnostics::engineering;
 use crate::scaling::Lowered;
 use crate::spec::{EmfSource, PiPwmSpec, Spec};
-use stability::{PiLoop, is_stable_with_winding_time};
+use linear::{PiLoop, is_stable_with_winding_time};
 
 impl Law for PiPwmSpec {
     fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered {
