@@ -1,9 +1,9 @@
-//! Two works at once: the compiler uses one core, and that one waits for its macros.
+//! Two tasks in parallel: the compiler uses one core, and waits for its macros.
 
 use std::panic::resume_unwind;
 use std::thread::scope;
 
-/// Does both, the first beside the second.
+/// Runs both, the first in a second thread.
 pub fn at_once<A: Send, B>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
     scope(|scope| {
         let first = scope.spawn(first);

@@ -1,7 +1,7 @@
-//! The build script's way through the pipeline: motor files in, one Rust file per motor out, or header and source in
-//! C99 per drive.
+//! Generation in build scripts: motor files in, one Rust file per motor out, or a header and a source
+//! in C99 per drive.
 //!
-//! The same core as the macro's and the same tokens; the file is formatted for readers.
+//! The tokens are those of the macro; the file is formatted for readers.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::c99::{RUNTIME, Sources, emit_c99};
@@ -28,8 +28,8 @@ use std::{env, fs, io};
 ///
 /// and in the crate: `include!(concat!(env!("OUT_DIR"), "/hub.rs"));`
 ///
-/// A motor without a controller takes the one of its file. With several controllers, each is a
-/// type of the same Rust file.
+/// Without a call of `controller` a motor takes the controller of its file. With several controllers,
+/// each is a type of the same Rust file.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
     root: PathBuf,
@@ -38,13 +38,13 @@ pub struct Builder {
     folders: Vec<String>,
     allowed: Vec<String>,
     language: Language,
-    /// Whether the last motor was given by a folder, whose files take their own controllers.
+    /// Whether the last motor came from a folder, whose files have their own controllers.
     in_folder: bool,
-    /// The first call that belongs to no motor, and its place.
+    /// The first call without a motor, and its place.
     misplaced: Option<(String, String)>,
 }
 
-/// What is written.
+/// Output language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Language {
     #[default]
@@ -65,7 +65,7 @@ struct Wanted {
     name: Option<String>,
 }
 
-/// What was written for a motor.
+/// Files written for a motor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The motor file as it was given.
@@ -74,11 +74,11 @@ pub struct Written {
     pub files: Vec<PathBuf>,
     /// Names of the types in them, in the order of the controllers.
     pub types: Vec<String>,
-    /// Warnings, but for those that are allowed.
+    /// Warnings that are not allowed.
     pub warnings: Vec<String>,
 }
 
-/// Why nothing, or not everything, was generated.
+/// Error of a build script.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
     /// Errors in specifications, of all motors; each with file, line and column.
@@ -89,10 +89,10 @@ pub enum BuildError {
     Io {
         /// As it was given.
         path: String,
-        /// What the system said.
+        /// The system's error.
         error: io::Error,
     },
-    /// Neither [`Builder::out_dir`] nor the environment's `OUT_DIR` says where to write.
+    /// Neither [`Builder::out_dir`] nor the environment variable `OUT_DIR` is set.
     #[error("OUT_DIR is not set: call this in a build script, or say `.out_dir(…)`")]
     NoOutDir,
     /// Two controllers of one motor have the same type name.
@@ -103,26 +103,26 @@ pub enum BuildError {
         /// The name.
         name: String,
     },
-    /// Two types of one motor have names that differ only in how their words are set apart.
+    /// Two types of one motor have the same name in snake case.
     #[error(
         "{motor}: {first} and {second} would both stand in a module `{module}`; tell them apart with `.name(…)`"
     )]
     SameModule {
         /// The motor file.
         motor: String,
-        /// The type that has the module.
+        /// The first type.
         first: String,
-        /// The type that would take it, too.
+        /// The second type.
         second: String,
         /// The module.
         module: String,
     },
-    /// [`Builder::controller`] or [`Builder::name`] follows no motor that it could belong to.
+    /// [`Builder::controller`] or [`Builder::name`] without a preceding [`Builder::motor`].
     #[error("{call} {place}; say it after the `.motor(…)` that it belongs to")]
     Misplaced {
         /// The call as it was written.
         call: String,
-        /// Where it stands.
+        /// Its place.
         place: String,
     },
     /// Two motor files would be written to the same file.
@@ -137,7 +137,7 @@ pub enum BuildError {
         /// What to change.
         remedy: &'static str,
     },
-    /// A type name is no Rust type name.
+    /// A type name is not valid in Rust.
     #[error("{motor}: `{name}` is no name for a Rust type; give one with `.name(…)`")]
     BadName {
         /// The motor file.
@@ -153,7 +153,7 @@ fn list(errors: &[Diagnostics]) -> String {
 }
 
 impl Builder {
-    /// A builder that finds motor files relative to the crate whose build script runs.
+    /// A builder with motor files relative to the crate whose build script runs.
     pub fn new() -> Self {
         Self {
             root: env::var_os("CARGO_MANIFEST_DIR")
@@ -163,21 +163,21 @@ impl Builder {
         }
     }
 
-    /// The folder that motor files are relative to, in place of the crate's.
+    /// Folder of the motor files, in place of the crate's.
     #[must_use]
     pub fn root(mut self, root: impl Into<PathBuf>) -> Self {
         self.root = root.into();
         self
     }
 
-    /// Where the Rust files go, in place of `OUT_DIR`.
+    /// Output folder, in place of `OUT_DIR`.
     #[must_use]
     pub fn out_dir(mut self, out_dir: impl Into<PathBuf>) -> Self {
         self.out_dir = Some(out_dir.into());
         self
     }
 
-    /// Adds a motor file; [`Self::controller`] and [`Self::name`] after it belong to it.
+    /// Adds a motor file; later [`Self::controller`] and [`Self::name`] calls belong to it.
     #[must_use]
     pub fn motor(mut self, path: impl Into<String>) -> Self {
         self.motors.push(Motor {
@@ -188,7 +188,7 @@ impl Builder {
         self
     }
 
-    /// Adds every `*.toml` of a folder, in the order of their names, each with its own controller.
+    /// Adds every `*.toml` of a folder, in the order of names, each with its own controller.
     #[must_use]
     pub fn motors(mut self, folder: impl Into<String>) -> Self {
         self.folders.push(folder.into());
@@ -209,8 +209,8 @@ impl Builder {
         self
     }
 
-    /// Names the type of the last controller, or of the last motor's own one. By default the motor
-    /// gives the name, and the variant what follows it: `HubPdccEmfModelAdvance2`.
+    /// Names the type of the last controller, or of the last motor's own one. The default name comes
+    /// from motor and variant: `HubPdccEmfModelAdvance2`.
     #[must_use]
     pub fn name(mut self, name: impl Into<String>) -> Self {
         let name = name.into();
@@ -225,7 +225,7 @@ impl Builder {
         self
     }
 
-    /// The motor that a call belongs to; remembers the first that belongs to none.
+    /// The motor that a call belongs to; the first call without one is recorded.
     fn owner(&mut self, method: &str, argument: &str) -> Option<&mut Motor> {
         let place = if self.in_folder {
             let folder = self.folders.last().map_or("", String::as_str);
@@ -247,22 +247,21 @@ impl Builder {
         self
     }
 
-    /// Writes C99 in place of Rust, for parts of a firmware that another compiler builds: the type `HubDrive` becomes
-    /// `hub_drive.h` and `hub_drive.c`, the same step bit for bit. What all drives share comes beside them, `hexagen.h`
-    /// and `hexagen.c`, which is to be compiled once.
+    /// Writes C99 in place of Rust: the type `HubDrive` becomes `hub_drive.h` and `hub_drive.c`, the
+    /// same step bit for bit, beside the shared runtime `hexagen.h` and `hexagen.c`, which is compiled
+    /// once.
     #[must_use]
     pub fn c99(mut self) -> Self {
         self.language = Language::C99;
         self
     }
 
-    /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Tells
-    /// cargo which files to watch, and warnings.
+    /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Prints
+    /// the files to watch and the warnings for cargo.
     ///
     /// # Errors
-    /// A call that belongs to no motor, and motors that would be written to the same file; all errors
-    /// of all specifications together, before anything is written; else the first file that cannot be
-    /// read or written.
+    /// A call without a motor; motors with the same output file; all errors of all specifications,
+    /// before anything is written; else the first file that cannot be read or written.
     pub fn generate(self) -> Result<Vec<Written>, BuildError> {
         if let Some((call, place)) = self.misplaced {
             return Err(BuildError::Misplaced { call, place });
@@ -337,8 +336,8 @@ fn file_name(motor: &str) -> PathBuf {
     Path::new(stem).with_extension("rs")
 }
 
-/// Whether each motor has a Rust file of its own. Names that differ only in their case are one file on
-/// some systems.
+/// Checks that each motor has its own Rust file. Names that differ only in case are one file on some
+/// systems.
 fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
     let mut files: BTreeMap<String, &str> = BTreeMap::new();
     for motor in motors {
@@ -359,7 +358,7 @@ fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Whether each drive has files of its own, which those in C have by their types' names.
+/// Checks that each drive has its own files, which in C are named by type.
 fn check_written(sources: &[(String, Source)]) -> Result<(), BuildError> {
     let mut files: BTreeMap<String, &str> = BTreeMap::new();
     for (motor, source) in sources {
@@ -515,8 +514,8 @@ impl Source {
     }
 }
 
-/// Writes beside the file and renames, so that no reader sees half of it. (The program has a writer of its own,
-/// which makes folders and temporary names by a crate that build scripts do without.)
+/// Writes beside the file and renames, so that no reader sees half of it. (The program's own writer
+/// uses a crate for temporary files, which build scripts do without.)
 fn write_whole(file: &Path, text: &str) -> Result<PathBuf, BuildError> {
     let mut beside = file.as_os_str().to_owned();
     beside.push(format!(".{}", std::process::id()));

@@ -1,7 +1,6 @@
-//! `#[derive(hexagen::State)]`: the words that a law keeps, as a list.
+//! `#[derive(hexagen::State)]`: a law's state as a list of words.
 //!
-//! Fields are `Word`s, or `u16`s for words that need no more. Each begins at 0, or at the number of
-//! its `#[initial(…)]`.
+//! Fields are `Word`s or `u16`s. The initial value is 0, or the number of `#[initial(…)]`.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use quote::{quote, quote_spanned};

@@ -1,10 +1,10 @@
-//! The macro's way through the pipeline: tokens in, tokens out, errors as `compile_error!`, warnings as the
-//! compiler's own.
+//! Expansion of the macros: tokens in, tokens out, errors as `compile_error!`, warnings as compiler
+//! warnings.
 //!
-//! A macro's text has its constants by value, which compiles faster; files have them by name. They differ in nothing else.
+//! Macros write constants by value, which compiles faster; files by name. They differ in nothing else.
 //!
-//! On errors the type still appears in its empty shape, with every method and constant, so that
-//! the compiler reports what is wrong with the specification and nothing that follows from it.
+//! On errors the type is emitted as an empty shape with every method and constant, so that the compiler
+//! reports the errors of the specification only.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::module_name;
@@ -30,10 +30,10 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
         Ok((Generated { graph, interface }, warnings)) => {
             let tracking = input.motor_file.iter().map(track);
             let name = surface.name.to_string();
-            // A documented item costs the compiler more than its value wherever it is used.
+            // A documented constant costs more compile time than its value at every use.
             let graph = graph.without_constant_names();
             let code = Part::Emission.timed(|| write_rust(&graph, &interface, &name));
-            // Tokens of the text are the compiler's own work where this is a macro.
+            // In a macro the compiler itself parses the text.
             let code = code.into_tokens(&surface);
             let anchor = input.anchor();
             let warnings = warnings
@@ -102,8 +102,8 @@ fn surface(input: &MacroInput) -> Surface {
     }
 }
 
-/// Makes the compiler rebuild the crate when the motor file changes. The path stays relative to
-/// the crate, so that the output is the same wherever it lies.
+/// Makes the compiler rebuild the crate when the motor file changes. The path is relative to the crate,
+/// so that the output does not depend on the crate's place.
 fn track(file: &MotorFile) -> TokenStream {
     let path = &file.path;
     quote! {
@@ -111,7 +111,7 @@ fn track(file: &MotorFile) -> TokenStream {
     }
 }
 
-/// The type under the name that was given, with every trait and constant that its options bring: the example's drive,
+/// The type under the given name, with every trait and constant of its options: the example's drive,
 /// which never runs, since the crate does not compile.
 fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     let is = |section: &crate::spec::ast::Section, field: &str, word: &str| {
@@ -148,7 +148,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
             };
             let given = &surface.type_attributes;
             let surface = Surface {
-                // The name may be what is wrong.
+                // The name may be invalid.
                 type_attributes: quote!(#given #[allow(non_camel_case_types)]),
                 ..surface.clone()
             };
@@ -187,7 +187,7 @@ mod tests {
         format_rust(&expand_controller(hub(bus, options), Path::new("")))
     }
 
-    /// A file's tokens, with its private constants standing by their values, as [`expand_controller`] has them.
+    /// A file's tokens with its private constants by value, as from [`expand_controller`].
     fn with_constants_by_value(file: &str) -> String {
         let mut file = syn::parse_file(file).expect("a Rust file");
         let mut values = HashMap::new();
@@ -210,7 +210,7 @@ mod tests {
         format_rust(&replaced(file.to_token_stream(), &values))
     }
 
-    /// Constants of the type have the same names, where they are defined.
+    /// Replaces constants by their values, except at definitions: associated constants have the same names.
     fn replaced(tokens: TokenStream, values: &HashMap<String, TokenStream>) -> TokenStream {
         let mut is_definition = false;
         let replace = |token: TokenTree| {

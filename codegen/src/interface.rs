@@ -1,5 +1,5 @@
-//! What an emitter knows of a controller besides its verified graph: names, documentation and
-//! ready-made values. Filled by the controller's lowering; holds no specification types.
+//! The emitters' input besides the verified graph: names, documentation and constants, without types of
+//! the specification.
 
 /// A value shown to the user as an associated constant of the emitted type.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub enum PublicValue {
         /// Value.
         value: i64,
     },
-    /// A `fixed` number: bits of a 32-bit word with so many fraction bits (`FixedI32<Uf>`).
+    /// A `fixed` number of 32 bits (`FixedI32<Uf>`).
     Fixed {
         /// Two's complement bits.
         bits: i32,
@@ -47,7 +47,7 @@ pub struct PublicConstant {
     pub doc: Vec<String>,
 }
 
-/// How results are rounded into a format.
+/// Rounding into a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// Towards minus infinity.
@@ -61,14 +61,13 @@ pub enum Rounding {
 pub struct FormatEntry {
     /// Signals, coefficient or table.
     pub name: String,
-    /// Bits of two's complement that hold it: of signals, every one that outlives a call; of a
-    /// coefficient or table, its values.
+    /// Two's complement bits: for signals those of state words, else those of the values.
     pub storage_bits: u32,
-    /// Fraction bits relative to its base; for coefficients the shift of `mul`.
+    /// Fraction bits relative to the base; for coefficients the shift of products.
     pub frac_bits: i32,
     /// Rounding.
     pub rounding: Rounding,
-    /// Equal parts of a turn, of a table.
+    /// Segments of a turn, for a table.
     pub segments: Option<u32>,
     /// Base and range in words: "timer counts of 26.67 mV, +-512 V".
     pub meaning: String,
@@ -90,31 +89,31 @@ pub struct OptionEntry {
 pub struct Interface {
     /// `UpperCamelCase` type name.
     pub type_name: String,
-    /// Documentation of the type, Markdown lines: what it controls, how, derived values, stable range.
+    /// Documentation of the type, Markdown lines: motor, method, derived values, stable range.
     pub doc: Vec<String>,
-    /// What stands behind it, Markdown lines: generator version, derived values.
+    /// Documentation after it, Markdown lines: generator version, scale.
     pub header: Vec<String>,
     /// The normalised specification.
     pub spec_toml: String,
-    /// The controller's options, as they are in effect.
+    /// The controller's options, defaults included.
     pub options: Vec<OptionEntry>,
     /// Every format.
     pub formats: Vec<FormatEntry>,
     /// Associated constants.
     pub constants: Vec<PublicConstant>,
-    /// Periods after which a command takes effect.
+    /// Delay of a command, periods.
     pub delay: u32,
     /// Whether `step` takes `hall_ticks`.
     pub timer_capture: bool,
-    /// Periods without a call of `set_bus` after which the bus voltage is stale; none where it is fixed.
+    /// Periods without a call of `set_bus` after which the bus voltage is stale; none if it is fixed.
     pub bus_periods: Option<i32>,
     /// Limits of samples, and start-up.
     pub limits: Limits,
-    /// Units of what a drive tells of itself.
+    /// Units of the observations.
     pub units: Units,
 }
 
-/// What the supervisor judges samples by; words of current are ADC counts with `current_bits` fraction bits.
+/// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest count of the phase-current ADC.
@@ -129,17 +128,17 @@ pub struct Limits {
     pub offsets: [u16; 2],
     /// Largest phase current, words of current.
     pub trip: i32,
-    /// Least and greatest current of any count at any accepted offset, words of current.
+    /// Least and greatest current over all counts and accepted offsets, words of current.
     pub currents: [i32; 2],
     /// Base-2 logarithm of the samples of a calibration.
     pub calibration_log2: u32,
-    /// Control periods of bootstrap pre-charge; 0 where there is none.
+    /// Control periods of bootstrap pre-charge; 0 for none.
     pub precharge_periods: u16,
-    /// Control periods without a Hall edge under demand that count as a stall; 0 where none are counted.
+    /// Control periods without a Hall edge under demand that are a stall; 0 for no stall detection.
     pub stall_periods: i32,
 }
 
-/// Units of the words that a drive tells of itself, in numbers with 16 fraction bits.
+/// Units of the observations, in numbers with 16 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
     /// Ampere per word of current.
@@ -150,7 +149,7 @@ pub struct Units {
     pub volt_per_count: Unit,
     /// Revolutions per minute per word of speed.
     pub rpm: Unit,
-    /// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+    /// Sector 1 to 6 by Hall code; 0 for invalid codes.
     pub sectors: [u8; 8],
 }
 
@@ -164,7 +163,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// The unit of words that are worth `value` each, rounded to 30 bits.
+    /// The unit `value`, rounded to 30 bits.
     pub fn of(value: f64) -> Self {
         let factor = value * 65536.0;
         // The largest shift at which the factor fits.

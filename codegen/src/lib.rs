@@ -16,13 +16,11 @@
 //!   emit   ─> Rust │ C99 │ data sheet │ IR text │ Gappa scripts        (emit: cannot fail)
 //! ```
 //!
-//! Each stage imports earlier stages and [`diagnostics`] only. Emitters see a
-//! [`ir::VerifiedGraph`] and an [`interface::Interface`], never a specification. Scaling is a search:
-//! lowering computes the interval of every value, so the finest scale whose program passes the
-//! verifier is the scale. Adding a controller adds its options to `spec::controller`, a folder under
-//! [`laws`] around the step that all share ([`laws::current_loop`]) and a variant of
-//! [`spec::ControllerSpec`]; blocks of that step (measurement, rotor angle, EMF, limits, modulation)
-//! live in [`blocks`].
+//! Each stage imports earlier stages and [`diagnostics`] only. Emitters take a [`ir::VerifiedGraph`]
+//! and an [`interface::Interface`], never a specification. Scaling is a search for the finest scale
+//! whose program passes the verifier. A new controller adds its options to `spec::controller`, a variant
+//! of [`spec::ControllerSpec`] and a folder under [`laws`], built on the shared step
+//! ([`laws::current_loop`]) and its [`blocks`] (measurement, rotor angle, EMF, limits, modulation).
 
 mod at_once;
 pub mod blocks;

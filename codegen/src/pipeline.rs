@@ -1,4 +1,4 @@
-//! The pipeline behind all front ends: checked specification in, verified graph and interface out.
+//! The pipeline: from a checked specification to a verified graph and its interface.
 
 use crate::at_once::at_once;
 use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue, engineering, percent};
@@ -14,7 +14,7 @@ use crate::spec::health::TRIP_BY_DEFAULT;
 use crate::spec::{Origins, Spec};
 use crate::stopwatch::Part;
 
-/// What emitters take.
+/// Input of the emitters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generated {
     /// The verified program.
@@ -37,8 +37,7 @@ pub fn generate(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics
     })
 }
 
-/// Words as the target prefers them where they suffice, else of 32 bits; the type's documentation says what the choice
-/// costs.
+/// Words of the target's length if they suffice, else of 32 bits; documented in the type.
 fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let wide = Spec {
         controller: spec.controller.clone().with_word(32),
@@ -93,13 +92,13 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     errors.into_result(Generated { graph, interface })
 }
 
-/// What the user should know of a drive that is generated as specified.
+/// Warnings on a specification without errors.
 pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     let mut warnings = vec![];
     if law(&spec.controller).loses_current() {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
     }
-    // Round numbers put motors right on the limit.
+    // Round numbers in a specification may lie exactly on the limit.
     if let Some(trust) = trust_in_estimate(spec)
         && trust.turn > trust.limit * (1.0 + 1e-9)
     {
@@ -115,10 +114,10 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A written trip level is taken for a slip from this multiple of the largest set-point's peak on.
+/// A specified trip level above this multiple of the largest set-point's peak is a likely mistake.
 const TRIP_GIVEN: f64 = 3.0;
 
-/// A trip level that protects little, or that PHCC may reach in health.
+/// A trip level that is very high, or that PHCC may reach in normal operation.
 fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     const TRIP: &str = "inverter.trip_current";
     const MAX: &str = "inverter.max_current";
@@ -178,8 +177,8 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
     }
 }
 
-/// Where two vectors share a period, the wanted voltage may lie as far from the line between them as the centre of a
-/// triangle from its edges.
+/// With two vectors per period the deadbeat voltage may lie as far from the line between them as a
+/// triangle's centre from its edges.
 fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let side = 2.0 / 3.0 * inverter.greatest_bus();
@@ -297,7 +296,7 @@ kind = "pdcc"
 
     #[test]
     fn every_controller_generates_for_the_paper_motor() {
-        // The second is for regulators that have no use for the EMF.
+        // The second is for regulators without EMF options.
         let common = [
             "emf=estimated",
             "discretisation=exact",

@@ -1,9 +1,8 @@
-//! The choice of formats: the finest scale at which every value of the program provably fits its word.
+//! The choice of formats: the finest scale at which every value of the program fits its word.
 //!
-//! Lowering computes the interval of every value, so the search is plain: take the largest number of
-//! fraction bits for currents (their intervals follow from the ADC alone), then the largest for voltages
-//! whose program passes verification and keeps its coefficients and products within the word. Of 32-bit products that is the
-//! upper word, unless no scale at all allows that.
+//! Currents take the largest number of fraction bits that the ADC's range allows; voltages the largest
+//! whose program passes verification with coefficients and products that fit. Products of 32-bit words
+//! must fit their upper word, unless no scale allows that.
 
 use crate::at_once::at_once;
 use crate::blocks::Scale;
@@ -21,7 +20,7 @@ pub struct Lowered {
     pub formats: Vec<FormatEntry>,
     /// Coefficients and constants too large for their word at this scale.
     pub misfits: Vec<String>,
-    /// Coefficients of 32 bits whose products need more than their upper word, which is one instruction of most cores.
+    /// 32-bit coefficients whose products need more than the upper word, one instruction of most cores.
     pub long_products: Vec<&'static str>,
 }
 
@@ -39,27 +38,27 @@ pub struct Scaled {
 /// Why no scale fits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unscalable {
-    /// The named signal needs more bits than the word has even at the coarsest scale.
+    /// The signal needs more bits than the word has even at the coarsest scale.
     TooNarrow {
         /// Signal or coefficient.
         signal: String,
-        /// Bits that it needs, where they are known.
+        /// Bits that it needs, if known.
         bits: Option<u32>,
     },
     /// An invariant other than a range is broken: a bug of the generator.
     Broken(Vec<Violation>),
 }
 
-/// Finest fraction bits that are tried for voltages.
+/// Largest number of voltage fraction bits that is tried.
 const FINEST_VOLTAGE: u32 = 20;
 
-/// The first two to try of so many: most motors' drives have 12 or 15.
+/// First two trials: most motors' drives have 12 or 15.
 const FIRST_VOLTAGES: (u32, u32) = (12, 16);
 
-/// Searches the finest scale for `lower`: what fits at some scale fits at every coarser one, so the search halves.
+/// Searches the finest scale for `lower`. A program that fits at a scale fits at every coarser one.
 ///
 /// # Errors
-/// [`Unscalable`] where even one fraction bit of a timer count, or none of an ADC count, does not fit.
+/// [`Unscalable`] if the coarsest scale does not fit: voltages with one fraction bit, currents with none.
 pub fn choose_scale(
     inverter: &InverterSpec,
     word: u32,
@@ -104,7 +103,7 @@ fn finest_of(
         bits: None,
     });
     while low <= high {
-        // Two at once part what is left in three.
+        // Two trials in parallel divide the range in three.
         let third = (high - low) / 3;
         let (coarse, fine) = match (low, high) {
             (1, FINEST_VOLTAGE) => FIRST_VOLTAGES,
@@ -124,7 +123,7 @@ fn finest_of(
             }
             Err(broken @ Unscalable::Broken(_)) => Err(broken),
             Err(too_narrow) => {
-                // Told of the coarsest scale, which is the last to fail where none fits.
+                // Reports the coarsest scale, the last to fail if none fits.
                 if finest.is_err() {
                     finest = Err(too_narrow);
                 }
@@ -140,7 +139,7 @@ fn finest_of(
     finest
 }
 
-/// Whether the program lowered at a scale fits its words; with `short`, its products their upper words, too.
+/// The verified program if it fits its words at this scale; with `short`, its products their upper word.
 fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable> {
     let Lowered {
         program,
@@ -185,7 +184,7 @@ fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable
     })
 }
 
-/// A product of the step's normal path with a 16-bit coefficient that does not fit 32 bits.
+/// A product with a 16-bit coefficient on the normal path that does not fit 32 bits.
 fn wide_product(program: &Program) -> Option<String> {
     let step: &Function = &program.step;
     let normal = step
@@ -210,7 +209,7 @@ fn wide_product(program: &Program) -> Option<String> {
             let product = i64::from(constant.raw).abs() * step.node(signal).interval.magnitude()
                 + (1 << (shift - 1));
             let bits = 65 - product.leading_zeros();
-            // Angles keep 64-bit products whatever the word; their coefficients are marked by their size.
+            // Angles have 64-bit products at any word length; their coefficients exceed 16 bits.
             let sixteen = i64::from(constant.raw).abs() < 1 << 15;
             (sixteen && bits > 32).then(|| format!("the product with `{}`", constant.name))
         })

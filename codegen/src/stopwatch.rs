@@ -1,7 +1,7 @@
-//! How long this thread has been at each part of the generator: what `cargo xtask compile-time` prints.
+//! Time that this thread spends in each part of the generator, for `cargo xtask compile-time`.
 //!
-//! A part that runs inside another takes its time from it; what a second thread does beside this one takes no time but
-//! that of waiting for it. Nothing else depends on these times.
+//! The time of a nested part is not counted for the outer one; work of a second thread counts as the
+//! time of waiting for it. Nothing else depends on these times.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 /// A part of the generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Macro tokens and motor files read and checked.
+    /// Parsing and checks of macro tokens and motor files.
     Parsing,
     /// Gains, tables, stability, formats, lowering.
     Design,
-    /// Intervals of all values verified, and their distance from the ideal ones bounded.
+    /// Verification and error bounds.
     ProofRanges,
     /// Tokens of the emitted code.
     Emission,
@@ -25,7 +25,7 @@ thread_local! {
 }
 
 impl Part {
-    /// All, in their order.
+    /// All parts, in order.
     pub const ALL: [Self; 4] = [
         Self::Parsing,
         Self::Design,
@@ -33,12 +33,12 @@ impl Part {
         Self::Emission,
     ];
 
-    /// The time that this thread has been at this part.
+    /// Time that this thread has spent in this part.
     pub fn taken(self) -> Duration {
         TAKEN.with_borrow(|taken| taken[self as usize])
     }
 
-    /// Does the work of this part.
+    /// Runs work of this part.
     pub(crate) fn timed<T>(self, work: impl FnOnce() -> T) -> T {
         let outer = RUNNING.get().map(|(part, _)| part);
         switch(Some(self));
@@ -48,7 +48,7 @@ impl Part {
     }
 }
 
-/// Ends what runs and begins the next part.
+/// Ends the running part and begins the next one.
 fn switch(next: Option<Part>) {
     let now = Instant::now();
     let ended = RUNNING.replace(next.map(|part| (part, now)));

@@ -4,8 +4,8 @@ use proc_macro::TokenStream;
 use std::env;
 use std::path::PathBuf;
 
-/// Emits the current controller of one motor, everything precomputed: a type that `hexagen::Drive`
-/// runs.
+/// Emits the current controller of one motor, all coefficients and tables precomputed, as a type for
+/// `hexagen::Drive`.
 ///
 /// ```text
 /// hexagen::controller! {
@@ -34,8 +34,8 @@ pub fn verify(tokens: TokenStream) -> TokenStream {
     hexagen_codegen::expand_verify(tokens.into()).into()
 }
 
-/// Makes a structure of words the state of a law: names, initial values and access by number. Used by
-/// emitted code; each word begins at 0 or at the number of its `#[initial(…)]`.
+/// Implements `hexagen::State` for a structure of words: names, initial values and access by number.
+/// Used by emitted code. The initial value is 0 or the number of `#[initial(…)]`.
 #[proc_macro_derive(State, attributes(initial))]
 pub fn derive_state(item: TokenStream) -> TokenStream {
     hexagen_codegen::derive_state(item.into()).into()

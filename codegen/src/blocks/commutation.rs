@@ -4,36 +4,36 @@ use super::Lowering;
 use crate::design::vectors::{OFF_PHASE, OUTGOING_SIGN};
 use crate::ir::{Expr, Flag, Interval, Lut, Memory, Phases, named};
 
-/// When commutations begin and end.
+/// Rule by which commutations begin and end, with its state words.
 #[derive(Clone, Copy, Debug)]
 pub struct CommutationRule<'b> {
-    /// Sector in force at the last sample, where that is not the sample's own.
+    /// Advanced sector of the last sample; with phase advance only.
     pub sector_prev: Option<Memory<'b>>,
-    /// Samples for which a commutation may last behind the last one.
+    /// Samples left to the commutation after the last one.
     pub left: Memory<'b>,
-    /// Outgoing current at which it ends, ampere.
+    /// Outgoing current at which a commutation ends, ampere.
     threshold: f64,
-    /// Samples for which it may last behind its first one.
+    /// Commutation time-out without its first sample, samples.
     timeout: u32,
 }
 
-/// The commutation in the period of a sample.
+/// Commutation state at this sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Commutation<'b> {
-    /// It goes on.
+    /// Whether a commutation is in progress.
     pub flag: Flag<'b>,
-    /// 1 where it goes on, else 0.
+    /// The flag as a word: 1 or 0.
     pub word: Expr<'b>,
-    /// Samples for which it may last behind this one.
+    /// Samples left to the commutation after this one.
     pub left: Expr<'b>,
     /// Direction of rotation, 1 or -1; 0 before the first edge.
     pub direction: Expr<'b>,
-    /// The phase that goes off in the sector: 0 a, 1 b, 2 c.
+    /// Outgoing phase of the sector: 0 a, 1 b, 2 c.
     pub outgoing: Expr<'b>,
 }
 
 impl<'b> CommutationRule<'b> {
-    /// Declares its words; `advances` where the sector in force is not the sample's own.
+    /// Declares the state words; `advances`: with phase advance.
     pub fn new(l: &Lowering<'b>, threshold: f64, timeout: u32, advances: bool) -> Self {
         let sector_prev = advances.then(|| {
             let doc = "Sector in force at the last sample; 0 before the first.";
@@ -56,7 +56,7 @@ impl<'b> CommutationRule<'b> {
         l.number("commutation_begun", samples, doc)
     }
 
-    /// Samples for which a commutation may last, this one included: those that are left, or where one `began` all of them.
+    /// Samples left to the commutation, this one included; the time-out if one `began`.
     pub fn kept(&self, l: &Lowering<'b>, began: Flag<'b>) -> Expr<'b> {
         named! {
             let commutation_restarted = began.choose(self.whole(l), self.left.read());
@@ -64,7 +64,7 @@ impl<'b> CommutationRule<'b> {
         commutation_restarted
     }
 
-    /// Whether the sector in force is another than at the last sample, for a reference that runs ahead of the sample.
+    /// Whether the advanced sector changed since the last sample.
     pub fn sector_changed(&self, l: &Lowering<'b>, last: Memory<'b>, sector: Expr<'b>) -> Flag<'b> {
         let doc = "Change of the sector in force since the last sample.";
         l.b.stage("compare_sectors", &[doc]);
@@ -74,7 +74,7 @@ impl<'b> CommutationRule<'b> {
         changed
     }
 
-    /// The commutation; `kept` is of [`Self::kept`], `currents` are those of all phases.
+    /// The commutation state; `kept` comes from [`Self::kept`].
     pub fn follow(
         &self,
         l: &Lowering<'b>,
@@ -85,7 +85,7 @@ impl<'b> CommutationRule<'b> {
         let shares = outgoing_shares(l);
         l.b.stage(
             "detect_commutation",
-            &["Start of a commutation, and its time-out."],
+            &["Start of a commutation, with its time-out."],
         );
         named! {
             let outgoing_phase = phases.at(sector);
@@ -114,7 +114,7 @@ impl<'b> CommutationRule<'b> {
         let begins = kept.is(self.whole(l));
         named! {
             let commutation_goes_on = begins | flows;
-            // The guard leaves no 0; intervals do not know of it.
+            // The guard excludes 0, which the intervals do not show.
             let left_while_flowing = commutation_goes_on.choose((kept - 1).max(0), 0);
             let commutating_now = commutation_goes_on.choose(1, 0);
         }
@@ -124,7 +124,7 @@ impl<'b> CommutationRule<'b> {
         ]);
         l.b.stage(
             "find_commutation",
-            &["State of the commutation after this sample."],
+            &["Commutation state after this sample."],
         );
         named! {
             let in_commutation = word.is_not(0);
@@ -140,12 +140,12 @@ impl<'b> CommutationRule<'b> {
 }
 
 fn off_phases<'b>(l: &Lowering<'b>) -> Lut<'b> {
-    let doc = "Phase that is off in sectors 1 to 6: 0 a, 1 b, 2 c.";
+    let doc = "Off phase of sectors 1 to 6: 0 a, 1 b, 2 c.";
     let phases = std::iter::once(0).chain(OFF_PHASE).collect();
     l.b.column("sector", "off_phase", phases, doc)
 }
 
-/// The outgoing current as a sum of those of phases a and b, c being their sum's negative.
+/// Weights of the phase currents a and b in the outgoing current; i_c = -(i_a + i_b).
 fn outgoing_shares<'b>(l: &Lowering<'b>) -> [Lut<'b>; 2] {
     [0, 1].map(|x: i32| {
         let letter = ["a", "b"][x as usize];

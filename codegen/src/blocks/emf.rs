@@ -31,7 +31,7 @@ struct FluxModel<'b> {
     limit: i64,
 }
 
-/// What says where the quasi-square reference stands.
+/// Index of the quasi-square reference's corner table.
 #[derive(Clone, Copy, Debug)]
 pub enum Corner<'b> {
     /// A sector, 0 to 6.
@@ -40,10 +40,10 @@ pub enum Corner<'b> {
     HallCode(Expr<'b>),
 }
 
-/// Mean EMF of phases a and b over two periods.
+/// Mean EMF of phases a and b over the target and the present period.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelledEmf<'b> {
-    /// Over the period in which the new command takes effect.
+    /// Over the target period, in which the new command takes effect.
     pub target: Phases<'b>,
     /// Over the period that begins now.
     pub present: Phases<'b>,
@@ -66,7 +66,7 @@ impl<'b> PeriodicTable<'b> {
                 String::new(),
                 format!("{frac_bits} fraction bits; the parabolas are at most {error} off."),
             ];
-            // The first coefficients stand for the function, the others for its course within a segment.
+            // Only the table of constant coefficients carries the error bound of the function.
             let periodic = (power == 0).then(|| Periodic {
                 misfit: Real::of(fit.error * scale),
                 slope: Real::of(fit.steepest() * f64::from(segments) * scale),
@@ -109,7 +109,7 @@ fn lagging<'b>(l: &Lowering<'b>, name: &str, theta: Expr<'b>) -> Expr<'b> {
     theta.angle_sub(third).named(name)
 }
 
-/// Angle `periods` control periods ahead of now, for `periods` 0, 1 or 2.
+/// Angle `periods` control periods ahead, for `periods` 0, 1 or 2.
 fn ahead<'b>(name: &str, rotor: &Rotor<'b>, periods: u32) -> Expr<'b> {
     let step = match periods {
         0 => return rotor.theta,
@@ -133,7 +133,7 @@ impl<'b> FluxModel<'b> {
             coefficients: scaled.collect(),
             error: unit.error * volts,
         };
-        // Two values and a slope must fit one word together: 2^29 for each.
+        // The sum of two values and a slope must fit a word: 2^29 for each.
         let frac_bits = (29.0 - fit.magnitude().log2()).floor().clamp(0.0, 28.0) as u32;
         if frac_bits < l.scale.voltage_bits {
             l.misfit("flux");
@@ -151,7 +151,7 @@ impl<'b> FluxModel<'b> {
         }
     }
 
-    /// Flux linkage of phases a and b at an angle, "start" and so on.
+    /// Flux linkage of phases a and b at an angle; `when` names it.
     fn at(&self, l: &Lowering<'b>, when: &str, theta: Expr<'b>) -> Phases<'b> {
         let theta_b = lagging(l, &format!("theta_{when}_b"), theta);
         Phases([
@@ -172,8 +172,8 @@ impl<'b> FluxModel<'b> {
     }
 }
 
-/// Mean EMF over the target period and, with delay 1, over the present one, as differences of flux
-/// linkage at their ends; phases a and b. `e_limit` is the largest plausible one, volt.
+/// Mean EMF of phases a and b over the target period and, with delay 1, over the present one, from
+/// differences of flux linkage. `e_limit`: the largest plausible EMF, volt.
 pub fn model_emf<'b>(
     l: &Lowering<'b>,
     rotor: &Rotor<'b>,
@@ -263,7 +263,8 @@ pub fn quasi_square_reference<'b>(
         );
         l.b.column(row, &format!("corner_{letter}"), signs, &doc)
     });
-    let doc = "Reference at the sector's corner, as a voltage: the set-point word, with the sign that the phase has there.";
+    let doc =
+        "Reference at the sector's corner, as a voltage: the set-point word with the phase's sign.";
     l.b.stage("reference_quasi_square", &[doc]);
     named! {
         let j = Phases(corner.map(|corner| corner.at(index) * set_point));

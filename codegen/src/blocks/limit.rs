@@ -1,7 +1,7 @@
-//! The voltage limit: what gives way outside the hexagon (semantics, step 10).
+//! The voltage limit: a voltage outside the hexagon is brought to its edge (semantics, step 10).
 //!
-//! In phase coordinates that sum to zero the hexagon is "largest less smallest at most V_BUS", so one
-//! comparison finds saturation and everything else is off the normal path.
+//! For phase voltages that sum to zero the hexagon is max - min <= V_BUS, so one comparison detects
+//! saturation and all else is off the normal path.
 
 use super::modulate::half_period;
 use super::{Bus, Lowering};
@@ -14,12 +14,12 @@ use crate::spec::LimitRule;
 pub struct Limited<'b> {
     /// Phase voltages a, b.
     pub u: Phases<'b>,
-    /// Phase voltages less (max + min) / 2 of the three, rounded down: what centred pulses stand for. Lifted by half the
-    /// period where that was asked for.
+    /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2), plus half the
+    /// period if the hexagon `lifts`.
     pub centred: Phases<'b, 3>,
 }
 
-/// A voltage that may lie outside.
+/// A voltage before the limit.
 #[derive(Clone, Copy, Debug)]
 struct Free<'b> {
     /// Phase voltages.
@@ -28,19 +28,19 @@ struct Free<'b> {
     middle: Expr<'b>,
 }
 
-/// What gives way, and what it needs for that: `E` is an EMF, or a way to find it.
+/// Rule of the voltage limit. `E`: the EMF, or a function that computes it.
 #[derive(Clone, Copy, Debug)]
 pub enum Priority<E> {
-    /// The magnitude: the voltage keeps its angle.
+    /// Scale the voltage; its angle stays.
     Angle,
-    /// Whatever is nearest.
+    /// Take the nearest point of the hexagon.
     Nearest,
-    /// What makes no torque: the component along this EMF stays.
+    /// Keep the component along this EMF, which makes torque.
     Torque(E),
 }
 
 impl<E> Priority<E> {
-    /// A rule of the specification. A law without an EMF knows no torque, and takes the nearest point.
+    /// The rule of the specification; torque priority without an EMF becomes the nearest point.
     pub fn of(rule: LimitRule, emf: Option<E>) -> Self {
         match (rule, emf) {
             (LimitRule::KeepAngle, _) => Self::Angle,
@@ -52,24 +52,24 @@ impl<E> Priority<E> {
 
 /// Fraction bits of the ratio in keep_angle.
 const SCALE_BITS: u32 = 30;
-/// Torque priority needs an EMF of at least the bus over 2 to this power.
+/// Torque priority needs an EMF of at least V_BUS / 2^5.
 const LEAST_EMF_BITS: u32 = 5;
 /// Fraction bits of the blend towards the nearest point.
 const BLEND_BITS: u32 = 15;
 
-/// Limits voltages to the hexagon.
+/// The hexagon of voltages that the bus can make.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexagon<'b> {
     /// The bus.
     pub bus: Bus<'b>,
     /// 1/3.
     pub third: Coefficient,
-    /// Centres the voltages at half the period rather than at 0.
+    /// Whether centred voltages are lifted by half the period.
     pub lifts: bool,
 }
 
 impl<'b> Hexagon<'b> {
-    /// Limits the voltage `u_unsat` (phases a, b); the EMF (phases a, b) is found off the normal path.
+    /// Limits the voltage `u_unsat` of phases a, b; the EMF is computed off the normal path.
     pub fn limit<E: FnOnce() -> Phases<'b>>(
         &self,
         l: &Lowering<'b>,
@@ -77,7 +77,7 @@ impl<'b> Hexagon<'b> {
         u_unsat: Phases<'b>,
     ) -> Limited<'b> {
         let bus = self.bus.volts;
-        let doc = "Spread of the phase voltages: more than the bus means saturation.";
+        let doc = "Spread of the phase voltages; above the bus voltage the limit acts.";
         l.b.stage("find_saturation", &[doc]);
         let u = u_unsat.with_c("u_unsat");
         let [high, low] = u.extremes(["u_max", "u_min"]);
@@ -126,7 +126,7 @@ impl<'b> Hexagon<'b> {
         u: Phases<'b>,
         spread: Expr<'b>,
     ) -> (Phases<'b>, Phases<'b, 3>) {
-        let doc = "Scales the voltage to the edge of the hexagon; its angle stays.";
+        let doc = "Voltage scaled to the edge of the hexagon, at the same angle.";
         l.b.guarded_stage("limit_keep_angle", saturated, true, &[doc]);
         let bits = SCALE_BITS as i32;
         l.format(
@@ -151,9 +151,10 @@ impl<'b> Hexagon<'b> {
         saturated: Flag<'b>,
         free: Free<'b>,
     ) -> (Phases<'b>, Phases<'b, 3>) {
-        let doc = "Nearest point of the hexagon: with the offset that centres the pulses, each leg is clamped for itself.";
+        let doc =
+            "Nearest point of the hexagon: the centred leg voltages, each clamped to the bus.";
         l.b.guarded_stage("limit_nearest", saturated, true, &[doc]);
-        // The greatest is the bus and the least zero.
+        // The greatest of the three is the bus and the least is zero.
         named! {
             let terminal_middle = self.bus.volts >> 1;
         }
@@ -174,11 +175,11 @@ impl<'b> Hexagon<'b> {
             saturated,
             true,
             &[
-                "Keeps the component of the voltage along the EMF, which makes torque, and clips the rest.",
+                "Voltage limit with torque priority: the component along the EMF stays, the rest is clipped.",
                 "",
                 "d is the phase of the largest EMF, x and y the next two; with X = u_d - u_x, Y = u_d - u_y and",
                 "F = (-f_x, -f_y) the hexagon is |X|, |Y|, |X - Y| <= V_BUS and the component is F_x X + F_y Y.",
-                "Past the reachable component the result goes over to the nearest point without a jump.",
+                "Beyond the reachable component the result blends into the nearest point.",
             ],
         );
         let e = emf();
@@ -187,7 +188,7 @@ impl<'b> Hexagon<'b> {
         (u, self.centred(l, legs, middle(legs)))
     }
 
-    /// The phase voltages a and b of legs against any common point, added to the open stage.
+    /// Phase voltages a and b from leg voltages; added to the open stage.
     fn without_mean(&self, legs: Phases<'b, 3>) -> Phases<'b> {
         named! {
             let legs_mean = self.third * legs.sum();
@@ -196,7 +197,7 @@ impl<'b> Hexagon<'b> {
         u_limited
     }
 
-    /// Legs about their middle, within half the bus, and lifted; added to the open stage.
+    /// Leg voltages less their middle, within half the bus, lifted; added to the open stage.
     fn centred(&self, l: &Lowering<'b>, legs: Phases<'b, 3>, middle: Expr<'b>) -> Phases<'b, 3> {
         named! {
             let centred_max = (self.bus.volts + 1) >> 1;
@@ -217,7 +218,7 @@ impl<'b> Hexagon<'b> {
         centred_limited
     }
 
-    /// The nearest point's terminal voltages, added to the open stage.
+    /// Terminal voltages of the nearest point; added to the open stage.
     fn nearest(&self, free: Free<'b>) -> Phases<'b, 3> {
         let bus = self.bus.volts;
         named! {
@@ -227,7 +228,8 @@ impl<'b> Hexagon<'b> {
         terminal
     }
 
-    /// The legs' voltages against the phase of the largest EMF, or where that is small the nearest point's terminals.
+    /// Leg voltages relative to the phase of the largest EMF; with a small EMF the terminal voltages
+    /// of the nearest point.
     fn torque_priority(&self, l: &Lowering<'b>, free: Free<'b>, e: Phases<'b>) -> Phases<'b, 3> {
         let bus = self.bus.volts;
         let near = self.nearest(free);
@@ -258,7 +260,7 @@ impl<'b> Hexagon<'b> {
         named! {
             let directed = frame.size.is_at_least(bus >> LEAST_EMF_BITS);
         }
-        // Back from (d, x, y) to (a, b, c).
+        // From (d, x, y) to (a, b, c).
         let zero = l.b.number(0);
         let legs = [[zero, y, x], [x, zero, y], [y, x, zero]];
         let kept = Phases(legs.map(|legs| pick(frame.d, legs)));
@@ -269,13 +271,13 @@ impl<'b> Hexagon<'b> {
     }
 }
 
-/// The directions d, x, y, and the signs such that F and the component are not negative.
+/// Phase order d, x, y and signs that make F and the component non-negative.
 struct Frame<'b> {
-    /// d is a; else, d is b.
+    /// d is a; d is b.
     d: [Flag<'b>; 2],
-    /// f_d is not negative.
+    /// f_d >= 0
     positive: Flag<'b>,
-    /// F, turned with that.
+    /// F, with the sign of f_d.
     force: [Expr<'b>; 2],
     /// |f_d|
     size: Expr<'b>,
@@ -309,7 +311,7 @@ impl<'b> Frame<'b> {
         }
     }
 
-    /// X and Y of three phases, turned with f_d: the differences of d to x and to y.
+    /// X and Y of three phase values, with the sign of f_d.
     fn lines(&self, phases: Phases<'b, 3>, d_name: &str, line: &str) -> [Expr<'b>; 2] {
         let [d, x, y] = rotated(self.d, phases);
         let d = d.named(d_name);
@@ -333,11 +335,11 @@ fn axes<'b>(name: &str, values: [Expr<'b>; 2]) -> [Expr<'b>; 2] {
     axes_of([&format!("{name}_x"), &format!("{name}_y")], values)
 }
 
-/// A voltage outside, turned so that its component is not negative.
+/// A voltage outside the hexagon, with the sign that makes its component non-negative.
 struct Asked<'b> {
     /// X and Y.
     line: [Expr<'b>; 2],
-    /// Those of the nearest point.
+    /// X and Y of the nearest point.
     near: [Expr<'b>; 2],
     /// F_x X + F_y Y, shifted right.
     component: Expr<'b>,
@@ -345,8 +347,8 @@ struct Asked<'b> {
 }
 
 impl<'b> Asked<'b> {
-    /// The point of the hexagon with that component nearest to the voltage; past the reachable component over to the
-    /// nearest point within half of it.
+    /// The point of the hexagon with this component that is nearest to the voltage; beyond the
+    /// reachable component a blend into the nearest point, complete at 1.5 times the reachable one.
     fn nearest_inside(&self, frame: &Frame<'b>, bus: Expr<'b>) -> [Expr<'b>; 2] {
         named! {
             let component = self.component;
@@ -360,7 +362,7 @@ impl<'b> Asked<'b> {
         [0, 1].map(|k| kept[k] + (self.near[k] - kept[k]).mul_round(blend, BLEND_BITS))
     }
 
-    /// The point with the component `kept`.
+    /// The nearest point of the hexagon with the component `kept`.
     fn with_component(&self, kept: Expr<'b>, frame: &Frame<'b>, bus: Expr<'b>) -> [Expr<'b>; 2] {
         let ([x, y], [force_x, force_y]) = (self.line, frame.force);
         named! {
@@ -369,9 +371,9 @@ impl<'b> Asked<'b> {
             let past_corner = kept - at_corner;
             let beyond_corner = past_corner.is_at_least(0);
         }
-        // A quarter of the EMF at least: where the light force vanishes in mid-sector the exact quotient
-        // would jump along a whole edge for an error of one ulp. What that gives away the nearest point,
-        // whose component is never the larger, returns.
+        // At least a quarter of the EMF: the light force vanishes in mid-sector, where the exact
+        // quotient would jump along a whole edge for an error of one ulp. The maximum with the nearest
+        // point, whose component is never the larger, makes up for the difference.
         let light_force = x_heavy.choose(force_y, force_x).max(frame.size >> 2);
         let force = beyond_corner.choose(light_force, frame.size).max(1);
         named! {
@@ -397,7 +399,7 @@ fn middle(legs: Phases<'_, 3>) -> Expr<'_> {
     limited_middle
 }
 
-/// A value that cannot leave the bus, held there for the proof (a third or two of the bus at most).
+/// A value that never exceeds the bus, clamped so that the intervals show it.
 fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
     let least_bus = Interval::symmetric(bus.interval().low);
     if least_bus.contains(value.interval()) {
@@ -406,7 +408,7 @@ fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
     value.max(-bus).min(bus)
 }
 
-/// The least shift at which the sum of two products fits a word with room for one more bit.
+/// The least shift at which the sum of two products fits a word with one bit to spare.
 fn product_shift(l: &Lowering<'_>, forces: [Expr<'_>; 2], lines: [Expr<'_>; 2]) -> u32 {
     let bits = |[x, y]: [Expr<'_>; 2]| x.interval().bits().max(y.interval().bits());
     let shift = (bits(forces) + bits(lines)).saturating_sub(31);

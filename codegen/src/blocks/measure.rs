@@ -1,4 +1,4 @@
-//! What a step takes from the supervisor: phase currents and the Hall code (semantics, steps 1 and 2).
+//! Inputs of a step: phase currents and the Hall code (semantics, steps 1 and 2).
 
 use super::Lowering;
 use crate::ir::{Expr, Flag, Interval, Lut, Memory, Phases, named};
@@ -9,22 +9,22 @@ use crate::spec::HallCapture;
 pub struct Sample<'b> {
     /// Currents of phases a and b, words of current.
     pub currents: Phases<'b>,
-    /// The Hall code; 0 at rest where there is none.
+    /// Hall code; 0 in a period at rest without a valid code.
     pub hall: Expr<'b>,
-    /// Ticks since the last Hall edge, where they are captured.
+    /// Ticks since the last Hall edge; with a capture timer only.
     pub hall_ticks: Option<Expr<'b>>,
 }
 
 /// Sector and edge of this sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Hall<'b> {
-    /// Sector in force: the last valid one where the code is invalid; 0 before the first.
+    /// Sector; the last valid one if the code is invalid, 0 before the first.
     pub sector: Expr<'b>,
     /// The word of the last sample's sector.
     pub sector_prev: Memory<'b>,
-    /// The sector is not the last sample's, which may have had none.
+    /// The sector changed, the first one included.
     pub changed: Flag<'b>,
-    /// The sector changed.
+    /// The sector changed from a valid one: a Hall edge.
     pub edge: Flag<'b>,
 }
 
@@ -35,12 +35,12 @@ pub fn sample<'b>(l: &Lowering<'b>) -> Sample<'b> {
     let doc = "Current of the phase into the motor, words of current.";
     let currents = Phases(["i_a", "i_b"].map(|name| l.b.input(name, range, doc)));
     let codes = Interval::new(0, 6);
-    let doc = "Hall code, Ha in bit 2; 0 at rest where there is none.";
+    let doc = "Hall code, Ha in bit 2; 0 in a period at rest without a valid code.";
     let hall = l.b.input("hall", codes, doc);
     let is_timed = matches!(l.spec.inverter.hall_capture, HallCapture::Timer { .. });
     let hall_ticks = is_timed.then(|| {
         let ticks = Interval::new(0, i64::from(u16::MAX));
-        let doc = "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, stopping at 65535.";
+        let doc = "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, at most 65535.";
         l.b.input("hall_ticks", ticks, doc)
     });
     Sample {
@@ -57,14 +57,14 @@ pub fn third_current<'b>(l: &Lowering<'b>, sample: &Sample<'b>) -> Phases<'b, 3>
     sample.currents.with_c("i")
 }
 
-/// Sector 1 to 6 by Hall code; 0 for the codes that cannot be.
+/// Sector 1 to 6 by Hall code; 0 for invalid codes.
 fn hall_sectors<'b>(l: &Lowering<'b>) -> Lut<'b> {
     let sectors = l.spec.hall_sectors().map(i32::from).to_vec();
-    let doc = "Sector 1 to 6 of a Hall code; 0 for the codes that cannot be.";
+    let doc = "Sector 1 to 6 by Hall code; 0 for invalid codes.";
     l.b.column("hall", "hall_sector", sectors, doc)
 }
 
-/// The sector of a sample, for laws that follow no edges.
+/// The sector of a sample, for laws that use no edges.
 pub fn sector_of<'b>(l: &Lowering<'b>, sample: &Sample<'b>) -> Expr<'b> {
     l.b.stage("find_sector", &["Sector from the Hall code."]);
     named! {
@@ -73,7 +73,7 @@ pub fn sector_of<'b>(l: &Lowering<'b>, sample: &Sample<'b>) -> Expr<'b> {
     sector
 }
 
-/// Sector and edge; `sector_prev` keeps the sector of the last sample.
+/// Sector and edge of a sample.
 pub fn find_sector<'b>(l: &Lowering<'b>, sample: &Sample<'b>, sector_prev: Memory<'b>) -> Hall<'b> {
     let doc = "Sector from the Hall code; a sample without a code keeps the last sector.";
     l.b.stage("find_sector", &[doc]);

@@ -1,8 +1,7 @@
-//! Building blocks that laws share: from design numbers and a scale to expressions.
+//! Building blocks that laws share, as expressions of design numbers at a scale.
 //!
-//! Each file here builds one or two stages of a step (semantics pages under `laws`); a
-//! controller's own folder strings them together. Real numbers end here: what leaves is integers
-//! with their meaning as documentation.
+//! Each file builds one or two stages of a step (semantics pages under `laws`); a controller's own
+//! folder combines them. Real numbers end here: the results are integers with documentation.
 
 mod commutation;
 mod emf;
@@ -33,7 +32,7 @@ use crate::ir::{Expr, Interval, Memory, Phases, ProgramBuilder};
 use crate::spec::{BusSource, Spec};
 use std::cell::RefCell;
 
-/// The scale of a program: how physical quantities become integers.
+/// Scale of a program: word length and fraction bits of currents and voltages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// Word length of the control arithmetic: 16 or 32 bits.
@@ -65,11 +64,11 @@ impl Scale {
 pub struct Bus<'b> {
     /// V_BUS in words of voltage.
     pub volts: Expr<'b>,
-    /// Nominal over measured, and its shift, where the bus is measured.
+    /// Nominal over measured bus voltage and its fraction bits; with a measured bus only.
     pub ratio: Option<(Expr<'b>, u32)>,
 }
 
-/// What all blocks of a program need: the builder, the specification and the scale.
+/// Builder, specification and scale of a program.
 #[derive(Debug)]
 pub struct Lowering<'b> {
     /// The builder.
@@ -81,14 +80,14 @@ pub struct Lowering<'b> {
     notes: RefCell<Notes>,
 }
 
-/// What is noted on the way.
+/// Formats and misfits, collected while a program is lowered.
 #[derive(Debug, Default)]
 pub struct Notes {
     /// Formats used so far.
     pub formats: Vec<FormatEntry>,
     /// Names of coefficients too large for their word.
     pub misfits: Vec<String>,
-    /// Names of impedances of 32 bits whose products need more than their upper word.
+    /// Names of 32-bit coefficients whose products need more than the upper word.
     pub long_products: Vec<&'static str>,
 }
 
@@ -113,7 +112,7 @@ impl<'b> Lowering<'b> {
         );
         lowering.format(
             "voltage",
-            // Whatever the word of the arithmetic: what is multiplied by 16-bit coefficients is wider.
+            // 32 bits at any word length: signals times 16-bit coefficients may be wider than 16 bits.
             32,
             scale.voltage_bits as i32,
             Rounding::RoundHalfUp,
@@ -122,7 +121,7 @@ impl<'b> Lowering<'b> {
         lowering
     }
 
-    /// What was noted.
+    /// The collected notes.
     pub fn into_notes(self) -> Notes {
         self.notes.into_inner()
     }
@@ -153,7 +152,7 @@ impl<'b> Lowering<'b> {
         }
     }
 
-    /// Notes what does not fit its word at this scale, once.
+    /// Notes a value that does not fit its word at this scale, once.
     pub fn misfit(&self, name: &str) {
         let misfits = &mut self.notes.borrow_mut().misfits;
         if misfits.iter().all(|known| known != name) {
@@ -161,8 +160,7 @@ impl<'b> Lowering<'b> {
         }
     }
 
-    /// Notes the format of products of two voltages that are shifted right by so many bits; more than
-    /// 31 fit no word.
+    /// Notes the format of products of two voltages shifted right by `shift`; more than 31 is a misfit.
     pub fn product_format(&self, name: &str, shift: u32, meaning: &str) {
         if shift > 31 {
             self.misfit(name);
@@ -172,25 +170,25 @@ impl<'b> Lowering<'b> {
         self.format(name, 32, frac_bits, Rounding::Floor, &meaning);
     }
 
-    /// States the error of a voltage.
+    /// States the error bound of a voltage.
     pub fn state_volts(&self, name: &str, volts: Expr<'b>, doc: &str) {
         let word = 1.0 / self.scale.voltage();
         self.b.state_error(name, volts, [doc, "V"], word);
     }
 
-    /// States the error of a voltage of phases a and b.
+    /// States the error bound of a voltage of phases a and b.
     pub fn state_phase_volts(&self, name: &str, volts: Phases<'b>, doc: &str) {
         for volts in volts.0 {
             self.state_volts(name, volts, doc);
         }
     }
 
-    /// Adds state words of phases a and b, which begin at 0.
+    /// Adds state words of phases a and b with initial value 0.
     pub fn memories(&self, names: [&str; 2], interval: Interval, doc: &str) -> [Memory<'b>; 2] {
         names.map(|name| self.b.memory(name, 0, interval, doc))
     }
 
-    /// Currents of all counts at all offsets that calibration accepts, words of current.
+    /// Range of currents over all counts and accepted offsets, words of current.
     pub fn current_range(&self) -> Interval {
         let [low, high] = self.spec.inverter.current_counts();
         let bits = self.scale.current_bits;
@@ -202,7 +200,7 @@ impl<'b> Lowering<'b> {
         self.current_range().magnitude()
     }
 
-    /// Full timer period in words of voltage: the nominal bus.
+    /// Nominal bus voltage in words of voltage: the timer period.
     pub fn nominal_bus(&self) -> i64 {
         i64::from(self.spec.inverter.timer_period) << self.scale.voltage_bits
     }

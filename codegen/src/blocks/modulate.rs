@@ -1,4 +1,4 @@
-//! Voltages to leg commands, and what a pair command really applies (semantics, steps 7 and 11).
+//! Modulation: voltages to leg commands, and the voltage really applied (semantics, steps 7, 11).
 
 use super::{Bus, Limited, Lowering};
 use crate::design::vectors::SECTOR_CURRENT;
@@ -6,11 +6,11 @@ use crate::ir::{
     Coefficient, Expr, Flag, Interval, Memory, Named, Output, Phase, Phases, named, pick,
 };
 
-/// A leg is pulsed, as a word.
+/// Leg state: pulsed.
 pub const PULSED: i32 = 0;
-/// The lower switch of a leg is on, as a word.
+/// Leg state: lower switch on.
 pub const LOW: i32 = 1;
-/// Both switches of a leg are off, as a word.
+/// Leg state: both switches off.
 pub const OFF: i32 = 2;
 
 /// Compare values and leg states of phases a, b, c.
@@ -22,19 +22,19 @@ pub struct Command<'b> {
     pub legs: Phases<'b, 3>,
 }
 
-/// Terminal voltages of the three legs and which leg is off (0 none, 1 to 3: a to c).
+/// Terminal voltages of the three legs and the off leg.
 #[derive(Clone, Copy, Debug)]
 pub struct Applied<'b> {
-    /// Mean terminal voltages; of an off leg 0.
+    /// Mean terminal voltages; 0 of an off leg.
     pub terminals: Phases<'b, 3>,
-    /// Number of the off leg.
+    /// The off leg: 0 none, 1 a, 2 b, 3 c.
     pub off: Expr<'b>,
 }
 
-/// What decides where an off leg's terminal sits.
+/// Model of an off leg's terminal voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct OffLeg<'b> {
-    /// The rails.
+    /// The bus.
     pub bus: Bus<'b>,
     /// 1/3, for the mean of three legs.
     pub third: Coefficient,
@@ -43,7 +43,7 @@ pub struct OffLeg<'b> {
 }
 
 impl<'b> Command<'b> {
-    /// Ends the step with the command, and with the words that the next step needs.
+    /// Ends the step: outputs the command and sets the state words.
     pub fn close_step(&self, l: &Lowering<'b>, remembered: &[(Memory<'b>, Expr<'b>)]) {
         for (phase, compare) in Phase::ALL.into_iter().zip(self.compares.0) {
             l.b.output(Output::Compare(phase), compare);
@@ -57,19 +57,19 @@ impl<'b> Command<'b> {
     }
 }
 
-/// Voltages into the compare values of centred pulses.
+/// Modulator of centred pulses.
 #[derive(Clone, Copy, Debug)]
 pub struct Modulator<'b> {
     /// The bus.
     pub bus: Bus<'b>,
-    /// Shifts of the compare values against the dead time, words of the nominal bus.
+    /// Dead-time compensation per leg, words of the nominal bus.
     pub shifts: Option<Phases<'b, 3>>,
 }
 
 impl<'b> Modulator<'b> {
-    /// Three centred pulses from a limited voltage, lifted where the bus is fixed.
+    /// Three centred pulses of a limited voltage, which is lifted if the bus is fixed.
     pub fn centred(&self, l: &Lowering<'b>, limited: &Limited<'b>) -> Command<'b> {
-        let doc = "Compare values of a centre-aligned timer; (max + min)/2 as offset centres the pulses as space-vector modulation does.";
+        let doc = "Compare values of a centre-aligned timer; the offset (max + min)/2 is that of space-vector modulation.";
         l.b.stage("modulate", &[doc]);
         let is_lifted = self.bus.ratio.is_none();
         named! {
@@ -100,7 +100,7 @@ impl<'b> Modulator<'b> {
         }
     }
 
-    /// The limited line voltage of the pair with these signs: one leg pulsed, its partner low, the third off.
+    /// Pulses of the limited line voltage of a pair: one leg pulsed, its partner low, the third off.
     pub fn pulse_pair(&self, l: &Lowering<'b>, sign: Phases<'b, 3>, line: Expr<'b>) -> Pulses<'b> {
         named! {
             let line_forward = line.is_at_least(0);
@@ -129,7 +129,7 @@ impl<'b> Modulator<'b> {
         }
     }
 
-    /// Three pulses while commutating, else the conducting pair alone: one leg pulsed, its partner low, the third off.
+    /// Three pulses in commutation, else the pulses of the conducting pair.
     pub fn pair(
         &self,
         l: &Lowering<'b>,
@@ -149,7 +149,7 @@ impl<'b> Modulator<'b> {
             let terminal_three = limited.centred.map(|centred| (centred + half_bus).clamp(0, bus));
             let pairing = !commutating;
         }
-        let doc = "Outside commutation only the line voltage of the conducting pair counts: one leg pulsed, its partner low, the third off.";
+        let doc = "Line voltage of the conducting pair, outside commutation: one leg pulsed, its partner low, the third off.";
         let (none, pulsed) = (l.b.number(0), Phases([l.b.number(PULSED); 3]));
         l.b.guarded_stage("modulate_pair", pairing, false, &[doc]);
         let sign = pair_signs(l, sector);
@@ -160,7 +160,7 @@ impl<'b> Modulator<'b> {
             [1, 2, 3].map(|number| l.b.number(number)),
         );
         named! {
-            // Without a sector all three are off and none is to be rebuilt.
+            // Without a sector all legs are off, and no terminal voltage is reconstructed.
             let off_pair = sector.is_not(0).choose(one, 0);
         }
         let joined = |kind: &str, inside: Phases<'b, 3>, outside: Phases<'b, 3>| {
@@ -184,23 +184,22 @@ impl<'b> Modulator<'b> {
 pub struct Pulses<'b> {
     /// The command.
     pub command: Command<'b>,
-    /// Terminal voltages; of an off leg 0.
+    /// Terminal voltages; 0 of an off leg.
     pub terminals: Phases<'b, 3>,
 }
 
-/// What a centred voltage of the nominal bus is lifted by.
+/// Half the timer period and half a count, by which centred voltages are lifted.
 pub(super) fn half_period<'b>(l: &Lowering<'b>) -> Expr<'b> {
     let (bits, period) = (l.scale.voltage_bits, l.spec.inverter.timer_period);
     let half = i64::from(period) << (bits - 1);
     let counts = f64::midpoint(f64::from(period), 1.0);
     let doc = format!(
-        "Half the timer period, and half a count to round: {counts} timer counts, words of voltage."
+        "Half the timer period, plus half a count for rounding: {counts} timer counts, words of voltage."
     );
     l.number("half_period", half + (1 << (bits - 1)), &doc)
 }
 
-/// Compare value of a leg that is high for the share of the period that `volts` is of the bus; `shift` is against
-/// the dead time.
+/// Compare value of a leg's mean voltage `volts`; `shift` is its dead-time compensation.
 pub fn compare_of<'b>(
     l: &Lowering<'b>,
     volts: Expr<'b>,
@@ -212,7 +211,7 @@ pub fn compare_of<'b>(
     counts(l, shifted + (1 << (l.scale.voltage_bits - 1)))
 }
 
-/// A voltage of the measured bus as a share of the nominal one, which the timer period stands for.
+/// A voltage scaled from the measured to the nominal bus, which is the timer period.
 fn nominal_share<'b>(volts: Expr<'b>, bus: Bus<'b>) -> Expr<'b> {
     match bus.ratio {
         None => volts,
@@ -220,10 +219,10 @@ fn nominal_share<'b>(volts: Expr<'b>, bus: Bus<'b>) -> Expr<'b> {
     }
 }
 
-/// The compare value of a voltage that was lifted, half a count to round with it.
+/// The compare value of a lifted voltage, which includes half a count for rounding.
 fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>) -> Expr<'b> {
     let count = (-f64::from(l.scale.voltage_bits)).exp2();
-    let doc = "Duty before it is rounded to a compare value";
+    let doc = "Duty before rounding to a compare value";
     l.b.state_error("duty", lifted, [doc, "timer counts"], count);
     let counts = lifted >> l.scale.voltage_bits;
     let period = i64::from(l.spec.inverter.timer_period);
@@ -234,7 +233,7 @@ fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>) -> Expr<'b> {
     counts.clamp(0, top)
 }
 
-/// Per leg its sign in the conducting pair of a sector, added to the open stage.
+/// Sign of each leg in the conducting pair of a sector; added to the open stage.
 pub fn pair_signs<'b>(l: &Lowering<'b>, sector: Expr<'b>) -> Phases<'b, 3> {
     named! {
         let sign = Phases::each(|phase| {
@@ -249,12 +248,12 @@ pub fn pair_signs<'b>(l: &Lowering<'b>, sector: Expr<'b>) -> Phases<'b, 3> {
     sign
 }
 
-/// What the pair with these signs has of zero-sum values: that of the plus leg less that of the minus leg.
+/// Line value of the pair: that of the plus leg less that of the minus leg.
 pub fn across_pair<'b>(sign: Phases<'b, 3>, values: Phases<'b, 3>) -> Expr<'b> {
     sign.zip(values, |sign, value| sign * value).sum()
 }
 
-/// A line voltage within the bus.
+/// A line voltage limited to the bus.
 pub fn limit_line<'b>(line: Expr<'b>, bus: Bus<'b>) -> Expr<'b> {
     named! {
         let line = line.max(-bus.volts).min(bus.volts);
@@ -263,8 +262,8 @@ pub fn limit_line<'b>(line: Expr<'b>, bus: Bus<'b>) -> Expr<'b> {
 }
 
 impl<'b> OffLeg<'b> {
-    /// Mean phase voltages a, b (zero-sum) that a command really applies, given the currents at its start
-    /// and the EMF: an off leg with current is clamped to a rail by its diode, without it floats.
+    /// Mean phase voltages a, b (zero-sum) that a command really applies, from the currents at its
+    /// start and the EMF.
     pub fn applied_voltage(
         &self,
         l: &Lowering<'b>,
@@ -277,8 +276,8 @@ impl<'b> OffLeg<'b> {
             &[
                 "Phase voltages applied in this period.",
                 "",
-                "A leg that is off is clamped to a rail by its diode while it carries current, else it sits at its EMF",
-                "above the star point of the driven pair.",
+                "An off leg is clamped to a rail by its diode while it carries current; else it floats at its EMF above",
+                "the star point of the driven pair.",
             ],
         );
         let bus = self.bus.volts;
@@ -290,12 +289,12 @@ impl<'b> OffLeg<'b> {
             let e_off = pick([off_a, off_b], e.0);
             let i_off = pick([off_a, off_b], currents.0);
         }
-        // The off leg's own terminal word is 0, so the sum of all three is that of the driven pair.
+        // The off leg's terminal word is 0, so the sum of all three is that of the driven pair.
         let star = applied.terminals.sum() >> 1;
         let floating = (star + e_off + (e_off >> 1)).clamp(0, bus);
         let limit = || {
             let threshold = l.ampere_word(self.threshold);
-            let doc = "Current above which an off leg's diode conducts";
+            let doc = "Current threshold of an off leg's diode";
             l.current("i_comm", threshold, doc)
         };
         let inward = i_off.is_above(limit());

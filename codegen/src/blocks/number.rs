@@ -1,16 +1,16 @@
-//! Real numbers into words: coefficients with their shift, limits with their unit.
+//! Real numbers as words: coefficients with their shift, limits with their unit.
 //!
-//! Documentation says every number twice, in the units of physics and in those of its word: with g the
-//! ampere of an ADC count, w the volt of a timer count at the nominal bus, f_i and f_v the fraction bits
-//! of currents and voltages, a word of current is g 2^-f_i ampere and a word of voltage w 2^-f_v volt.
+//! Documentation gives every number in physical units and in units of its word: a word of current is
+//! g 2^-f_i ampere and a word of voltage w 2^-f_v volt, with g ampere per ADC count, w volt per timer
+//! count at the nominal bus, f_i and f_v the fraction bits of currents and voltages.
 
 use super::Lowering;
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Coefficient, Exact, Expr, Real};
 
-/// What is added before a real constant is rounded: far more than the error of its computation in f64, so
-/// that an exact tie (or whole number) comes out the same whatever the order of the operations.
+/// Added before a real constant is rounded: far above the f64 error of its computation, so that an
+/// exact tie (or whole number) rounds the same in any order of operations.
 const GUARD: f64 = 1.0 / 65536.0;
 
 /// R(x) of the semantics pages: to the nearest whole number, ties up.
@@ -34,7 +34,7 @@ fn round_coefficient(value: f64, word: u32) -> Option<(i32, u32)> {
     Some((rounded(shift) as i32, shift))
 }
 
-/// The greatest magnitude of the product of the rounded coefficient with signals up to `signal` to both sides.
+/// The greatest magnitude of the rounded coefficient's product with signals within +-`signal`.
 pub fn product_bound(value: f64, word: u32, signal: i64) -> i64 {
     let Some((raw, shift)) = round_coefficient(value, word) else {
         return 0;
@@ -45,11 +45,11 @@ pub fn product_bound(value: f64, word: u32, signal: i64) -> i64 {
 }
 
 impl<'b> Lowering<'b> {
-    /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift of at most
-    /// `word`. `physical` says the value: "1 - a = 0.0302".
+    /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift of at
+    /// most `word`. `physical` is its text: "1 - a = 0.0302".
     ///
-    /// With a 32-bit word a shift of 32 is as good as any larger one: the coefficient's half ulp times a
-    /// full-scale signal is a quarter ulp of the product.
+    /// With a 32-bit word a shift above 32 gains nothing: the coefficient's half ulp times a full-scale
+    /// signal is a quarter ulp of the product.
     pub fn coefficient(
         &self,
         name: &'static str,
@@ -61,8 +61,8 @@ impl<'b> Lowering<'b> {
         self.rounded(name, value, word, [doc, physical], None)
     }
 
-    /// As [`Self::coefficient`], for a quantity with a unit: `physical` says its value in SI units, "K = 4.468
-    /// V/A", and `scaled` by which formula `value` comes of it and what unit that has.
+    /// As [`Self::coefficient`], for a quantity with a unit: `physical` is its text in SI units, "K =
+    /// 4.468 V/A"; `formula` and `unit` are those of `value`.
     pub fn scaled_coefficient(
         &self,
         name: &'static str,
@@ -75,7 +75,7 @@ impl<'b> Lowering<'b> {
         self.rounded(name, value, word, [doc, physical], Some(&scaled))
     }
 
-    /// A coefficient that makes a voltage of a current: `symbol` in V/A, shown in `unit`.
+    /// A coefficient from currents to voltages: `ohm` in V/A, shown in `unit` as `symbol`.
     pub fn impedance(
         &self,
         name: &'static str,
@@ -126,7 +126,7 @@ impl<'b> Lowering<'b> {
         lines.push(format!(
             "{physical}{in_words}; {shift} fraction bits, {error}."
         ));
-        // Times a power of two, which is exact: the floating-point number is what the coefficient stands for.
+        // The product with a power of two is exact: it is the number that the coefficient stands for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
         let id = self.b.declare_constant(name, raw, exact, &lines);
         self.format(
@@ -142,7 +142,7 @@ impl<'b> Lowering<'b> {
         Coefficient { id, shift }
     }
 
-    /// A coefficient's product with a word that is known beforehand.
+    /// A coefficient's rounded product with a constant word.
     pub fn rounded_product(&self, coefficient: Coefficient, word: i64) -> i64 {
         let raw = self.b.constant_value(coefficient.id);
         let product = i128::from(raw) * i128::from(word);
@@ -152,22 +152,21 @@ impl<'b> Lowering<'b> {
         }
     }
 
-    /// A named current that was rounded to a whole word; `doc` says what it is, its value in ampere follows.
+    /// A named current, rounded to a word; its value in ampere is appended to `doc`.
     pub fn current(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         let ampere = engineering(raw as f64 / self.scale.current(), "A");
         let doc = format!("{doc}: {ampere}, words of current.");
         self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
-    /// A named voltage that was rounded to a whole word; `doc` says what it is, its value in volt follows.
+    /// A named voltage, rounded to a word; its value in volt is appended to `doc`.
     pub fn voltage(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         let volt = engineering(raw as f64 / self.scale.voltage(), "V");
         let doc = format!("{doc}: {volt}, words of voltage.");
         self.rounded_number(name, raw, Exact::Within(1), &doc)
     }
 
-    /// A named integer constant; `doc` says what it counts. Currents and voltages have functions of their
-    /// own.
+    /// A named integer constant that is exact.
     pub fn number(&self, name: &str, raw: i64, doc: &str) -> Expr<'b> {
         self.rounded_number(name, raw, Exact::Itself, doc)
     }

@@ -11,14 +11,14 @@ use crate::spec::HallCapture;
 
 /// A sixth of a turn: floor(2^32 / 6).
 const SIXTH: i64 = 715_827_882;
-/// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up, as are the
-/// sector starts, so that a sector's first and last angle fall into that sector.
+/// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up like the
+/// sector starts, so that a sector's first and last angle lie in that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;
 
-/// Names of the six intervals at the stages of their way.
+/// Names of the last six intervals, the latest first.
 const INTERVALS: [&str; 6] = ["t1", "t2", "t3", "t4", "t5", "t6"];
 
-/// So many sixths of a turn.
+/// `share` of a sixth of a turn, exactly.
 fn sixth_turn(share: f64) -> Exact {
     Exact::Number(Real::of(f64::from(32).exp2() / 6.0 * share))
 }
@@ -27,10 +27,10 @@ fn sixth_turn(share: f64) -> Exact {
 #[derive(Clone, Copy, Debug)]
 struct PeriodTicks {
     exact: f64,
-    /// Whole ticks, rounded down: counts that go up by them are never ahead of the timer.
+    /// Ticks, rounded down, so that a software count never leads the timer.
     whole: i64,
-    /// What six intervals, each counted with a period of whole ticks, lack in a turn; 0 where all
-    /// ticks are whole.
+    /// Ticks missing in a turn of six intervals that were counted in whole ticks per period; 0 if
+    /// the ticks per period are whole.
     turn_rest: i64,
 }
 
@@ -85,18 +85,18 @@ pub struct Rotor<'b> {
     pub omega: Expr<'b>,
 }
 
-/// Which way the sector changed at an edge.
+/// Change of the sector at an edge.
 struct Turned<'b> {
     forward: Flag<'b>,
     backward: Flag<'b>,
-    /// The direction: the old one where it was neither.
+    /// The direction; the old one if the change was neither.
     direction: Expr<'b>,
 }
 
-/// What the edges say, before the angle is interpolated.
+/// Direction and speed from the edges.
 struct Edges<'b> {
     direction: Expr<'b>,
-    /// Edges seen in this direction: 0, 1, or 2 and more.
+    /// Edges seen in this direction, at most 2.
     counted: Expr<'b>,
     /// Ticks of a turn.
     rev: Expr<'b>,
@@ -105,15 +105,15 @@ struct Edges<'b> {
     age: Expr<'b>,
 }
 
-/// Declares the direction word alone.
+/// Declares the direction word.
 pub fn direction_word<'b>(l: &Lowering<'b>) -> Memory<'b> {
     let doc = "Direction of the last Hall edge: 1 forward, -1 backward, 0 before the first.";
     l.b.memory("direction", 0, Interval::new(-1, 1), doc)
 }
 
-/// Adds the comparison of two sectors to the open stage.
+/// Compares two sectors; added to the open stage.
 fn turned<'b>(l: &Lowering<'b>, hall: &Hall<'b>, old: Expr<'b>) -> Turned<'b> {
-    let doc = "Sector that follows in forward rotation.";
+    let doc = "Next sector in forward rotation.";
     let following = vec![0, 2, 3, 4, 5, 6, 1];
     let next = l.b.column("sector", "next_sector", following, doc);
     let last = hall.sector_prev.read();
@@ -129,8 +129,8 @@ fn turned<'b>(l: &Lowering<'b>, hall: &Hall<'b>, old: Expr<'b>) -> Turned<'b> {
     }
 }
 
-/// Direction of rotation alone, for controllers that need no angle; and where commutations are followed, the samples
-/// for which one may last ([`CommutationRule::kept`]).
+/// Direction of rotation, for controllers without an angle; with a commutation rule also the samples
+/// left to the commutation ([`CommutationRule::kept`]).
 pub fn sense_direction<'b>(
     l: &Lowering<'b>,
     direction: Memory<'b>,
@@ -143,8 +143,8 @@ pub fn sense_direction<'b>(
         hall.changed,
         true,
         &[
-            "Direction of rotation from a new sector, 1 to the next sector, -1 to the previous one (a jump and the first",
-            "sample change nothing), and, where it is followed, a commutation that begins.",
+            "Direction of rotation at a change of the sector: 1 to the next sector, -1 to the previous one; a jump and",
+            "the first sample leave it. With a commutation, its time-out.",
         ],
     );
     let seen = turned(l, hall, old).direction;
@@ -159,7 +159,7 @@ pub fn sense_direction<'b>(
     (direction_next, kept)
 }
 
-/// The last six intervals with the new one in front; the first one in a direction fills all of them.
+/// The last six intervals, the new one first; the first one in a direction fills all six.
 fn passed_on<'b>(
     old: [Expr<'b>; 6],
     interval: Expr<'b>,
@@ -174,7 +174,7 @@ fn passed_on<'b>(
     })
 }
 
-/// Ticks of an electrical turn: the sum of its six intervals, and what their whole ticks lack.
+/// Ticks of an electrical turn: the sum of its six intervals and their missing ticks.
 fn turn<'b>(l: &Lowering<'b>, [first, others @ ..]: [Expr<'b>; 6]) -> Expr<'b> {
     let sum = others
         .into_iter()
@@ -182,7 +182,8 @@ fn turn<'b>(l: &Lowering<'b>, [first, others @ ..]: [Expr<'b>; 6]) -> Expr<'b> {
     match PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest {
         0 => sum,
         rest => {
-            let doc = "Ticks that six intervals lack in a turn, each counted with whole ticks per control period.";
+            let doc =
+                "Ticks missing in a turn whose six intervals count whole ticks per control period.";
             sum + l.number("turn_rest", rest, doc)
         }
     }
@@ -206,13 +207,7 @@ impl<'b> RotorWords<'b> {
                 age_max + 1,
                 "Ticks since the last Hall edge, at the last sample.",
             ),
-            edges: word(
-                "edges",
-                0,
-                0,
-                2,
-                "Edges seen in this direction: 0, 1, or 2 and more.",
-            ),
+            edges: word("edges", 0, 0, 2, "Edges seen in this direction, at most 2."),
             intervals: INTERVALS.map(|name| {
                 let doc = "Ticks between two Hall edges, the latest first.";
                 word(name, 1, 1, age_max, doc)
@@ -234,7 +229,7 @@ impl<'b> RotorWords<'b> {
         }
     }
 
-    /// Angle and speed from the edges.
+    /// Angle and speed from the Hall edges.
     pub fn track(
         &self,
         l: &Lowering<'b>,
@@ -248,7 +243,7 @@ impl<'b> RotorWords<'b> {
         self.interpolate(l, hall, &edges)
     }
 
-    /// Time since the last edge: counted on, and as the sample has it.
+    /// Time since the last edge: counted in software, and of this sample.
     fn time_since_edge(
         &self,
         l: &Lowering<'b>,
@@ -259,7 +254,7 @@ impl<'b> RotorWords<'b> {
         let doc = match l.spec.inverter.hall_capture {
             HallCapture::Sampled => "Time since the last Hall edge, in half periods.",
             HallCapture::Timer { .. } => {
-                "Time since the last Hall edge, in ticks of the edge timer. A count read on the other side of an edge than the code is rejected."
+                "Time since the last Hall edge, in ticks of the edge timer. A count that belongs to the other side of an edge than the code is rejected."
             }
         };
         l.b.stage("age_edge", &[doc]);
@@ -270,7 +265,7 @@ impl<'b> RotorWords<'b> {
         [age_before, age]
     }
 
-    /// The speed, measured at an edge; `age_before` and `age` are of [`Self::time_since_edge`].
+    /// The speed, measured at an edge; the ages come from [`Self::time_since_edge`].
     fn measure_speed(
         &self,
         l: &Lowering<'b>,
@@ -285,9 +280,9 @@ impl<'b> RotorWords<'b> {
             hall.edge,
             true,
             &[
-                "Speed from the last six edges, which averages the placement errors of all sensors.",
+                "Speed from the last six intervals: the placement errors of the sensors average out.",
                 "",
-                "The first interval in a direction fills all six; a jump or a reversal starts over.",
+                "The first interval in a direction fills all six; a jump or a reversal restarts the measurement.",
             ],
         );
         let turned = turned(l, hall, old);
@@ -330,7 +325,7 @@ impl<'b> RotorWords<'b> {
         }
     }
 
-    /// Joins the intervals behind the open guarded stage, and keeps them.
+    /// Joins the intervals of the open guarded stage and sets their state words.
     fn keep_intervals(&self, l: &Lowering<'b>, seen: [Expr<'b>; 6], old: [Expr<'b>; 6]) {
         for (k, word) in self.intervals.into_iter().enumerate() {
             let name = format!("{}_next", INTERVALS[k]);
@@ -346,8 +341,8 @@ impl<'b> RotorWords<'b> {
             &[
                 "Electrical angle between Hall edges: the sector's edge plus speed times age, at most one sector.",
                 "",
-                "When an edge is missing (two mean intervals, or the least speed) the angle falls back to the sector's",
-                "centre and the speed to zero, until two edges have come again.",
+                "A missing edge (after two mean intervals, or at the least speed) sets the angle to the sector's centre and",
+                "the speed to zero until two edges have been seen again.",
             ],
         );
         let late = (3 * seen.age).is_above(seen.rev);
@@ -385,7 +380,7 @@ impl<'b> RotorWords<'b> {
     }
 }
 
-/// Ticks since the last edge: counted, and with a timer measured.
+/// Ticks since the last edge: counted, or measured by a timer.
 fn age<'b>(
     l: &Lowering<'b>,
     hall: &Hall<'b>,
@@ -393,13 +388,19 @@ fn age<'b>(
     hall_ticks: Option<Expr<'b>>,
 ) -> Expr<'b> {
     let age_max = i64::from(l.spec.age_max());
-    let limit = || l.number("age_limit", age_max + 1, "Ages are counted no further.");
+    let limit = || {
+        l.number(
+            "age_limit",
+            age_max + 1,
+            "Limit of the time since the last edge.",
+        )
+    };
     let Some(counted) = hall_ticks else {
         return hall.edge.choose(1, age_before.min(limit()));
     };
-    // Code and ticks that are read on either side of an edge contradict each other.
+    // Code and ticks contradict each other if an edge came between their readings.
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
-    let doc = "Ticks since an edge that the last two samples can have seen.";
+    let doc = "Ticks of two control periods: a new edge is no older.";
     let recent = l.number("ticks_recent", (2.0 * ticks.exact).floor() as i64, doc);
     let since_edge = counted.is_above(recent).choose(0, counted);
     let since = hall.edge.choose(since_edge, counted.max(age_before));
@@ -407,17 +408,16 @@ fn age<'b>(
 }
 
 fn greatest_age<'b>(l: &Lowering<'b>, age_max: i64) -> Expr<'b> {
-    let doc = "Ticks of 60 electrical degrees at the least speed that counts as turning.";
+    let doc = "Ticks of 60 electrical degrees at the least measurable speed.";
     l.number("age_max", age_max, doc)
 }
 
 fn last_of_sector<'b>(l: &Lowering<'b>) -> Expr<'b> {
-    let doc =
-        "Last angle of a sector, seen from its first: 60 degrees less one part in 2^32 of a turn.";
+    let doc = "Last angle of a sector, from its first: 60 degrees less 2^-32 of a turn.";
     l.rounded_number("sector_last", SIXTH - 1, sixth_turn(1.0), doc)
 }
 
-/// ceil((60 (sector - 1) - 30) / 360 2^32) in exact integers, as wrapped words; 0 for sector 0.
+/// ceil((60 (sector - 1) - 30) / 360 2^32) as wrapped words; 0 for sector 0.
 fn sector_starts() -> Vec<i32> {
     let start = |sector: i64| {
         let numerator = (2 * (sector - 1) - 1) * (1_i64 << 32);
@@ -426,7 +426,7 @@ fn sector_starts() -> Vec<i32> {
     std::iter::once(0).chain((1..7).map(start)).collect()
 }
 
-/// The angle by which a rotor of that speed turns in a control period.
+/// The rotor's angle per control period at this speed.
 fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
     let limit = || {
@@ -440,7 +440,7 @@ fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
         "k_ticks",
         ticks.exact,
         32,
-        "Ticks per control period, with their fraction.",
+        "Ticks per control period, fraction included.",
         &format!("clock Ts = {}", significant(ticks.exact)),
     );
     (k_ticks * omega).min(limit())
@@ -453,9 +453,9 @@ pub fn advanced_sector<'b>(
     seen: Expr<'b>,
     rotor: &Rotor<'b>,
 ) -> Expr<'b> {
-    let doc = "The sector that the rotor will be in when the command takes effect.";
+    let doc = "Advanced sector: the rotor's sector when the command takes effect.";
     l.b.stage("advance_sector", &[doc]);
-    // The shift is fixed: 16 fraction bits hold any advance from 0 to 2.
+    // 16 fraction bits hold any advance from 0 to 2.
     let exact = advance * 65536.0;
     let meaning = "periods of phase advance";
     l.format("k_advance", 32, 16, Rounding::RoundHalfUp, meaning);

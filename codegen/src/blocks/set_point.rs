@@ -1,4 +1,4 @@
-//! The functions outside the step that set its words (semantics, "Set-point words").
+//! Set-point words and the functions that set them (semantics, "Set-point words").
 
 use super::number::round_half_up;
 use super::speed::{SpeedWords, speed_word};
@@ -15,12 +15,12 @@ const RATIO_BITS: u32 = 28;
 /// Set-point words of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct SetPointWords<'b> {
-    /// The current set-point times its gain, words of voltage.
+    /// The current set-point times the gain, words of voltage.
     pub j: Param<'b>,
     bus: Option<BusWords<'b>>,
     /// The set-point's gain.
     pub gain: Gain,
-    /// With a speed loop.
+    /// Words of the speed loop; with a speed loop only.
     pub speed: Option<SpeedWords<'b>>,
 }
 
@@ -28,11 +28,11 @@ pub struct SetPointWords<'b> {
 #[derive(Clone, Copy, Debug)]
 struct BusWords<'b> {
     volts: Param<'b>,
-    /// For a modulator, whose duties are shares of the bus.
+    /// Nominal over measured bus voltage; with a modulator only.
     ratio: Option<Param<'b>>,
 }
 
-/// The gain that makes a voltage of a current set-point.
+/// Gain from a current set-point to a voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
     /// Its value, V/A.
@@ -44,7 +44,7 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// K = 1/b: the voltage that moves the current by so much in a period.
+    /// K = 1/b: the voltage per change of current in a period.
     pub fn stiffness(value: f64) -> Self {
         Self {
             value,
@@ -53,7 +53,7 @@ impl Gain {
         }
     }
 
-    /// Words of voltage per bit of a current.
+    /// Words of voltage per bit of a current set-point.
     fn of_current(self, l: &Lowering<'_>) -> Coefficient {
         let Self {
             value: stiffness,
@@ -76,7 +76,7 @@ impl Gain {
         )
     }
 
-    /// Words of voltage per bit of a torque.
+    /// Words of voltage per bit of a torque set-point.
     fn of_torque(self, l: &Lowering<'_>) -> Coefficient {
         let (symbol, k_t) = (self.symbol, l.spec.torque_constant());
         let torque = self.value / k_t;
@@ -129,7 +129,7 @@ impl<'b> SetPointWords<'b> {
         let bus = BusWords::new(l);
         let speed = has_speed.then(|| {
             let most = (inverter.maximum_speed / speed_word(l.spec)).ceil() as i64 + 1;
-            let doc = "Speed that is wanted, electrical angle per tick, 2^32 a turn.";
+            let doc = "Speed set-point, electrical angle per tick, 2^32 a turn.";
             let range = Interval::symmetric(most);
             let reference = l.b.param(Demand::Speed, "speed_ref", 0, range, doc);
             SpeedWords { reference, top }
@@ -163,7 +163,7 @@ impl<'b> SetPointWords<'b> {
         }
     }
 
-    /// Adds the functions that set the words: of the current, the torque and, where there are such, speed and bus.
+    /// Adds the setters: of current and torque, and of speed and bus where the drive has them.
     pub fn add_setters(&self, l: &Lowering<'b>) {
         let spec = l.spec;
         let k_t = spec.torque_constant();
@@ -203,7 +203,7 @@ struct SetPoint {
     quantity: &'static str,
     unit: &'static str,
     input: &'static str,
-    /// Name of the limit's constant, its value in the unit, what it is.
+    /// Name, value and meaning of the limit.
     limit: (&'static str, f64, &'static str),
     physical: String,
     coefficient: Coefficient,
@@ -216,12 +216,10 @@ impl SetPoint {
             None => "",
         };
         let (quantity, physical) = (self.quantity, &self.physical);
-        let doc = format!(
-            "Set-point word of the {greatest}{quantity}; saturates at {physical} to both sides."
-        );
+        let doc = format!("Set-point word of the {greatest}{quantity}; saturates at +-{physical}.");
         let (limit, most, meaning) = self.limit;
         l.b.setter(self.setter, &[&doc], |b| {
-            let doc = "Clamps the set-point and turns it into a voltage.";
+            let doc = "Set-point word: the clamped set-point as a voltage.";
             b.stage(self.setter.name(), &[doc]);
             let (input, unit) = (self.input, self.unit);
             let doc = format!("{input}, bits of a number with 16 fraction bits, {unit}.");
@@ -261,11 +259,9 @@ impl<'b> SpeedWords<'b> {
             ],
         );
         let physical = significant(most);
-        let doc = format!(
-            "Set-point word of the speed in rpm; saturates at {physical} rpm to both sides."
-        );
+        let doc = format!("Set-point word of the speed in rpm; saturates at +-{physical} rpm.");
         l.b.setter(Setter::Speed, &[&doc], |b| {
-            let doc = "Clamps the speed and turns it into angle per tick.";
+            let doc = "Set-point word: the clamped speed as angle per tick.";
             b.stage(Setter::Speed.name(), &[doc]);
             let doc = "Speed, bits of a number with 16 fraction bits, rpm.";
             let bits = b.input("bits", Interval::WORD, doc);
@@ -322,16 +318,16 @@ impl<'b> BusWords<'b> {
         );
         let [doc, stage_doc] = match self.ratio {
             Some(_) => [
-                "Words of the bus voltage, an ADC count; the only division of the set-point path is here.",
-                "Bus voltage from its ADC count, and the ratio that scales voltages to timer counts.",
+                "Words of the bus voltage from its ADC count.",
+                "Bus voltage, and the ratio that scales voltages to timer counts.",
             ],
             None => [
-                "Word of the bus voltage, an ADC count.",
+                "Word of the bus voltage from its ADC count.",
                 "Bus voltage from its ADC count.",
             ],
         };
         let limits = format!(
-            "A voltage outside {} to {}, that of a dead sensor too, counts as the nearer of these.",
+            "The voltage is clamped to {} to {}, that of a dead sensor too.",
             engineering(min, "V"),
             engineering(max, "V"),
         );
@@ -344,7 +340,7 @@ impl<'b> BusWords<'b> {
             let counts = counts.min(b.constant("bus_adc_max", top, &[doc]));
             let limit = |name, meaning, volts| {
                 let unit = engineering(volts, "V");
-                let doc = format!("{meaning} bus voltage that is taken: {unit}, words of voltage.");
+                let doc = format!("{meaning} bus voltage: {unit}, words of voltage.");
                 b.constant(name, l.volts_word(volts) as i32, &[doc])
             };
             let measured = k_bus * counts;
@@ -362,7 +358,7 @@ impl<'b> BusWords<'b> {
     }
 }
 
-/// Nominal over measured bus voltage, which is `min` or more.
+/// Nominal over measured bus voltage, for a measured one of at least `min`.
 fn nominal_ratio<'b>(l: &Lowering<'b>, volts: Expr<'b>, ratio: Param<'b>, min: f64) -> Expr<'b> {
     let v_bus = l.spec.inverter.v_bus;
     let doc = format!(
@@ -372,7 +368,7 @@ fn nominal_ratio<'b>(l: &Lowering<'b>, volts: Expr<'b>, ratio: Param<'b>, min: f
     let nominal =
         l.b.constant("v_bus_nominal", l.nominal_bus() as i32, &[doc]);
     let doc = format!(
-        "Nominal over least bus voltage: {}, {RATIO_BITS} fraction bits.",
+        "Nominal over minimum bus voltage: {}, {RATIO_BITS} fraction bits.",
         significant(v_bus / min)
     );
     let most =

@@ -1,4 +1,4 @@
-//! The speed regulator: the current that the speed's error asks for (semantics of predictive deadbeat, "Speed loop").
+//! The PI speed regulator (semantics of predictive deadbeat, "Speed loop").
 
 use super::{Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
@@ -7,9 +7,9 @@ use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Param, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
-/// Bits of the integral: one is kept free for what is added to it.
+/// Bits of the integral, with headroom of one bit for its increment.
 const INTEGRAL_BITS: u32 = 29;
-/// Base-2 logarithm of how many times faster the integral follows the limit than it integrates.
+/// Base-2 logarithm of the anti-windup gain over the integral gain.
 const TRACKING_LOG2: u32 = 2;
 
 /// The mechanical speed of one word of `omega`, rad/s.
@@ -21,32 +21,32 @@ pub(super) fn speed_word(spec: &Spec) -> f64 {
 /// Words of a speed loop.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedWords<'b> {
-    /// The speed that is wanted, in words of `omega`.
+    /// Speed set-point, in words of `omega`.
     pub reference: Param<'b>,
-    /// The greatest set-point: its coefficient times `I_MAX_BITS`.
+    /// The greatest set-point word: `k_set` times `I_MAX_BITS`.
     pub top: i64,
 }
 
-/// The regulator: its options, and its integral.
+/// The regulator: options and integral.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedRegulator<'b> {
     options: SpeedLoop,
     integral: Memory<'b>,
-    /// Fraction bits that the integral has beyond those of voltages.
+    /// Fraction bits of the integral beyond those of voltages.
     extra: u32,
     words: SpeedWords<'b>,
     /// The set-point's gain, V/A.
     stiffness: f64,
 }
 
-/// What the regulator decides.
+/// Results of the regulator.
 #[derive(Clone, Copy, Debug)]
 pub struct Regulated<'b> {
-    /// The set-point, in place of the one that is set.
+    /// The regulated current set-point, words of voltage.
     pub j: Expr<'b>,
     /// The speed, signed, words of speed.
     pub speed: Expr<'b>,
-    /// The state that keeps the integral, and its new value.
+    /// The integral's state word and its new value.
     pub integral: (Memory<'b>, Expr<'b>),
 }
 
@@ -65,7 +65,8 @@ impl<'b> SpeedRegulator<'b> {
         let rounding = Rounding::RoundHalfUp;
         l.format("speed_integral", 32, frac_bits, rounding, meaning);
         let range = Interval::symmetric(words.top << extra);
-        let doc = "Integral of the speed regulator, words of voltage with more fraction bits.";
+        let doc =
+            "Integral of the speed regulator, words of voltage with additional fraction bits.";
         Self {
             options,
             integral: l.b.memory("speed_integral", 0, range, doc),
@@ -87,7 +88,7 @@ impl<'b> SpeedRegulator<'b> {
             gain * speed_word(l.spec) * self.stiffness * l.scale.voltage(),
             32,
             [
-                "Set-point per error of speed: 2 pi f J/k_t.",
+                "Proportional gain of the speed regulator: 2 pi f J/k_t.",
                 &format!("2 pi f J/k_t = {}", engineering(gain, "A s/rad")),
             ],
             [
@@ -100,19 +101,19 @@ impl<'b> SpeedRegulator<'b> {
             "k_speed_share",
             share * f64::from(self.extra).exp2(),
             32,
-            "Share of it that one period integrates, in the integral's words.",
+            "Integral gain of the speed regulator per period, over the proportional gain.",
             &format!("2 pi f Ts/4 2^n = {} 2^{}", significant(share), self.extra),
         );
         [k_speed, k_share]
     }
 
-    /// The greatest error of speed that counts.
+    /// Limit of the speed error.
     fn greatest_error(&self, l: &Lowering<'b>) -> Expr<'b> {
         let word = speed_word(l.spec);
         let error = 2.0 * l.spec.inverter.max_current / (self.gain(l.spec) * word);
         let raw = round_down(error).min(30_f64.exp2()) as i64;
         let doc = format!(
-            "Greatest error of speed that counts, {}: it asks for twice the greatest current, words of speed.",
+            "Limit of the speed error, {}: the proportional part is then twice the largest current; words of speed.",
             engineering(raw as f64 * word, "rad/s")
         );
         l.rounded_number("error_max", raw, Exact::Number(Real::of(error)), &doc)
@@ -123,19 +124,19 @@ impl<'b> SpeedRegulator<'b> {
             * self.stiffness
             * l.scale.voltage()
             * f64::from(self.extra).exp2();
-        let doc = "The integral that alone asks for the greatest current.";
+        let doc = "Limit of the integral: the largest current by itself.";
         let (name, top) = ("speed_integral_max", self.words.top << self.extra);
         l.rounded_number(name, top, Exact::Number(Real::of(exact)), doc)
     }
 
-    /// The set-point that the error of the speed asks for, up to `most`.
+    /// The current set-point from the speed error, within +-`most`.
     pub fn regulate(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, most: Expr<'b>) -> Regulated<'b> {
         let [k_speed, k_share] = self.coefficients(l);
         l.b.stage(
             "regulate_speed",
             &[
-                "PI regulator of the speed: what it asks for is limited to the current that is set, and where it is the integral follows",
-                "the limit. Until the speed is known it counts as none.",
+                "PI speed regulator. Its output is limited to the current set-point; at the limit the integral tracks it",
+                "(anti-windup). An unknown speed counts as 0.",
             ],
         );
         let integral = self.integral.read();

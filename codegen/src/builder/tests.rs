@@ -1,9 +1,9 @@
-//! What the builder refuses.
+//! Errors and warnings of the builder.
 
 use super::{BuildError, Builder, variant_name};
 use std::fs;
 
-/// What a builder says of the example motor under two paths.
+/// Error of a builder with the example motor under two paths.
 fn refusal(test: &str, build: impl FnOnce(Builder) -> Builder) -> String {
     let folder = std::env::temp_dir().join(format!("hexagen-{test}-{}", std::process::id()));
     for name in ["front", "rear"] {

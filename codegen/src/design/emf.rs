@@ -5,14 +5,14 @@
 use crate::spec::EmfShape;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Integral of the unit EMF of phase a from 0 to `theta`, its mean over a turn removed.
+/// Integral of the unit EMF of phase a from 0 to `theta`, with zero mean over a turn.
 fn phase_integral(shape: EmfShape, theta: f64) -> f64 {
     match shape {
         EmfShape::Sinusoidal => -theta.cos(),
         EmfShape::Trapezoidal { flat_top_deg } => {
             let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
-            // Even about pi/2 shifted: from the positive zero crossing the integral rises by `area`
-            // over half a turn and falls again over the other half.
+            // From the positive zero crossing the integral rises by `area` over half a turn and falls
+            // over the other half.
             let rise = |x: f64| {
                 if x <= ramp {
                     x * x / (2.0 * ramp)
@@ -61,7 +61,7 @@ pub fn squared_length(shape: EmfShape, theta: f64) -> f64 {
         / 3.0
 }
 
-/// Phase-a current per ampere of set-point that is parallel to the EMF and makes constant torque:
+/// Phase-a current per ampere of set-point, parallel to the EMF and of constant torque:
 /// (2/3) (k_t/k_phase) s_a / |f|^2 with `ratio` = k_t/k_phase.
 pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
     2.0 / 3.0 * ratio * zero_sum_shape(shape, theta) / squared_length(shape, theta)
@@ -77,8 +77,8 @@ pub struct Parabolas {
 }
 
 impl Parabolas {
-    /// Fits with the fewest of 12, 24, 48, 96 segments whose error is at most `tolerance`, else 96.
-    /// Corners of 120-degree trapezoids lie on segment borders, where the fit of their integral is exact.
+    /// Fits with the fewest of 12, 24, 48 or 96 segments whose error is at most `tolerance`, else 96.
+    /// Corners of 120-degree trapezoids lie on segment borders, so their integral is fitted exactly.
     pub fn fit(function: impl Fn(f64) -> f64, tolerance: f64) -> Self {
         let mut best = Self::with_segments(&function, 12);
         for segments in [24, 48, 96] {

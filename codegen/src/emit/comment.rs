@@ -1,7 +1,7 @@
 //! Documentation lines as comments, whatever the language.
 
-/// The lines of a comment, each behind a sign. Paragraphs are broken anew; tables, lists, headings and code keep their
-/// lines.
+/// The lines of a comment, each after `sign`. Paragraphs are wrapped; tables, lists, headings and code
+/// keep their lines.
 pub(super) fn comments<T: AsRef<str>>(sign: &str, columns: usize, lines: &[T]) -> String {
     let mut text = Comment {
         sign,
@@ -10,7 +10,7 @@ pub(super) fn comments<T: AsRef<str>>(sign: &str, columns: usize, lines: &[T]) -
         width: 0,
     };
     for line in lines {
-        // A comment ends at the end of its line, and the user's own words may have several.
+        // The user's own text may have several lines.
         for line in line.as_ref().split('\n').flat_map(|line| line.split('\r')) {
             text.add(line);
         }
@@ -23,7 +23,7 @@ struct Comment<'s> {
     sign: &'s str,
     columns: usize,
     text: String,
-    /// Columns of the open line; 0 where none is open.
+    /// Columns of the open line; 0 if none is open.
     width: usize,
 }
 
@@ -77,7 +77,7 @@ impl Comment<'_> {
     }
 }
 
-/// The words of a line; code stays together, and so does what would read as a list at the begin of a line.
+/// The words of a line. Code is not split, nor before what would read as a list at a line's begin.
 fn words(line: &str) -> Vec<&str> {
     let (mut words, mut begin, mut is_code) = (vec![], 0, false);
     for (at, letter) in line.char_indices() {
@@ -92,7 +92,7 @@ fn words(line: &str) -> Vec<&str> {
     words
 }
 
-/// Whether a line that goes on with this text would begin an item of a list, or a heading.
+/// Whether a line with this text would begin a list item or a heading.
 fn begins_item(text: &str) -> bool {
     [" - ", " + ", " * ", " # "]
         .iter()

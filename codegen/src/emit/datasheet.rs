@@ -1,7 +1,5 @@
-//! The data sheet of one controller, in Markdown: what it controls, every number that it works
-//! with, what it needs in memory and operations, and the specification that it was made from.
-//!
-//! Everything comes from the interface and the verified graph, so it cannot differ from the code.
+//! The data sheet of one controller, in Markdown, from the interface and the verified graph alone: it
+//! cannot differ from the code.
 
 use crate::diagnostics::significant;
 use crate::interface::{Interface, PublicValue, Rounding};
@@ -77,7 +75,7 @@ impl Sheet {
 
 fn options(sheet: &mut Sheet, interface: &Interface) {
     sheet.heading(2, "Options of the controller");
-    sheet.line("As they are in effect, in SI units; what is not here is off.\n");
+    sheet.line("In SI units, defaults included; an option not listed is off.\n");
     sheet.table(["option", "value", "meaning"]);
     for option in &interface.options {
         sheet.row([
@@ -101,7 +99,7 @@ fn constants_of_the_type(sheet: &mut Sheet, interface: &Interface) {
     }
 }
 
-/// The decisions on inexact values, with their tie bands in all cases together.
+/// Decisions on inexact values, with their tie bands over all cases.
 fn decisions(sheet: &mut Sheet, program: &Program) {
     let step = &program.step;
     let cases = cases(program, step);
@@ -118,7 +116,9 @@ fn decisions(sheet: &mut Sheet, program: &Program) {
         return;
     }
     sheet.heading(2, "Decisions on rounded values");
-    sheet.line("Each is that of the ideal step unless what it compares is closer together than its tie band.\n");
+    sheet.line(
+        "Each equals that of the ideal step unless the compared values are within its tie band.\n",
+    );
     sheet.table(["decision", "tie band, words"]);
     for (name, band) in bands {
         let text = if band.is_unbounded() {
@@ -155,7 +155,7 @@ fn public_value(value: &PublicValue) -> String {
     }
 }
 
-/// A fixed-point number in decimals: as many as tell its ulp, at most nine.
+/// A fixed-point number in decimals, down to its ulp, at most nine.
 fn decimal(bits: i32, frac_bits: u32) -> String {
     let decimals = (frac_bits * 3 / 10).min(9) as usize;
     let text = format!(
@@ -171,7 +171,7 @@ fn decimal(bits: i32, frac_bits: u32) -> String {
 
 fn formats(sheet: &mut Sheet, interface: &Interface) {
     sheet.heading(2, "Formats");
-    sheet.line("Of signals, bits that hold every one that outlives a call; within a step all are 32-bit words.\n");
+    sheet.line("For signals, the bits of their state words; within a step all are 32-bit words.\n");
     sheet.table([
         "signal, coefficient or table",
         "format",
@@ -208,7 +208,7 @@ fn constants_of_the_step(sheet: &mut Sheet, program: &Program) {
     }
 }
 
-/// All entries of a short table, the range of a long one.
+/// The entries of a short table; the range of a long one.
 fn entries(table: &Table) -> String {
     if table.values.len() <= 16 {
         let values: Vec<String> = table.values.iter().map(ToString::to_string).collect();
@@ -218,13 +218,13 @@ fn entries(table: &Table) -> String {
     }
 }
 
-/// The type of a word that is stored in so many bits.
+/// The storage type of a word of `bits`.
 fn storage(bits: u32) -> &'static str {
     if bits == 16 { "u16" } else { "i32" }
 }
 
 fn memory(sheet: &mut Sheet, program: &Program) {
-    // Fields lie in the order that needs least; the whole is padded to the alignment of its largest word.
+    // Fields are in the order of least size; the total is padded to the alignment of the largest word.
     let bytes = || program.states.iter().map(|word| word.storage_bits / 8);
     let state = bytes()
         .sum::<u32>()
@@ -324,7 +324,7 @@ fn row_of_costs(sheet: &mut Sheet, name: &str, runs: &str, cost: Cost) {
 fn ranges(sheet: &mut Sheet, program: &Program) {
     let step = &program.step;
     sheet.heading(2, "Proven ranges");
-    sheet.line("Of every named word of the step, for any input and any state in its range.\n");
+    sheet.line("All named words of the step, for any input and any state within its range.\n");
     sheet.table(["stage", "words"]);
     for stage in &step.stages {
         let joins = stage

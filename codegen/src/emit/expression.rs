@@ -1,7 +1,7 @@
-//! Values as expressions that a language prints: which form each takes, not how it is spelled.
+//! Values as expressions, whatever the language.
 //!
-//! A value with a name is that name; a value without one stands where it is used. What is compared with a constant
-//! stands left of it. All else is as the graph has it.
+//! A value with a name is that name; a value without one is written where it is used. Comparisons with
+//! a constant have it on the right. All else is as in the graph.
 
 use super::plan::Context;
 use super::signal::{Leg, Shape};
@@ -10,9 +10,9 @@ use crate::ir::{Comparison, ConstantId, Node, Op, StateId, TableId, Value};
 /// An expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Expression {
-    /// A value under its name.
+    /// A named value.
     Signal(String),
-    /// A state word, read at its place.
+    /// A state word.
     State(StateId),
     /// A named constant.
     Constant(ConstantId),
@@ -22,7 +22,7 @@ pub(super) enum Expression {
     Leg(Leg),
     /// -a
     Negated(Box<Self>),
-    /// The flag does not hold.
+    /// Negation of a flag.
     Not(Box<Self>),
     /// Two operands.
     Binary(Operator, Box<Self>, Box<Self>),
@@ -30,15 +30,15 @@ pub(super) enum Expression {
     ShiftedLeft(Box<Self>, u32),
     /// floor(a / 2^n), n at least 1
     ShiftedRight(Box<Self>, u32),
-    /// A primitive of its operands; the number is a shift or a count of segments.
+    /// A primitive, its operands, and its shift or number of segments.
     Call(Primitive, Vec<Self>, Option<u32>),
-    /// table[index mod length]; whether the index is masked, rather than known to lie within the table.
+    /// table[index mod length]; whether the index must be masked.
     Lookup(TableId, Box<Self>, bool),
     /// 1 where the flag holds, else 0.
     FlagWord(Box<Self>),
-    /// The state of a leg that a word stands for.
+    /// A word as the state of a leg.
     LegOf(Box<Self>),
-    /// Condition, value where it holds, value where it does not.
+    /// Condition, value if true, value if false.
     Choice(Box<[Self; 3]>),
 }
 
@@ -73,7 +73,7 @@ pub(super) enum Operator {
     Or,
 }
 
-/// Functions that every language has a helper for; their meaning is that of the [`Op`] of the same name.
+/// Functions with a helper in every language; their meaning is that of the [`Op`] of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Primitive {
     /// |a|
@@ -122,13 +122,13 @@ impl Expression {
     }
 }
 
-/// The place from which values are seen.
+/// The place where values are used.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
     /// The function.
     pub context: &'a Context<'a>,
-    /// Whether state words are read where they are used (in the function's own body) rather than
-    /// under their names (in a stage, which reads them first).
+    /// Whether state words are read in place (in the function's own body) rather than by name (in a
+    /// stage, which reads them first).
     pub reads_state: bool,
 }
 
@@ -137,7 +137,7 @@ impl<'a> Scope<'a> {
         self.context.function.node(value)
     }
 
-    /// The small number that a value is, if it is one.
+    /// The value as a small number, if it is one.
     pub(super) fn literal(&self, value: Value) -> Option<i32> {
         match self.node(value).op {
             Op::Literal(literal) => Some(literal),
@@ -145,7 +145,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// A value where it is used: its name, or what it stands for.
+    /// A value in use: its name, or its expression.
     pub(super) fn value(&self, value: Value) -> Expression {
         let node = self.node(value);
         match node.op {
@@ -157,7 +157,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// A value as the given shape has it.
+    /// A value in the given shape.
     pub(super) fn in_shape(&self, value: Value, shape: Shape) -> Expression {
         if shape == Shape::Leg
             && let Some(number) = self.literal(value)
@@ -173,7 +173,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// What a named value is bound to.
+    /// The expression that a named value is bound to.
     pub(super) fn definition(&self, value: Value) -> Expression {
         use Expression as E;
         use Operator as O;
@@ -191,7 +191,7 @@ impl<'a> Scope<'a> {
             Op::Input(_) | Op::Param(_) | Op::State(_) | Op::Constant(_) | Op::Literal(_) => {
                 self.value(value)
             }
-            // A join is bound where its stage is called.
+            // A join is bound by the call of its stage.
             Op::Join { taken, .. } => of(taken),
             Op::Add(a, b) => E::binary(O::Add, of(a), of(b)),
             Op::AngleAdd(a, b) => E::binary(O::AngleAdd, of(a), of(b)),
@@ -272,7 +272,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The signal stands left, what it is compared with right.
+    /// The signal on the left, its limit on the right.
     fn comparison(&self, how: Comparison, a: Value, b: Value) -> Expression {
         let turned = self.value(a).is_constant() && !self.value(b).is_constant();
         let (left, right) = if turned { (b, a) } else { (a, b) };

@@ -1,7 +1,6 @@
 //! Emitters: from a verified graph and its interface to text or tokens.
 //!
-//! Each knows the graph, its tables and its naming, never the specification and never another
-//! emitter, and none can fail.
+//! Each uses the graph and the interface, never the specification or another emitter. None can fail.
 
 pub mod c99;
 mod comment;

@@ -1,4 +1,4 @@
-//! The drive's name where a language writes names in small letters.
+//! The drive's name in snake case.
 
 /// `hub_drive` of `HubDrive`, `bldc_42_drive` of `BLDC42Drive`: an underscore before each capital
 /// that follows a small letter or begins a word, and before each run of digits.

@@ -1,4 +1,4 @@
-//! The step and the setters as calls of their stages: what every language's functions are made of.
+//! The step and the setters as calls of their stages, whatever the language.
 
 use super::plan::{Context, StagePlan};
 use crate::ir::{AtRest, Demand, Function, Op, Program, StateId, Value, Word};
@@ -20,13 +20,13 @@ impl Part {
     }
 }
 
-/// What goes out of a function besides its words.
+/// The outputs of a function, state and set-point words left out.
 pub(super) fn results(function: &Function) -> impl Iterator<Item = Value> {
     let outputs = function.outputs.iter().map(|&(_, value)| value);
     outputs.chain(function.told.iter().map(|&(_, value)| value))
 }
 
-/// Set-point words that the runtime keeps each by itself, under these names.
+/// Set-point words that are fields of the runtime's drive, with their names.
 pub(super) const SINGLE: [(Demand, &str); 2] =
     [(Demand::Current, "current"), (Demand::Speed, "speed")];
 
@@ -55,23 +55,23 @@ pub(super) fn inputs_used(function: &Function, values: impl Iterator<Item = Valu
         .collect()
 }
 
-/// What a part of a step leaves behind.
+/// State words set by a part of a step.
 pub(super) struct Kept<'a> {
-    /// Old words that go out of the step: read before anything is written.
+    /// Old words among the outputs: read before any word is written.
     pub reads: Vec<Value>,
-    /// New state words, each written once at the end, in this order: one that takes over the old word of another
-    /// before that is written.
+    /// New state words, written once at the end, in an order that reads each old word before it is
+    /// overwritten.
     pub words: Vec<(&'a Word, Value)>,
 }
 
 impl Kept<'_> {
-    /// Whether a new word is read where it is written: an old one that no name holds.
+    /// Whether a new value is an old word without a local name, read when it is written.
     pub(super) fn is_moved(&self, function: &Function, value: Value) -> bool {
         matches!(function.node(value).op, Op::State(_)) && !self.reads.contains(&value)
     }
 }
 
-/// The words that a part of the step keeps at its end: those that its stages store themselves are left out.
+/// The words that a part of the step sets at its end, without those that its stages store.
 pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Part) -> Kept<'a> {
     let (program, function) = (context.program, context.function);
     let is_kept = |&(state, value): &(StateId, Value)| {
@@ -97,7 +97,7 @@ pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Par
             moved.any(|&(_, value)| function.node(value).op == Op::State(state))
         };
         let Some(next) = moved.iter().position(|&(state, _)| !is_read(state)) else {
-            // A circle.
+            // Words exchange their values.
             reads.extend(moved.iter().map(|&(_, value)| value));
             break;
         };
@@ -114,7 +114,7 @@ pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Par
     }
 }
 
-/// What a period without control leaves in the words that the tracking does not store.
+/// Values at rest of the words that the tracking does not store.
 pub(super) fn kept_at_rest<'a>(context: &Context<'a>) -> Vec<(&'a Word, AtRest)> {
     let function = context.function;
     let next = function.next_state.iter();
@@ -130,7 +130,7 @@ pub(super) fn kept_at_rest<'a>(context: &Context<'a>) -> Vec<(&'a Word, AtRest)>
         .collect()
 }
 
-/// The words that a setter makes, in the order of the program's set-point words.
+/// The words that a setter sets, in the order of the program's set-point words.
 pub(super) fn writes(setter: &Function) -> Vec<Value> {
     let mut written = setter.next_params.clone();
     written.sort_by_key(|(param, _)| param.index());

@@ -1,15 +1,15 @@
-//! Arguments, results and stored words of each stage: everything that a signature needs.
+//! Arguments, results and stored words of each stage.
 //!
 //! Constants, small numbers, inputs, set-point words and state words are leaves: they belong to no
-//! stage and are read where they are used. All else is a result of the stage that computes it if
-//! something outside uses it.
+//! stage and are read where they are used. Any other value is a result of its stage if it is used
+//! outside of it.
 
 use super::rows::WholeCommand;
 use super::signal::{Shape, Signal};
 use crate::ir::{Function, Kind, Op, Output, Program, Stage, StateId, Value};
 use std::collections::BTreeSet;
 
-/// Who uses a value.
+/// User of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum User {
     /// A node.
@@ -24,7 +24,7 @@ enum User {
     Other,
 }
 
-/// A function and what is known of its values.
+/// A function and the uses of its values.
 #[derive(Debug)]
 pub(super) struct Context<'a> {
     /// The program.
@@ -33,18 +33,18 @@ pub(super) struct Context<'a> {
     pub function: &'a Function,
     users: Vec<Vec<User>>,
     legs: BTreeSet<Value>,
-    /// Values that no stage computes: they go out of the step another way.
+    /// Values that no stage computes: the lookup of a whole command.
     left_out: BTreeSet<Value>,
 }
 
 /// A value that leaves a stage.
 #[derive(Clone, Debug)]
 pub(super) struct Outcome {
-    /// Name and kind outside of the stage.
+    /// Name and shape outside of the stage.
     pub signal: Signal,
     /// The value within the stage.
     pub value: Value,
-    /// For a guarded stage: what holds where it does not run.
+    /// For a guarded stage: the value if it does not run.
     pub otherwise: Option<Value>,
 }
 
@@ -53,21 +53,20 @@ pub(super) struct Outcome {
 pub(super) struct StagePlan<'a> {
     /// The stage.
     pub stage: &'a Stage,
-    /// Its nodes that become code.
+    /// Its nodes that are emitted.
     pub body: Vec<Value>,
     /// State words that it reads.
     pub reads: Vec<StateId>,
     /// Values from outside that it uses, in the order of their definition.
     pub arguments: Vec<Value>,
-    /// Values that it yields.
+    /// Its results.
     pub outcomes: Vec<Outcome>,
-    /// State words that a guarded stage stores itself: they change nowhere else, so that the normal path does not
-    /// write them.
+    /// State words that a guarded stage stores itself, so that the normal path does not write them.
     pub stores: Vec<(StateId, Value)>,
 }
 
 impl<'a> Context<'a> {
-    /// Looks at all values of `function`.
+    /// Collects the uses of all values of `function`.
     pub(super) fn new(program: &'a Program, function: &'a Function) -> Self {
         let users = users(function);
         let legs = legs(program, function, &users);
@@ -80,7 +79,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Likewise, of a step whose command is looked up as a `whole` and is no stage's.
+    /// Likewise for a step whose command is looked up as a `whole`.
     pub(super) fn of_step(program: &'a Program, whole: Option<&WholeCommand<'_>>) -> Self {
         let mut context = Self::new(program, &program.step);
         if let Some(whole) = whole {
@@ -104,8 +103,8 @@ impl<'a> Context<'a> {
             .collect()
     }
 
-    /// Whether the tracking itself stores a state word: what it stores is its own, and nothing behind it reads the old
-    /// word.
+    /// Whether the tracking stores a state word: it computes the new value, and the control part does not
+    /// read the old one.
     pub(super) fn is_tracked(&self, state: StateId) -> bool {
         let mut next = self.function.next_state.iter();
         let Some(&(_, value)) = next.find(|(known, _)| *known == state) else {
@@ -135,7 +134,7 @@ impl<'a> Context<'a> {
             .collect()
     }
 
-    /// What a value is in emitted code.
+    /// Shape of a value in emitted code.
     pub(super) fn shape(&self, value: Value) -> Shape {
         match self.function.node(value).kind {
             Kind::Flag => Shape::Flag,
@@ -222,8 +221,8 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The state word that the guarded stage may store itself: the join is its next value, it keeps its value where
-    /// the stage does not run, and nothing reads the old value later.
+    /// The state word that the guarded stage may store itself: the join is its next value, its old value
+    /// stays if the stage does not run, and nothing reads the old value later.
     fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
         let Op::State(kept) = self.function.node(otherwise).op else {
             return None;
@@ -235,7 +234,7 @@ impl<'a> Context<'a> {
         (is_next && self.users[otherwise.index()].iter().all(read_before)).then_some(kept)
     }
 
-    /// Whether a value is more than the next one of a state word.
+    /// Whether a value has another use than as the next one of a state word.
     fn is_used_besides(&self, value: Value, state: StateId) -> bool {
         self.users[value.index()] != [User::NextState(state)]
     }
@@ -271,7 +270,7 @@ fn users(function: &Function) -> Vec<Vec<User>> {
     users
 }
 
-/// The choices that end in leg states and nowhere else: they are made among `LegState`s, or looked up as such.
+/// Values used as leg states only: they are chosen among `LegState`s, or looked up as such.
 fn legs(program: &Program, function: &Function, users: &[Vec<User>]) -> BTreeSet<Value> {
     let mut legs = BTreeSet::new();
     for (index, node) in function.nodes.iter().enumerate().rev() {

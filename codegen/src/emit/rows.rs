@@ -1,8 +1,8 @@
-//! How tables lie in memory: alone, or side by side as the columns of rows that one index reads.
+//! Memory layout of tables: alone, or as columns of rows with a common index.
 
 use crate::ir::{Function, Op, Output, Phase, Program, Table, TableId, Value};
 
-/// The row that a table is a column of, where it has company there or its entries have a type of their own.
+/// The row of a table, if it is not its only column or its entries are leg states.
 pub(super) fn row_of(program: &Program, table: &Table) -> Option<&'static str> {
     let row = table.row?;
     (columns(program, row).count() > 1 || table.holds_legs).then_some(row)
@@ -17,13 +17,13 @@ pub(super) fn columns<'a>(
     tables.filter(move |table| table.row == Some(row))
 }
 
-/// A command that is looked up as a whole: columns of one row hold all that the legs do, and nothing else is done with
-/// what stands in them, so that they are one column, from which the command goes out as it is.
+/// A command that is looked up as a whole: the columns of one row hold compare values and leg states,
+/// and have no other use, so they form one column of commands.
 #[derive(Clone, Debug)]
 pub(super) struct WholeCommand<'a> {
     /// The row.
     pub row: &'static str,
-    /// Where it is looked up.
+    /// Index of the lookup.
     pub index: Value,
     /// Compare values and states of legs a, b, c.
     pub columns: Vec<&'a Table>,
@@ -32,11 +32,11 @@ pub(super) struct WholeCommand<'a> {
 }
 
 impl<'a> WholeCommand<'a> {
-    /// Bytes of a command, and what it is aligned to.
+    /// Size of a command, bytes.
     const SIZE: usize = 8;
 
-    /// The one that the step gives, if it does. Where no leg is ever off there are no columns of
-    /// states, and the command is put together.
+    /// The step's command, if it is looked up as a whole. Without off legs there are no columns of
+    /// states, and the command is built in code.
     pub(super) fn of(program: &'a Program) -> Option<Self> {
         let path = &program.step;
         let outputs = [Output::Compare, Output::Leg].map(|of| Phase::ALL.map(of));
@@ -75,13 +75,13 @@ impl<'a> WholeCommand<'a> {
         })
     }
 
-    /// Whether a table is a part of it.
+    /// Whether a table is one of its columns.
     pub(super) fn holds(&self, table: &Table) -> bool {
         self.columns.iter().any(|column| column.name == table.name)
     }
 }
 
-/// How often a function looks a table up.
+/// Number of a function's lookups of a table.
 fn reads(function: &Function, sought: TableId) -> usize {
     let is_sought = |op: &Op| matches!(op, Op::Lookup { table, .. } if *table == sought);
     function
@@ -91,7 +91,7 @@ fn reads(function: &Function, sought: TableId) -> usize {
         .count()
 }
 
-/// Bytes of the smallest elements that hold a table.
+/// Bytes of a table's elements.
 pub(super) fn size(table: &Table) -> usize {
     match table.interval().bits() {
         _ if table.holds_legs => 1,
@@ -113,14 +113,14 @@ fn fields(program: &Program, row: &'static str, whole: Option<&WholeCommand<'_>>
         .collect()
 }
 
-/// Bytes of a row as it is packed, its widest field aligned.
+/// Bytes of a packed row, its widest field aligned.
 fn packed(fields: &[usize]) -> usize {
     let widest = fields.iter().copied().max().unwrap_or(1);
     fields.iter().sum::<usize>().next_multiple_of(widest)
 }
 
-/// The alignment that makes a row as long as a power of two, where that takes no more than a word: its address is then
-/// a shift of the index.
+/// The alignment that pads a row to a power of two, if that takes no more than a word: its address is
+/// then a shift of the index.
 pub(super) fn padding(
     program: &Program,
     row: &'static str,

@@ -1,13 +1,13 @@
-//! What a value is in emitted code, whatever the language.
+//! Names and shapes of values in emitted code, whatever the language.
 
-/// What a value is in emitted code.
+/// Shape of a value in emitted code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
     /// A word.
     Word,
     /// True or false.
     Flag,
-    /// The state of a leg: a word that does nothing but leave the step as such.
+    /// The state of a leg.
     Leg,
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Leg {
 }
 
 impl Leg {
-    /// The state that a number stands for.
+    /// The state by its number.
     pub(super) fn of(number: i32) -> Self {
         match number {
             0 => Self::Pulsed,

@@ -1,4 +1,4 @@
-//! What emitted text says of a drive holds for its program.
+//! Emitted documentation against the program.
 
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Interface};
@@ -33,7 +33,7 @@ fn format<'a>(interface: &'a Interface, name: &str) -> &'a FormatEntry {
     found.unwrap_or_else(|| panic!("no format `{name}`"))
 }
 
-/// The kind of signals that a word which outlives a call is of: a current, a voltage or neither.
+/// The kind of a state word: a current, a voltage or neither.
 fn kind(name: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
     if starts(&["i_", "offset_"]) {
@@ -45,7 +45,7 @@ fn kind(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Coefficients, tables and the kinds of signals, each with the range of its words.
+/// Ranges of coefficients, tables and kinds of signals.
 fn ranges(program: &Program) -> Vec<(&str, Interval)> {
     let words = program.words();
     let kinds = words.filter_map(|word| Some((kind(&word.name)?, word.interval)));
@@ -97,7 +97,7 @@ fn sixteen_bit_words_are_of_currents_and_coefficients() {
     assert_eq!(bits, [16, 16, 32, 32]);
 }
 
-/// The value that a coefficient's documentation says: `K = 4.468 V/A, 0.2045 in words; …`, or `1/3; …`.
+/// The value in a coefficient's documentation: `K = 4.468 V/A, 0.2045 in words; …`, or `1/3; …`.
 fn said(line: &str) -> Option<f64> {
     let formula = line.split(';').next()?;
     let value = match formula.strip_suffix(" in words") {

@@ -1,12 +1,11 @@
-//! What emitted code says about itself, whatever the language.
+//! Documentation of types and stages in emitted code, whatever the language.
 
 use super::plan::{Context, Outcome};
 use super::signal::Shape;
 use crate::interface::Interface;
 use crate::ir::{Op, PathCost, Program};
 
-/// What the type says of itself: what it controls, then what it was made of, what a step costs and how far it is from
-/// the ideal one at most.
+/// Documentation of the type: interface, generator and scale, operations of a step, error bounds.
 pub(super) fn of_type(program: &Program, interface: &Interface) -> Vec<String> {
     let cost = PathCost::of_function(&program.step);
     let mut lines = interface.doc.clone();
@@ -24,7 +23,7 @@ pub(super) fn of_type(program: &Program, interface: &Interface) -> Vec<String> {
     lines
 }
 
-/// A stage: what it computes, and the proven ranges of its results, which `name` spells.
+/// Documentation of a stage, with the proven ranges of its results; `name` spells their names.
 pub(super) fn stage<'o>(
     context: &Context<'_>,
     doc: &[String],

@@ -2,45 +2,45 @@
 //!
 //! The ideal computation starts from the same inputs, state and set-point words, has the exact
 //! coefficients, rounds nothing, and takes the same decisions. So a value's error is that of arithmetic
-//! alone, and each decision on inexact values has a tie band: it is that of the ideal computation too
-//! wherever the compared values differ by more. Minimum, maximum, clamp and magnitude move no two values
-//! further apart, so they are no decisions.
+//! alone, and each decision on inexact values has a tie band: it equals the ideal one if the compared
+//! values differ by more. Minimum, maximum, clamp and magnitude do not increase the distance of two
+//! values, so they are no decisions.
 //!
-//! A value that is thrown away needs no bound: what reaches a result only where a condition holds is
-//! bounded under that condition ([`Bounds::operand`]).
+//! A discarded value needs no bound: a value that reaches a result only under a condition is bounded
+//! under that condition ([`Bounds::operand`]).
 
 use super::error::{ErrorInterval, Exact, Real};
 use super::graph::{Function, Program};
 use super::interval::Interval;
 use super::op::{Comparison, Kind, Op, Value};
 
-/// A part of all that can happen, with its bounds.
+/// A case of a function, with its bounds.
 #[derive(Clone, Debug)]
 pub struct Case<'p> {
-    /// `snake_case` name, of the conditions.
+    /// `snake_case` name from the conditions.
     pub name: String,
-    /// Whether an inexact decision took the values off the normal path, such as to a limit.
+    /// Whether an inexact decision leaves the normal path, such as a limit.
     pub is_rare: bool,
-    /// The conditions, each with whether it holds.
+    /// The conditions, each true or false.
     pub known: Vec<(Value, bool)>,
     /// Bounds of all values.
     pub bounds: Bounds<'p>,
 }
 
-/// How far a quantity is from the ideal one.
+/// Error of a quantity against the ideal one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatedError {
     /// `snake_case` name.
     pub name: String,
-    /// What it is.
+    /// Documentation of the quantity.
     pub doc: String,
     /// Unit.
     pub unit: String,
-    /// What one word of it is worth in that unit.
+    /// Value of one word in that unit.
     pub word: Real,
     /// Errors on the normal path, in words.
     pub normal: ErrorInterval,
-    /// Errors where an inexact decision took it off that path, in words; none where nothing can.
+    /// Errors off that path after an inexact decision, in words; if there is such a decision.
     pub rare: Option<ErrorInterval>,
 }
 
@@ -57,7 +57,7 @@ impl StatedError {
     }
 }
 
-/// The errors of all quantities that a program's step states, the largest of each name.
+/// The stated errors of a program's step, the largest of each name.
 pub fn stated_errors(program: &Program) -> Vec<StatedError> {
     let mut stated: Vec<StatedError> = vec![];
     for case in cases(program, &program.step) {
@@ -87,8 +87,7 @@ pub fn stated_errors(program: &Program) -> Vec<StatedError> {
     stated
 }
 
-/// Bounds a function in cases that together are all that can happen: with and without each rare stage
-/// that rounds.
+/// Bounds a function in exhaustive cases: with and without each rare stage that rounds.
 pub fn cases<'p>(program: &'p Program, function: &'p Function) -> Vec<Case<'p>> {
     let all = Bounds::new(program, function);
     let rare = function.stages.iter().filter_map(|stage| {
@@ -129,7 +128,7 @@ pub fn cases<'p>(program: &'p Program, function: &'p Function) -> Vec<Case<'p>> 
     named.collect()
 }
 
-/// Conditions, each with whether it holds: few, so that a list holds them.
+/// Conditions, each true or false; a list, since they are few.
 #[derive(Clone, Debug, Default)]
 struct Context(Vec<(Value, bool)>);
 
@@ -144,7 +143,7 @@ impl Context {
         }
     }
 
-    /// Keeps what the other knows, too.
+    /// Keeps the conditions that the other has, too.
     fn intersect(&mut self, other: &Self) {
         self.0.retain(|&known| other.contains(known));
     }
@@ -161,12 +160,12 @@ pub struct Bounds<'p> {
 }
 
 impl<'p> Bounds<'p> {
-    /// Bounds a function of a program, for all that can happen.
+    /// Bounds a function of a program in all cases together.
     pub fn new(program: &'p Program, function: &'p Function) -> Self {
         Self::where_known(program, function, &[])
     }
 
-    /// Bounds a function of a program where these conditions hold, or do not.
+    /// Bounds a function of a program under known conditions.
     pub fn where_known(
         program: &'p Program,
         function: &'p Function,
@@ -195,23 +194,23 @@ impl<'p> Bounds<'p> {
         bounds
     }
 
-    /// The interval of a value, where a result depends on it.
+    /// The interval of a value whenever a result depends on it.
     pub fn interval(&self, value: Value) -> Interval {
         self.intervals[value.index()]
     }
 
-    /// The error of a value, where a result depends on it, in units of its last place.
+    /// The error of a value whenever a result depends on it, in units of the last place.
     pub fn error(&self, value: Value) -> ErrorInterval {
         self.errors[value.index()]
     }
 
-    /// The interval of an operand of `user`, under the conditions under which `user` matters.
+    /// The interval of an operand of `user` whenever a result depends on `user`.
     pub fn operand(&self, user: Value, operand: Value) -> Interval {
         self.refined(&self.contexts[user.index()], operand)
     }
 
-    /// The tie band of a decision: how far the compared values' difference may be from the ideal one.
-    /// None for decisions that inputs and state alone make, and for values that decide nothing.
+    /// The tie band of a decision: the error of the compared values' difference. None for exact
+    /// decisions, and for values that are no decisions.
     pub fn band(&self, value: Value) -> Option<ErrorInterval> {
         let band = match self.function.node(value).op {
             Op::Compare(_, a, b) => self.error(a).minus(self.error(b)),
@@ -231,7 +230,7 @@ impl<'p> Bounds<'p> {
         for &(condition, holds) in &context.0 {
             self.refine(condition, holds, value, &mut interval);
         }
-        // Conditions that contradict each other: the place is never reached, and any bound will do.
+        // The conditions contradict each other: the place is never reached, and any bound is valid.
         if interval.low > interval.high {
             own
         } else {
@@ -239,9 +238,9 @@ impl<'p> Bounds<'p> {
         }
     }
 
-    /// Takes in what a condition says of a value.
+    /// Narrows the interval of a value by a condition.
     fn refine(&self, condition: Value, holds: bool, value: Value, interval: &mut Interval) {
-        // A condition may compare with what is computed later, of which only the proven interval is known.
+        // Of values computed later only the proven interval is known.
         let known = |value: Value| {
             let refined = self.intervals.get(value.index());
             refined.map_or_else(|| self.function.node(value).interval, |refined| *refined)
@@ -320,7 +319,7 @@ impl<'p> Bounds<'p> {
         }
     }
 
-    /// Whether a condition is known to hold, or not, where a value matters.
+    /// The condition's outcome whenever a result depends on the value, if it is known.
     fn decided(&self, index: usize, condition: Value) -> Option<bool> {
         let context = &self.contexts[index];
         [true, false]
@@ -328,7 +327,7 @@ impl<'p> Bounds<'p> {
             .find(|&holds| context.contains((condition, holds)))
     }
 
-    /// The guard of the stage that a join belongs to.
+    /// The guard of a join's stage.
     fn guard(&self, join: usize) -> Option<Value> {
         let join = Value(join as u32);
         let mut guards = self
@@ -340,7 +339,7 @@ impl<'p> Bounds<'p> {
         Some(guard.condition)
     }
 
-    /// One of two errors where a condition is known, else both.
+    /// One of two errors if the condition is known, else both.
     fn chosen(&self, index: usize, condition: Option<Value>, sides: [Value; 2]) -> ErrorInterval {
         let [then, otherwise] = sides.map(|value| self.error(value));
         match condition.and_then(|condition| self.decided(index, condition)) {
@@ -350,7 +349,7 @@ impl<'p> Bounds<'p> {
         }
     }
 
-    /// The error of a value that both computations keep within limits: at most the distance of the limits.
+    /// The error of a clamped value: at most the distance of the limits.
     fn limited(&self, error: ErrorInterval, user: Value, [low, high]: [Value; 2]) -> ErrorInterval {
         let off = self.error(low).union(self.error(high)).magnitude();
         let span = self.operand(user, high).high - self.operand(user, low).low;
@@ -416,7 +415,7 @@ impl<'p> Bounds<'p> {
             Op::Min(x, high) | Op::Lesser(x, high) => {
                 let error = of(x).union(of(high));
                 match self.function.node(x).op {
-                    // Kept within two limits, one after the other.
+                    // Clamped by one limit after the other.
                     Op::Max(_, low) | Op::Greater(_, low) => self.limited(error, user, [low, high]),
                     _ => error,
                 }
@@ -444,11 +443,11 @@ impl<'p> Bounds<'p> {
                 if ideal < 1.0 {
                     return ErrorInterval::unbounded();
                 }
-                // floor((2^32 - 1)/a) against 2^32/a, and the slope of the latter.
+                // floor((2^32 - 1)/a) against 2^32/a, and the slope of 2^32/a.
                 let slope = of(a).quotient(32, least * ideal);
                 slope.plus(ErrorInterval::new(-1.0 - 1.0 / least, 0.0))
             }
-            // Half a unit is dropped; what the angle's error does to a function of it counts at its lookup.
+            // Truncation of half a unit; the effect of the angle's error is counted at the lookup.
             Op::AngleFraction { .. } => ErrorInterval::new(-0.5, 0.0),
             Op::Lookup { table, index, .. } => {
                 let table = &self.program.tables[table.index()];
@@ -492,7 +491,7 @@ impl<'p> Bounds<'p> {
         let least = self.operand(user, denominator).low as f64 - e_d.magnitude();
         let limit = self.operand(user, limit).high;
         let most = limit.saturating_add(e_limit.magnitude().ceil() as i64 + 1);
-        // Neither is negative nor above the limit.
+        // Both are between 0 and the limit.
         let widest = ErrorInterval::symmetric(most as f64);
         if least <= 0.0 {
             return widest;

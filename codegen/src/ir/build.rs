@@ -1,8 +1,8 @@
-//! Construction of programs: functions one after the other, stage by stage, intervals computed on the way.
+//! Construction of programs, function by function and stage by stage, with intervals.
 //!
 //! The builder never fails: a value that leaves its word keeps its interval (clipped far outside the
-//! word), and [`super::verify()`] reports it. So a caller may try a scaling, look at the violations
-//! and try the next. Values are handed out as expressions ([`super::expr`]), which share the builder.
+//! word), and [`super::verify()`] reports it, so a caller can try scales in turn. Values are returned as
+//! expressions ([`super::expr`]) that refer to the builder.
 
 use super::error::{Exact, Real};
 use super::expr::{Expr, Flag, Lut, Memory, Param};
@@ -15,10 +15,10 @@ use super::role::{Demand, Output, Setter, Told};
 use std::cell::RefCell;
 
 /// Intervals are clipped here, far outside the 32-bit word, so that interval arithmetic in 64 bits
-/// cannot overflow however wrong a program is.
+/// cannot overflow for any program.
 const CLIP: i64 = 1 << 40;
 
-/// Builds a program; one of its functions is open at a time, which begins as the step.
+/// Builder of a program; one function is open at a time, first the step.
 #[derive(Debug)]
 pub struct ProgramBuilder {
     draft: RefCell<Draft>,
@@ -83,9 +83,9 @@ fn word(name: &str, initial: i32, interval: Interval, doc: &str) -> Word {
     }
 }
 
-/// What all functions of a program share.
+/// Constants, tables and words, shared by all functions.
 impl ProgramBuilder {
-    /// Starts a program of that name, and its step.
+    /// Starts a program, with its step open.
     pub fn new(name: &str, step_doc: &[&str]) -> Self {
         Self {
             draft: RefCell::new(Draft {
@@ -104,8 +104,8 @@ impl ProgramBuilder {
         }
     }
 
-    /// Adds a function that sets words of the set-point: `build` opens its stages. The step is the
-    /// open function again behind it.
+    /// Adds a function that sets set-point words: `build` opens its stages. The step is open again
+    /// afterwards.
     pub fn setter<'b>(&'b self, setter: Setter, doc: &[&str], build: impl FnOnce(&'b Self)) {
         let function = Function::new(setter.name(), doc);
         let step = self.draft.borrow_mut().open(function);
@@ -115,8 +115,7 @@ impl ProgramBuilder {
         draft.program.setters.push((setter, function));
     }
 
-    /// Adds a named constant that stands for the number `exact` says, or finds the one of the same
-    /// name and value.
+    /// Adds a named constant with exact value `exact`, or finds the one of the same name and value.
     pub fn declare_constant(
         &self,
         name: &str,
@@ -138,7 +137,7 @@ impl ProgramBuilder {
         ConstantId(place as u32)
     }
 
-    /// Adds a named constant that stands for itself, and reads it.
+    /// Adds an exact named constant, and reads it.
     pub fn constant(&self, name: &str, raw: i32, doc: &[String]) -> Expr<'_> {
         self.read_constant(self.declare_constant(name, raw, Exact::Itself, doc))
     }
@@ -148,17 +147,17 @@ impl ProgramBuilder {
         self.draft.borrow().program.constants[id.index()].raw
     }
 
-    /// Adds a table whose entries stand for themselves, padded with zeros to a power of two.
+    /// Adds a table of exact entries, padded with zeros to a power of two.
     pub fn table(&self, name: &str, values: Vec<i32>, doc: &[String]) -> Lut<'_> {
         self.rounded_table(name, values, (Exact::Itself, None), doc)
     }
 
-    /// Adds a table that is read by one index together with others of the same `row`.
+    /// Adds a table that shares its index with others of the same `row`.
     pub fn column(&self, row: &'static str, name: &str, values: Vec<i32>, doc: &str) -> Lut<'_> {
         self.table(name, values, &[doc.to_owned()]).in_row(row)
     }
 
-    /// Adds a table of rounded entries, which may belong to a function of the angle; padded as [`Self::table`].
+    /// Adds a table of rounded entries, perhaps of a function of the angle; padded as [`Self::table`].
     pub fn rounded_table(
         &self,
         name: &str,
@@ -191,7 +190,7 @@ impl ProgramBuilder {
         self.draft.borrow_mut().program.tables[table.index()].holds_legs = true;
     }
 
-    /// Adds a state word; it is stored in 16 bits where its interval allows that, see [`Word::storage_bits`].
+    /// Adds a state word, stored in 16 bits if its interval fits, see [`Word::storage_bits`].
     pub fn memory(&self, name: &str, initial: i32, interval: Interval, doc: &str) -> Memory<'_> {
         let states = &mut self.draft.borrow_mut().program.states;
         states.push(word(name, initial, interval, doc));
@@ -234,7 +233,7 @@ impl ProgramBuilder {
         self.draft.borrow_mut().open_stage(name, doc, None);
     }
 
-    /// Opens a stage that runs only where `condition` holds; close it with [`Self::join`].
+    /// Opens a stage that runs only if `condition` holds; close it with [`Self::join`].
     pub fn guarded_stage(&self, name: &str, condition: Flag<'_>, rare: bool, doc: &[&str]) {
         let guard = Guard {
             condition: condition.value,
@@ -245,8 +244,8 @@ impl ProgramBuilder {
         draft.open_stage(name, doc, Some(guard));
     }
 
-    /// Closes the guarded stage: per result its name, the value from inside, and the value that holds
-    /// where the stage did not run. A new stage must be opened before further nodes are added.
+    /// Closes the guarded stage: per result its name, the value from inside, and the value if the
+    /// stage does not run. A new stage must be opened before further nodes are added.
     pub fn join<'b, const N: usize>(
         &'b self,
         results: [(&str, Expr<'b>, Expr<'b>); N],
@@ -268,20 +267,20 @@ impl ProgramBuilder {
         joined.collect()
     }
 
-    /// Ends the tracking: what follows runs in controlled periods only. A new stage must be opened.
+    /// Ends the tracking: later stages run in controlled periods only. A new stage must be opened.
     pub fn end_tracking(&self) {
         let function = &mut self.draft.borrow_mut().function;
         function.close();
         function.tracking = function.nodes.len();
     }
 
-    /// Tells people a value.
+    /// Makes a value an observation.
     pub fn tell(&self, told: Told, value: Expr<'_>) {
         let mut draft = self.draft.borrow_mut();
         draft.function.told.push((told, value.value));
     }
 
-    /// Says what a value is a result as.
+    /// Makes a value an output.
     pub fn output(&self, output: Output, value: Expr<'_>) {
         let function = &mut self.draft.borrow_mut().function;
         function.close();
@@ -300,7 +299,7 @@ impl ProgramBuilder {
         function.next_params.push((param, value));
     }
 
-    /// States the error of a value: of what quantity, in which unit, and what a word is worth in it.
+    /// States the error bound of a value: quantity, unit, and the word in that unit.
     pub fn state_error(&self, name: &str, value: Expr<'_>, [doc, unit]: [&str; 2], word: f64) {
         let mut draft = self.draft.borrow_mut();
         draft.function.quantities.push(Quantity {
@@ -408,7 +407,7 @@ impl Draft {
         Some(Value(index as u32))
     }
 
-    /// The name of the word that is read.
+    /// The name of the word that a leaf reads.
     fn name_of(&self, op: Op) -> String {
         let word = match op {
             Op::Param(id) => self.program.params.get(id.index()).map(|(_, word)| word),

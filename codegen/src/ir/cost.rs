@@ -1,7 +1,7 @@
-//! How many operations a function takes: per stage, on the normal path and at worst.
+//! Operation counts of functions: per stage, on the normal path and in the worst case.
 //!
-//! Counted over the graph, so the same for every target. The normal path leaves out the stages that
-//! are marked rare; the worst path runs every stage.
+//! Counted on the graph, so the same for every target. The normal path leaves out rare stages; the
+//! worst case runs every stage.
 
 use super::graph::{Function, Stage};
 use super::op::Op;
@@ -26,7 +26,7 @@ pub struct Cost {
 /// Operations of one function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathCost {
-    /// Without the stages that are marked rare.
+    /// Without rare stages.
     pub normal: Cost,
     /// With every stage.
     pub worst: Cost,
@@ -144,8 +144,8 @@ impl fmt::Display for Cost {
     }
 }
 
-/// The most values that are alive at once in the function: computed (or read from state, set-point
-/// or input) and still to be used. An upper bound of the words that a compiler must keep.
+/// Largest number of live values in the function: computed (or read from state, set-point or input)
+/// and still to be used. An upper bound of the words that a compiler must keep.
 pub fn live_words(function: &Function) -> usize {
     let mut last_use = vec![0; function.nodes.len()];
     for (index, node) in function.nodes.iter().enumerate() {

@@ -1,8 +1,7 @@
-//! How far a value lies from the ideal one: intervals of errors, and real numbers that words stand for.
+//! Error intervals of values, and the real numbers that words represent.
 //!
-//! Errors are counted in units of the value's last place and kept in multiples of 2^-24 of it, rounded
-//! outward by every operation, so that what is stated is never too narrow, and a checker that computes in
-//! 60 bits finds room to prove it.
+//! Errors are in units of the value's last place, as multiples of 2^-24 of it, rounded outward by every
+//! operation, so that a stated bound is never too narrow and a checker with 60 bits can prove it.
 
 use std::fmt;
 
@@ -11,13 +10,13 @@ use super::interval::Interval;
 /// Errors are multiples of 2^-24.
 const FRACTION_BITS: u32 = 24;
 
-/// Beyond this an error says nothing any more: far above all words.
+/// Errors from here on count as unbounded: far above all words.
 const UNBOUNDED: i128 = 1 << (40 + FRACTION_BITS);
 
-/// Errors grow no further; products of a word and what is not unbounded stay below.
+/// Errors saturate here; products of a word and a bounded error stay below.
 const LARGEST: i128 = 1 << 100;
 
-/// A real number of the generator: a floating-point number is itself an exact rational, m 2^e.
+/// A real number of the generator, exactly: m 2^e.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Real {
     /// m
@@ -27,7 +26,7 @@ pub struct Real {
 }
 
 impl Real {
-    /// The number that the floating-point number is; of infinities and the like zero.
+    /// The value of a finite floating-point number; zero for others.
     pub fn of(x: f64) -> Self {
         if x == 0.0 || !x.is_finite() {
             return Self {
@@ -65,18 +64,18 @@ impl fmt::Display for Real {
     }
 }
 
-/// What a word of the program stands for.
+/// The real number that a word of the program represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exact {
-    /// For itself: a count, a sign, a limit that is defined as this integer.
+    /// The integer itself: a count, a sign, a limit defined as an integer.
     Itself,
-    /// For a real number that was rounded, in units of the word's last place.
+    /// A real number that was rounded, in units of the word's last place.
     Number(Real),
-    /// For a real number that is at most so many units of the last place away.
+    /// A real number within so many units of the last place.
     Within(u32),
 }
 
-/// An interval of errors: of a value less what it would be without any rounding.
+/// An interval of errors: a value less its value without any rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ErrorInterval {
     low: i128,
@@ -112,7 +111,7 @@ impl ErrorInterval {
         Self::symmetric(0.5)
     }
 
-    /// Nothing is known.
+    /// No bound.
     pub fn unbounded() -> Self {
         Self {
             low: -LARGEST,
@@ -120,12 +119,12 @@ impl ErrorInterval {
         }
     }
 
-    /// Of a word that stands for `exact`.
+    /// Of a word that represents `exact`.
     pub fn of(word: i32, exact: Exact) -> Self {
         match exact {
             Exact::Itself => Self::ZERO,
             Exact::Number(number) => {
-                // Close to each other, so the difference is exact.
+                // The two are close, so the difference is exact.
                 let error = f64::from(word) - number.value();
                 Self::new(error, error)
             }
@@ -154,7 +153,7 @@ impl ErrorInterval {
         }
     }
 
-    /// Largest magnitude, in units of the last place, not rounded down.
+    /// Largest magnitude, in units of the last place, rounded up.
     pub fn magnitude(self) -> f64 {
         let units = self.low.abs().max(self.high.abs());
         // At most 2^53 units are exact; beyond, the conversion rounds to nearest.
@@ -166,7 +165,7 @@ impl ErrorInterval {
         widened as f64 / f64::from(1_u32 << FRACTION_BITS)
     }
 
-    /// Whether nothing is known.
+    /// Whether there is no bound.
     pub fn is_unbounded(self) -> bool {
         self.low <= -UNBOUNDED || self.high >= UNBOUNDED
     }
@@ -224,7 +223,7 @@ impl ErrorInterval {
         }
     }
 
-    /// Of the magnitude: |a| and |b| are no further apart than a and b.
+    /// Of the magnitude: the distance of |a| and |b| is at most that of a and b.
     #[must_use]
     pub fn magnitudes(self) -> Self {
         let most = self.low.abs().max(self.high.abs());
@@ -283,7 +282,7 @@ impl ErrorInterval {
         }
     }
 
-    /// Over an integer of at least `least`, which is positive, times 2^n; to both sides.
+    /// Over an integer of at least `least` > 0, times 2^n; symmetric.
     #[must_use]
     pub fn quotient(self, n: u32, least: f64) -> Self {
         Self::symmetric(self.magnitude() * f64::from(n).exp2() / least * (1.0 + f64::EPSILON * 8.0))
@@ -296,7 +295,7 @@ impl ErrorInterval {
         }
     }
 
-    /// Within the bounds, and outward to a number of 62 bits.
+    /// Saturated, and rounded outward to 62 bits.
     fn held(self) -> Self {
         let floor = |units: i128| {
             let spare = (128 - units.abs().leading_zeros()).saturating_sub(62);

@@ -1,9 +1,8 @@
-//! Values of a function under construction as expressions: laws are written with these.
+//! Expressions: the values of a function under construction, in which laws are written.
 //!
-//! Operators add a node each, in the order in which Rust evaluates them. What an operator computes
-//! says [`Op::apply`]; of two products `k * x` with a [`Coefficient`] rounds half up at its shift, and
-//! [`Expr::mul_floor`] rounds down. A value becomes a `let` of the emitted code by its name, which
-//! `named!` takes from a binding:
+//! Each operator adds a node, in Rust's order of evaluation, with the meaning of [`Op::apply`]. The
+//! product `k * x` with a [`Coefficient`] rounds half up at its shift, [`Expr::mul_floor`] rounds down.
+//! A named value becomes a `let` of the emitted code; `named!` takes names from bindings:
 //!
 //! ```text
 //! named! {
@@ -66,7 +65,7 @@ pub struct Coefficient {
 #[derive(Clone, Copy, Debug)]
 pub struct Phases<'b, const N: usize = 2>(pub [Expr<'b>; N]);
 
-/// What stands where a word is wanted: an expression, or a number.
+/// An operand: an expression or a number.
 pub trait Operand<'b>: Copy {
     /// The value, as a node of the function.
     fn node(self, b: &'b ProgramBuilder) -> Value;
@@ -84,14 +83,14 @@ impl<'b> Operand<'b> for i32 {
     }
 }
 
-/// What `named!` gives a name.
+/// Values that `named!` can name.
 pub trait Named {
-    /// The same under that name, as a `let` of the emitted code.
+    /// The value under this name, a `let` of the emitted code.
     #[must_use]
     fn named(self, name: &str) -> Self;
 }
 
-/// `let`s whose names are those of the values in the emitted code.
+/// `let`s whose values have the same names in the emitted code.
 macro_rules! named {
     ($(let $name:ident = $value:expr;)*) => {
         $(let $name = $crate::ir::Named::named($value, stringify!($name));)*
@@ -102,7 +101,7 @@ pub(crate) use named;
 /// Letters of the phases.
 const LETTERS: [&str; 3] = ["a", "b", "c"];
 
-/// The name of a phase's value: the letter follows the first word, as in `u_a_limited`.
+/// The name of a phase's value, with the letter after the first word: `u_a_limited`.
 fn phase_name(name: &str, phase: usize) -> String {
     let letter = LETTERS[phase];
     match name.split_once('_') {
@@ -152,7 +151,7 @@ impl<'b> Expr<'b> {
         operand.node(self.b)
     }
 
-    /// The function that it belongs to.
+    /// The builder of its function.
     pub fn builder(self) -> &'b ProgramBuilder {
         self.b
     }
@@ -263,7 +262,7 @@ impl<'b> Expr<'b> {
         self.op(Op::AngleSub(self.value, other.value))
     }
 
-    /// The segment of the turn in which an angle lies, of so many.
+    /// The segment of an angle, of `segments` in a turn.
     #[must_use]
     pub fn angle_index(self, segments: u32) -> Self {
         self.op(Op::AngleIndex {
@@ -272,7 +271,7 @@ impl<'b> Expr<'b> {
         })
     }
 
-    /// Where in its segment an angle lies, 31 bits.
+    /// The position of an angle in its segment, 31 bits.
     #[must_use]
     pub fn angle_fraction(self, segments: u32) -> Self {
         self.op(Op::AngleFraction {
@@ -329,7 +328,7 @@ pub fn mul_add_floor<'b>([a, b]: [Expr<'b>; 2], [c, d]: [Expr<'b>; 2], shift: u3
     })
 }
 
-/// What a flag chooses between: words or flags.
+/// Operands of a choice: words or flags.
 pub trait Choice<'b>: Copy {
     /// `then` where the flag holds, else `otherwise`.
     fn choose(flag: Flag<'b>, then: Self, otherwise: Self) -> Self;
@@ -394,7 +393,7 @@ impl<'b> Flag<'b> {
     }
 }
 
-/// Of three phases' values that of a where `is_a`, else that of b where `is_b`, else that of c.
+/// The value of a if `is_a`, else that of b if `is_b`, else that of c.
 pub fn pick<'b, T: Choice<'b>>([is_a, is_b]: [Flag<'b>; 2], [a, b, c]: [T; 3]) -> T {
     let rest = T::choose(is_b, b, c);
     T::choose(is_a, a, rest)
@@ -423,7 +422,7 @@ impl<'b> Param<'b> {
         self.b.set_param(self.id, value.value);
     }
 
-    /// The interval that it never leaves.
+    /// The word's interval.
     pub fn interval(self) -> Interval {
         self.b.param_interval(self.id)
     }
@@ -440,14 +439,14 @@ impl<'b> Lut<'b> {
         })
     }
 
-    /// Says that one index reads it together with others of the same `row`.
+    /// Puts the table into a `row` of tables with a common index.
     #[must_use]
     pub fn in_row(self, row: &'static str) -> Self {
         self.b.put_in_row(self.id, row);
         self
     }
 
-    /// Says that the entries are states of legs, and are read as such alone.
+    /// Marks the entries as leg states.
     #[must_use]
     pub fn of_legs(self) -> Self {
         self.b.hold_legs(self.id);
@@ -485,7 +484,7 @@ impl<'b, const N: usize> Phases<'b, N> {
 }
 
 impl<'b> Phases<'b> {
-    /// All three: c is minus the sum of the two others, under its name among theirs.
+    /// All three phases, with c minus the sum of the two others; `name` is that of the quantity.
     #[must_use]
     pub fn with_c(self, name: &str) -> Phases<'b, 3> {
         let [a, b] = self.0;
@@ -513,7 +512,7 @@ impl<'b> Phases<'b, 3> {
         a + b + c
     }
 
-    /// The greatest and the least, by name, in the form that the spread rule knows
+    /// The greatest and the least, by name, in the form of the spread rule
     /// ([`Function::interval_where_not`](super::Function::interval_where_not)).
     pub fn extremes(self, [greatest, least]: [&str; 2]) -> [Expr<'b>; 2] {
         let [a, b, c] = self.0;

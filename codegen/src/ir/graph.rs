@@ -1,4 +1,4 @@
-//! The data of the IR: nodes in stages, functions, and what a program's functions share.
+//! Data of the IR: nodes, stages, functions, programs.
 
 use super::error::{ErrorInterval, Exact, Real};
 use super::interval::Interval;
@@ -14,18 +14,18 @@ pub struct Node {
     pub kind: Kind,
     /// Proven interval.
     pub interval: Interval,
-    /// Stable signal name; empty for a value that is used once, right in its stage.
+    /// Stable signal name; empty for a value that is used once, in its stage.
     pub name: String,
 }
 
 /// A named constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// `snake_case` name; empty for one that stands by its value where it is used.
+    /// `snake_case` name; empty for one that is written by value.
     pub name: String,
     /// Value.
     pub raw: i32,
-    /// What it stands for.
+    /// The number that it represents.
     pub exact: Exact,
     /// Meaning, physical value with unit and formula, format, quantisation error.
     pub doc: Vec<String>,
@@ -38,13 +38,13 @@ pub struct Table {
     pub name: String,
     /// Entries.
     pub values: Vec<i32>,
-    /// What they stand for.
+    /// The numbers that they represent.
     pub exact: Exact,
-    /// The function of the angle whose first coefficients these are.
+    /// The periodic function whose constant coefficients these are.
     pub periodic: Option<Periodic>,
-    /// What the tables have in common that one index reads: emitters may lay them out as columns of rows.
+    /// Name shared by the tables with a common index, which emitters lay out as columns of rows.
     pub row: Option<&'static str>,
-    /// Whether the entries are states of legs and nothing else.
+    /// Whether the entries are leg states.
     pub holds_legs: bool,
     /// Meaning of the entries.
     pub doc: Vec<String>,
@@ -60,7 +60,7 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// How far the approximation at an inexact angle is from the function at the exact one.
+    /// Error of the approximation at an inexact angle.
     pub fn error(self, angle: ErrorInterval) -> ErrorInterval {
         let turn = f64::from(32).exp2();
         let moved = if angle.is_zero() {
@@ -75,53 +75,53 @@ impl Periodic {
 }
 
 impl Table {
-    /// Whether every word of an interval is the place of an entry.
+    /// Whether every word of the interval is a valid index.
     pub fn has(&self, index: Interval) -> bool {
         Interval::new(0, self.values.len() as i64 - 1).contains(index)
     }
 
-    /// The interval of its entries.
+    /// Interval of its entries.
     pub fn interval(&self) -> Interval {
         let words = || self.values.iter().map(|&value| i64::from(value));
         Interval::new(words().min().unwrap_or(0), words().max().unwrap_or(0))
     }
 }
 
-/// A word that outlives a call: state of the step or word of the set-point.
+/// A persistent word: state or set-point.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word {
     /// `snake_case` name.
     pub name: String,
     /// Value at start.
     pub initial: i32,
-    /// Interval that it never leaves.
+    /// Its interval.
     pub interval: Interval,
-    /// Bits of the word that stores it: 32, or 16 of a number that is never negative. A halfword with a sign takes more to
-    /// load than a whole word where only the unsigned load has an offset (ARMv6-M).
+    /// Storage bits: 32, or 16 for a number that is never negative. A signed halfword is slower to load
+    /// than a word if only the unsigned load has an offset (ARMv6-M).
     pub storage_bits: u32,
     /// Meaning and format.
     pub doc: String,
 }
 
-/// A word that comes in with a call.
+/// An input word of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
     /// `snake_case` name.
     pub name: String,
-    /// All values that can come.
+    /// Its interval.
     pub interval: Interval,
     /// Meaning.
     pub doc: String,
 }
 
-/// The condition of a guarded stage and the values that it may replace.
+/// Condition and joins of a guarded stage.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guard {
-    /// Flag defined before the stage: the stage runs only where it holds.
+    /// Flag defined before the stage: the stage runs only if it holds.
     pub condition: Value,
-    /// The joins, right after the stage's nodes, through which alone its values are seen outside.
+    /// The joins, right after the stage's nodes: the only way out for its values.
     pub joins: Vec<Value>,
-    /// Whether the stage is off the normal path, for the emitters (code placement) and op counts.
+    /// Whether the stage is off the normal path, for code placement and operation counts.
     pub rare: bool,
 }
 
@@ -130,13 +130,13 @@ pub struct Guard {
 pub struct Stage {
     /// `snake_case` name, a verb phrase.
     pub name: String,
-    /// What the stage computes and why it is so, with the equation's source.
+    /// Documentation, with the source of the equation.
     pub doc: Vec<String>,
     /// First node.
     pub first: usize,
     /// One past the last node (without joins).
     pub end: usize,
-    /// For a stage that runs under a condition only.
+    /// Its guard, if it runs under a condition.
     pub guard: Option<Guard>,
 }
 
@@ -147,7 +147,7 @@ pub struct Function {
     pub name: String,
     /// Meaning.
     pub doc: Vec<String>,
-    /// Words that come in.
+    /// Input words.
     pub inputs: Vec<Input>,
     /// Nodes, each defined before it is used.
     pub nodes: Vec<Node>,
@@ -155,7 +155,7 @@ pub struct Function {
     pub stages: Vec<Stage>,
     /// Results, in order.
     pub outputs: Vec<(Output, Value)>,
-    /// What it tells people besides, each where it knows one.
+    /// Observations.
     pub told: Vec<(Told, Value)>,
     /// New state words.
     pub next_state: Vec<(StateId, Value)>,
@@ -163,44 +163,44 @@ pub struct Function {
     pub next_params: Vec<(ParamId, Value)>,
     /// Quantities whose error is stated.
     pub quantities: Vec<Quantity>,
-    /// How many of the nodes, the first ones, are tracking: they run in periods without control, too.
-    /// The whole of a function that knows no such periods.
+    /// Number of the first nodes that are tracking, which runs in periods without control, too. All nodes
+    /// of a setter.
     pub tracking: usize,
 }
 
-/// A value that stands for a physical quantity whose error is stated.
+/// A physical quantity with a stated error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
-    /// `snake_case` name; several values may have one, whose error is the largest.
+    /// `snake_case` name; values of the same name share the largest error.
     pub name: String,
-    /// What it is.
+    /// Documentation.
     pub doc: String,
     /// Unit.
     pub unit: String,
-    /// What one word of it is worth in that unit.
+    /// Value of one word in that unit.
     pub word: Real,
     /// The value.
     pub value: Value,
 }
 
-/// What a period without control leaves in a state word.
+/// New value of a state word in a period without control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AtRest {
     /// A value of the tracking.
     Tracked(Value),
-    /// 0: what was commanded and believed is forgotten.
+    /// 0: past commands and estimates are cleared.
     Forgotten,
 }
 
 impl Function {
-    /// The value of an output, where there is one.
+    /// The value of an output, if it exists.
     pub fn output(&self, sought: Output) -> Option<Value> {
         let mut outputs = self.outputs.iter();
         let found = outputs.find(|(output, _)| *output == sought);
         found.map(|&(_, value)| value)
     }
 
-    /// A value that people are told, where they are.
+    /// The value of an observation, if it exists.
     pub fn told(&self, sought: Told) -> Option<Value> {
         let mut told = self.told.iter();
         let found = told.find(|(told, _)| *told == sought);
@@ -212,7 +212,7 @@ impl Function {
         value.index() < self.tracking
     }
 
-    /// What a period without control leaves in the state word that is `value` behind a controlled one.
+    /// New value in a period without control of the state word whose controlled new value is `value`.
     pub fn at_rest(&self, value: Value) -> AtRest {
         if self.is_tracking(value) {
             AtRest::Tracked(value)
@@ -221,7 +221,7 @@ impl Function {
         }
     }
 
-    /// Replaces every value that anything refers to but operands.
+    /// Replaces every reference to a value, operands excepted.
     pub(super) fn map_values(&mut self, f: impl Fn(Value) -> Value) {
         let guards = self
             .stages
@@ -259,13 +259,13 @@ impl Function {
         &self.nodes[value.index()]
     }
 
-    /// The interval of `value` where the flag `condition` does not hold.
+    /// The interval of `value` if the flag `condition` does not hold.
     ///
-    /// One relation is known besides the value's own interval, the spread rule: for three numbers that sum
-    /// to zero, `c = -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of
-    /// them by 2/3 limit (it and its counterweight lie at most `limit` apart, and two of three share a sign),
-    /// max + min, which is minus the middle one, by 1/3 limit, and each less floor((max + min)/2) by 1/2 limit:
-    /// the largest is ceil(spread/2) above it and the smallest floor(spread/2) below; lifted by a number or not.
+    /// Besides the value's own interval it uses the spread rule: for three numbers that sum to zero, `c =
+    /// -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of them by 2/3
+    /// limit (max and min are at most `limit` apart, and two of the three share a sign), max + min, which
+    /// is minus the middle one, by 1/3 limit, and each less floor((max + min)/2), perhaps plus a constant,
+    /// by 1/2 limit: the largest is ceil(spread/2) above it and the smallest floor(spread/2) below.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {
@@ -284,7 +284,7 @@ impl Function {
         Interval::new(own.low.max(centre - bound), own.high.min(centre + bound))
     }
 
-    /// What the leg that `value` is has been centred about: 0 for `leg - middle`, the number for `leg + (number - middle)`.
+    /// Centre of a centred leg: 0 for `leg - middle`, the number for `leg + (number - middle)`.
     fn centre_of(&self, value: Value, legs: [Value; 3], [high, low]: [Value; 2]) -> Option<i64> {
         match self.node(value).op {
             Op::Sub(leg, middle) => {
@@ -336,7 +336,7 @@ impl Function {
     }
 }
 
-/// One controller: its step, the functions that set its set-point, and what they share.
+/// One controller: the step, the setters, and their shared constants, tables and words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// Name of the controller type.
@@ -356,18 +356,18 @@ pub struct Program {
 }
 
 impl Program {
-    /// The place of a set-point word, where there is such a word.
+    /// The place of a set-point word, if it exists.
     pub fn place_of(&self, sought: Demand) -> Option<usize> {
         let mut params = self.params.iter();
         params.position(|(demand, _)| *demand == sought)
     }
 
-    /// A set-point word, where there is such a word.
+    /// A set-point word, if it exists.
     pub fn param(&self, sought: Demand) -> Option<&Word> {
         self.place_of(sought).map(|place| &self.params[place].1)
     }
 
-    /// All words that outlive a call: of the state, then of the set-point.
+    /// All persistent words: state, then set-point.
     pub fn words(&self) -> impl Iterator<Item = &Word> {
         let params = self.params.iter().map(|(_, word)| word);
         self.states.iter().chain(params)

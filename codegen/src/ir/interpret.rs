@@ -1,8 +1,7 @@
-//! Runs a verified graph with exact integer semantics.
+//! The interpreter: runs a verified graph with exact integer semantics.
 //!
-//! The arithmetic is [`Op::apply`]; guarded stages run only where their guard holds, as in the
-//! emitted code. A value that leaves its proven interval is reported: that would be a bug of the
-//! generator, and a test that runs the interpreter finds it.
+//! The arithmetic is [`Op::apply`]; guarded stages run only if their guard holds, as in the emitted
+//! code. A value outside its proven interval is an error: a bug of the generator.
 
 use super::graph::{AtRest, Function, Program};
 use super::op::{Op, Value};
@@ -14,7 +13,7 @@ use super::verify::VerifiedGraph;
 pub struct Escape {
     /// Function and name (or number) of the value.
     pub place: String,
-    /// The value, where there is one.
+    /// The value, if it exists.
     pub value: Option<i64>,
 }
 
@@ -49,8 +48,8 @@ impl<'g> Machine<'g> {
         Self::of_program(graph.program())
     }
 
-    /// As [`Machine::new`] for a program that need not pass verification: planted faults are run to
-    /// see whether the comparison with the reference catches them.
+    /// As [`Machine::new`], for a program that need not pass verification, such as one with a planted
+    /// fault.
     pub fn of_program(program: &'g Program) -> Self {
         Self {
             program,
@@ -74,7 +73,7 @@ impl<'g> Machine<'g> {
         self.run(0, &program.step, inputs)
     }
 
-    /// Runs a period without control: the step's tracking, and what it leaves.
+    /// Runs a period without control: the tracking and the values at rest.
     ///
     /// # Errors
     /// [`Escape`] when a value leaves its proven interval.
@@ -90,7 +89,7 @@ impl<'g> Machine<'g> {
         Ok(())
     }
 
-    /// Runs a setter; one that the program does not have does nothing.
+    /// Runs a setter, if the program has it.
     ///
     /// # Errors
     /// [`Escape`] when a value leaves its proven interval.

@@ -1,4 +1,4 @@
-//! Intervals of integers: what is proven of a value.
+//! Intervals of integers.
 
 use std::fmt;
 
@@ -77,7 +77,7 @@ impl Interval {
         of(self.low).max(of(self.high))
     }
 
-    /// What `f` makes of two values where it is monotonic in each: its values at the ends.
+    /// The interval of `f`, monotonic in each argument, from its values at the ends.
     pub(crate) fn corners(self, other: Self, f: impl Fn(i64, i64) -> i64) -> Self {
         let all = [
             f(self.low, other.low),

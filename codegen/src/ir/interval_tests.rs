@@ -1,5 +1,4 @@
-//! Intervals against all values of small ranges: none too narrow, and none wider than its values
-//! but where that is said.
+//! Intervals against all values of small ranges: none too narrow, and none too wide except as stated.
 
 use super::{
     Bounds, Comparison, Expr, Flag, Function, Interval, Named, Op, Output, Program, ProgramBuilder,
@@ -28,8 +27,7 @@ fn choices(intervals: &[Interval]) -> Vec<Vec<i64>> {
     })
 }
 
-/// That an operator's interval is that of all its results, and that it has none where an operand is
-/// out of its domain.
+/// Checks that an operator's interval is exactly that of its results, and none outside its domain.
 fn check(op: Op, operands: &[Interval]) {
     let results: Option<Vec<i64>> = choices(operands)
         .iter()
@@ -39,7 +37,7 @@ fn check(op: Op, operands: &[Interval]) {
     assert_eq!(found, results.and_then(hull), "{op:?} of {operands:?}");
 }
 
-/// Operands that no test looks at.
+/// Unused operand.
 const X: Value = Value(0);
 
 #[test]
@@ -187,7 +185,7 @@ fn bits_are_those_of_the_smallest_word_that_holds_both_ends() {
     }
 }
 
-/// A step of this shape, which is not verified: `build` names its values.
+/// A step built by `build`, not verified.
 fn program(
     inputs: &[Interval],
     build: impl for<'b> Fn(&'b ProgramBuilder, &[Expr<'b>]),
@@ -238,8 +236,8 @@ const HOWS: [Comparison; 4] = [
     Comparison::NotEqual,
 ];
 
-/// What is known of `x` and `y` where `holds` says so, in a selection and in a guarded stage: no
-/// more than what all inputs show, and no less for an order of the two.
+/// Bounds of `x` and `y` under a condition, in a selection and in a guarded stage: never narrower than
+/// all inputs show, and exact for an order of the two.
 fn check_condition(
     ranges: &[Interval],
     is_exact: bool,
@@ -377,8 +375,8 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
     assert_eq!(then, Interval::new(1, 5), "x is below 5 there");
 }
 
-/// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and what follows for each of them, their
-/// middle and each less the middle.
+/// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and its bounds on each of them, their middle
+/// and each less the middle.
 #[test]
 fn a_spread_bounds_its_legs_and_their_middle() {
     let range = Interval::symmetric(15);

@@ -1,4 +1,4 @@
-//! Operators and the meaning of every one of them.
+//! Operators and their meaning.
 //!
 //! Every value is a 32-bit two's complement word or a flag. [`Op::apply`] is the one definition of
 //! what operators compute; [`Op::interval`] is its extension to intervals. All integers are exact:
@@ -46,7 +46,7 @@ macro_rules! position {
 }
 position!(ConstantId, TableId, ParamId, StateId);
 
-/// What a value can be.
+/// Kind of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A 32-bit signed word.
@@ -82,7 +82,7 @@ impl Comparison {
 /// Operators. `a`, `b` and so on are words unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Op {
-    /// Word `n` of the function's inputs.
+    /// The input word of this number.
     Input(u32),
     /// A set-point word.
     Param(ParamId),
@@ -157,13 +157,13 @@ pub enum Op {
     Min(Value, Value),
     /// max(a, b)
     Max(Value, Value),
-    /// min(a, b) of words whose difference is one
+    /// min(a, b) of words whose difference fits a word
     Lesser(Value, Value),
-    /// max(a, b) of words whose difference is one
+    /// max(a, b) of words whose difference fits a word
     Greater(Value, Value),
     /// min(max(x, low), high), low <= high
     Clamp {
-        /// What is clamped.
+        /// The clamped value.
         x: Value,
         /// Lower limit.
         low: Value,
@@ -216,7 +216,7 @@ pub enum Op {
     Lookup {
         /// Table; its length is a power of two.
         table: TableId,
-        /// Any word where it is masked; else one that lies within the table.
+        /// Any word if masked; else one within the table.
         index: Value,
         /// Whether the index is taken modulo the length.
         is_masked: bool,
@@ -237,9 +237,9 @@ pub enum Op {
     Select {
         /// Flag.
         condition: Value,
-        /// Value where it holds.
+        /// Value if true.
         then: Value,
-        /// Value where it does not.
+        /// Value if false.
         otherwise: Value,
     },
     /// Result of a guarded stage: `taken` from inside if the guard held, else `otherwise` from outside
@@ -252,7 +252,7 @@ pub enum Op {
 }
 
 impl Op {
-    /// Whether the value is read, wherever it is used, rather than computed by a stage.
+    /// Whether the value is read in place rather than computed by a stage.
     pub fn is_leaf(&self) -> bool {
         matches!(
             self,
@@ -278,7 +278,7 @@ impl Op {
         self.each_operand(|operand| *operand = f(*operand));
     }
 
-    /// Likewise, to replace them.
+    /// Visits every operand, to replace it.
     fn each_operand(&mut self, mut visit: impl FnMut(&mut Value)) {
         match self {
             Self::Input(_)
@@ -361,8 +361,8 @@ impl Op {
         }
     }
 
-    /// Whether a narrow operator may stand for operands in these intervals: what it computes on the way fits a word.
-    /// True of all operators that are not narrow.
+    /// Whether a narrow operator is valid for operands in these intervals: its intermediate results fit a
+    /// word. True for all other operators.
     pub fn is_narrow(&self, x: &[Interval]) -> bool {
         let fits = |interval: Interval| Interval::WORD.contains(interval);
         match *self {
@@ -390,7 +390,7 @@ impl Op {
         }
     }
 
-    /// What kind of value the operator yields, from the kinds of its operands.
+    /// The kind of the result, from the kinds of the operands.
     pub fn kind(&self, kind_of: impl Fn(Value) -> Kind) -> Kind {
         match *self {
             Self::Compare(..) | Self::Exceeds(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => {
@@ -401,7 +401,7 @@ impl Op {
         }
     }
 
-    /// What kinds the operands must have, in the order of [`Op::operands`].
+    /// The kinds that the operands must have, in the order of [`Op::operands`].
     pub fn operand_kinds(&self, result: Kind) -> Vec<Kind> {
         match *self {
             Self::And(..) | Self::Or(..) => vec![Kind::Flag, Kind::Flag],
@@ -412,9 +412,8 @@ impl Op {
         }
     }
 
-    /// The exact result for operand values `x` (in the order of [`Op::operands`]), before any check
-    /// that it fits its word. `None` for leaves and joins, whose value comes from elsewhere, and for
-    /// operands outside the operator's domain.
+    /// The exact result for operand values `x` (in the order of [`Op::operands`]), which may exceed a
+    /// word. `None` for leaves and joins, and for operands outside the operator's domain.
     pub fn apply(&self, x: &[i64], table: impl Fn(TableId, i64) -> i64) -> Option<i64> {
         let turn = 1_i64 << 32;
         let unsigned = |a: i64| a.rem_euclid(turn);
@@ -480,8 +479,8 @@ impl Op {
         })
     }
 
-    /// An interval that holds every result for operands in the intervals `x`; exact but for
-    /// correlations between operands. `None` where the operator's domain may be left.
+    /// An interval of the results for operands in the intervals `x`; exact but for correlations between
+    /// operands. `None` if the operator's domain may be left.
     pub fn interval(
         &self,
         x: &[Interval],
@@ -491,7 +490,7 @@ impl Op {
         Some(match *self {
             Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) => return None,
             Self::Literal(value) => Interval::point(i64::from(value)),
-            // Monotonic in each operand: the corners decide.
+            // Monotonic in each operand.
             Self::Add(..)
             | Self::Sub(..)
             | Self::Product(..)

@@ -1,7 +1,7 @@
-//! Removes what no result needs: values, joins, stages, constants and tables.
+//! Removal of dead values, joins, stages, constants and tables.
 //!
-//! Building blocks compute all that some variant may want; what this variant does not use goes here.
-//! Words (state, set-point) and inputs stay: they are the interface.
+//! Building blocks compute the values of all variants; those that a variant does not use are removed
+//! here. State words, set-point words and inputs stay: they are the interface.
 
 use super::graph::{Function, Program};
 use super::op::{ConstantId, Op, TableId, Value};
@@ -84,7 +84,7 @@ impl Function {
         self.tracking = before(self.tracking);
     }
 
-    /// Which nodes some result needs; a join needs its stage's guard.
+    /// The nodes that some result needs; a join needs its stage's guard.
     fn live(&self) -> Vec<bool> {
         let mut live = vec![false; self.nodes.len()];
         let mut conditions = vec![None; self.nodes.len()];

@@ -1,17 +1,16 @@
-//! Rewriting: the one place where a program is put into the form that is proved, shown and emitted.
+//! Rewriting: all rules that bring a program into the form that is proved, shown and emitted.
 //!
-//! Each rule replaces an operator by one of the same result that is cheaper on a small core, or reads
-//! better. What holds for all operands that can come is told by their proven intervals. A rule brings
-//! in nothing but operators; what they mean is [`Op::apply`], against which every rule is tested over
-//! random and extreme words.
+//! Each rule replaces an operator by one of the same result that is cheaper on a small core or easier
+//! to read; the operands' proven intervals decide where it is valid. Every rule is tested against
+//! [`Op::apply`] over random and extreme words.
 
 use super::graph::{Function, Node, Program, Table};
 use super::interval::Interval;
 use super::op::{Comparison, Op, Value};
 
-/// A rule: the operator in place of another one; none where it has nothing to say.
+/// A rule: the operator in place of another one; none if it does not apply.
 struct Rule {
-    /// What it does, and what for.
+    /// Effect of the rule.
     #[cfg_attr(
         not(test),
         expect(dead_code, reason = "tests name the rule that fails")
@@ -20,7 +19,7 @@ struct Rule {
     replacement: fn(&mut Rewriter<'_>, Op) -> Option<Op>,
 }
 
-/// In the order in which they are tried; behind one that applies, from the first one again.
+/// In order of trial; after one that applies, from the first one again.
 const RULES: [Rule; 13] = [
     Rule {
         name: "numbers stand right",
@@ -77,7 +76,7 @@ const RULES: [Rule; 13] = [
 ];
 
 impl Program {
-    /// The same program after all rules, with what they left without use.
+    /// The program after all rules, not pruned.
     #[must_use]
     pub fn rewritten(mut self) -> Self {
         let step = self.step.rewritten(&self);
@@ -142,7 +141,7 @@ impl Rewriter<'_> {
         op
     }
 
-    /// A node that stands where it is used, rewritten itself.
+    /// Adds an unnamed node, itself rewritten.
     fn part(&mut self, op: Op) -> Value {
         let op = self.rewrite(op);
         self.nodes.push(Node {
@@ -162,7 +161,7 @@ impl Rewriter<'_> {
         self.node(value).interval
     }
 
-    /// The operator of a value that stands where it is used.
+    /// The operator of an unnamed value.
     fn inner(&self, value: Value) -> Option<Op> {
         let node = self.node(value);
         node.name.is_empty().then_some(node.op)
@@ -188,7 +187,7 @@ impl Rewriter<'_> {
         op.interval(&operands, table).unwrap_or(Interval::WORD)
     }
 
-    /// Every product of the two.
+    /// Interval of the product.
     fn products(&self, a: Value, b: Value) -> Interval {
         self.of(a).corners(self.of(b), |a, b| a * b)
     }
@@ -402,7 +401,7 @@ mod tests {
     use super::{Interval, Op, RULES, Rewriter};
     use fastrand::Rng;
 
-    /// Shapes that rules are about, of three words.
+    /// Expressions of three words to which rules apply.
     const SHAPES: [fn([Expr<'_>; 3]) -> Expr<'_>; 21] = [
         |[x, ..]| 5 + x,
         |[x, ..]| x + -5,
@@ -439,7 +438,7 @@ mod tests {
         let b = ProgramBuilder::new("Shape", &[]);
         b.stage("apply", &[]);
         let x = ["x", "y", "z"].map(|name| b.input(name, range, ""));
-        // Inputs that a shape leaves out are results, too.
+        // Inputs that an expression leaves out are results, too.
         for (name, x) in ["x_too", "y_too", "z_too"].into_iter().zip(x) {
             b.output(Output::Probe(name), x);
         }
@@ -467,7 +466,7 @@ mod tests {
                 let plain = program(shape, bits);
                 let rewritten = plain.clone().rewritten().pruned();
                 changed += usize::from(rewritten != plain);
-                // What needs more than a word is refused, rewritten or not.
+                // An expression that exceeds a word is refused, rewritten or not.
                 let (Ok(plain), Ok(rewritten)) = (verify(plain), verify(rewritten)) else {
                     continue;
                 };
@@ -486,7 +485,7 @@ mod tests {
         assert!(changed > 100, "{changed}");
     }
 
-    /// The extremes of two words that go by their difference: min and max of x and y, then of y and x.
+    /// Extremes computed by the difference: min and max of x and y, then of y and x.
     fn by_difference(x: Interval, y: Interval) -> [bool; 4] {
         let b = ProgramBuilder::new("Extremes", &[]);
         b.stage("compare", &[]);
@@ -520,7 +519,7 @@ mod tests {
         assert_eq!(by_difference(Interval::WORD, Interval::WORD), [false; 4]);
     }
 
-    /// No rule is there that no shape is about.
+    /// Every rule is tested.
     #[test]
     fn every_rule_applies_to_some_shape() {
         for rule in &RULES {

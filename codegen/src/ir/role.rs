@@ -1,4 +1,5 @@
-//! What goes in and out of a program, by what it is for: emitters and engines ask for these, never for a name.
+//! Roles of outputs, observations, set-point words and setters: emitters and engines use these, never
+//! names.
 
 use std::fmt;
 
@@ -28,14 +29,14 @@ impl fmt::Display for Phase {
     }
 }
 
-/// What a result of a function is.
+/// Role of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Output {
     /// The compare value of a leg.
     Compare(Phase),
     /// The state of a leg.
     Leg(Phase),
-    /// A value of a program that is looked into, by its name.
+    /// A probed value, by its name.
     Probe(&'static str),
 }
 
@@ -49,7 +50,7 @@ impl fmt::Display for Output {
     }
 }
 
-/// What a step tells people.
+/// Role of an observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Told {
     /// The EMF of a phase, words of voltage.
@@ -67,25 +68,25 @@ impl fmt::Display for Told {
     }
 }
 
-/// What a word of the set-point is.
+/// Role of a set-point word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Demand {
-    /// The current, as a voltage; the greatest one, where a speed is demanded.
+    /// The current as a voltage; with a speed loop its limit.
     Current,
     /// The speed.
     Speed,
-    /// The bus voltage that is told.
+    /// The measured bus voltage.
     Bus,
-    /// The ratio of nominal to told bus voltage.
+    /// The ratio of nominal to measured bus voltage.
     BusRatio,
 }
 
 impl Demand {
-    /// The words of a bus voltage, in their order.
+    /// The words of a measured bus, in order.
     pub const OF_BUS: [Self; 2] = [Self::Bus, Self::BusRatio];
 }
 
-/// What a function outside of the step sets.
+/// Role of a setter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Setter {
     /// The current, in amperes.

@@ -1,4 +1,4 @@
-//! The text form of a program: what a person reads in a snapshot, one value per line.
+//! The text form of a program, one value per line.
 
 use std::fmt::{self, Write as _};
 

@@ -1,24 +1,24 @@
-//! The verifier: from a program to a [`VerifiedGraph`], or the list of what is wrong with it.
+//! The verifier: from a program to a [`VerifiedGraph`], or the list of broken invariants.
 //!
 //! Invariants:
-//! 1. Every operand is defined earlier; words, constants, tables and results that are named exist.
+//! 1. Every operand is defined earlier; all words, constants, tables and results exist.
 //! 2. Stages and their joins partition the nodes in order.
-//! 3. Values that a guarded stage computes leave it through its joins only; joins stand right behind their
-//!    stage, and its guard is defined before it.
+//! 3. Values of a guarded stage leave it through its joins only; joins come right after their stage, and
+//!    its guard is defined before it.
 //! 4. Operand kinds fit, and results are words.
-//! 5. Every stored interval is the one that follows from the operands (and, at a join, the guard:
-//!    [`Function::interval_where_not`]), and lies in the 32-bit word.
+//! 5. Every stored interval follows from the operands (and, at a join, the guard:
+//!    [`Function::interval_where_not`]) and fits the 32-bit word.
 //! 6. Operators stay in their domain: denominators >= 1, factors and numerators not negative where
 //!    required, clamp limits in order, shifts and segments in range.
-//! 7. Names are unique: of constants and tables, of words, of functions; in a function of inputs, outputs,
-//!    stages and values. A value without a name is used once, in its own stage, but for constants.
+//! 7. Names are unique: of constants and tables, of words, of functions; in a function of inputs,
+//!    outputs, stages and values. A value without a name, unless a constant, is used once, in its stage.
 //! 8. Tables have a power-of-two length.
-//! 9. The step sets every state word once and no set-point word; a setter sets no state word, and a set-point
-//!    word at most once. What is set lies in the word's interval, which holds its initial value and fits its
+//! 9. The step sets every state word once and no set-point word; a setter sets no state word, and a
+//!    set-point word at most once. New and initial values lie in the word's interval, which fits its
 //!    storage of 16 or 32 bits.
 //! 10. No dead nodes.
-//! 11. Tracking, which runs in periods without control, ends with a stage and reads no set-point word; every
-//!     state word that it does not set may be 0.
+//! 11. Tracking, which runs in periods without control, ends with a stage and reads no set-point word;
+//!     the interval of every state word that it does not set contains 0.
 
 use std::collections::HashSet;
 use std::fmt::{self, Display};
@@ -35,7 +35,7 @@ pub struct Violation {
     pub place: String,
     /// What is wrong.
     pub what: String,
-    /// The interval that left its word, for a scaling to act on.
+    /// The interval that exceeds its word, for scaling.
     pub escaped: Option<Interval>,
 }
 
@@ -45,7 +45,7 @@ impl fmt::Display for Violation {
     }
 }
 
-/// A program of which every invariant in this module's header holds. Emitters take nothing else.
+/// A program with all invariants of this module's header: the only input of emitters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VerifiedGraph(Program);
 
@@ -55,8 +55,7 @@ impl VerifiedGraph {
         &self.0
     }
 
-    /// The same program with nameless constants, for the text of a macro alone: like other values without a name, they
-    /// stand where they are used.
+    /// The same program with nameless constants, which macros write by value.
     pub(crate) fn without_constant_names(mut self) -> Self {
         for constant in &mut self.0.constants {
             constant.name.clear();
@@ -154,7 +153,7 @@ impl Violations {
         });
     }
 
-    /// Adds names that come twice.
+    /// Reports repeated names.
     fn repeated<N: Eq + Hash + Copy + Display>(&mut self, names: impl Iterator<Item = N>) {
         let mut known = HashSet::new();
         for name in names {
@@ -186,7 +185,7 @@ struct FunctionCheck<'a> {
 impl FunctionCheck<'_> {
     fn run(mut self) {
         self.check_order();
-        // Everything below follows operands, so it needs them in place.
+        // The checks below follow operands, so operands must exist.
         if self.violations.0.is_empty() {
             self.check_stages();
             self.check_tracking();
@@ -433,7 +432,7 @@ impl FunctionCheck<'_> {
             .repeated(function.stages.iter().map(|stage| &stage.name));
         let stage_of = self.stage_of_nodes();
         let mut names = HashSet::new();
-        // How often each is used, and the stage of the last use.
+        // Number of uses, and the stage of the last use.
         let mut uses: Vec<(usize, Option<usize>)> = vec![(0, None); function.nodes.len()];
         let mut note = |operand: Value, stage| {
             let used = &mut uses[operand.index()];
@@ -506,8 +505,8 @@ impl FunctionCheck<'_> {
     }
 }
 
-/// The interval of node `index` that follows from those of its operands, as the function holds them; `None` where an
-/// operator's domain may be left.
+/// The interval of node `index` from the stored intervals of its operands; `None` if the operator's
+/// domain may be left.
 pub fn derived_interval(program: &Program, function: &Function, index: usize) -> Option<Interval> {
     let op = function.nodes[index].op;
     let operands = op.operands().into_iter();
@@ -533,7 +532,7 @@ pub fn derived_interval(program: &Program, function: &Function, index: usize) ->
     }
 }
 
-/// Shifts, segments and limits in order, besides what [`Op::interval`] itself refuses.
+/// Checks of shifts, segments and limits that [`Op::interval`] does not make.
 fn in_domain(op: &Op, x: &[Interval]) -> bool {
     let formed = match *op {
         Op::MulRound { shift, .. } => (1..=62).contains(&shift),

@@ -1,11 +1,11 @@
-//! Each invariant of the verifier, broken in a program that is right but for that.
+//! Each invariant of the verifier, broken in an otherwise valid program.
 
 use super::graph::{Function, Program};
 use super::interval::Interval;
 use super::op::{Op, ParamId, StateId, Value};
 use super::{Demand, Output, ProgramBuilder, Setter, Told, named, verify};
 
-/// A program with all that the invariants speak of, that keeps them.
+/// A valid program that exercises every invariant.
 fn right() -> Program {
     let b = ProgramBuilder::new("Right", &[]);
     let word = Interval::symmetric(1000);
@@ -39,7 +39,7 @@ fn right() -> Program {
     b.finish()
 }
 
-/// That the spoilt program is refused with these words.
+/// Checks that the spoilt program is refused with these words.
 #[track_caller]
 fn refused(words: &str, spoil: impl FnOnce(&mut Program)) {
     let mut program = right();
@@ -165,7 +165,7 @@ fn sums_of_products_fit_64_bits() {
         Some((1 << 31) - 2),
         "the largest sum of words"
     );
-    // Twice 2^62, and what a scale that is tried first may make of words.
+    // Twice 2^62, and intervals as from the first scale that is tried.
     assert_eq!(interval(Interval::WORD), None);
     assert_eq!(interval(Interval::symmetric(1 << 40)), None);
 }

@@ -1,4 +1,4 @@
-//! What the type and the data sheet say of its accuracy: the bounds on the distance from the ideal controller.
+//! Accuracy in the type's documentation and data sheet: bounds on the distance from the ideal controller.
 
 use super::constants::fraction_bits;
 use crate::diagnostics::significant;
@@ -27,8 +27,8 @@ fn bound(name: &str, value: f64, words: f64, unit: &str, meaning: &str) -> Publi
     }
 }
 
-/// Within what a decision may be another than the ideal controller's: twice the error of a score, of two candidates both
-/// are off; the error of a current beside a band, and of the band's own word.
+/// Tie band of a decision: twice the error of a score, since both candidates are off; or the error
+/// of a current plus that of the band's word.
 fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
     let error = stated.rare_bound().unwrap_or(0.0);
     let error = error.max(stated.normal_bound());
@@ -44,7 +44,7 @@ fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
         "score" => {
             let value = 2.0 * error;
             let doc = format!(
-                "By how much the cost of the vector that is applied may be above the least, in the ideal controller's scores: at most {}, twice the error of a score.",
+                "Tie band of the vector choice: the applied vector's ideal score exceeds the least by at most {}, twice the error of a score.",
                 limit(value)
             );
             (value, doc)
@@ -52,7 +52,7 @@ fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
         "current" => {
             let value = error + stated.word.value();
             let doc = format!(
-                "How near to an edge of its band a current may be taken to lie on the other side than it does for the ideal controller: at most {}, the error of the current and of the band's word.",
+                "Tie band of the hysteresis: the decision may differ from the ideal one within {} of a band's edge, the error of the current and of the band's word.",
                 limit(value)
             );
             (value, doc)
@@ -66,8 +66,8 @@ fn tie_band(stated: &StatedError) -> Option<PublicConstant> {
     })
 }
 
-/// `DUTY_ERROR` and the like, and where a limit acts `DUTY_ERROR_LIMITED`; `TIE_BAND` of scores and of what bands compare.
-/// What is not bounded more closely than the inverter's own ranges has no constant.
+/// Error bounds such as `DUTY_ERROR`, `DUTY_ERROR_LIMITED` where a limit acts, and `TIE_BAND` of
+/// scores and hysteresis. A bound no closer than the inverter's range has no constant.
 pub fn accuracy_constants(program: &Program, inverter: &InverterSpec) -> Vec<PublicConstant> {
     let widest = |unit: &str| match unit {
         "V" => inverter.greatest_bus(),
@@ -93,7 +93,7 @@ pub fn accuracy_constants(program: &Program, inverter: &InverterSpec) -> Vec<Pub
                 None => doc.clone(),
                 Some(limited) if limited < widest(unit) => format!("{doc}, while no limit acts"),
                 Some(_) => format!(
-                    "{doc}, while no limit acts (where one does, no closer bound is known than the whole range)"
+                    "{doc}, while no limit acts (at a limit no bound closer than the whole range is known)"
                 ),
             };
             constants.push(bound(&name, value, words, unit, &meaning));
@@ -110,7 +110,7 @@ pub fn accuracy_constants(program: &Program, inverter: &InverterSpec) -> Vec<Pub
     constants
 }
 
-/// What the bounds mean, for the type's documentation.
+/// Meaning of the bounds, for the type's documentation.
 pub fn accuracy_notes() -> Vec<String> {
     [
         "Constants that end in `_ERROR` bound the distance of one step from the ideal one, which has exact coefficients,",

@@ -1,4 +1,4 @@
-//! Associated constants of the emitted type: what it is for, its vectors, and where its loop is stable.
+//! Associated constants of the emitted type: specification, vectors, stable ranges.
 
 use super::current_loop::{LoopDesign, StableRange};
 use super::start::start_rpm;
@@ -9,7 +9,7 @@ use crate::interface::{PublicConstant, PublicValue};
 use crate::spec::{HallCapture, InverterSpec, Spec};
 use nalgebra::Vector2;
 
-/// All constants; `accuracy`: the bounds that the proof has found.
+/// All constants; `accuracy`: the proven error bounds.
 pub(super) fn constants(
     spec: &Spec,
     design: &LoopDesign,
@@ -81,7 +81,7 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "START_SPEED_RPM",
             "u32",
             start_rpm,
-            "Greatest speed of the rotor at which control may begin, at set-point 0 and a bus within its limits, rpm: no sampled current reaches the trip level. (Pre-charge shorts the windings.)",
+            "Greatest rotor speed at which control may begin without a trip, rpm, at set-point 0 and a bus within its limits. (Pre-charge shorts the windings.)",
         ),
     ]);
     list
@@ -161,13 +161,13 @@ fn vector_constants(inverter: &InverterSpec, period: Period) -> [PublicConstant;
                 String::new(),
                 match period {
                     Period::Pulses => {
-                        "The step reaches the same times by min/max injection, which needs none of them."
+                        "For comparison: the step reaches the same times by min/max injection."
                     }
                     Period::TwoVectors => {
-                        "The step divides a period between two vectors, not three: these times are for comparison."
+                        "For comparison: the step divides a period between two vectors, not three."
                     }
                     Period::OneVector => {
-                        "The step applies whole vectors and modulates none: these times are for comparison."
+                        "For comparison: the step applies whole vectors."
                     }
                 }
                 .to_owned(),
@@ -182,12 +182,12 @@ fn stable_constants(stable: StableRange) -> [PublicConstant; 2] {
         PublicConstant {
             name: "STABLE_INDUCTANCE".to_owned(),
             value: text(stable.inductance),
-            doc: vec!["True over stated inductance within which the loop is stable.".to_owned()],
+            doc: vec!["True over stated inductance with a stable loop.".to_owned()],
         },
         PublicConstant {
             name: "STABLE_RESISTANCE".to_owned(),
             value: text(stable.resistance),
-            doc: vec!["True over stated resistance within which the loop is stable.".to_owned()],
+            doc: vec!["True over stated resistance with a stable loop.".to_owned()],
         },
     ]
 }

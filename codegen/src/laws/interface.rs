@@ -1,4 +1,4 @@
-//! What users see of an emitted controller: documentation, tables and associated constants.
+//! Interface of an emitted controller: documentation, tables and associated constants.
 
 use super::Description;
 use super::accuracy::accuracy_notes;
@@ -54,7 +54,7 @@ fn limits(inverter: &InverterSpec, scale: Scale) -> Limits {
 }
 
 fn units(spec: &Spec, scale: Scale) -> Units {
-    // A speed loop goes by the angle per tick, all else by the one per control period.
+    // The speed loop works with the angle per tick, all else with the angle per control period.
     let per_period = match spec.controller.common().speed {
         Some(_) => spec.inverter.hall_capture.ticks_per_period(),
         None => 1.0,
@@ -137,28 +137,28 @@ fn motor_and_inverter(spec: &Spec) -> [String; 2] {
     ]
 }
 
-/// The regulator of the speed.
+/// Documentation of the speed regulator.
 fn speed_loop(speed: SpeedLoop, pole_pairs: u32) -> [String; 8] {
     [
             String::new(),
             "# Speed loop".to_owned(),
             String::new(),
             format!(
-                "A PI regulator of {} asks for the current: gain 2 pi f J/k_t with J = {}, integral time 4/(2 pi f), for two real poles at half",
+                "A PI regulator with a bandwidth of {} sets the current: gain 2 pi f J/k_t with J = {}, integral time 4/(2 pi f), two real poles at half",
                 engineering(speed.bandwidth, "Hz"),
                 engineering(speed.inertia, "kg m2"),
             ),
             "the bandwidth (four times the inertia: half the damping). `set_speed` sets the speed, `set_current` and `set_torque` the greatest".to_owned(),
-            "current that it asks for. Where that is reached the integral follows it, so a long run-up ends without overshoot; a step that does not".to_owned(),
+            "current. At that limit the integral tracks it, so a long run-up ends without overshoot; a step that does not".to_owned(),
             "reach it overshoots by 13.5 %, unless the set-point is a ramp. The speed is the mean of the last electrical turn: below".to_owned(),
             format!(
-                "{}, four turns in the time 1/f, the mean comes too late for the loop, and the speed swings around the set-point.",
+                "{}, four turns in the time 1/f, its delay makes the speed oscillate around the set-point.",
                 rpm(4.0 * speed.bandwidth / f64::from(pole_pairs) * TAU)
             ),
         ]
 }
 
-/// What a controller was made of.
+/// Generator version and scale.
 fn header(design: &LoopDesign, scaled: &Scaled) -> Vec<String> {
     let scale = scaled.scale;
     vec![

@@ -1,4 +1,4 @@
-//! What the generator asks of a controller's law.
+//! The interface of a controller's law to the generator.
 
 use super::current_loop::{LinearLoop, LoopDesign, StableRange};
 use crate::blocks::Scale;
@@ -13,7 +13,7 @@ pub trait Law: Sync {
     /// The program at a scale.
     fn lower(&self, spec: &Spec, design: &LoopDesign, scale: Scale) -> Lowered;
 
-    /// What the documentation of the type says of the method. `stable`: the range of a linear loop.
+    /// Documentation of the method. `stable`: the stable range of a linear loop.
     fn describe(
         &self,
         spec: &Spec,
@@ -21,34 +21,33 @@ pub trait Law: Sync {
         stable: Option<StableRange>,
     ) -> Description;
 
-    /// What a control period has.
+    /// Voltage in a control period.
     fn period(&self) -> Period;
 
-    /// The closed loop between limits, with the coefficients of `design`; none of a law that is not linear.
+    /// The closed loop between limits, with the coefficients of `design`; none if the law is not linear.
     fn linear<'a>(
         &'a self,
         spec: &'a Spec,
         design: &'a LoopDesign,
     ) -> Option<Box<dyn LinearLoop + 'a>>;
 
-    /// Whether it works with an EMF by itself, estimated or modelled.
+    /// Whether the law uses an estimated or modelled EMF.
     fn uses_emf(&self) -> bool {
         true
     }
 
-    /// How it takes a rotor that turns when control begins. `slow`: the estimate's filter follows more slowly than the
-    /// EMF turns.
+    /// Start on a turning rotor. `slow`: the estimate's filter is slower than the EMF turns.
     fn start(&self, slow: bool) -> Start {
         let _ = slow;
         Start::default()
     }
 
-    /// Whether it is known to lose the current on some of the motors that it is generated for.
+    /// Whether the law is known to lose the current on some motors.
     fn loses_current(&self) -> bool {
         false
     }
 
-    /// The option that an unstable loop follows from.
+    /// The option to change if the loop is unstable.
     fn unstable_by(&self, spec: &Spec) -> Cause {
         Cause {
             field: "emf_filter",
@@ -57,7 +56,7 @@ pub trait Law: Sync {
         }
     }
 
-    /// What makes the loop stable on motors farther from the stated one.
+    /// Remedy that widens the stable range.
     fn steadier(&self, spec: &Spec) -> &'static str {
         let options = spec.controller.common();
         match options.emf {
@@ -76,12 +75,12 @@ pub fn law(controller: &ControllerSpec) -> &dyn Law {
     with_options!(controller, options => options)
 }
 
-/// What the documentation of a type says of its method.
+/// Documentation of the method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Name of the method, for titles: "Predictive deadbeat current controller".
     pub title: &'static str,
-    /// How it is tuned, or what its choice rests on: Markdown lines.
+    /// Tuning, or criterion of the choice: Markdown lines.
     pub notes: Vec<String>,
     /// Range of R and L in which a linear loop is stable.
     pub stable: Option<StableRange>,
@@ -89,27 +88,27 @@ pub struct Description {
     pub constants: Vec<PublicConstant>,
 }
 
-/// What a control period has.
+/// Voltage in a control period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Period {
-    /// Pulses that make any voltage of the hexagon.
+    /// Pulses, any voltage of the hexagon.
     Pulses,
-    /// Two vectors, each for a part.
+    /// Two vectors, each for a part of the period.
     TwoVectors,
     /// One vector.
     OneVector,
 }
 
-/// How a law takes a rotor that turns when control begins.
+/// Behaviour of a law that starts on a turning rotor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// Part of the bus that the line EMF may have for the law to hold the current.
+    /// Largest line EMF at which the law holds the current, as a part of the bus.
     pub part_of_bus: f64,
-    /// Current that comes on top, beside what a vector adds, ampere.
+    /// Additional current besides the step of a vector, ampere.
     pub current: f64,
-    /// Whether an integral has to find the EMF, and overshoots.
+    /// Whether an integral has to learn the EMF, and overshoots.
     pub integrates: bool,
-    /// Whether a leg floats, and hides its EMF.
+    /// Whether a leg floats, so that its EMF is not seen.
     pub hides_leg: bool,
 }
 
@@ -124,13 +123,13 @@ impl Default for Start {
     }
 }
 
-/// An option that something follows from.
+/// The option behind an unstable loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
     /// Its name.
     pub field: &'static str,
     /// Its value.
     pub value: String,
-    /// What to do.
+    /// What to change.
     pub remedy: &'static str,
 }

@@ -1,4 +1,4 @@
-//! What the type's documentation says of its operation: signs and wiring, start-up, faults.
+//! The type's documentation of operation: signs and wiring, start-up, faults.
 
 use super::current_loop::LoopDesign;
 use super::start::start_rpm;
@@ -6,7 +6,7 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, significant};
 use crate::spec::{BusSource, HallCapture, Spec};
 
-/// Conducting pairs of sectors S1 to S6 at a positive set-point: the phase into which the current flows, and that out of which.
+/// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
 fn pairs() -> [String; 6] {
     SECTOR_CURRENT.map(|signs| {
         let phase_of = |wanted: i32| {
@@ -32,7 +32,7 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         String::new(),
         "# Signs and wiring".to_owned(),
         String::new(),
-        format!("A phase current is positive into the motor; the counts of phases a and b {way} with it, {} each, from {} at zero", engineering(inverter.adc_gain.abs(), "A"), inverter.adc_offset),
+        format!("Phase currents are positive into the motor; the counts of phases a and b {way} with the current, {} each, from {} at zero", engineering(inverter.adc_gain.abs(), "A"), inverter.adc_offset),
         "current. Forward is the order of the sectors, in which the EMFs of a, b and c peak one after the other:".to_owned(),
         String::new(),
         "| sector | S1 | S2 | S3 | S4 | S5 | S6 |".to_owned(),
@@ -46,14 +46,14 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         lines.extend([
             String::new(),
             format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {} (`HALL_TIMER_HZ`), {} ticks", frequency(ticks / inverter.t_s), significant(ticks)),
-            "in a control period. A pair of code and ticks that an edge tore apart is noticed where it contradicts the last period;".to_owned(),
-            "the angle then goes by the time that was to be expected.".to_owned(),
+            "in a control period. If an edge comes between the reading of code and ticks, the contradiction to the last period".to_owned(),
+            "is detected, and the angle uses the expected time instead.".to_owned(),
         ]);
     }
     lines
 }
 
-/// Start-up and trips, in this drive's numbers.
+/// Start-up and trips, with the drive's numbers.
 pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     let inverter = &spec.inverter;
     let amperes = |counts: u32| engineering(f64::from(counts) * inverter.adc_gain.abs(), "A");
@@ -63,14 +63,14 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     };
     let told = match inverter.bus {
         BusSource::Fixed => "",
-        BusSource::Measured { .. } => " and the bus told by `set_bus`",
+        BusSource::Measured { .. } => " and with the bus voltage set by `set_bus`",
     };
     let mut lines = vec![
         String::new(),
         "# Start-up and faults".to_owned(),
         String::new(),
         format!(
-            "`calibrate()` takes {} steps, and accepts offsets within {} of the nominal one; then come {precharge}.",
+            "`calibrate()` takes {} steps and accepts offsets within {} of the nominal one; {precharge} follow.",
             1_u32 << inverter.calibration_log2,
             amperes(inverter.offset_tolerance)
         ),
@@ -84,19 +84,19 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         ),
     ];
     lines.push(match inverter.stall_periods {
-        0 => "A rotor that stands under demand does not (`stall_timeout` is off).".to_owned(),
+        0 => "A stalled rotor does not (`stall_timeout` is off).".to_owned(),
         periods => {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
         }
     });
     if let BusSource::Measured { min, max, .. } = inverter.bus {
         lines.push(format!(
-            "The bus voltage is taken as {} until the first `set_bus`, and held within {} to {}.",
+            "The bus voltage is {} until the first `set_bus`, and clamped to {} to {}.",
             engineering(inverter.v_bus, "V"),
             engineering(min, "V"),
             engineering(max, "V")
         ));
     }
-    lines.push("What the supervisor cannot see: `hexagen::Supervisor`.".to_owned());
+    lines.push("Faults that the supervisor cannot detect: `hexagen::Supervisor`.".to_owned());
     lines
 }

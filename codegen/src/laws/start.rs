@@ -1,4 +1,4 @@
-//! How fast the rotor may turn when control begins, so that no current trips the drive.
+//! Greatest rotor speed at which control may begin without a trip.
 
 use super::current_loop::LoopDesign;
 use super::law::{Period, law};
@@ -7,9 +7,9 @@ use crate::design::emf::zero_sum_shape;
 use crate::spec::{EmfShape, EmfSource, Spec};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Where a turn exceeds so many times the share that the filter lets in, an estimate, which is moved on at the speed that
-/// its own length tells, can stay behind the EMF for good. Of a sine w^2/f^2 = (1 + r)/(r^2 (1 - r)) has a solution r
-/// below 1, for r of the EMF's length, from 3.33 on; trapezoids were simulated.
+/// Turn per period over the filter's share beyond which the estimate, which is advanced at the speed
+/// of its own length, can lag the EMF for good. For a sine, w^2/f^2 = (1 + r)/(r^2 (1 - r)), with r
+/// of the EMF's length, has a solution below 1 from 3.33 on; trapezoids were simulated.
 fn loses(shape: EmfShape) -> f64 {
     match shape {
         EmfShape::Sinusoidal => 10.0 / 3.0,
@@ -17,17 +17,18 @@ fn loses(shape: EmfShape) -> f64 {
     }
 }
 
-/// Greatest lack of such an estimate, of the EMF: it swings past its rest. (Without moving on it is at most 1; found by
-/// iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and turns up to 30 degrees.) The
-/// integral beside a modelled EMF that the sensors begin to tell swings as well: it still holds what the model lacked.
+/// Greatest error of such an estimate over the EMF: it overshoots. (Without the advance at most 1;
+/// found by iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and
+/// turns up to 30 degrees.) The integral beside a modelled EMF overshoots as well when the sensors
+/// begin to give the angle.
 const LACK: f64 = 1.17;
 
-/// Part of the bus that leaves room for an integral that has to stand for the EMF: a PI regulator's behind a filter that
-/// follows more slowly than the EMF turns, or a modelled EMF's until the sensors tell it. It overshoots, and past the bus
-/// the limit keeps the voltage along an EMF that is not there (simulated: trips from 0.88 on).
+/// Largest line EMF over the bus for an integral that has to learn the EMF: that of a PI regulator
+/// with a slow filter, or that of a modelled EMF until the sensors give the angle. It overshoots, and
+/// beyond the bus the limit keeps a component along a wrong EMF (simulated: trips from 0.88 on).
 pub(super) const INTEGRATED_EMF: f64 = 0.85;
 
-/// Greatest current of a braking speed loop over the greatest that it asks for: commutations overshoot (simulated).
+/// Current of a braking speed loop over its limit: commutations overshoot (simulated).
 const BRAKING: f64 = 1.15;
 
 /// [`start_speed`] in whole rpm, at most the greatest speed of the drive.
@@ -36,16 +37,17 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
     (speed * 60.0 / TAU + 1e-6).floor() as i64
 }
 
-/// Greatest speed of the rotor, mechanical rad/s, at which control may begin with set-point 0 without a trip.
+/// Greatest rotor speed, mechanical rad/s, at which control may begin at set-point 0 without a trip.
 ///
-/// The first command finds no EMF: none was estimated yet, and the Hall sensors have told no speed. What is found out
-/// of it later only helps, if it ever is: a slow filter loses an EMF that turns faster than it follows. So the current
-/// is what the closed loop lets an EMF drive that appears at once, and turns: of prediction without knowledge, one period
-/// of it before the sample that shows it and, with a delay, one more. The inverter can hold that current where its lowest
-/// bus can meet the whole EMF; beyond, diodes conduct or the voltage is missing, and nothing is promised. Controllers of
-/// whole vectors add the step of one vector, modulated the greatest distance from the line of two. A speed loop
-/// brakes as soon as it knows the speed, a sector later at the earliest: a filter that follows more slowly than the EMF
-/// turns has not met it by then. Samples lie where the ripple of pulses crosses its mean.
+/// At the first command the EMF is unknown: no estimate yet, no speed from the Hall sensors. Later
+/// knowledge only helps, and a slow filter may never gain it. So the current is the closed loop's
+/// response to an EMF that appears at once and turns: for prediction without an EMF, one period of
+/// it before the first sample that shows it and, with delay 1, one more. The lowest bus must
+/// exceed the whole EMF; beyond that diodes conduct or voltage is missing, and nothing is promised.
+/// Controllers of whole vectors add the step of one vector, or with two vectors the greatest
+/// distance from the line between them. A speed loop brakes once it knows the speed, a sector later
+/// at the earliest, when a slow filter has not learned the EMF yet. Samples lie where the pulse
+/// ripple crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
@@ -69,20 +71,20 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let own = start.current
         + match law.period() {
             Period::Pulses => 0.0,
-            // A pair shares the period with its own zero alone: a voltage of that length may lie 30 degrees off their line.
+            // A pair shares the period with its own zero only: the voltage may lie 30 degrees off that line.
             Period::TwoVectors => vector * 3_f64.sqrt() / 4.0,
             Period::OneVector => vector,
         };
     let lack = if loses || start.integrates { LACK } else { 1.0 };
-    // A leg that floats hides its EMF for one period more.
+    // A floating leg hides its EMF for one period more.
     let hidden = if loses && start.hides_leg {
         1.0 + 1.0 / periods
     } else {
         1.0
     };
     let per_volt = per_volt * lack * hidden;
-    // The third phase's current is the sum of two, each half a count off; of three compare values, each half a count off, a
-    // phase has two thirds of a count.
+    // The third phase's current is the sum of two, each half a count off; three compare values, each
+    // half a count off, put a phase voltage two thirds of a count off.
     let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
     let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
     let room = (inverter.trip_current - rounded - own).max(0.0);
@@ -95,11 +97,11 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     (room / (peak * per_volt)).min(met)
 }
 
-/// Peak of the part of a phase's unit EMF that drives current.
+/// Peak of the zero-sum part of a phase's unit EMF, which drives current.
 fn peak(shape: EmfShape) -> f64 {
     match shape {
         EmfShape::Sinusoidal => 1.0,
-        // Made of straight lines, it peaks at the end of a ramp of one of the phases.
+        // Piecewise linear, it peaks at the end of a ramp of one of the phases.
         EmfShape::Trapezoidal { flat_top_deg } => {
             let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
             let crossings = (0..6).map(|n| f64::from(n) * FRAC_PI_3);

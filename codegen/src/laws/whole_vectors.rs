@@ -1,8 +1,8 @@
-//! One whole voltage vector per period: the vectors' legs, and what a step keeps of the vector that it chose.
+//! One whole voltage vector per period: its legs, and the state kept of the chosen vector.
 //!
 //! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
-//! leg a, b or c off. Where nothing but the legs is asked of a three-phase vector, the pattern of its low legs stands for
-//! it; where the wishes that chose a vector leave something behind, too, a number stands for both.
+//! leg a, b or c off. A three-phase vector of which only the legs are used is numbered by the pattern
+//! of its low legs; a vector with hysteresis memory by a number for both.
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::blocks::{Applied, Command, LOW, Lowering, OFF, PULSED};
@@ -10,7 +10,7 @@ use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
 use crate::ir::{Coefficient, Exact, Expr, Lut, Phases, named};
 use crate::spec::BusSource;
 
-/// What a number of [`CurrentLoop::apply_vector`] means.
+/// Numbering of the vectors of [`CurrentLoop::apply_vector`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
     /// Any vector.
@@ -19,21 +19,21 @@ pub(super) enum Numbers {
     WithoutPairs,
     /// Legs that are low: 1 a, 2 b, 4 c; V0 is 7.
     LowLegs,
-    /// Four times the vector, and the wishes that chose it.
+    /// Four times the vector plus the hysteresis state that chose it.
     Choices(Choices),
 }
 
-/// Vectors and the wishes that choose them: 1 if phase a's current shall fall, 2 if beta's shall.
+/// Vectors with the hysteresis state that chose them: 1 if alpha is to fall, plus 2 if beta is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Choices {
     /// Whether a vector may have an off leg.
     pub pairs: bool,
-    /// What wishes leave to the next step's error, phases a and b, words of voltage.
-    pub memory: [[i64; 2]; WISHES],
+    /// Memory of each hysteresis state in the next step's error, phases a and b, words of voltage.
+    pub memory: [[i64; 2]; HYSTERESIS_STATES],
 }
 
-/// How many wishes there are.
-pub(super) const WISHES: usize = 4;
+/// Hysteresis states of two axes.
+pub(super) const HYSTERESIS_STATES: usize = 4;
 
 /// The pattern of V0.
 pub(super) const ALL_LOW: i32 = 7;
@@ -45,20 +45,20 @@ impl Numbers {
             |pattern: i32| [1, 2, 4].map(|leg| if pattern & leg == 0 { 1 } else { -1 });
         match self {
             Self::Vectors | Self::WithoutPairs => vector_legs().to_vec(),
-            // No voltage is high on all phases.
+            // Pattern 0, all legs high, is not used.
             Self::LowLegs => std::iter::once([-1; 3])
                 .chain((1..=ALL_LOW).map(by_pattern))
                 .collect(),
             Self::Choices(choices) => {
-                // V0 to V6, and one more to fill the table.
+                // V0 to V6 and one unused entry: the length is a power of two.
                 let vectors = if choices.pairs { 16 } else { 8 };
                 let legs = vector_legs().into_iter().take(vectors);
-                legs.flat_map(|legs| [legs; WISHES]).collect()
+                legs.flat_map(|legs| [legs; HYSTERESIS_STATES]).collect()
             }
         }
     }
 
-    /// Whether a number may stand for an off leg.
+    /// Whether a vector may have an off leg.
     fn turns_off(self) -> bool {
         match self {
             Self::Vectors => true,
@@ -67,7 +67,7 @@ impl Numbers {
         }
     }
 
-    /// What rows of tables by this number are called.
+    /// Name of the rows of tables by this number.
     fn row(self) -> &'static str {
         match self {
             Self::Vectors | Self::WithoutPairs => "vector",
@@ -76,7 +76,7 @@ impl Numbers {
         }
     }
 
-    /// The numbers in words.
+    /// Documentation of the numbers.
     fn meaning(self) -> &'static str {
         match self {
             Self::Vectors | Self::WithoutPairs => {
@@ -84,7 +84,7 @@ impl Numbers {
             }
             Self::LowLegs => "by the legs that are low: 1 a, 2 b, 4 c.",
             Self::Choices(_) => {
-                "by 4 vector (0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero) + 2 if beta shall fall + 1 if alpha shall."
+                "by 4 vector (0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero) + 2 if beta is to fall + 1 if alpha is."
             }
         }
     }
@@ -101,7 +101,7 @@ pub(super) fn vector_legs() -> [LegSigns; 16] {
     legs
 }
 
-/// Zero-sum voltages of a leg pattern in sixths of the bus; an off leg sits midway.
+/// Zero-sum voltages of a leg pattern in sixths of the bus; an off leg counts as midway.
 pub(super) fn sixths(legs: LegSigns) -> LegSigns {
     // Terminals in halves of the bus; v_x = t_x - mean, times 6: 3 t_x - (t_a + t_b + t_c).
     let high = legs.contains(&1);
@@ -117,7 +117,7 @@ pub(super) fn zero_vectors() -> Vec<i32> {
         .collect()
 }
 
-/// The chosen vector: its number, and what that means.
+/// The chosen vector.
 #[derive(Clone, Copy)]
 struct Vector<'l, 'b> {
     l: &'l Lowering<'b>,
@@ -128,7 +128,7 @@ struct Vector<'l, 'b> {
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// Drives the legs of the chosen vector and closes the step; `numbers` says what its number means.
+    /// Commands the legs of the chosen vector and closes the step.
     pub(super) fn apply_vector(
         &self,
         front: &Front<'b>,
@@ -176,7 +176,7 @@ fn over_vectors<'b>(
 /// Entries of a table over the vectors, phases a, b, c.
 type Volts = Vec<[i64; 3]>;
 
-/// The voltages that the vectors stand for, where a sixth of the bus is `unit` words.
+/// Voltages of the vectors for a sixth of the bus of `unit` words.
 fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
     let legs = numbers.legs().into_iter();
     legs.map(|legs| sixths(legs).map(|share| i64::from(share) * unit))
@@ -184,12 +184,12 @@ fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
 }
 
 impl<'b> Vector<'_, 'b> {
-    /// A table over the vectors at this one.
+    /// The chosen vector's entry of a table over the vectors.
     fn at(&self, name: &str, doc: &str, entry: impl Fn(LegSigns) -> i32) -> Expr<'b> {
         over_vectors(self.l, self.numbers, name, doc, entry).at(self.number)
     }
 
-    /// Phases a and b of a voltage of the vector, in words, at most so many from the exact one; `meaning` says what it is.
+    /// Voltages of phases a and b by vector, with an error of at most `within` words.
     fn volts(&self, [name, meaning]: [&str; 2], volts: &Volts, within: u32) -> Phases<'b> {
         let row = self.numbers.row();
         Phases::each(|x| {
@@ -202,9 +202,9 @@ impl<'b> Vector<'_, 'b> {
         })
     }
 
-    /// A sixth of the bus, the unit of vector voltages, as a coefficient of the bus.
+    /// The coefficient 1/6: vector voltages are multiples of a sixth of the bus.
     fn k_sixth(&self) -> Coefficient {
-        let doc = "The unit of vector voltages: a sixth of the bus.";
+        let doc = "Unit of vector voltages: a sixth of the bus.";
         self.l
             .coefficient("k_sixth", 1.0 / 6.0, self.word, doc, "1/6")
     }
@@ -214,7 +214,7 @@ impl<'b> Vector<'_, 'b> {
         self.l.rounded_product(self.k_sixth(), self.l.nominal_bus())
     }
 
-    /// What the voltage of the chosen vector leaves to later steps, from tables: with a fixed bus it is known beforehand.
+    /// Contribution of the chosen vector's voltage to later steps, from tables; with a fixed bus only.
     fn tabled_left_over(&self, held: &Held<'b>) -> LeftOver<'b> {
         let volts = fixed_volts(self.numbers, self.fixed_sixth());
         let Some(k_fade) = held.fade() else {
@@ -228,9 +228,9 @@ impl<'b> Vector<'_, 'b> {
                 .collect();
             let texts = [
                 "left",
-                "Phase voltage of the vector less the memory of the wishes",
+                "Phase voltage of the vector less the hysteresis memory",
             ];
-            // Two for four sixths that are half a word off each; of b two bands and the half of their difference besides.
+            // Four sixths, half a word off each; in b also two bands and half their difference.
             named! {
                 let left = self.volts(texts, &entries, 4);
             }
@@ -251,7 +251,7 @@ impl<'b> Vector<'_, 'b> {
         ];
         let of_both = [
             "both",
-            "The vector's voltage and what is left of it one period later, (1 + a) v",
+            "Sum of the vector's voltage and its remainder one period later, (1 + a) v",
         ];
         named! {
             let left = self.volts(of_left, &faded, 3);
@@ -263,7 +263,7 @@ impl<'b> Vector<'_, 'b> {
         }
     }
 
-    /// The vector's legs; where no vector turns one off, all are pulsed, and a low one with compare value 0.
+    /// The vector's legs. If no vector has an off leg all are pulsed, a low one with compare value 0.
     fn command(&self) -> Command<'b> {
         let l = self.l;
         let top = l.spec.inverter.timer_period as i32;
@@ -300,7 +300,7 @@ impl<'b> Vector<'_, 'b> {
         }
     }
 
-    /// The zero-sum voltage that the chosen vector stands for, phases a and b.
+    /// Zero-sum voltage of the chosen vector, phases a and b.
     fn voltage(&self, front: &Front<'b>) -> Phases<'b> {
         if let BusSource::Fixed = self.l.spec.inverter.bus {
             return self.fixed_voltage();
@@ -316,7 +316,7 @@ impl<'b> Vector<'_, 'b> {
         v_chosen
     }
 
-    /// The same from tables.
+    /// The same from tables, for a fixed bus.
     fn fixed_voltage(&self) -> Phases<'b> {
         let volts = fixed_volts(self.numbers, self.fixed_sixth());
         named! {
@@ -325,12 +325,12 @@ impl<'b> Vector<'_, 'b> {
         v_chosen
     }
 
-    /// The terminals that the chosen vector drives, and which leg it turns off.
+    /// Terminal voltages and off leg of the chosen vector.
     fn terminals(&self, front: &Front<'b>) -> Applied<'b> {
         named! {
             let t_chosen = Phases::each(|x| {
                 let name = ["high_a", "high_b", "high_c"][x];
-                let doc = "1 where the vector turns the leg's upper switch on.";
+                let doc = "1 if the leg is high in the vector.";
                 self.at(name, doc, |legs| i32::from(legs[x] == 1)) * front.bus.volts
             });
             let off_chosen = off_leg_table(self.l).at(self.number);
@@ -342,9 +342,9 @@ impl<'b> Vector<'_, 'b> {
     }
 }
 
-/// The leg that a vector turns off: 1 a, 2 b, 3 c, 0 none.
+/// Off leg by vector: 1 a, 2 b, 3 c, 0 none.
 pub(super) fn off_leg_table<'b>(l: &Lowering<'b>) -> Lut<'b> {
-    let doc = "Leg that the vector turns off: 1 a, 2 b, 3 c, 0 none.";
+    let doc = "Off leg of the vector: 1 a, 2 b, 3 c, 0 none.";
     over_vectors(l, Numbers::Vectors, "off", doc, |legs| {
         legs.iter()
             .position(|&sign| sign == 0)

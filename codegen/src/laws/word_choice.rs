@@ -1,15 +1,15 @@
-//! What the documentation says of a word length that the target chose.
+//! Documentation of a word length chosen by the target.
 
 use crate::diagnostics::significant;
 use crate::interface::{Interface, PublicConstant, PublicValue};
 
 const HEADING: [&str; 3] = ["", "# Word length", ""];
 
-/// What words of 16 bits cost against those of 32.
+/// Error bounds with 16-bit words against 32-bit words.
 pub fn narrow_words(narrow: &Interface, wide: &Interface) -> Vec<String> {
     let mut doc = HEADING.map(str::to_owned).to_vec();
     doc.push(
-        "Words of 16 bits with products of 32, as `target: cortex_m0` chooses where they suffice: the core has no longer products."
+        "16-bit words with 32-bit products, the choice of `target: cortex_m0` where they suffice: the core has no 64-bit product."
             .to_owned(),
     );
     let costs = errors(narrow).filter_map(|(name, of_narrow)| {
@@ -20,18 +20,18 @@ pub fn narrow_words(narrow: &Interface, wide: &Interface) -> Vec<String> {
     let costs: Vec<String> = costs.collect();
     if !costs.is_empty() {
         doc.push(format!(
-            "Against words of 32 bits, which `word: 32` chooses, {}.",
+            "Compared with 32-bit words (`word: 32`), {}.",
             costs.join(", ")
         ));
     }
     doc
 }
 
-/// Why words have 32 bits all the same.
+/// Why the words have 32 bits in spite of the target.
 pub fn wide_words(reason: &str) -> Vec<String> {
     let mut doc = HEADING.map(str::to_owned).to_vec();
     doc.push(format!(
-        "Words of 32 bits: those of 16, which `target: cortex_m0` prefers, do not suffice ({reason})."
+        "32-bit words: 16-bit words, which `target: cortex_m0` prefers, do not suffice ({reason})."
     ));
     doc
 }

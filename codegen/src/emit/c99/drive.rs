@@ -1,4 +1,4 @@
-//! The public functions: start, step, setters and commands, around the law and the runtime.
+//! The public functions: init, step, setters and commands, from the law and the runtime.
 
 use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
@@ -7,7 +7,7 @@ use crate::interface::{Interface, Limits, Unit};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
-/// What the header and the public functions are emitted from.
+/// Input of the header and of the public functions.
 pub(super) struct Drive<'a> {
     pub program: &'a Program,
     pub interface: &'a Interface,
@@ -15,13 +15,13 @@ pub(super) struct Drive<'a> {
     pub step: &'a Step,
 }
 
-/// What programs define to have signals.
+/// Macro that programs define for observation signals.
 pub(super) const SIGNALS: &str = "HEXAGEN_SIGNALS";
 
-/// What bit-for-bit comparisons define.
+/// Macro that bit-for-bit comparisons define.
 pub(super) const VERIFICATION: &str = "HEXAGEN_VERIFICATION";
 
-/// Code for where a symbol is defined.
+/// Code under `#ifdef symbol`.
 pub(super) fn where_defined(symbol: &str, code: &str) -> String {
     format!("#ifdef {symbol}\n{}\n#endif\n\n", code.trim_end())
 }
@@ -34,7 +34,7 @@ pub(super) struct Method {
 }
 
 impl Method {
-    /// Its head, as declarations and definitions have it.
+    /// Its head, for declaration and definition.
     pub(super) fn head(&self) -> String {
         wrapped("", &self.head).trim_end().to_owned()
     }
@@ -61,18 +61,18 @@ impl Drive<'_> {
         self.interface.bus_periods.is_some()
     }
 
-    /// The set-point word that says whether anything is demanded of the motor.
+    /// The set-point word that is 0 if nothing is demanded of the motor.
     fn demand(&self) -> &'static str {
         if self.has_speed() { "speed" } else { "current" }
     }
 
-    /// First value of a set-point word; 0 of one that there is not.
+    /// Initial value of a set-point word; 0 if the drive does not have it.
     fn initial(&self, demand: Demand) -> String {
         let word = self.program.param(demand);
         number(word.map_or(0, |word| word.initial))
     }
 
-    /// Limits, units, and the state of a drive that begins.
+    /// Limits, units and initial state.
     pub(super) fn constants(&self) -> String {
         let Interface { limits, units, .. } = self.interface;
         let limits = arguments(limits).map(|(value, name)| format!("{value} /* {name} */"));
@@ -98,11 +98,7 @@ impl Drive<'_> {
         text.push_str(&where_defined(SIGNALS, &signals));
 
         let state = self.names.state();
-        text.push_str(
-            &self
-                .names
-                .comment("", &["The state of a drive that begins."]),
-        );
+        text.push_str(&self.names.comment("", &["Initial state of the law."]));
         let words = self.program.states.iter().map(|word| {
             let (name, value) = (self.names.local(&word.name), number(word.initial));
             format!("{INDENT}.{name} = {value}")
@@ -113,7 +109,7 @@ impl Drive<'_> {
         text + "\n};\n\n"
     }
 
-    /// Functions after the law: the public functions, and those that they call.
+    /// The public functions, and the private ones that they call.
     pub(super) fn functions(&self) -> String {
         let mut text = self.step_at_rest();
         let setters = self.program.setters.iter();
@@ -157,7 +153,7 @@ impl Drive<'_> {
         format!("{name}({})", arguments.join(", "))
     }
 
-    /// The statements that track; what is told of the rotor is bound where `is_named`.
+    /// The statements that track; the result is bound if `is_named`.
     fn track(&self, is_named: bool) -> String {
         if !self.step.tracks {
             return String::new();
@@ -191,7 +187,7 @@ impl Drive<'_> {
         let comment = names.comment(
             "",
             &[
-                "A period without control, in start-up or with a fault. Of all periods these alone change mode and fault, so they are published here.",
+                "A period without control: start-up or fault. Mode and fault change in these periods only, and are published here.",
             ],
         );
         let head = format!(
@@ -228,8 +224,8 @@ impl Drive<'_> {
         body.push('\n');
         Method {
             doc: doc(&[
-                "Makes a drive that controls currents from its first period on, with set-point 0 and nominal current offsets.",
-                "Before any other call. Where offsets or the bootstrap capacitors of the inverter need it, call `calibrate()` before the first period.",
+                "Initialises a drive: it controls currents from its first period on, with set-point 0 and nominal current offsets.",
+                "Before any other call. If the current offsets or the inverter's bootstrap capacitors require it, call `calibrate()` before the first period.",
             ]),
             head: format!("void {}({})", self.names.public("init"), self.drive()),
             body,
@@ -274,12 +270,10 @@ impl Drive<'_> {
         let _ = write!(body, "\n{INDENT}return legs;\n");
         let effect = match self.interface.delay {
             0 => "The command takes effect at once.",
-            _ => {
-                "The command takes effect with the next period, while its own step computes the one after."
-            }
+            _ => "The command takes effect in the next period.",
         };
         let mut text = doc(&[
-            "Runs one control period: takes the measurements of its start, returns the inverter's command.",
+            "Runs one control period: from the samples at its start to the inverter's command.",
             effect,
         ]);
         if self.interface.timer_capture {
@@ -309,10 +303,7 @@ impl Drive<'_> {
             Setter::Bus => None,
         };
         if let Some(field) = field {
-            text.extend(doc(&[
-                "",
-                "`bits` are those of a number with 16 fraction bits: 65536 is one.",
-            ]));
+            text.extend(doc(&["", "`bits` has 16 fraction bits: 65536 is one."]));
             for word in code.words {
                 body.push_str(&lines(&[&format!("drive->{field} = {word};")]));
             }
@@ -344,7 +335,7 @@ impl Drive<'_> {
         }
     }
 
-    /// The same setter in a unit of whole numbers.
+    /// The same setter in an integer unit.
     fn other_unit(&self, setter: Setter) -> Option<Method> {
         let (suffix, parameter, unit, make) = match setter {
             Setter::Current => ("ma", "milliamperes", "milliamperes", "thousandths"),
@@ -369,7 +360,7 @@ impl Drive<'_> {
         })
     }
 
-    /// What the owner of a drive does besides stepping, and what it tells.
+    /// Reset, calibration, pre-charge and status.
     fn commands(&self) -> [Method; 4] {
         let publish = "drive->status = hexagen_status_word(&drive->supervisor);";
         let command = |name: &str, text: &[&str], body: String| Method {
@@ -430,13 +421,13 @@ impl Drive<'_> {
         ]
     }
 
-    /// What a program with HEXAGEN_SIGNALS asks for.
+    /// The function that returns observation signals.
     pub(super) fn signals(&self) -> Method {
         Method {
             doc: doc(&[
-                "The signals of one controlled period, which belong together: true where they are at hand. Else asks for those of the next one.",
+                "Signals of one controlled period, consistent with each other: true if they are available. Else requests those of the next one.",
                 "",
-                "The control loop answers in its next controlled period, so a program that asks until it gets an answer has signals of a period that began after it first asked.",
+                "The control loop answers in its next controlled period, so a program that polls until true has signals of a period that began after its first request.",
                 "From one context of the main program; neither side ever waits for the other.",
             ]),
             head: format!(
@@ -448,7 +439,7 @@ impl Drive<'_> {
         }
     }
 
-    /// What a bit-for-bit comparison reads and writes.
+    /// Access to all words, for bit-for-bit comparisons.
     pub(super) fn verification(&self) -> [Method; 2] {
         let names = self.names;
         let states = &self.program.states;
@@ -500,7 +491,7 @@ impl Drive<'_> {
     }
 }
 
-/// The limits in the order of the runtime's macro, each with its name.
+/// The limits with their names, in the order of the runtime's macro.
 fn arguments(limits: &Limits) -> [(String, &'static str); 12] {
     let [least, most] = limits.offsets;
     let [low, high] = limits.currents;

@@ -1,21 +1,21 @@
-//! Expressions as C, with the parentheses that grammar, compilers and readers need.
+//! Expressions as C, with the parentheses for grammar, compiler warnings and readers.
 
 use super::super::expression::{Expression, Operator, Primitive, Scope};
 use super::super::signal::{Leg, Shape};
 use super::names::{Names, number};
 use crate::ir::{Program, Table, Value, Word};
 
-/// Values as C, seen from a place.
+/// Values as C, at a place.
 #[derive(Clone, Copy)]
 pub(super) struct Printer<'a> {
     /// The place.
     pub scope: Scope<'a>,
-    /// How names look.
+    /// Names.
     pub names: &'a Names,
 }
 
 impl Printer<'_> {
-    /// A value as a complete expression: what a name is bound to or a function returns.
+    /// A value as a complete expression.
     pub(super) fn whole(&self, value: Value) -> String {
         self.written(&self.scope.value(value)).text
     }
@@ -25,7 +25,7 @@ impl Printer<'_> {
         self.written(&self.scope.in_shape(value, shape)).text
     }
 
-    /// What a named value is bound to.
+    /// The expression that a named value is bound to.
     pub(super) fn bound(&self, value: Value) -> String {
         self.written(&self.scope.definition(value)).text
     }
@@ -36,7 +36,7 @@ impl Printer<'_> {
             .within(Binding::Unary)
     }
 
-    /// A value behind `?` or `:`.
+    /// A value after `?` or `:`.
     pub(super) fn arm(&self, value: Value, shape: Shape) -> String {
         let value = self.written(&self.scope.in_shape(value, shape));
         value.within(Binding::Or)
@@ -50,7 +50,7 @@ impl Printer<'_> {
         format!("({kind}){value}")
     }
 
-    /// A value as the state word keeps it.
+    /// A value in a state word's storage type.
     pub(super) fn kept(&self, word: &Word, value: Value) -> String {
         let value = self.written(&self.scope.value(value));
         if word.storage_bits == 16 && !value.is_literal {
@@ -135,7 +135,7 @@ impl Printer<'_> {
     }
 }
 
-/// What a table's elements are stored as.
+/// Type of a table's elements.
 pub(super) fn element(table: &Table) -> &'static str {
     match table.interval().bits() {
         ..=16 => "int16_t",
@@ -156,13 +156,13 @@ enum Binding {
     Atom,
 }
 
-/// A text and what it takes to embed it.
+/// A text with its binding strength.
 struct Written {
     text: String,
     binding: Binding,
-    /// Whether its type may be narrower than a word, so that arithmetic on it would be.
+    /// Whether its type may be narrower than a word.
     is_narrow: bool,
-    /// Whether it is a number.
+    /// Whether it is a literal.
     is_literal: bool,
 }
 
@@ -189,7 +189,7 @@ impl Written {
         }
     }
 
-    /// As [`Self::within`], as an operand of arithmetic of words.
+    /// As [`Self::within`], as an operand of word arithmetic.
     fn operand(self, least: Binding) -> String {
         if self.is_narrow {
             let cast = format!("(int32_t){}", self.within(Binding::Unary));
@@ -240,7 +240,7 @@ fn binary(operator: Operator, a: Written, b: Written) -> Written {
             b.operand(Binding::Unary),
         ),
         Operator::And => (Binding::And, a.within(Binding::And), b.within(Binding::And)),
-        // `&&` under `||` has parentheses, though it binds tighter.
+        // Compilers warn of `&&` within `||` without parentheses.
         Operator::Or => {
             let under = |flag: Written| match flag.binding {
                 Binding::And => format!("({})", flag.text),
@@ -261,7 +261,7 @@ fn wrapping(name: &str, a: &Written, b: &Written) -> Written {
     Written::atom(format!("{name}({}, {})", a.text, b.text))
 }
 
-/// A shift, in two where one would be as wide as the word.
+/// A shift, split in two if it is as wide as the word.
 fn shift(name: &str, text: String, bits: u32) -> Written {
     let inner = bits.saturating_sub(30);
     let text = match inner {

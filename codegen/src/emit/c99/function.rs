@@ -1,4 +1,4 @@
-//! The entries of the law and the setters: stage calls in order, then what they leave behind.
+//! The entries of the law and the setters: stage calls in order, then the new state words.
 
 use super::super::expression::Scope;
 use super::super::path::{
@@ -14,15 +14,15 @@ use crate::emit::signal::Leg;
 use crate::ir::{AtRest, Demand, Function, Op, Output, Phase, Program, Told, Value};
 use std::fmt::Write as _;
 
-/// The static functions of a step, and how they are called.
+/// The static functions of a step, and their arguments.
 pub(super) struct Step {
     /// The stages, in order of their calls, then `track`, `rest` and `step`.
     pub definitions: String,
-    /// Whether `track` tells the others something.
+    /// Whether `track` returns something.
     pub has_rotor: bool,
     /// Whether there is something to track.
     pub tracks: bool,
-    /// Names of the arguments that `track`, `rest` and `step` take; none of a function that has nothing to do.
+    /// Names of the arguments of `track`, `rest` and `step`; none for an empty function.
     pub arguments: [Vec<&'static str>; 3],
 }
 
@@ -55,7 +55,7 @@ pub(super) fn emit_step(program: &Program, names: &Names) -> Step {
 
 /// An entry of the law.
 struct Entry {
-    /// Empty where there is nothing to do.
+    /// Empty if there is nothing to do.
     definition: String,
     arguments: Vec<&'static str>,
 }
@@ -64,7 +64,7 @@ struct StepFunctions<'a> {
     context: &'a Context<'a>,
     names: &'a Names,
     stages: Vec<StageFunction<'a>>,
-    /// What the tracking hands over.
+    /// Values that the tracking hands over.
     rotor: Vec<Value>,
 }
 
@@ -115,7 +115,7 @@ impl<'a> StepFunctions<'a> {
         )
     }
 
-    /// Reads the sample's words that some values are.
+    /// Reads of the sample's words among the values.
     fn inputs(&self, values: impl Iterator<Item = Value>) -> String {
         let names = inputs_used(self.function(), values).into_iter();
         let read = |name: &str| {
@@ -125,7 +125,7 @@ impl<'a> StepFunctions<'a> {
         names.map(read).collect()
     }
 
-    /// Reads what the tracking handed over.
+    /// Reads of the tracking's results.
     fn rotor_words<'v>(&self, values: impl Iterator<Item = &'v Value>) -> String {
         let read = |&value: &Value| {
             let (kind, name) = (kind(self.context.shape(value)), self.local(value));
@@ -134,7 +134,7 @@ impl<'a> StepFunctions<'a> {
         values.map(read).collect()
     }
 
-    /// The values from outside that a part's calls and stores name.
+    /// The values from outside used by a part's calls and stores.
     fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
         let function = self.function();
         let stages = self.stages(part).map(StageFunction::plan);
@@ -162,7 +162,7 @@ impl<'a> StepFunctions<'a> {
         kept(self.context, &plans, part)
     }
 
-    /// Calls of a part's stages, and the words that it keeps.
+    /// Calls of a part's stages, and its new state words.
     fn body(&self, part: Part, kept: &Kept<'_>) -> String {
         let mut text: String = self.stages(part).map(StageFunction::call).collect();
         for &value in &kept.reads {
@@ -178,7 +178,7 @@ impl<'a> StepFunctions<'a> {
         text
     }
 
-    /// A function of this body, with those of the arguments that it names.
+    /// A function of this body, with the arguments that it uses.
     fn entry(
         &self,
         [result, name, doc]: [&str; 3],
@@ -216,7 +216,7 @@ impl<'a> StepFunctions<'a> {
         }
     }
 
-    /// What runs in every period.
+    /// The tracking.
     fn track(&self) -> Entry {
         let kept = self.kept(Part::Tracking);
         let used = self.used(Part::Tracking, &kept);
@@ -238,11 +238,11 @@ impl<'a> StepFunctions<'a> {
                 arguments: vec![],
             };
         }
-        let doc = "Follows the rotor: in every period, at rest too.";
+        let doc = "Tracks the rotor: runs in every period, at rest too.";
         self.entry([result, "track", doc], &["state", "sample"], &body)
     }
 
-    /// What a period without control leaves behind.
+    /// A period without control.
     fn rest(&self) -> Entry {
         let kept = kept_at_rest(self.context);
         let tracked = kept.iter().filter_map(|&(_, at_rest)| match at_rest {
@@ -271,7 +271,7 @@ impl<'a> StepFunctions<'a> {
                 arguments: vec![],
             };
         }
-        let doc = "A period without control: forgets what was commanded.";
+        let doc = "A period without control: clears the state of past commands.";
         self.entry(["void", "rest", doc], &["state", "sample", "rotor"], &body)
     }
 
@@ -291,7 +291,7 @@ impl<'a> StepFunctions<'a> {
         self.entry(head, &arguments, &body)
     }
 
-    /// What people are told.
+    /// The observations.
     fn observation(&self) -> String {
         let printer = self.printer(false);
         let tell = |told: Told| {
@@ -302,7 +302,7 @@ impl<'a> StepFunctions<'a> {
         all.into_iter().filter_map(tell).collect()
     }
 
-    /// The command. Old state words that go out of the step are read under their names before any is written.
+    /// The command; old state words in it are read before any is written.
     fn legs(&self) -> String {
         let printer = self.printer(false);
         let compare = Phase::ALL.map(|phase| {
@@ -356,9 +356,9 @@ fn read_words(program: &Program, function: &Function, names: &Names) -> String {
     text
 }
 
-/// A setter: what it computes, and the words that it makes.
+/// A setter: its code, and its words.
 pub(super) struct SetterCode {
-    /// Its stages, where they are functions of their own.
+    /// Its stages, if they are functions of their own.
     pub stages: String,
     /// Statements.
     pub body: String,

@@ -26,7 +26,7 @@ impl Drive<'_> {
             text,
             "#ifndef {guard}\n#define {guard}\n\n#include \"hexagen.h\"\n\n\
              #if HEXAGEN_ABI != {abi}\n\
-             #error \"{prefix}.h is of another version of hexagen than hexagen.h: take both from one.\"\n\
+             #error \"{prefix}.h and hexagen.h are of different versions of hexagen: take both from one.\"\n\
              #endif\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n",
             abi = hexagen_c99::ABI
         );
@@ -34,7 +34,7 @@ impl Drive<'_> {
         text.extend(constants.map(|constant| self.constant(constant)));
         text.push_str(&self.types());
         let doc =
-            "Files that disagree on HEXAGEN_SIGNALS, and so on the size of a drive, do not link.";
+            "Files that differ in HEXAGEN_SIGNALS, and so in the size of a drive, do not link.";
         text.push_str(&names.comment("", &[doc]));
         let init = names.public("init");
         let other = format!("#define {init} {init}_with_signals");
@@ -50,7 +50,7 @@ impl Drive<'_> {
         text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
     }
 
-    /// A constant: a number, or what initialises an array.
+    /// A constant: a number, or an array's initialiser.
     fn constant(&self, constant: &PublicConstant) -> String {
         let name = self.names.public_upper(&constant.name);
         let mut doc = constant.doc.clone();
@@ -106,7 +106,7 @@ impl Drive<'_> {
             let _ = writeln!(text, "{INDENT}{kind} {};", names.local(&word.name));
         }
         let _ = write!(text, "}} {};\n\n", names.state());
-        let doc = "A drive; all of it is the functions' own. Which of them may be called from where says hexagen.h.";
+        let doc = "A drive; its fields are private. hexagen.h says which function may be called from where.";
         text.push_str(&names.comment("", &[doc]));
         text.push_str("typedef struct {\n");
         for (demand, field) in SINGLE {
@@ -116,16 +116,13 @@ impl Drive<'_> {
             }
         }
         if self.has_bus() {
-            let doc = "The bus voltage as `set_bus()` tells it.";
+            let doc = "Bus voltage set by `set_bus()`.";
             text.push_str(&names.comment(INDENT, &[doc]));
             let _ = writeln!(text, "{INDENT}hexagen_bus bus;");
         }
         let state = names.state();
         for (doc, field) in [
-            (
-                "Last status of the control loop.",
-                "volatile int32_t status",
-            ),
+            ("Status of the control loop.", "volatile int32_t status"),
             (
                 "Owned by the control loop.",
                 "hexagen_supervisor supervisor",

@@ -1,4 +1,4 @@
-//! Lines of C: statements broken where they are too long, and the words in them.
+//! Lines of C: wrapping of long statements, and the words in them.
 
 use std::collections::BTreeSet;
 
@@ -8,8 +8,8 @@ pub(super) const WIDTH: usize = 100;
 /// One level of nesting.
 pub(super) const INDENT: &str = "    ";
 
-/// A statement or a function's head in lines of at most [`WIDTH`] letters, where it can be: broken behind commas and
-/// parentheses and before operators, at the outermost place that fits.
+/// A statement or a function's head in lines of at most [`WIDTH`] letters if possible: broken after
+/// commas and parentheses and before operators, at the outermost place that fits.
 pub(super) fn wrapped(indent: &str, text: &str) -> String {
     let mut lines = String::new();
     let (mut rest, mut lead) = (text, indent.to_owned());
@@ -32,7 +32,8 @@ pub(super) fn wrapped(indent: &str, text: &str) -> String {
     lines
 }
 
-/// The last of the outermost places within `width` where a line may end; a line behind it has room for `next`.
+/// The last of the outermost places within `width` where a line may end; the next line has room for
+/// `next`.
 fn break_of(text: &str, [width, next]: [usize; 2]) -> Option<usize> {
     let (mut depth, mut best) = (0_usize, None);
     let letters = text.as_bytes();
@@ -55,7 +56,7 @@ fn break_of(text: &str, [width, next]: [usize; 2]) -> Option<usize> {
             b' ' if at > 0 => {
                 let behind = &text[at + 1..];
                 if letters[at - 1] == b'=' && depth == 0 {
-                    // Before what is nested is broken, if that need not be.
+                    // Prefer a break before a nested group to one inside of it.
                     offer(if behind.len() <= next { 2 } else { 5 }, at);
                 } else if let Some(looseness) = looseness(letters[at - 1], behind) {
                     offer(3 * depth + looseness, at);
@@ -67,8 +68,8 @@ fn break_of(text: &str, [width, next]: [usize; 2]) -> Option<usize> {
     best.map(|(_, at)| at)
 }
 
-/// How much worse than behind a comma it is to break a line between a letter and what follows; none where it is not
-/// broken.
+/// Cost of a line break between a letter and what follows, relative to a comma; none if a line may not
+/// be broken there.
 fn looseness(before: u8, behind: &str) -> Option<usize> {
     let begins = |operators: &[&str]| {
         operators

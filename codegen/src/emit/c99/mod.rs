@@ -1,8 +1,8 @@
 //! The C99 emitter: from a verified graph to a header and a source for toolchains without Rust.
 //!
-//! The same plan as the Rust emitter's, so the same stages under the same names with the same proven ranges, around the
-//! runtime in C (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed overflow, no right
-//! shift of a negative number. Nothing here can fail.
+//! Same plan as the Rust emitter, so the same stages, names and proven ranges, with the runtime in C
+//! (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed overflow, no
+//! right shift of a negative number. Nothing here can fail.
 
 mod drive;
 mod expression;
@@ -23,7 +23,7 @@ use names::{Names, number, typed_number, verbatim};
 /// A drive in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
-    /// Begin of every public name, and name of both files: `hub_drive` of `HubDrive`.
+    /// Prefix of every public name, and name of both files: `hub_drive` of `HubDrive`.
     pub name: String,
     /// Text of the header, `hub_drive.h`.
     pub header: String,
@@ -31,7 +31,7 @@ pub struct Sources {
     pub source: String,
 }
 
-/// The runtime that drives in C need beside them, once for all of a program: names and texts of its files.
+/// The runtime in C, once per program: names and texts of its files.
 pub const RUNTIME: [(&str, &str); 2] = hexagen_c99::FILES;
 
 /// The header and the source of one drive of this type name.
@@ -63,7 +63,7 @@ pub fn emit_c99(graph: &VerifiedGraph, interface: &Interface, type_name: &str) -
     }
 }
 
-/// What stands before everything: what the drive was made of.
+/// The head of the source: generator, scale and specification.
 fn head(names: &Names, interface: &Interface) -> String {
     let mut lines = vec![
         format!("Use and accuracy: {}.h. Generated from:", names.prefix),
@@ -84,7 +84,7 @@ fn emit_constant(constant: &Constant, names: &Names) -> String {
     format!("{comment}#define {name} {raw}\n\n")
 }
 
-/// A table in the smallest elements that hold it, 16 bits at least: not every core has smaller ones.
+/// A table in its smallest element type of at least 16 bits: not every core has 8.
 fn emit_table(table: &Table, names: &Names) -> String {
     let comment = names.comment("", &table.doc);
     let (name, kind) = (names.constant(&table.name), element(table));

@@ -1,4 +1,4 @@
-//! How names, numbers and comments look in emitted C.
+//! Names, numbers and comments in emitted C.
 
 use super::super::comment::comments;
 use super::super::names::module_name;
@@ -6,7 +6,7 @@ use super::layout::WIDTH;
 use crate::interface::Interface;
 use crate::ir::Program;
 
-/// Words of C99, of C++, which may include a header, and of the headers that emitted code includes.
+/// Keywords of C99 and C++, which may include a header, and names of the included headers.
 const KEYWORDS: [&str; 69] = [
     "and",
     "asm",
@@ -104,7 +104,7 @@ const RESERVED: [&str; 21] = [
     "words",
 ];
 
-/// Functions that every header declares behind the drive's prefix; the setters come besides.
+/// Functions that every header declares with the drive's prefix, besides the setters.
 const FUNCTIONS: [&str; 7] = [
     "calibrate",
     "init",
@@ -115,8 +115,8 @@ const FUNCTIONS: [&str; 7] = [
     "step",
 ];
 
-/// Names that a type may not take besides: files of the language, and functions of its library with a name of one word
-/// that suits a drive.
+/// Other names that a type may not take: headers of the language, and library functions whose names
+/// suit a drive.
 const STANDARD: [&str; 11] = [
     "abs", "floor", "index", "log", "pow", "round", "signal", "sin", "stdbool", "stdint", "time",
 ];
@@ -124,7 +124,7 @@ const STANDARD: [&str; 11] = [
 /// The names of one drive's header and source.
 #[derive(Debug)]
 pub(super) struct Names {
-    /// `hub_drive` of `HubDrive`: the type, and begin of every other public name.
+    /// `hub_drive` of `HubDrive`: the type, and prefix of every other public name.
     pub prefix: String,
     /// `HUB_DRIVE`
     pub upper: String,
@@ -160,13 +160,13 @@ impl Names {
         format!("{}_{name}", self.upper)
     }
 
-    /// The type of the words that outlive a control period.
+    /// The type of the law's state.
     pub(super) fn state(&self) -> String {
         self.public("state")
     }
 
-    /// The identifier of a signal, state word, input or stage: its own name, with an underscore behind it where that
-    /// name is taken.
+    /// The identifier of a signal, state word, input or stage: its name, with an underscore appended if
+    /// that is taken.
     pub(super) fn local(&self, name: &str) -> String {
         let is_public = || {
             let rest = name.strip_prefix(&self.prefix);
@@ -200,13 +200,13 @@ impl Names {
         self.setters.iter().any(|setter| setter == name)
     }
 
-    /// A line of documentation, with the names that it mentions as they are here.
+    /// A line of documentation with the names of C.
     fn text(&self, line: &str) -> String {
         let mut parts = line.split('`');
         let mut text = parts.next().unwrap_or_default().to_owned();
         for (number, part) in parts.enumerate() {
             text.push('`');
-            // Every other part stands between two of them.
+            // Every other part is between two of them.
             let is_quoted = number % 2 == 0;
             let function = part.strip_suffix("()").unwrap_or(part);
             if is_quoted && (FUNCTIONS.contains(&function) || self.is_setter(function)) {
@@ -220,7 +220,7 @@ impl Names {
         closed(&text)
     }
 
-    /// A comment of these lines, which documentation tools read.
+    /// A documentation comment.
     pub(super) fn comment<S: AsRef<str>>(&self, indent: &str, lines: &[S]) -> String {
         let lines: Vec<String> = lines.iter().map(|line| self.text(line.as_ref())).collect();
         match lines.as_slice() {
@@ -236,7 +236,7 @@ impl Names {
     }
 }
 
-/// A comment of these lines as they are.
+/// A comment with unchanged lines.
 pub(super) fn verbatim(lines: &[String]) -> String {
     let mut text = "/*\n".to_owned();
     for line in lines {
@@ -246,14 +246,14 @@ pub(super) fn verbatim(lines: &[String]) -> String {
     text + " */\n"
 }
 
-/// A text without what would end a comment, begin another one, or spell another sign.
+/// A text without the ends and begins of comments and without trigraphs.
 fn closed(text: &str) -> String {
     text.replace("*/", "* /")
         .replace("/*", "/ *")
         .replace("??", "? ?")
 }
 
-/// What texts name in Rust, as C has it; other words as they are.
+/// The C name of a Rust type; other words unchanged.
 fn type_name(word: &str) -> &str {
     match word {
         "i8" | "i16" => "int16_t",
@@ -266,7 +266,7 @@ fn type_name(word: &str) -> &str {
 /// A number of 32 bits.
 pub(super) fn number(value: i32) -> String {
     if value == i32::MIN {
-        // The literal 2147483648 is of a wider type.
+        // The literal 2147483648 has a wider type.
         return "(-2147483647 - 1)".to_owned();
     }
     value.to_string()

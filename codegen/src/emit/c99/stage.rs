@@ -12,9 +12,9 @@ use std::fmt::Write as _;
 
 /// The function of a stage.
 ///
-/// A stage with one result returns it. Several go where the caller wants them: a guarded stage, which may be off the
-/// normal path, returns them as a structure, so that no word of the caller needs an address; any other writes them
-/// through pointers, which compilers see through when they inline it.
+/// A stage with one result returns it. With several, a guarded stage, which may be off the normal path,
+/// returns a structure, so that no word of the caller needs an address; any other writes through
+/// pointers, which inlining removes.
 pub(super) struct StageFunction<'a> {
     context: &'a Context<'a>,
     names: &'a Names,
@@ -41,7 +41,7 @@ impl<'a> StageFunction<'a> {
         }
     }
 
-    /// What it is planned as.
+    /// Its plan.
     pub(super) fn plan(&self) -> &StagePlan<'a> {
         &self.plan
     }
@@ -56,7 +56,7 @@ impl<'a> StageFunction<'a> {
         }
     }
 
-    /// Whether the stage computes or stores anything; one of leaves alone does not.
+    /// Whether the stage computes or stores anything.
     fn has_body(&self) -> bool {
         !self.plan.body.is_empty() || !self.plan.stores.is_empty()
     }
@@ -74,7 +74,7 @@ impl<'a> StageFunction<'a> {
         self.names.local(&outcome.signal.name)
     }
 
-    /// The call, with what follows its own arguments.
+    /// The call, with these results after its own arguments.
     fn call_with(&self, results: impl Iterator<Item = String>) -> String {
         let uses_state = !self.plan.reads.is_empty() || !self.plan.stores.is_empty();
         let state = uses_state.then(|| "state".to_owned()).into_iter();
@@ -221,8 +221,8 @@ impl<'a> StageFunction<'a> {
         text + &format!("}} {};\n\n", self.structure())
     }
 
-    /// The statements at the function's end that hand the results over; returns its type. A single result is not bound
-    /// to its name first.
+    /// Adds the statements that hand the results over, and returns the function's type. A single result is
+    /// not bound to its name first.
     fn hand_over(&self, statements: &mut Vec<String>) -> String {
         let printer = self.printer(false);
         let shaped = |outcome: &Outcome| printer.shaped(outcome.value, outcome.signal.shape);
@@ -303,12 +303,12 @@ impl<'a> StageFunction<'a> {
     }
 }
 
-/// The pointer through which a result goes out: the value has its own name within the stage.
+/// Name of the pointer to a result.
 fn result_name(name: &str) -> String {
     format!("{name}_out")
 }
 
-/// What a value is declared as.
+/// Type of a value.
 pub(super) fn kind(shape: Shape) -> &'static str {
     match shape {
         Shape::Word => "int32_t",

@@ -1,13 +1,13 @@
-//! Gappa scripts: that no value of a program leaves its interval, and how far each is from the ideal one.
+//! Gappa scripts: the interval of every value of a program, and its distance from the ideal one.
 //!
-//! A segment is a stage in one case of [`cases`]: what comes in are variables with the interval and the
-//! error that earlier segments prove; sums, products and shifts are defined twice, as the code rounds them
-//! and as the ideal computation does not. Everything else cuts: a minimum, maximum, clamp or magnitude
-//! moves no two values further apart, a selected value is one of two, a table's entry is as exact as its
-//! document says, so their results come into the next definitions as variables again.
+//! A segment is a stage in one case of [`cases`]. Its inputs are variables with the interval and error
+//! proved by earlier segments; sums, products and shifts are defined twice, with the code's rounding
+//! and without. All other operators cut: a minimum, maximum, clamp or magnitude does not increase the
+//! distance of two values, a selected value is one of two, a table's entry has its documented error,
+//! so their results are variables again.
 //!
-//! A script holds one implication, or of constants alone what follows from nothing. Its goals are
-//! the bounds that the generator found itself.
+//! A script is one implication; with constants alone it has no hypotheses. Its goals are the
+//! generator's own bounds.
 
 mod segment;
 
@@ -18,20 +18,20 @@ use std::fmt::{self, Write};
 use crate::ir::{ErrorInterval, Function, Interval, Real, Value, VerifiedGraph, cases};
 use segment::segments;
 
-/// A script of one implication.
+/// A script: one implication.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Script {
     /// Function, stage and case.
     pub name: String,
-    /// Names of the scripts of other cases that say the same: this one stands for them.
+    /// Names of the identical scripts of other cases, which this one represents.
     pub also: Vec<String>,
     /// Definitions, in order.
     definitions: Vec<String>,
-    /// What is known of the variables.
+    /// Hypotheses on the variables.
     hypotheses: Vec<String>,
     /// Rewriting rules.
     hints: Vec<String>,
-    /// What is to be proved.
+    /// Goals.
     pub goals: Vec<Goal>,
 }
 
@@ -40,22 +40,22 @@ pub struct Script {
 pub struct Goal {
     /// The expression.
     pub expression: String,
-    /// What it is.
+    /// Subject of the bound.
     pub subject: Subject,
-    /// Least value that the generator finds.
+    /// Lower bound of the generator.
     pub low: Real,
-    /// Greatest value that the generator finds.
+    /// Upper bound of the generator.
     pub high: Real,
 }
 
-/// What a goal bounds.
+/// Subject of a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Subject {
-    /// A value: that it stays in its interval, and so in its word.
+    /// A value: it stays in its interval, and so in its word.
     Value,
     /// A value's distance from the ideal one.
     Error,
-    /// How far what a decision compares is from the ideal.
+    /// Distance of the compared difference of a decision from the ideal one.
     TieBand,
 }
 
@@ -80,7 +80,7 @@ impl Goal {
 }
 
 impl Script {
-    /// The script with goals that the checker shall find itself.
+    /// The script with open goals, for the checker to bound.
     pub fn question(&self) -> String {
         self.with_goals(|goal| format!("{} in ?", goal.expression))
     }
@@ -104,7 +104,7 @@ impl Script {
         }
         let goals: Vec<String> = self.goals.iter().map(text).collect();
         let [known, goals] = [&self.hypotheses, &goals].map(|parts| parts.join("\n  /\\ "));
-        // Of constants alone nothing needs to be known.
+        // With constants alone there are no hypotheses.
         let implies = if known.is_empty() { "" } else { "\n  ->\n  " };
         let _ = writeln!(script, "{{ {known}{implies}{goals} }}");
         for hint in &self.hints {
@@ -123,8 +123,7 @@ impl fmt::Display for Script {
     }
 }
 
-/// The name of a value in scripts: as the code computes it; as the ideal computation does, with `M`
-/// before it.
+/// The name of a value in scripts; the ideal value has the prefix `M`.
 pub fn variable(function: &Function, value: Value) -> String {
     let name = &function.node(value).name;
     if name.is_empty() {
@@ -134,12 +133,12 @@ pub fn variable(function: &Function, value: Value) -> String {
     }
 }
 
-/// The name of the difference that a decision goes by, in scripts.
+/// The name of a decision's difference in scripts.
 pub fn gap(decision: Value) -> String {
     format!("gap{}", decision.index())
 }
 
-/// The scripts of all functions of a controller; segments that are the same in several cases come once.
+/// The scripts of all functions of a controller; a segment equal in several cases comes once.
 pub fn emit_gappa(graph: &VerifiedGraph) -> Vec<Script> {
     let program = graph.program();
     let mut known = HashMap::new();
@@ -147,7 +146,7 @@ pub fn emit_gappa(graph: &VerifiedGraph) -> Vec<Script> {
     for function in program.functions() {
         for case in cases(program, function) {
             for script in segments(program, function, &case) {
-                // All but the name, in which the case stands.
+                // All but the name, which contains the case.
                 let text = script.to_string();
                 let text = text
                     .split_once('\n')

@@ -7,7 +7,7 @@ use crate::ir::{
     Bounds, Case, ErrorInterval, Exact, Function, Interval, Op, Program, Stage, Value,
 };
 
-/// The scripts of all stages of a function in a case; stages that do not run in it have none.
+/// The scripts of the stages of a function that run in a case.
 pub(super) fn segments(program: &Program, function: &Function, case: &Case) -> Vec<Script> {
     let mut scripts = vec![];
     for stage in &function.stages {
@@ -31,7 +31,7 @@ pub(super) fn segments(program: &Program, function: &Function, case: &Case) -> V
     scripts
 }
 
-/// A value as a script calls it: as the code computes it, and as the ideal computation does.
+/// Expressions of a value: that of the code and the ideal one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Pair {
     code: String,
@@ -52,15 +52,15 @@ struct Segment<'a> {
     definitions: Vec<String>,
     hypotheses: Vec<String>,
     goals: Vec<Goal>,
-    /// Variables that have their hypotheses, by name.
+    /// Variables with hypotheses, by name.
     declared: BTreeSet<String>,
-    /// Names of the values that are defined.
+    /// Names of defined values.
     defined: BTreeMap<Value, Pair>,
-    /// The values by their definition: a checker knows the same expression by one name only.
+    /// Values by definition: the checker accepts one name per expression.
     definers: BTreeMap<[String; 2], Value>,
 }
 
-/// Whether the operator is defined in scripts; all others cut.
+/// Whether scripts define the operator; all others cut.
 fn is_arithmetic(op: Op) -> bool {
     matches!(
         op,
@@ -132,12 +132,12 @@ impl<'a> Segment<'a> {
         parts
     }
 
-    /// Whether no more is known of an operand where it is used than where it is defined.
+    /// Whether an operand's bounds at its use are those of its definition.
     fn is_same(&self, user: Value, operand: Value) -> bool {
         self.bounds.operand(user, operand) == self.bounds.interval(operand)
     }
 
-    /// The script of sums, products and shifts, and of what decisions compare.
+    /// The script of sums, products, shifts and decisions.
     fn script(mut self, name: &str, values: &[Value], leaving: &BTreeSet<Value>) -> Option<Script> {
         for &value in values {
             let op = self.function.node(value).op;
@@ -150,7 +150,7 @@ impl<'a> Segment<'a> {
                     self.claim(Goal::error(pair.error(), Subject::Error, error));
                 }
             }
-            // The band of a magnitude beyond a limit has both signs.
+            // The band of a magnitude above a limit has both signs.
             if let (Op::Compare(_, a, b) | Op::Exceeds(a, b), Some(band)) =
                 (op, self.bounds.band(value))
             {
@@ -178,7 +178,7 @@ impl<'a> Segment<'a> {
         }
     }
 
-    /// Values of the stage whose error something needs that the stage's definitions do not say.
+    /// Values of the stage whose error is used outside of its definitions.
     fn leaving(&self) -> BTreeSet<Value> {
         let function = self.function;
         let range = self.stage.first..self.stage.end;
@@ -279,7 +279,7 @@ impl<'a> Segment<'a> {
         self.defined.insert(value, pair);
     }
 
-    /// The difference that a decision goes by.
+    /// The difference of a decision.
     fn compare(&mut self, value: Value, [a, b]: [Value; 2], band: ErrorInterval) {
         if band.is_unbounded() {
             return;
@@ -299,7 +299,7 @@ impl<'a> Segment<'a> {
         variable(self.function, value)
     }
 
-    /// An operand: a number, a value that is defined here, or a variable.
+    /// An operand: a number, a defined value, or a variable.
     fn operand(&mut self, user: Value, value: Value) -> Pair {
         let interval = self.bounds.operand(user, value);
         let error = self.bounds.error(value);
@@ -338,13 +338,13 @@ impl<'a> Segment<'a> {
         }
         let mut name = self.name(value);
         if self.defined.contains_key(&value) {
-            // Known more closely where the user matters than where it is defined.
+            // The bounds at the use are closer than those at the definition.
             name = format!("{name}_at_{}", user.index());
         }
         self.variable(name, interval, error)
     }
 
-    /// A variable with what is known of it.
+    /// A variable with its hypotheses.
     fn variable(&mut self, name: String, interval: Interval, error: ErrorInterval) -> Pair {
         let ideal = if error.is_zero() {
             name.clone()
@@ -364,8 +364,8 @@ impl<'a> Segment<'a> {
         pair
     }
 
-    /// Two scripts for each quotient: where that of the code is within the limit, and where the ideal one is. Beyond
-    /// it in both, both are the limit.
+    /// Two scripts for each quotient: with the code's quotient within the limit, and with the ideal one
+    /// within it. If both exceed it, both are the limit.
     fn divisions(&self, stage: &str) -> Vec<Script> {
         let mut scripts = vec![];
         for value in self.values() {
@@ -386,7 +386,7 @@ impl<'a> Segment<'a> {
             };
             let error = self.bounds.error(value);
             let limit_high = self.bounds.operand(value, limit).high;
-            // What is bounded by the limit alone needs no proof.
+            // A bound by the limit alone needs no proof.
             if error.is_zero() || error.magnitude() >= limit_high as f64 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Expressions as Rust, with the parentheses that grammar and readers need.
+//! Expressions as Rust, with the parentheses for grammar and readers.
 
 use super::super::expression::{Expression, Operator, Primitive, Scope};
 use super::super::signal::Shape;
@@ -7,17 +7,17 @@ use super::source::{Source, quote};
 use super::tables::look_up;
 use crate::ir::{Program, Value, Word};
 
-/// Values as Rust, seen from a place.
+/// Values as Rust, at a place.
 pub(super) trait RustScope {
-    /// A value as a complete expression: what a `let` binds or a branch yields.
+    /// A value as a complete expression.
     fn whole(&self, value: Value) -> Source;
     /// A value as a complete expression of the given shape.
     fn shaped(&self, value: Value, shape: Shape) -> Source;
-    /// A value as the state word keeps it.
+    /// A value in a state word's storage type.
     fn kept(&self, word: &Word, value: Value) -> Source;
-    /// What the `let` of a named value binds.
+    /// The expression that the `let` of a named value binds.
     fn bound(&self, value: Value) -> Source;
-    /// A value that a method is called on.
+    /// A value as the receiver of a method.
     fn receiver(&self, value: Value) -> Source;
 }
 
@@ -77,10 +77,10 @@ impl Binding {
         }
     }
 
-    /// What operands left and right must bind by.
+    /// Least binding of the left and the right operand.
     fn of_operands(self) -> [Self; 2] {
         match self {
-            // What stands right binds tighter.
+            // Left associative: the right operand binds tighter.
             Self::Sum => [Self::Sum, Self::Product],
             Self::Product => [Self::Product, Self::Unary],
             Self::Compare => [Self::Sum; 2],
@@ -89,11 +89,11 @@ impl Binding {
     }
 }
 
-/// A text of tokens and what it takes to embed it.
+/// A text of tokens with its binding strength.
 struct Written {
     tokens: Source,
     binding: Binding,
-    /// A branch as a call of `select`, for use inside of other expressions.
+    /// A branch as a call of `select`, for use inside other expressions.
     embedded: Option<Source>,
 }
 
@@ -189,7 +189,7 @@ fn written(program: &Program, expression: &Expression) -> Written {
             let nests = arms.iter().any(|arm| matches!(arm, Expression::Choice(_)));
             let written = choice(of(condition), of(then), of(otherwise));
             match written.embedded {
-                // Among three values that are there: one call within the other takes a line, branches take seven.
+                // A nested call takes one line, nested branches seven.
                 Some(selected) if nests && arms.iter().all(|arm| is_there(arm)) => {
                     Written::atom(selected)
                 }
@@ -202,7 +202,7 @@ fn written(program: &Program, expression: &Expression) -> Written {
     }
 }
 
-/// Whether nothing is left to compute but the choice itself: a branch is worth its lines where it leaves work out.
+/// Whether only the choice itself is left to compute: a branch pays if it skips work.
 fn is_there(expression: &Expression) -> bool {
     match expression {
         Expression::Signal(_)
@@ -235,7 +235,7 @@ fn sign(operator: Operator) -> Source {
     }
 }
 
-/// A right operand of an operator or method of `Word`, where a small number needs no wrapping.
+/// A right operand of an operator or method of `Word`, which takes small numbers unwrapped.
 fn right_operand(program: &Program, expression: &Expression, least: Binding) -> Source {
     match expression {
         Expression::Number(literal) => number(i64::from(*literal)),

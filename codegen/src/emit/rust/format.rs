@@ -1,7 +1,7 @@
 //! Emitted tokens as text for readers.
 //!
-//! `prettyplease` does the work, the same on every machine. Two things it leaves undone are put
-//! right here: blank lines between items, and array patterns that it breaks into one name per line.
+//! `prettyplease` formats, the same on every machine. Two things are added: blank lines between items,
+//! and array patterns on one line.
 
 use proc_macro2::TokenStream;
 use std::io::Write as _;
@@ -11,19 +11,18 @@ use std::process::{Command, Stdio};
 pub fn format_rust(tokens: &TokenStream) -> String {
     match syn::parse2(tokens.clone()) {
         Ok(file) => separate_items(&join_patterns(&prettyplease::unparse(&file))),
-        // Cannot happen for what this module emits; the tokens are still the code.
+        // Cannot happen for emitted code; the tokens are still the code.
         Err(_) => tokens.to_string(),
     }
 }
 
-/// Emitted tokens for readers: as `rustfmt` lays them out where there is one, else as [`format_rust`] does.
+/// Emitted tokens for readers: formatted by `rustfmt` if it is there, else by [`format_rust`].
 pub fn readable_rust(tokens: &TokenStream) -> String {
     let text = format_rust(tokens);
     rustfmt(&text).unwrap_or(text)
 }
 
-/// The text as `rustfmt` lays it out for readers, in lines of up to 100 columns; `None` where there is
-/// no `rustfmt`. Only white space changes.
+/// The text formatted by `rustfmt`, in lines of up to 100 columns; `None` without `rustfmt`.
 pub fn rustfmt(text: &str) -> Option<String> {
     let mut process = Command::new("rustfmt")
         .args(["--edition", "2024", "--emit", "stdout", "--quiet"])
@@ -33,7 +32,7 @@ pub fn rustfmt(text: &str) -> Option<String> {
         .stderr(Stdio::null())
         .spawn()
         .ok()?;
-    // The text is written before the output is read: rustfmt reads all of it first.
+    // rustfmt reads all of its input before it writes.
     process.stdin.take()?.write_all(text.as_bytes()).ok()?;
     let output = process.wait_with_output().ok()?;
     output
@@ -79,7 +78,8 @@ fn is_name(text: &str) -> bool {
             .all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// A blank line before every item, but not between imports or between constants, and before the last part of a step.
+/// A blank line before every item, except between imports and between constants, and before the last
+/// part of a step.
 fn separate_items(text: &str) -> String {
     let mut separated = String::with_capacity(text.len());
     let lines: Vec<&str> = text.lines().collect();
@@ -106,7 +106,7 @@ fn separate_items(text: &str) -> String {
     separated
 }
 
-/// Items stand at the top, or in an `impl` there.
+/// Whether a line begins an item at the top level or in an `impl` there.
 fn begins_item(line: &str) -> bool {
     let code = line.trim_start();
     let depth = line.len() - code.len();
@@ -116,14 +116,14 @@ fn begins_item(line: &str) -> bool {
     [0, 4, 8].contains(&depth) && words.iter().any(|word| code.starts_with(word))
 }
 
-/// The first line of an item behind its documentation and attributes.
+/// The first line of an item after its documentation and attributes.
 fn item_of<'t>(lines: &[&'t str]) -> &'t str {
     let is_before = |line: &str| line.starts_with("///") || line.starts_with("#[");
     let mut code = lines.iter().map(|line| line.trim_start());
     code.find(|line| !is_before(line)).unwrap_or_default()
 }
 
-/// What a step leaves behind stands apart from what it computes.
+/// Whether a line begins the last part of a step, the stores.
 fn begins_ending(before: &str, line: &str) -> bool {
     let stores = |line: &str| line.trim_start().starts_with("state.");
     stores(line) && !stores(before) || line.trim_start().starts_with("Legs::new(")

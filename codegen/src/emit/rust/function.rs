@@ -1,4 +1,4 @@
-//! The entries of the law: stage calls in order, then what they leave behind.
+//! The entries of the law: stage calls in order, then the new state words.
 
 use super::super::expression::Scope;
 use super::super::path::{
@@ -19,15 +19,15 @@ use crate::ir::{AtRest, Demand, Function, Op, Output, Phase, Program, Setter, To
 pub(super) struct StepCode {
     /// `track`, `rest` and `step`.
     pub entries: Source,
-    /// The type of what `track` hands over to the others.
+    /// The type that `track` returns.
     pub rotor: Source,
-    /// Its definition, where it has one.
+    /// Its definition, if it has one.
     pub rotor_definition: Source,
     /// The stages, in order of their calls.
     pub stages: Source,
 }
 
-/// The entries of a program's step. A command that is looked up as a `whole` goes out from its row.
+/// The entries of a program's step; `whole`: its command is looked up as a whole.
 pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> StepCode {
     let context = Context::of_step(program, whole);
     let plans = context.plan();
@@ -51,7 +51,7 @@ pub(super) fn emit_step(program: &Program, whole: Option<&WholeCommand<'_>>) -> 
 struct StepFunctions<'a> {
     context: &'a Context<'a>,
     stages: Vec<StageFunction<'a>>,
-    /// What the tracking hands over.
+    /// Values that the tracking hands over.
     rotor: Vec<Value>,
 }
 
@@ -102,7 +102,7 @@ impl<'a> StepFunctions<'a> {
         }
     }
 
-    /// The sample's words that some values are.
+    /// Reads of the sample's words among the values.
     fn inputs(&self, values: impl Iterator<Item = Value>) -> (Source, bool) {
         let names = inputs_used(self.function(), values);
         let is_read = !names.is_empty();
@@ -113,7 +113,7 @@ impl<'a> StepFunctions<'a> {
         (reads.collect(), is_read)
     }
 
-    /// The values from outside that a part's calls and stores name.
+    /// The values from outside used by a part's calls and stores.
     fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
         let function = self.function();
         let stages = self.stages(part).map(StageFunction::plan);
@@ -132,7 +132,7 @@ impl<'a> StepFunctions<'a> {
         used
     }
 
-    /// Calls of a part's stages, and the words that it keeps.
+    /// Calls of a part's stages, and its new state words.
     fn body(&self, part: Part, kept: &Kept<'_>) -> Source {
         let calls = self.stages(part).map(StageFunction::call);
         let scope = |reads_state| Scope {
@@ -275,7 +275,7 @@ impl<'a> StepFunctions<'a> {
         }
     }
 
-    /// What people are told.
+    /// The observations.
     fn observation(&self) -> Source {
         let scope = Scope {
             context: self.context,
@@ -289,7 +289,7 @@ impl<'a> StepFunctions<'a> {
     }
 
     fn legs(&self, whole: Option<&WholeCommand<'_>>) -> Source {
-        // Old state words that go out of the step are read under their names before any is written.
+        // Old state words in the command are read before any is written.
         let scope = Scope {
             context: self.context,
             reads_state: false,
@@ -322,7 +322,7 @@ impl<'a> StepFunctions<'a> {
     }
 }
 
-/// A parameter, with an underscore before it where it is not used.
+/// A parameter, with an underscore prefix if it is not used.
 fn named(name: &str, is_used: bool) -> Source {
     Source::of(if is_used {
         name.to_owned()
@@ -331,7 +331,7 @@ fn named(name: &str, is_used: bool) -> Source {
     })
 }
 
-/// The statements that read the set-point words of a function; an underscore stands for one that comes along.
+/// The statements that read the set-point words of a function; an underscore for an unused one.
 fn read_words(program: &Program, function: &Function) -> Source {
     let read = demands_read(program, function);
     let is_read = |demand: Demand| read.contains(&demand);
@@ -355,11 +355,11 @@ fn read_words(program: &Program, function: &Function) -> Source {
     quote!(#(#single)* #reads_bus)
 }
 
-/// A setter: a function of a word that makes those of the set-point.
+/// A setter: a function from a number to set-point words.
 pub(super) struct SetterCode {
     /// The function.
     pub function: Source,
-    /// Its stages, where they are functions of their own.
+    /// Its stages, if they are functions of their own.
     pub stages: Source,
 }
 
@@ -424,7 +424,7 @@ pub(super) fn emit_setter(program: &Program, set: Setter, function: &Function) -
     }
 }
 
-/// The runtime's name of the function that makes the words of what is set.
+/// The runtime's name of the setter.
 fn word_function(set: Setter) -> &'static str {
     match set {
         Setter::Current => "current",

@@ -1,25 +1,25 @@
-//! Signals that belong together: the phases of one quantity, or a numbered row of words.
+//! Groups of signals: the phases of one quantity, or numbered words.
 //!
-//! `i_a, i_b, i_c` travel between stages as one array, so that signatures stay short and say what
-//! they mean. Grouping looks at names and kinds alone; it is the same on both sides of a call.
+//! `i_a, i_b, i_c` are one array in signatures, which keeps them short. Grouping depends on names and
+//! shapes alone, so it is the same on both sides of a call.
 
 use super::super::signal::{Shape, Signal};
 use super::names::snake;
 use super::source::{Source, quote};
 
-/// What a signature may hold at most (clippy's `too_many_arguments`).
+/// Most arguments of a signature (clippy's `too_many_arguments`).
 pub(super) const ARGUMENTS: usize = 7;
 
-/// One argument or result: a single signal, or an array of signals of one kind.
+/// One argument or result: a single signal, or an array of signals of one shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Group {
-    /// Positions in the list that was grouped.
+    /// Positions in the grouped list.
     pub members: Vec<usize>,
     /// Word, flag or leg state.
     pub shape: Shape,
 }
 
-/// Groups the signals: related ones together, each group where its first member stands.
+/// Groups the signals, each group at the position of its first member.
 pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
     let mut groups: Vec<(String, Group)> = vec![];
     for (position, signal) in signals.iter().enumerate() {
@@ -46,8 +46,8 @@ pub(super) fn group(signals: &[Signal]) -> Vec<Group> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// Joins groups of one kind into one array each until at most `limit` groups are left: first the
-/// single signals, then the arrays.
+/// Joins groups of one shape into arrays until at most `limit` groups are left: first the single
+/// signals, then the arrays.
 pub(super) fn bundle(mut groups: Vec<Group>, limit: usize) -> Vec<Group> {
     for singles in [true, false] {
         for shape in [Shape::Word, Shape::Flag, Shape::Leg] {
@@ -82,7 +82,7 @@ impl Group {
         })
     }
 
-    /// The same shape with `each` in place of the names.
+    /// The same with `each` in place of the names.
     pub(super) fn of(&self, each: impl FnMut(usize) -> Source) -> Source {
         let each: Vec<Source> = self.members.iter().copied().map(each).collect();
         match each.as_slice() {
@@ -103,7 +103,7 @@ impl Group {
     }
 }
 
-/// The elements as an array, written once where all are alike.
+/// The elements as an array; `[x; n]` if all are equal.
 pub(super) fn array(elements: &[Source]) -> Source {
     match elements {
         [first, rest @ ..] if rest.iter().all(|element| element == first) => {

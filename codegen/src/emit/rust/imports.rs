@@ -1,15 +1,14 @@
-//! The names of emitted code that come from outside, and what happens where the user's type has one of
-//! them.
+//! Imports of emitted code, and renaming on a clash with the user's type.
 //!
-//! Emitted code uses short names: `Word`, `Legs`, `Drive`. A motor may be called like that, too;
-//! then its type has the name, and the other item is `HexagenWord` in this one place.
+//! Emitted code uses short names: `Word`, `Legs`, `Drive`. If the user's type has such a name, the
+//! other item is imported as `HexagenWord`.
 
 use super::names::{HELPERS, fixed_type};
 use super::source::{Source, quote};
 use proc_macro2::{Group, Ident, Spacing, TokenStream, TokenTree};
 use std::collections::HashSet;
 
-/// Stands for the user's type where that has a name of another item, until all names are settled.
+/// Placeholder of the user's type until names are settled.
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
@@ -32,15 +31,15 @@ const SHARED: [&str; 16] = [
     "pairs_from_bits",
 ];
 
-/// Types that the code defines besides the user's; besides them the results of large stages and the rows of tables.
+/// Types that the code defines, besides the user's, results of stages and rows of tables.
 const OWN: [&str; 2] = ["Rotor", "State"];
 
-/// The user's type in a body that [`settle`] has not seen yet.
+/// The user's type in a body before [`settle`].
 pub(super) fn unsettled(name: &str) -> Source {
     Source::of(if clashes(name) { PLACEHOLDER } else { name })
 }
 
-/// Gives the user's type its name, and every other type of that name in `body` another one.
+/// Gives the user's type its name, and renames other types of that name in `body`.
 pub(super) fn settle(body: TokenStream, name: &str) -> TokenStream {
     if clashes(name) {
         replace(body, name, &alias(name))
@@ -61,7 +60,7 @@ fn clashes(taken: &str) -> bool {
 
 fn replace(tokens: TokenStream, name: &str, alias: &str) -> TokenStream {
     let named = |name: &str, ident: &Ident| Ident::new(name, ident.span());
-    // Behind `type` and `::` stand names of other scopes: associated types, items of crates.
+    // Names after `type` and `::` belong to other scopes: associated types, items of crates.
     let (mut is_foreign, mut is_joint) = (false, false);
     tokens
         .into_iter()
@@ -98,7 +97,7 @@ fn alias(name: &str) -> String {
     format!("Hexagen{name}")
 }
 
-/// Whether the name is that of a `fixed` type of 32 bits, as [`fixed_type`] gives them.
+/// Whether the name is a `fixed` type of 32 bits, as from [`fixed_type`].
 fn is_fixed(name: &str) -> bool {
     (0..=32).any(|frac_bits| fixed_type(frac_bits).as_str() == name)
 }
@@ -119,7 +118,7 @@ pub(super) fn imports(names: &HashSet<&str>, name: &str) -> Source {
     let used = |item: &&str| names.contains(*item);
     let arith = std::iter::once("Word").chain(HELPERS.into_iter().filter(used));
     let arith = list(arith.map(import).collect());
-    // In the order of their integer bits, as rustfmt has them.
+    // In rustfmt's order: by integer bits.
     let fixed = (0..=32).rev().map(fixed_type);
     let fixed = fixed.filter(|fixed| names.contains(fixed.as_str()));
     let fixed: Vec<Source> = fixed.map(|fixed| import(fixed.as_str())).collect();

@@ -1,4 +1,4 @@
-//! The emitted type: its constants, its state, and what it gives to the runtime.
+//! The emitted type: its constants, its state, and its implementation of the runtime's traits.
 
 use super::function::{SetterCode, StepCode};
 use super::imports::unsettled;
@@ -9,7 +9,7 @@ use crate::interface::{
 };
 use crate::ir::{Demand, Program, Setter};
 
-/// What the type is emitted from.
+/// Input of the type's code.
 pub(super) struct Types<'a> {
     pub program: &'a Program,
     pub interface: &'a Interface,
@@ -29,7 +29,7 @@ impl Types<'_> {
         }
     }
 
-    /// The words that outlive a control period.
+    /// The state words.
     pub(super) fn state(&self) -> Source {
         let mut before = String::new();
         let fields = self.program.states.iter().map(|word| {
@@ -53,7 +53,7 @@ impl Types<'_> {
         }
     }
 
-    /// What the runtime runs.
+    /// Implementations of the runtime's traits.
     pub(super) fn control(&self, step: &StepCode, setters: &[(Setter, SetterCode)]) -> Source {
         let name = unsettled(self.name);
         let text = self.name;
@@ -134,7 +134,7 @@ impl Types<'_> {
         }
     }
 
-    /// Initial words of a bus voltage that is told.
+    /// Initial words of a measured bus voltage.
     fn bus_words(&self) -> Vec<Source> {
         let words = Demand::OF_BUS.into_iter();
         let words = words.filter_map(|demand| self.program.param(demand));

@@ -1,8 +1,7 @@
 //! The Rust emitter: from a verified graph to a type that reads as if written by hand.
 //!
-//! `stage` makes a function of each planned stage, `function` strings the calls together, `expression` writes
-//! operators, `interface` the type around them.
-//! The same graph gives the same tokens, whoever asks; nothing here can fail.
+//! `stage` makes a function of each planned stage, `function` the entries that call them, `expression`
+//! writes operators, `interface` the type. The same graph gives the same tokens; nothing here can fail.
 
 mod expression;
 mod format;
@@ -33,16 +32,16 @@ use source::{Source, quote};
 use std::collections::HashSet;
 use tables::emit_tables;
 
-/// How the emitted type appears to the code around it.
+/// Name, visibility and attributes of the emitted type.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// The type's name; its span is where the compiler points in messages about the type.
+    /// The type's name, with the span for messages about the type.
     pub name: Ident,
     /// `pub`, `pub(crate)` or nothing.
     pub visibility: TokenStream,
-    /// Attributes of the whole: `#[cfg(…)]`. They stand on the type and on its code.
+    /// Attributes of the type and its code: `#[cfg(…)]`.
     pub attributes: TokenStream,
-    /// Attributes of the type: the user's own documentation, which stands first.
+    /// Attributes of the type: the user's own documentation, which comes first.
     pub type_attributes: TokenStream,
 }
 
@@ -58,14 +57,14 @@ impl Surface {
     }
 }
 
-/// A drive's code as text, around the name that the user gave its type: all that this emitter works out.
+/// A drive's code as text, before the type itself.
 pub struct RustText {
     type_name: String,
     /// Documentation of the type.
     docs: Source,
     /// Imports.
     imports: Source,
-    /// All items behind them.
+    /// All other items.
     body: Source,
 }
 
@@ -104,8 +103,8 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
 }
 
 impl RustText {
-    /// The type and its code, as it appears to the code around it. All but the type stands in an anonymous constant,
-    /// whose names nobody else can take.
+    /// The type and its code. All but the type is inside an anonymous constant, so that its names cannot
+    /// clash.
     pub fn into_tokens(self, surface: &Surface) -> TokenStream {
         let Surface {
             name,
@@ -140,21 +139,21 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
 fn tokens(code: &Source) -> TokenStream {
     let code = code.as_str();
     let tokens = if proc_macro::is_available() {
-        // What `proc_macro2` makes in a macro, without its own reading of the text before the compiler's, which would
-        // take longer than all the rest of the emission.
+        // In a macro the compiler parses the text: `proc_macro2` would parse it a second time, which
+        // takes longer than all the rest of the emission.
         code.parse().map(proc_macro::TokenStream::into).ok()
     } else {
         code.parse().ok()
     };
-    // Templates are tokens, and what they name is numbers, names and literals.
+    // Templates are tokens; their variables are numbers, names and literals.
     tokens.unwrap_or_else(|| {
         quote::quote!(::core::compile_error!(
-            "hexagen emitted a text that is no Rust: a bug of hexagen, please report it with the specification"
+            "hexagen emitted invalid Rust: a bug of hexagen, please report it with the specification"
         );)
     })
 }
 
-/// The constants and tables that the body names.
+/// The constants and tables that the body uses.
 fn constants(program: &Program, whole: Option<&WholeCommand<'_>>, names: &HashSet<&str>) -> Source {
     let named = |name: &str| !name.is_empty() && names.contains(&*name.to_uppercase());
     let constants = program

@@ -1,4 +1,4 @@
-//! How names, numbers and documentation look in emitted Rust.
+//! Names, numbers and documentation in emitted Rust.
 
 use super::super::comment::comments;
 use super::source::{Source, quote};
@@ -6,7 +6,7 @@ use crate::emit::signal::Leg;
 use crate::ir::Word;
 use std::collections::HashSet;
 
-/// Functions of `hexagen::arith`; emitted code imports those that it uses.
+/// Functions of `hexagen::arith` that emitted code may import.
 pub(super) const HELPERS: [&str; 13] = [
     "angle_fraction",
     "angle_index",
@@ -23,11 +23,11 @@ pub(super) const HELPERS: [&str; 13] = [
     "turn_over",
 ];
 
-/// What else a local name would hide: names that the emitted functions use themselves.
+/// Other names that a local name would shadow: those of the emitted functions' parameters.
 const RESERVED: [&str; 4] = ["rotor", "sample", "set_point", "state"];
 
-/// The identifier of a signal, state word, input or stage: its own name, with an underscore behind
-/// it where that name is taken.
+/// The identifier of a signal, state word, input or stage: its name, with an underscore appended if
+/// that is taken.
 pub(super) fn snake(name: &str) -> Source {
     if RESERVED.contains(&name) || HELPERS.contains(&name) || is_keyword(name) {
         Source::of(format!("{name}_"))
@@ -36,8 +36,8 @@ pub(super) fn snake(name: &str) -> Source {
     }
 }
 
-/// The words that the language keeps for itself, as edition 2024 has them. (A parser knows them, too, but it is asked
-/// for thousands of names, and macros run unoptimised.)
+/// Keywords of edition 2024. (A parser knows them, too, but is slow for thousands of names in macros,
+/// which run unoptimised.)
 const KEYWORDS: [&str; 53] = [
     "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
     "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
@@ -46,7 +46,7 @@ const KEYWORDS: [&str; 53] = [
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
-/// Whether the language keeps the word for itself.
+/// Whether the word is a keyword.
 fn is_keyword(name: &str) -> bool {
     KEYWORDS.binary_search(&name).is_ok()
 }
@@ -69,7 +69,7 @@ pub(super) fn camel(name: &str) -> String {
         .collect()
 }
 
-/// A number with its thousands apart: `-1_234_567`.
+/// A number with separators: `-1_234_567`.
 pub(super) fn number(value: i64) -> Source {
     let digits = value.unsigned_abs().to_string();
     let mut text = String::new();
@@ -85,9 +85,9 @@ pub(super) fn number(value: i64) -> Source {
     Source::of(text)
 }
 
-/// A text that keeps its line breaks: a raw string literal.
+/// A raw string literal, which keeps line breaks.
 pub(super) fn raw_text(text: &str) -> Source {
-    // No quote in the text is followed by as many hashes as the longest run of them.
+    // One hash more than the longest run in the text.
     let longest = text
         .split(|letter| letter != '#')
         .map(str::len)
@@ -107,7 +107,7 @@ pub(super) fn doc(line: &str) -> Source {
     docs(&[line])
 }
 
-/// Columns of documentation, 100 where it is indented twice.
+/// Columns of documentation: 100 with two levels of indentation.
 const COLUMNS: usize = 92;
 
 /// The type that stores a word.
@@ -119,7 +119,7 @@ pub(super) fn storage_type(word: &Word) -> Source {
     }
 }
 
-/// `value`, a word expression that binds tighter than a method call, as stored.
+/// `value`, an expression that may be a receiver, in the storage type.
 pub(super) fn stored(word: &Word, value: &Source) -> Source {
     if word.storage_bits == 16 {
         quote!(#value.to_u16())
@@ -128,7 +128,7 @@ pub(super) fn stored(word: &Word, value: &Source) -> Source {
     }
 }
 
-/// A word read from where it is stored.
+/// A word read from its storage.
 pub(super) fn loaded(word: &Word, place: &Source) -> Source {
     if word.storage_bits == 16 {
         quote!(Word::from(#place))
@@ -137,9 +137,9 @@ pub(super) fn loaded(word: &Word, place: &Source) -> Source {
     }
 }
 
-/// The identifiers in `code` that may name an item: those with a capital, of types and constants, and those before `(` or
-/// `::`, of functions and modules. What stands in comments and texts is none. (Macros run unoptimised: to gather the
-/// names of all signals, too, would take a tenth of the generator's time.)
+/// The identifiers in `code` that may name an item, comments and literals left out: capitalised ones
+/// (types, constants) and those before `(` or `::` (functions, modules). (In macros, which run
+/// unoptimised, collecting all signals as well would take a tenth of the generator's time.)
 pub(super) fn item_names(code: &Source) -> HashSet<&str> {
     let (code, mut found, mut at) = (code.as_str(), HashSet::new(), 0);
     let bytes = code.as_bytes();
@@ -161,14 +161,14 @@ pub(super) fn item_names(code: &Source) -> HashSet<&str> {
     found
 }
 
-/// Whether what stands before `behind` is called, or the path to what does.
+/// Whether `behind` begins with a call or a path separator.
 fn is_called(behind: &[u8]) -> bool {
     let behind = behind.strip_prefix(b" ").unwrap_or(behind);
     behind.starts_with(b"(") || behind.starts_with(b"::")
 }
 
-/// Whether an identifier holds a byte; those of letters beyond ASCII are all alike. (A table, since macros run
-/// unoptimised, and this one looks at every byte.)
+/// Whether a byte may be part of an identifier, non-ASCII ones included. (A table: this runs for every
+/// byte in macros, which are unoptimised.)
 const LETTERS: [bool; 256] = {
     let (mut letters, mut byte) = ([false; 256], 0);
     while byte < letters.len() {
@@ -188,7 +188,7 @@ fn text_length(code: &[u8]) -> usize {
     at + 1
 }
 
-/// Length of the raw string literal that `code`, behind its `r`, begins with; one where it is a raw identifier.
+/// Length of the raw string literal that `code`, after its `r`, begins with; 1 for a raw identifier.
 fn raw_text_length(code: &str) -> usize {
     let inside = code.trim_start_matches('#');
     let hashes = &code[..code.len() - inside.len()];
@@ -209,7 +209,7 @@ pub(super) fn leg_state(leg: Leg) -> Source {
     }
 }
 
-/// The `fixed` type of 32 bits with so many fraction bits.
+/// The `fixed` type of 32 bits with `frac_bits`.
 pub(super) fn fixed_type(frac_bits: u32) -> Source {
     let integer_bits = 32_u32.saturating_sub(frac_bits);
     Source::of(format!("I{integer_bits}F{frac_bits}"))
@@ -229,7 +229,7 @@ mod tests {
         assert!(KEYWORDS.is_sorted());
         for word in KEYWORDS {
             assert!(is_keyword(word), "{word}");
-            // `gen` is a keyword since edition 2024, which the parser does not ask for.
+            // `gen` is a keyword of edition 2024 that the parser does not know.
             let is_identifier = syn::parse_str::<syn::Ident>(word).is_ok();
             assert_eq!(is_identifier, word == "gen", "{word}");
         }

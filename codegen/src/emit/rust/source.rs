@@ -1,11 +1,11 @@
 //! Emitted Rust as text, written through templates that look like those of the `quote` crate.
 //!
-//! Users run the generator in macros, which nobody optimises: there a text takes a third of the time that tokens take.
-//! The compiler reads it in one piece. Texts also come from any thread; tokens do not.
+//! In macros, which run unoptimised, a text takes a third of the time of tokens; the compiler parses it
+//! in one piece. Texts may also be made in any thread, tokens may not.
 
 use std::fmt;
 
-/// A piece of Rust: whole lexical tokens with white space between them, so that the same tokens are the same text.
+/// A piece of Rust: lexical tokens separated by white space, so that equal tokens are equal text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Source(String);
 
@@ -15,7 +15,7 @@ impl Source {
         Self::default()
     }
 
-    /// A name, or any other code given as text.
+    /// Code given as text.
     pub(super) fn of(text: impl Into<String>) -> Self {
         Self(text.into())
     }
@@ -33,7 +33,7 @@ impl Source {
         self.0.push_str(token);
     }
 
-    /// Adds what a template names.
+    /// Adds the value of a template's variable.
     pub(super) fn insert(&mut self, part: &(impl Part + ?Sized)) {
         let before = self.0.len();
         if before > 0 {
@@ -63,7 +63,7 @@ impl FromIterator<Self> for Source {
     }
 }
 
-/// What a template can name.
+/// A variable of a template.
 pub(super) trait Part {
     /// Adds it to a text.
     fn write(&self, text: &mut String);
@@ -81,7 +81,7 @@ impl Part for str {
         text.push('"');
         for letter in self.chars() {
             match letter {
-                // What a literal holds as it is; all else as Rust escapes it.
+                // Unescaped as far as a literal allows.
                 ' ' | '!' | '#'..='[' | ']'..='~' => text.push(letter),
                 _ => text.extend(letter.escape_debug()),
             }
@@ -116,9 +116,9 @@ impl<T: Part> Part for Option<T> {
     }
 }
 
-/// What a repetition goes through: iterators by themselves, lists by reference.
+/// A variable of a repetition: iterators by value, lists by reference.
 pub(super) trait Parts: Iterator + Sized {
-    /// The parts in their order.
+    /// The parts in order.
     fn parts(self) -> Self {
         self
     }
@@ -128,9 +128,9 @@ impl<T: Iterator> Parts for T {}
 
 /// See [`Parts`].
 pub(super) trait ListedParts {
-    /// What the list holds.
+    /// Element of the list.
     type Listed;
-    /// The parts in their order.
+    /// The parts in order.
     fn parts(&self) -> std::slice::Iter<'_, Self::Listed>;
 }
 
@@ -142,8 +142,8 @@ impl<T> ListedParts for [T] {
     }
 }
 
-/// Code from a template, as the `quote` crate has them: `#name` stands for the variable of that name, `#(…)*` and
-/// `#(…),*` for as many copies as what the variables inside yield, each named once.
+/// Code from a template like those of the `quote` crate: `#name` inserts the variable of that name,
+/// `#(…)*` and `#(…),*` repeat for every element of the variables inside, each used once.
 macro_rules! quote {
     () => {
         $crate::emit::rust::source::Source::new()
@@ -194,7 +194,7 @@ macro_rules! tokens {
     };
 }
 
-/// Adds a repeated template: first finds the variables in it, then goes through all of them at once.
+/// Adds a repeated template: finds its variables, then iterates over all of them together.
 macro_rules! repeated {
     ($to:ident $between:tt $template:tt [$($part:ident)*] # $next:ident $($rest:tt)*) => {
         $crate::emit::rust::source::repeated!($to $between $template [$($part)* $next] $($rest)*)

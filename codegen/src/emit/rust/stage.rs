@@ -10,8 +10,8 @@ use super::names::{camel, docs, loaded, snake};
 use super::source::{Source, quote};
 use crate::ir::{StateId, Word};
 
-/// More results than this travel in a structure with named fields, and so do results whose tuple
-/// would be more complex (in the measure of clippy's `type_complexity`) than readers like.
+/// Results above this number are returned as a structure with named fields, and so are those whose
+/// tuple is too complex by clippy's `type_complexity`.
 const RESULTS: usize = 5;
 const COMPLEXITY: usize = 250;
 
@@ -25,11 +25,11 @@ pub(super) struct StageFunction<'a> {
     results: Results,
 }
 
-/// How a stage hands its results over.
+/// Results of a stage, and their form.
 struct Results {
     signals: Vec<Signal>,
     groups: Vec<Group>,
-    /// Name of the structure that holds them, if they are many.
+    /// Name of their structure, if they are many.
     structure: Option<Source>,
 }
 
@@ -137,7 +137,7 @@ impl<'a> StageFunction<'a> {
         }
     }
 
-    /// What it is planned as.
+    /// Its plan.
     pub(super) fn plan(&self) -> &StagePlan<'a> {
         &self.plan
     }
@@ -153,7 +153,7 @@ impl<'a> StageFunction<'a> {
         &self.context.program.states[state.index()]
     }
 
-    /// Whether the stage computes or stores anything; one of leaves alone does not.
+    /// Whether the stage computes or stores anything.
     fn has_body(&self) -> bool {
         !self.plan.body.is_empty() || !self.plan.stores.is_empty()
     }
@@ -274,8 +274,8 @@ impl<'a> StageFunction<'a> {
         parameters
     }
 
-    /// The return type, and the expression at the function's end; a single result is not bound to
-    /// its name first.
+    /// The return type, and the function's last expression; a single result is not bound to its name
+    /// first.
     fn result(&self, statements: &mut Vec<Source>) -> (Source, Source) {
         let scope = self.scope(false);
         if self.plan.outcomes.is_empty() {

@@ -1,6 +1,4 @@
-//! Tables: alone, or side by side as the columns of rows that one index reads.
-//!
-//! One address then leads to all entries of a row, where tables of their own would each need theirs.
+//! Tables: alone, or as columns of rows with a common index, whose entries share one address.
 
 use super::groups::array;
 use super::names::{camel, docs, leg_state, number, screaming, snake};
@@ -31,8 +29,8 @@ pub(super) fn look_up_command(whole: &WholeCommand<'_>, index: &Source) -> Sourc
     quote!(row(&#rows, #index).legs)
 }
 
-/// All tables of a program that its code names: those alone by `named`, those in rows all together, and of these in one
-/// column those that make a command.
+/// The tables of a program: single ones if `named` in the code, rows with all their columns; the
+/// columns of a whole command are one.
 pub(super) fn emit_tables(
     program: &Program,
     whole: Option<&WholeCommand<'_>>,
@@ -53,7 +51,7 @@ pub(super) fn emit_tables(
     items
 }
 
-/// The name of all rows together.
+/// The name of the array of rows.
 fn rows(row: &str) -> Source {
     screaming(&format!("{row}_rows"))
 }
@@ -65,7 +63,7 @@ fn field(row: &str, table: &Table) -> Source {
     snake(name.unwrap_or(&table.name))
 }
 
-/// Whether the names of three fields or more all begin or all end with the same word.
+/// Whether the names of at least three fields all begin or all end with the same word.
 fn share_a_word(names: &[String]) -> bool {
     let alike =
         |word: fn(&str) -> Option<&str>| names.iter().all(|name| word(name) == word(&names[0]));
@@ -160,7 +158,7 @@ fn emit_table(table: &Table) -> Source {
     quote!(#doc static #name: [#element; #count] = [#(#values),*];)
 }
 
-/// The smallest elements that hold a table, unsigned where that will do: to load and to compare them takes no sign extension.
+/// The smallest element type of a table, unsigned if possible: loads need no sign extension.
 fn element(table: &Table) -> Source {
     match size(table) {
         1 if table.holds_legs => quote!(LegState),

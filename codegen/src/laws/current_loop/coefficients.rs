@@ -4,7 +4,7 @@ use super::CurrentLoop;
 use crate::ir::Coefficient;
 
 impl CurrentLoop<'_, '_> {
-    /// The weight of the present current when the voltage takes effect.
+    /// Weight of the present current in the deadbeat voltage.
     pub(super) fn k_hold(&self) -> Coefficient {
         let symbol = if self.options.delay == 1 {
             "K a^2"

@@ -1,16 +1,16 @@
-//! Dead-time compensation: how far the compare value of each leg shifts (semantics page of predictive deadbeat, step 11).
+//! Dead-time compensation of the compare values (semantics page of predictive deadbeat, step 11).
 
 use super::CurrentLoop;
 use crate::diagnostics::engineering;
 use crate::ir::{Phases, named};
 
-/// Share of the largest set-point below which the shift is in proportion to the current: above the ripple's
-/// chatter about zero, far below what makes torque.
+/// Current, over the largest set-point, below which the shift is proportional to the current: above
+/// the ripple around zero, far below torque-making currents.
 const SOFT_BAND: f64 = 0.1;
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// Shifts of phases a, b, c, words of the nominal bus. `reference` is the wanted current and `held` the measured
-    /// one, both as voltages with `stiffness` volt per ampere.
+    /// Shifts of phases a, b, c, words of the nominal bus. `reference` is the reference current and `held`
+    /// the measured one, both as voltages with `stiffness` volt per ampere.
     pub fn dead_time_shifts(
         &self,
         reference: Phases<'b>,
@@ -36,8 +36,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "compensate_dead_time",
             &[
-                "A leg loses the dead time's share of the bus while its current flows into the motor and gains it while it flows",
-                "out; the current is the mean of the wanted and the measured one, and near zero the shift is in proportion.",
+                "Dead-time compensation. A leg loses the dead time's share of the bus while current flows into the motor and",
+                "gains it while it flows out. The current is the mean of reference and measured one; near zero the shift is proportional.",
             ],
         );
         let dead_time = engineering(inverter.dead_time, "s");

@@ -14,26 +14,26 @@ pub struct LoopDesign {
     pub k_di: f64,
     /// (1 - a)/b = R, ohm.
     pub k_r: f64,
-    /// K a^2 (delay 1) or K a (delay 0), V/A: what the present current costs.
+    /// K a^2 (delay 1) or K a (delay 0), V/A: weight of the present current in the deadbeat voltage.
     pub k_hold: f64,
     /// 1 - a.
     pub k_decay: f64,
-    /// Limit of the believed current change per period, ampere: twice what the largest bus can do or the converters can say,
-    /// up to the next power of two of ADC counts, at which a saturating instruction limits.
+    /// Largest plausible change of current per period, ampere: twice the one of the largest bus or of
+    /// the ADC's range, rounded up to a power of two of ADC counts for a saturating instruction.
     pub di_limit: f64,
-    /// Largest believed zero-sum phase EMF, volt.
+    /// Largest plausible zero-sum phase EMF, volt.
     pub e_limit: f64,
-    /// How far an estimated EMF moves in one period, per product of two line EMFs, 1/V; of a sine, the tangent of its
-    /// turn over sqrt(3), per line EMF.
+    /// Motion of an estimated EMF in one period per product of two line EMFs, 1/V; of a sine, the tangent
+    /// of its turn over sqrt(3), per line EMF.
     pub slope: f64,
-    /// Line EMF from which on that motion no longer grows, volt.
+    /// Line EMF above which that motion no longer grows, volt.
     pub line_limit: f64,
 }
 
-/// Largest angle per period, radian, by which an estimate that takes over the share `filter` of what is seen
-/// is moved on: what remains of an error must shrink. The linearised motion of a trapezoid lets it grow by
-/// sqrt(1 + 2 angle^2). A sine that turns to second order becomes longer by angle^4/8, an error of its length, which
-/// tells the speed too, by 5/8 angle^4.
+/// Largest advance per period, radian, of an estimate with the filter share `filter`, such that its
+/// errors shrink. The linearised motion of a trapezoid amplifies them by sqrt(1 + 2 angle^2). A sine
+/// turned to second order grows by angle^4/8, and an error of its length, from which the speed is
+/// taken, by 5/8 angle^4.
 fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
     let growth = 1.0 / (1.0 - filter);
     let turn = match shape {
@@ -44,8 +44,7 @@ fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
 }
 
 impl LoopDesign {
-    /// The longest period of whole timer counts in which the plant's gain b is not above `gain`,
-    /// second.
+    /// The longest period of whole timer counts with a plant gain b of at most `gain`, seconds.
     pub fn longest_period(spec: &Spec, gain: f64) -> f64 {
         let (motor, method) = (&spec.motor, spec.controller.common().discretisation);
         let limit = DiscretePlant::period_of(method, motor.resistance, motor.inductance, gain);
@@ -87,7 +86,7 @@ impl LoopDesign {
         }
     }
 
-    /// The same design with the coefficients as they were rounded.
+    /// The same design with the rounded coefficients.
     #[must_use]
     pub fn rounded(&self, scaled: &Scaled) -> Self {
         let volt_per_ampere = scaled.scale.current() / scaled.scale.voltage();

@@ -1,8 +1,8 @@
 //! The EMF: estimated from the last period, or modelled (step 8).
 //!
-//! An estimate needs the voltage that was applied. Where a leg floated, that voltage was taken from the
-//! leg's own EMF, so its estimate would only integrate noise; the motor's geometry says what it is.
-//! The estimate is as old as the period that it was seen in: `observer` moves it on.
+//! An estimate needs the applied voltage. The voltage of a floating leg was computed from the leg's
+//! own EMF, so its estimate would only integrate noise; the motor's geometry gives its EMF instead.
+//! The estimate is that of the last period: `observer` advances it.
 
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, EMF_INTEGRAL_SHARE, read};
@@ -15,23 +15,23 @@ use crate::spec::EmfSource;
 pub(super) struct Emf<'b> {
     pub target: Phases<'b>,
     pub present: Phases<'b>,
-    /// What the next step compares with what it sees of the present period.
+    /// EMF of the present period that the next step's estimate starts from.
     pub expected: Phases<'b>,
-    /// The integral's new words.
+    /// New words of the integral.
     pub integral: Option<Phases<'b>>,
 }
 
-/// What the limit of an estimate is.
-const BELIEVED: &str = "Largest plausible EMF, the largest bus voltage";
+/// Documentation of an estimate's limit.
+const PLAUSIBLE: &str = "Largest plausible EMF, the largest bus voltage";
 
-/// An estimate of a phase's EMF, limited to what is believed; added to the open stage.
-pub(super) fn believed<'b>(l: &Lowering<'b>, e: Expr<'b>) -> Expr<'b> {
-    e.within(l.voltage("e_max", l.bus_interval().high, BELIEVED))
+/// An EMF estimate of a phase, limited to the plausible range; added to the open stage.
+pub(super) fn plausible<'b>(l: &Lowering<'b>, e: Expr<'b>) -> Expr<'b> {
+    e.within(l.voltage("e_max", l.bus_interval().high, PLAUSIBLE))
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// EMF over the target period and over the present one; none where the law needs none. `outgoing` is
-    /// the phase that goes off in the sector, 0 to 2.
+    /// EMF over the target period and over the present one; none if the law needs none. `outgoing` is the
+    /// outgoing phase, 0 to 2.
     pub(super) fn emf(
         &self,
         words: &Words<'b>,
@@ -60,8 +60,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         })
     }
 
-    /// Largest phase EMF of a step before it is moved on, words of voltage: an estimate up to the bus; where a leg
-    /// may float, what [`Self::meet_emf`] makes of it.
+    /// Largest phase EMF before the advance, words of voltage: the bus; with floating legs the range of
+    /// [`Self::meet_emf`].
     pub(super) fn e_bound(&self) -> i64 {
         if self.options.emf == EmfSource::Model {
             return self.l.volts_word(self.design.e_limit);
@@ -74,12 +74,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The EMF that the period shows which just ended, added to the open stage: (9) in its causal form.
+    /// EMF of the period that just ended, (9) in its causal form; added to the open stage.
     fn see_emf(&self, words: &Words<'b>, i: Phases<'b>, sight: Sight) -> Option<Phases<'b>> {
         let (i_prev, v_prev) = (read(words.i_prev?), read(words.v_prev?));
         // A power of two.
         let limit = self.l.ampere_word(self.design.di_limit);
-        let doc = "Limit of the plausible change of current in one period";
+        let doc = "Largest plausible change of current in one period";
         let low = || self.l.current("di_min", -limit, doc);
         let high = || self.l.current("di_max", limit - 1, doc);
         named! {
@@ -96,7 +96,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The modelled EMF with what it lacked so far, where the law integrates that.
+    /// The modelled EMF corrected by the integral of its error, if the law has one.
     fn integrate_emf(&self, words: &Words<'b>, i: Phases<'b>, model: ModelledEmf<'b>) -> Emf<'b> {
         let unchanged = Emf {
             target: model.target,
@@ -108,26 +108,26 @@ impl<'b> CurrentLoop<'_, 'b> {
             return unchanged;
         };
         let (l, sight, share) = (self.l, self.sight(), EMF_INTEGRAL_SHARE);
-        let doc = "Share that the integral takes over of what the modelled EMF lacks.";
+        let doc = "Share of the modelled EMF's error that the integral adds per period.";
         let word = self.options.word;
         let k_integral = l.coefficient("k_integral", share, word, doc, &share.to_string());
         l.b.stage(
             "integrate_emf",
             &[
-                "Error of the modelled EMF in the last period, against the EMF that voltage and currents show,",
-                "goes slowly into an integral per phase, which stands for errors of the EMF constant, the angle, R and L.",
+                "Integral per phase of the modelled EMF's error in the last period, against the EMF from voltage and currents.",
+                "It compensates errors of the EMF constant, the angle, R and L.",
             ],
         );
         let Some(seen) = self.see_emf(words, i, sight) else {
             return unchanged;
         };
         let (e_prev, integral) = (read(e_prev), read(integral));
-        let most = || l.voltage("integral_max", l.bus_interval().high, BELIEVED);
+        let most = || l.voltage("integral_max", l.bus_interval().high, PLAUSIBLE);
         named! {
             let lack = (seen - e_prev).map(|lack| lack.within(most()));
             let integral_now = (integral + k_integral * (lack - integral)).map(|sum| sum.within(most()));
         }
-        let doc = "Integral of what the modelled EMF lacks, after one step";
+        let doc = "Integral of the modelled EMF's error after one step";
         l.state_phase_volts("integral", integral_now, doc);
         named! {
             let e_corrected = model.target + integral_now;
@@ -151,7 +151,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     fn estimate_emf(&self, words: &Words<'b>, i: Phases<'b>) -> Option<Phases<'b>> {
         let (l, share, sight) = (self.l, self.options.emf_filter, self.sight());
         let filter = (share < 1.0).then(|| {
-            let doc = "Share that the estimate takes over of what is seen in one period.";
+            let doc = "Filter coefficient of the EMF estimate per period.";
             l.coefficient(
                 "k_filter",
                 share,
@@ -163,10 +163,10 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "estimate_emf",
             &[
-                "EMF of the period that just ended: seen is e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form),",
-                "of which the estimate takes over a share.",
+                "EMF estimate of the period that just ended: e = v - K (i - i_prev) - R i_prev (the paper's (9), causal form),",
+                "through a first-order filter.",
                 "",
-                "v is the voltage really applied; a change of current is limited to several times what the bus can cause.",
+                "v is the voltage really applied; the change of current is limited to its plausible range.",
             ],
         );
         let seen = self.see_emf(words, i, sight)?;
@@ -174,7 +174,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             Some((filter, e_prev)) => read(e_prev) + filter * (seen - read(e_prev)),
             None => seen,
         };
-        let e = e.map(|e| believed(l, e));
+        let e = e.map(|e| plausible(l, e));
         if words.off_prev.is_some() {
             named! {
                 let e_believed = e;
@@ -187,7 +187,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         Some(e_past)
     }
 
-    /// Gives a leg that floated the EMF that the motor's geometry says; the difference of the other two stays.
+    /// Sets the EMF of a floating leg by the motor's geometry; the difference of the other two stays.
     fn meet_emf(
         &self,
         words: &Words<'b>,
@@ -211,26 +211,26 @@ impl<'b> CurrentLoop<'_, 'b> {
             floated,
             false,
             &[
-                "A leg that floated shows nothing of its own EMF, only the difference of the other two is seen. In the",
-                "sector in which the phase is off its EMF crosses zero, so zero is its mean; on entry of the next sector",
-                "it has met that of the phase that goes off then. With current in its diode its voltage was known.",
+                "EMF of a leg that floated: only the difference of the other two is observable. In its off sector the",
+                "phase's EMF crosses zero, so its mean is zero; on entry of the next sector it equals that of the next",
+                "outgoing phase. While its diode conducts, its voltage is known and the estimate stays.",
             ],
         );
         let i = read(i_prev).with_c("i_prev");
         named! {
             let floated_a = off.is(1);
             let floated_b = off.is(2);
-            let e_c_believed = believed(l, -(e.a() + e.b()));
+            let e_c_believed = plausible(l, -(e.a() + e.b()));
         }
         let (own, phases) = ([floated_a, floated_b], [e.a(), e.b(), e_c_believed]);
         let conducts = l.ampere_word(self.options.commutation_threshold);
-        let doc = "Current above which an off leg's diode conducts";
+        let doc = "Current threshold of an off leg's diode";
         named! {
             let e_floated = pick(own, phases);
             let e_outgoing = pick([outgoing.is(0), outgoing.is(1)], phases);
             let i_floated = pick(own, i.0).abs();
             let conducted = i_floated.is_above(l.current("i_comm", conducts, doc));
-            // Legs count from 1, phases from 0.
+            // Off legs are numbered from 1, phases from 0.
             let crossing = (outgoing + 1).is(off);
         }
         let met = conducted.choose(0, third * (e_outgoing - e_floated));
@@ -247,7 +247,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     }
 }
 
-/// Coefficients of what a period shows of its EMF.
+/// Coefficients of the EMF of a past period.
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     k_di: Coefficient,

@@ -1,19 +1,19 @@
-//! Prediction and deadbeat control with the EMF held over the delay, folded: no estimate, no prediction, but what past
-//! samples and commands add to this step's voltage, or error, and to the next one's (semantics, `emf: held`).
+//! Prediction and deadbeat control with the EMF held over the delay, folded: in place of estimate and
+//! prediction, the contribution of past samples and commands to the voltage, or error, of this step
+//! and the next (semantics, `emf: held`).
 
-use super::emf::believed;
-use super::{CurrentLoop, EmfUse, Remembered, asked_for, kept, read};
+use super::emf::plausible;
+use super::{CurrentLoop, EmfUse, Remembered, kept, read, unlimited_voltage};
 use crate::ir::{Coefficient, Interval, Memory, Phases, named};
 
 /// The coefficients.
 #[derive(Clone, Copy)]
 struct Folded {
-    /// What one unit of the present current takes from the voltage, negative.
+    /// Weight of the present current in this step's voltage, negative.
     now: Coefficient,
-    /// What it adds to the next one's.
+    /// Weight of the present current in the next step's voltage.
     past: Coefficient,
-    /// a - 1, in deadbeat control with delay 1; negative, so that its product is added, in one instruction with the
-    /// multiplication.
+    /// a - 1, in deadbeat control with delay 1; negative, so that a multiply-accumulate adds it.
     fade: Option<Coefficient>,
 }
 
@@ -24,17 +24,17 @@ pub struct Held<'b> {
     due: [Memory<'b>; 2],
     /// With delay 1.
     later: Option<[Memory<'b>; 2]>,
-    /// What is due and the present current's part together.
+    /// due + k_now i
     carried: Phases<'b>,
     currents: Phases<'b>,
 }
 
-/// What a command leaves to later steps, phases a and b.
+/// Contribution of a command to later steps, phases a and b.
 #[derive(Clone, Copy, Debug)]
 pub struct LeftOver<'b> {
-    /// What is left of the voltage when the next step's takes effect: a v in deadbeat control with delay 1, else v.
+    /// Contribution to the next step: a v in deadbeat control with delay 1, else v.
     pub left: Phases<'b>,
-    /// With delay 1, what the step after the next has of it: in deadbeat control (1 + a) v, else v.
+    /// Contribution to the step after the next, with delay 1: (1 + a) v in deadbeat control, else v.
     pub both: Option<Phases<'b>>,
 }
 
@@ -42,7 +42,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     fn folded(&self) -> Folded {
         let (l, k_di) = (self.l, self.design.k_di);
         let (a, word) = (self.design.plant.pole, self.options.word);
-        // Deadbeat control looks a second period ahead then.
+        // Deadbeat control then predicts two periods ahead.
         let fades = self.options.delay == 1 && self.needs.emf == EmfUse::Deadbeat;
         let (now, past, symbols) = if fades {
             (
@@ -81,7 +81,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// Declares the folded words, and adds up what is carried.
+    /// Declares the folded words and adds the present current's contribution.
     pub(super) fn held(&self, currents: Phases<'b>) -> Held<'b> {
         let l = self.l;
         let folded = self.folded();
@@ -90,7 +90,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = if memory == 0 {
             "Contribution of past samples and commands to this step's voltage."
         } else {
-            "Contribution of past samples, commands and wishes to this step's voltage."
+            "Contribution of past samples, commands and hysteresis states to this step's voltage."
         };
         let range = Interval::symmetric(due_bound + memory);
         let due = l.memories(["due_a", "due_b"], range, doc);
@@ -121,14 +121,14 @@ impl<'b> CurrentLoop<'_, 'b> {
         self.l.b.stage(
             "deadbeat_voltage",
             &[
-                "Deadbeat voltage, the paper's (11) corrected, with its estimate (9) and prediction (7) put in and the terms",
-                "collected by their age: v = K i_ref + k_now i + due; the rest was summed up when it was sampled or commanded.",
+                "Deadbeat voltage, the paper's (11) corrected, with estimate (9) and prediction (7) substituted and the terms",
+                "collected by age: v = K i_ref + k_now i + due, where due holds the terms of past samples and commands.",
             ],
         );
-        asked_for(self.l, held.sum(reference))
+        unlimited_voltage(self.l, held.sum(reference))
     }
 
-    /// Step 12 with a held EMF: what the voltage `u` that this step commands leaves to the next two.
+    /// Step 12 with a held EMF: contribution of the commanded voltage `u` to the next two steps.
     pub(super) fn left_over(&self, held: &Held<'b>, u: Phases<'b>) -> LeftOver<'b> {
         let Some(fade) = held.folded.fade else {
             return held.unfaded(u);
@@ -145,7 +145,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// Step 12 with a held EMF: what this step's currents and its command leave to the next two.
+    /// Step 12 with a held EMF: contribution of currents and command to the next two steps.
     pub fn fold(&self, held: &Held<'b>, left_over: LeftOver<'b>) -> Remembered<'b> {
         let doc = "Contribution of this step's current and voltage to the voltages of the next two steps.";
         self.l.b.stage("fold", &[doc]);
@@ -162,7 +162,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         due.chain(later.into_iter().flatten()).collect()
     }
 
-    /// The EMF of the last period out of the folded words, added to the open stage.
+    /// The EMF of the last period from the folded words; added to the open stage.
     pub fn held_emf(&self, held: &Held<'b>) -> Phases<'b> {
         let (l, a, word) = (self.l, self.design.plant.pole, self.options.word);
         let k_di = self.k_di();
@@ -171,18 +171,18 @@ impl<'b> CurrentLoop<'_, 'b> {
             None => due,
             Some(later) => {
                 let share = 1.0 / (1.0 + a);
-                let doc = "Share of the EMF in what is due.";
+                let doc = "Share of the EMF in `due`.";
                 let physical = format!("1/(1 + a) = {share:.6}");
                 let k_due = l.coefficient("k_due", share, word, doc, &physical);
                 let weight = a / (1.0 + a).powi(2);
-                let doc = "Weight of the last command in what is due.";
+                let doc = "Weight of the last command in `due`.";
                 let physical = format!("a/(1 + a)^2 = {weight:.6}");
                 let k_later = l.coefficient("k_later", weight, word, doc, &physical);
                 k_due * due + k_later * read(later)
             }
         };
         named! {
-            let e = (known - k_di * held.currents).map(|e| believed(l, e));
+            let e = (known - k_di * held.currents).map(|e| plausible(l, e));
         }
         e
     }
@@ -194,7 +194,7 @@ impl<'b> Held<'b> {
         self.carried + reference
     }
 
-    /// What voltages leave that count in full: all but those of deadbeat control with delay 1.
+    /// Contribution of voltages without decay: all but deadbeat control with delay 1.
     pub fn unfaded(&self, volts: Phases<'b>) -> LeftOver<'b> {
         LeftOver {
             left: volts,

@@ -1,5 +1,5 @@
-//! The step that all controllers share: from the sample to the voltage asked for, and what the next
-//! step needs to know (semantics page of predictive deadbeat, steps 1 to 9 and 12).
+//! The step that all controllers share: from the sample to the deadbeat voltage, and the state for the
+//! next step (semantics page of predictive deadbeat, steps 1 to 9 and 12).
 
 mod coefficients;
 mod dead_time;
@@ -25,7 +25,7 @@ use crate::ir::{Coefficient, Expr, Memory, Phase, Phases, ProgramBuilder, Told, 
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
 
-/// Lowers a controller at a scale: `law` builds its step; `gain` makes a voltage of a set-point.
+/// Lowers a controller at a scale: `law` builds its step; `gain` is that from set-point to voltage.
 pub fn lower_with(
     spec: &Spec,
     scale: Scale,
@@ -46,8 +46,8 @@ pub fn lower_with(
     }
 }
 
-/// Share that the integral of a modelled EMF takes over in a period of what the model lacks: slow against the
-/// current, quick against the commutations of an EMF whose constant is off.
+/// Share of the modelled EMF's error that its integral adds per period: slow against the current,
+/// fast against the commutations of an EMF with a wrong constant.
 pub const EMF_INTEGRAL_SHARE: f64 = 0.125;
 
 /// A step under construction.
@@ -59,7 +59,7 @@ pub struct CurrentLoop<'l, 'b> {
     pub options: &'l LoopOptions,
     /// Coefficients in SI units.
     pub design: &'l LoopDesign,
-    /// What the law needs.
+    /// Needs of the law.
     pub needs: Needs,
 }
 
@@ -68,11 +68,11 @@ pub struct CurrentLoop<'l, 'b> {
 pub struct Deadbeat<'b> {
     /// Voltages of phases a and b, not limited.
     pub u: Phases<'b>,
-    /// Shifts of the compare values against the dead time, where the law compensates it.
+    /// Dead-time compensation of the compare values; if the law compensates.
     pub shifts: Option<Phases<'b, 3>>,
 }
 
-/// What the shared part of a step knows.
+/// Results of the shared part of a step.
 pub struct Front<'b> {
     /// State words.
     pub words: Words<'b>,
@@ -82,7 +82,7 @@ pub struct Front<'b> {
     pub sector: Expr<'b>,
     /// Set-point as a voltage word.
     pub set_point: Expr<'b>,
-    /// The commutation; where the law follows it.
+    /// Commutation state; if the law uses it.
     pub commutation: Option<Commutation<'b>>,
     /// Reference as voltage words, phases a, b.
     pub reference: Phases<'b>,
@@ -90,32 +90,32 @@ pub struct Front<'b> {
     pub third: Coefficient,
     /// The bus.
     pub bus: Bus<'b>,
-    /// Voltage applied in the period that begins now, where the step needs it.
+    /// Voltage applied in the period that begins now; if the step needs it.
     pub now: Option<Phases<'b>>,
-    /// EMF over the target period; none where the law needs no EMF.
+    /// EMF over the target period; if the law needs it.
     pub e: Option<Phases<'b>>,
     /// EMF over the period that begins now.
     pub e_now: Option<Phases<'b>>,
-    /// The same as the next step shall compare it with what it sees.
+    /// EMF over the present period that the next step's estimate starts from.
     pub e_expected: Option<Phases<'b>>,
-    /// What the modelled EMF lacks; where the law integrates that.
+    /// Integral of the modelled EMF's error; if the law has it.
     pub integral: Option<Phases<'b>>,
-    /// The folded words; where the EMF is held.
+    /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,
-    /// Integral of the speed regulator, and its state; with a speed loop.
+    /// Integral of the speed regulator, and its state; with a speed loop only.
     pub speed_integral: Option<(Memory<'b>, Expr<'b>)>,
 }
 
-/// What runs in every period: the sector, and what follows its edges.
+/// Results of the tracking, which runs in every period.
 struct Tracked<'b> {
     sample: Sample<'b>,
     hall: Option<Hall<'b>>,
     rotor: Option<Rotor<'b>>,
-    /// Direction of rotation, 1 or -1, 0 before the first edge; where the law follows commutations or the rotor.
+    /// Direction of rotation, 1 or -1, 0 before the first edge; if the law uses it.
     direction: Option<Expr<'b>>,
-    /// Samples for which a commutation may last, where it began where the direction is sensed.
+    /// Samples left to the commutation; if the direction is sensed without an angle.
     kept: Option<Expr<'b>>,
-    /// Sector in force where the reference runs ahead of the sample.
+    /// Advanced sector; with phase advance only.
     ahead: Option<Expr<'b>>,
 }
 
@@ -132,9 +132,9 @@ pub fn kept<'b>(words: [Memory<'b>; 2], values: Phases<'b>) -> [(Memory<'b>, Exp
     [(words[0], values.a()), (words[1], values.b())]
 }
 
-/// Names the voltage of phases a and b that the law asks for, and states its error.
-pub fn asked_for<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> {
-    let doc = "Voltage of a phase that the law asks for, before the limit";
+/// Names the voltage of phases a and b before the limit, and states its error bound.
+pub fn unlimited_voltage<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> {
+    let doc = "Phase voltage before the limit";
     l.state_phase_volts("voltage", volts, doc);
     named! {
         let u_unsat = volts;
@@ -160,7 +160,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let regulated = regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j));
         let j = regulated.map_or(j, |regulated| regulated.j);
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
-        // Ahead of the reference, so that its product with a sign is added last, by one instruction.
+        // Before the reference, so that the reference's product with a sign is added last.
         let held = self.holds_emf().then(|| self.held(currents.pair()));
         let reference = self.reference(&tracked, sector, j);
         let doc = "Mean of three legs.";
@@ -211,7 +211,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             return tracked;
         };
         if let Some(rotor) = words.rotor {
-            // With an angle the edge is looked at in every period.
+            // With an angle, edges are evaluated in every period.
             let rotor = rotor.track(l, &hall, tracked.sample.hall_ticks);
             hall.sector_prev.set(hall.sector);
             let advance = self.options.advance;
@@ -220,7 +220,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             tracked.direction = Some(rotor.direction);
             tracked.rotor = Some(rotor);
         } else if let Some(direction) = words.direction {
-            // Without an angle the commutation begins where the direction is sensed, at an edge, which is rare.
+            // Without an angle the commutation begins in the stage that senses the direction, at a rare edge.
             let (direction, kept) = sense_direction(l, direction, &hall, words.pair);
             tracked.direction = Some(direction);
             tracked.kept = kept;
@@ -262,8 +262,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             _ if options.advance > 0.0 => {
                 quasi_square_reference(l, Corner::Sector(sector), set_point)
             }
-            // Where the sector is the sample's own, its code leads to the corner straight away; an invalid one turns the
-            // legs off.
+            // Without phase advance the table is indexed by the Hall code; an invalid one turns the legs off.
             _ => {
                 let code = tracked.sample.hall;
                 quasi_square_reference(l, Corner::HallCode(code), set_point)
@@ -271,8 +270,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// Tells people what the law knows of the motor: the EMF of the target period, or where the law
-    /// predicts alone that of the present one.
+    /// Observations: the EMF of the target period, or of the present one if the law only predicts, and
+    /// the speed.
     fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
         let predicts = self.needs.emf == EmfUse::Prediction;
         if let Some(e) = if predicts { present } else { target } {
@@ -284,17 +283,18 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// Whether the law predicts with the EMF of the last period.
+    /// Whether the law predicts with the held EMF of the last period.
     fn holds_emf(&self) -> bool {
         self.needs.predicts() && self.options.emf == EmfSource::Held
     }
 
-    /// Whether tables have what a whole vector leaves to later steps: with a fixed bus that is known beforehand.
+    /// Whether tables hold the contribution of whole vectors to later steps: with a held EMF and a fixed
+    /// bus.
     pub fn tables_left_over(&self) -> bool {
         self.holds_emf() && matches!(self.l.spec.inverter.bus, BusSource::Fixed)
     }
 
-    /// Where an off leg's terminal sits.
+    /// Model of an off leg's terminal voltage.
     fn off_leg(&self, bus: Bus<'b>, third: Coefficient) -> OffLeg<'b> {
         OffLeg {
             bus,
@@ -303,8 +303,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The voltage that a command which may turn a leg off applies in the period that begins now (delay 1),
-    /// with the EMF of that period.
+    /// The voltage applied in the period that begins now (delay 1) by a command with an off leg, with the
+    /// EMF of that period.
     fn applied_now(
         &self,
         words: &Words<'b>,
@@ -323,7 +323,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         Some(v_now)
     }
 
-    /// Step 9: the deadbeat voltage of phases a, b, with shifts against the dead time where it is compensated.
+    /// Step 9: the deadbeat voltage of phases a, b, with dead-time compensation if the law has it.
     pub fn deadbeat(&self, front: &Front<'b>, compensates: bool) -> Deadbeat<'b> {
         let (reference, i) = (front.reference, front.currents.pair());
         if let Some(held) = &front.held {
@@ -368,14 +368,14 @@ impl<'b> CurrentLoop<'_, 'b> {
             (_, _, Some(e), _) => open + e,
             _ => open,
         };
-        let u = asked_for(self.l, u);
+        let u = unlimited_voltage(self.l, u);
         let stiffness = self.design.k_di;
         let shifts = compensates.then(|| self.dead_time_shifts(reference, held, stiffness));
         Deadbeat { u, shifts }
     }
 
-    /// Step 12: closes the step. `v_cmd` are the commanded voltages; `applied` are the terminals instead, where a
-    /// command may turn a leg off whose real voltage counts.
+    /// Step 12: state for the next step. `v_cmd`: the commanded voltages; `applied`: the terminal voltages
+    /// in their place, for commands with an off leg.
     pub fn remember(
         &self,
         front: &Front<'b>,
@@ -426,7 +426,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         command.close_step(self.l, &remembered);
     }
 
-    /// The voltage that the next step finds applied in the period that begins now.
+    /// The voltage applied in the period that begins now, for the next step.
     fn applied_to_remember(
         &self,
         front: &Front<'b>,

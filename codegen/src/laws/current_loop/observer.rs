@@ -1,5 +1,5 @@
-//! How an estimated EMF moves on from the period that it was seen in to the present one and to the target
-//! (semantics page of predictive deadbeat, step 8): by the motor's shape, at the speed that its own magnitude says.
+//! Advance of an estimated EMF from the last period to the present and the target period, by the
+//! motor's shape at the speed of its own magnitude (semantics page of predictive deadbeat, step 8).
 
 use super::CurrentLoop;
 use crate::blocks::{product_bound, round_down};
@@ -7,8 +7,8 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::ir::{Coefficient, Expr, Named, Phases, named};
 use crate::spec::EmfShape;
 
-/// The line EMF's limit, words of voltage, and the shift to the left (to the right below 0) that makes it the
-/// longest factor of a word, q.
+/// The line EMF's limit, words of voltage, and the left shift (right if negative) that scales it to a
+/// full word, q.
 #[derive(Clone, Copy, Debug)]
 struct LineRange {
     limit: i64,
@@ -27,8 +27,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// `k_slope`: what the upper word of the square of a shifted line EMF is worth in words of voltage; of a sine, what
-    /// a shifted line EMF is worth as a turn.
+    /// `k_slope`: words of voltage per upper word of the square of a shifted line EMF; of a sine, turn per
+    /// shifted line EMF.
     fn slope_value(&self, range: LineRange) -> f64 {
         let word = 1.0 / self.l.scale.voltage();
         self.design.slope * word * f64::from(self.slope_exponent(range)).exp2()
@@ -84,24 +84,23 @@ impl<'b> CurrentLoop<'_, 'b> {
         )
     }
 
-    /// The estimate `e` of the period that just ended, moved on to the target period and to the present one.
+    /// The estimate `e` of the period that just ended, advanced to the target and to the present period.
     pub(super) fn move_emf(&self, sector: Expr<'b>, e: Phases<'b>) -> (Phases<'b>, Phases<'b>) {
         let (range, shape) = (self.line_range(), self.l.spec.motor.emf_shape);
         let doc = match shape {
             EmfShape::Sinusoidal => {
-                "Moves the estimate on by a period and more: a sinusoidal EMF turns, e + w e_across - w^2/2 e."
+                "Advances the estimate by a period or more: a sinusoidal EMF turns, e + w e_across - w^2/2 e."
             }
             EmfShape::Trapezoidal { .. } => {
-                "Advances the estimate by a period or more: the EMF of the sector's off phase goes from one flat top to the other."
+                "Advances the estimate by a period or more: the EMF of the sector's off phase ramps from one flat top to the other."
             }
         };
         let k_slope = self.k_slope(range);
-        let how =
-            "The line EMF of the conducting pair tells the speed; its sign, the sense of rotation.";
+        let how = "The line EMF of the conducting pair is proportional to the speed; its sign is the direction of rotation.";
         self.l.b.stage("move_emf", &[doc, "", how]);
         let weights = self.line_weights(sector);
         let [line_a, line_b] = weights.zip(e, |weight, e| weight * e).0;
-        let doc = "Line EMF above which its motion no longer grows";
+        let doc = "Line EMF above which the motion no longer grows";
         let most = self.l.voltage("line_max", range.limit, doc);
         named! {
             let e_line = (line_a + line_b).within(most);
@@ -137,7 +136,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let weights = SECTOR_CURRENT.iter().map(|legs| legs[phase] - legs[2]);
                 let weights = std::iter::once(0).chain(weights).collect();
                 let doc = format!(
-                    "Weight of the phase-{letter} EMF in the line EMF of the pair that conducts in sectors 1 to 6."
+                    "Weight of the phase-{letter} EMF in the conducting pair's line EMF in sectors 1 to 6."
                 );
                 self.l.b.column("sector", &format!("line_{letter}"), weights, &doc).at(sector)
             });
@@ -145,9 +144,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         line_weight
     }
 
-    /// Two thirds of the ramp for the phase that is off, a third against it for the two others: against the off
-    /// phase's outgoing sign, which is what the weights of the other phase say. They come before the product, whose
-    /// rounding they would double.
+    /// Zero-sum motion of a ramp: two thirds for the off phase, minus one third for the two others. The
+    /// weights are applied before the product, so that they do not double its rounding.
     fn ramping(&self, k_slope: Coefficient, line: Expr<'b>, weights: Phases<'b>) -> Phases<'b> {
         named! {
             let e_line_square = line.mul_floor(line, self.options.word);
@@ -159,9 +157,9 @@ impl<'b> CurrentLoop<'_, 'b> {
         motion
     }
 
-    /// Motions of a sine over one period, and over two where the target is the second one. At right angles to itself
-    /// alone it would grow in length by half the turn's square, again in every period that the estimate is fed back:
-    /// the motion turns by half as well. Over two periods that counts four times.
+    /// Motions of a sine over one period, and over two with delay 1. To first order the length would grow
+    /// by half the turn's square in every period of the feedback, so the second order is included; over
+    /// two periods it counts four times.
     fn turning(&self, k_slope: Coefficient, line: Expr<'b>, e: Phases<'b>) -> [Phases<'b>; 2] {
         named! {
             let e_turn = k_slope * line;
@@ -178,7 +176,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         [motion, motion_twice]
     }
 
-    /// At right angles to `e`, by the turn: sqrt(3) times a phase's voltage across is that between the two others.
+    /// `e` turned by 90 degrees, times the turn: sqrt(3) times a phase of it is the line value of the two
+    /// others.
     fn turned(&self, turn: Expr<'b>, e: Phases<'b>) -> Phases<'b> {
         let [a, b] = e.0;
         let lines = Phases([-(a + (b << 1)), (a << 1) + b]);

@@ -18,7 +18,7 @@ pub struct StableRange {
 pub trait LinearLoop {
     /// Length of the state.
     fn order(&self) -> usize;
-    /// The state a period later: affine in the plant's pole and gain, which move nothing but the current.
+    /// The state a period later: affine in the plant's pole and gain, which affect only the current.
     fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64>;
 
     /// One period as a matrix.
@@ -33,7 +33,7 @@ pub trait LinearLoop {
         DMatrix::from_columns(&columns)
     }
 
-    /// Spectral radius on the motor as it is stated (per axis; EMF as a disturbance).
+    /// Spectral radius with the stated motor (per axis; EMF as a disturbance).
     fn spectral_radius(&self, spec: &Spec) -> f64 {
         let matrix = self.matrix(real_plant(spec, 1.0, 1.0));
         matrix
@@ -43,11 +43,11 @@ pub trait LinearLoop {
             .fold(0.0, f64::max)
     }
 
-    /// Greatest current per volt, A/V, that an EMF drives which meets a loop at rest at once and turns from then on by
-    /// up to `turn` radian a period, on the motor as it is stated.
+    /// Greatest current per volt, A/V, in response to an EMF that steps up at rest and then turns by up to
+    /// `turn` radian a period, with the stated motor.
     fn greatest_response(&self, spec: &Spec, turn: f64) -> f64 {
         let real = real_plant(spec, 1.0, 1.0);
-        // The current after one period of a volt, from which any other EMF's is summed.
+        // The response to one period of a volt, whose superposition is that to any EMF.
         let mut state = DVector::zeros(self.order());
         state[0] = real.gain;
         let (mut currents, mut greatest) = (vec![], 0.0_f64);
@@ -57,7 +57,7 @@ pub trait LinearLoop {
             state = self.advance(real, &state);
         }
         let peak = |turn: f64| {
-            // Seen from the EMF: each period's share stands one turn further back.
+            // In the frame of the EMF each earlier period lags one turn more.
             let (sin, cos) = turn.sin_cos();
             let (mut along, mut across) = (1.0, 0.0);
             let (mut facing, mut lagging) = (0.0_f64, 0.0_f64);
@@ -74,8 +74,7 @@ pub trait LinearLoop {
         turns.map(peak).fold(0.0, f64::max)
     }
 
-    /// The ranges of true over stated R and L within which the loop is stable, one off at a time,
-    /// searched from 0.1 to 10.
+    /// Stable ranges of true over stated R and L, one varied at a time, searched from 0.1 to 10.
     fn stable_range(&self, spec: &Spec) -> StableRange {
         let poles = CharacteristicPolynomial::new(self);
         let is_stable = |resistance_ratio, inductance_ratio| {
@@ -88,7 +87,7 @@ pub trait LinearLoop {
     }
 }
 
-/// Speeds from 0 on at which a turning EMF is tried.
+/// Speeds, from 0, at which a turning EMF is evaluated.
 const TURNS: u32 = 8;
 
 /// Part of its greatest value below which a decaying response counts as over.
@@ -97,8 +96,8 @@ const OVER: f64 = 0.004;
 /// Longest response that is followed, periods.
 const LONGEST: usize = 1000;
 
-/// The plant with `resistance_ratio` and `inductance_ratio` times the motor's R and L. It is physical whatever the
-/// model's discretisation: its own is exact.
+/// The plant with `resistance_ratio` and `inductance_ratio` times the motor's R and L, in exact
+/// discretisation whatever the model's.
 fn real_plant(spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> DiscretePlant {
     DiscretePlant::new(
         Discretisation::Exact,
@@ -108,10 +107,11 @@ fn real_plant(spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> Disc
     )
 }
 
-/// The characteristic polynomial of a loop on any plant, from the highest power, whose coefficient is 1, downward.
+/// Characteristic polynomial of a loop on any plant, from the highest power, whose coefficient is 1.
 ///
-/// Pole and gain of the plant stand in one row of the loop's matrix, and a determinant is linear in each row: three
-/// polynomials make all others. The search for a stable range asks for hundreds, where a macro runs unoptimised.
+/// The plant's pole and gain are in one row of the loop's matrix, and a determinant is linear in each
+/// row, so three polynomials give all others. The search for a stable range evaluates hundreds, in
+/// macros that run unoptimised.
 struct CharacteristicPolynomial {
     fixed: Vec<f64>,
     of_pole: Vec<f64>,
@@ -133,7 +133,7 @@ impl CharacteristicPolynomial {
         }
     }
 
-    /// Whether all poles of the loop on this plant have a magnitude below 1: the criterion of Schur and Cohn.
+    /// Whether all poles on this plant have a magnitude below 1 (Schur-Cohn criterion).
     fn are_inside_the_unit_circle(&self, real: DiscretePlant) -> bool {
         let mut polynomial = self.fixed.clone();
         for (power, coefficient) in polynomial.iter_mut().enumerate() {
@@ -153,7 +153,7 @@ impl CharacteristicPolynomial {
     }
 }
 
-/// Coefficients of det(z - A), by the recursion of Faddeev and Le Verrier.
+/// Coefficients of det(z - A), by the Faddeev-Le Verrier recursion.
 fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     let order = matrix.nrows();
     let mut coefficients = vec![1.0];
@@ -166,11 +166,10 @@ fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     coefficients
 }
 
-/// What an estimate of the EMF that takes over a share of what is seen makes of current and voltage alone: at
-/// standstill, where it does not move on.
+/// EMF estimate with filter share `share` from current and voltage, at standstill, without advance.
 pub fn estimate(share: f64, design: &LoopDesign, i: [f64; 2], v_prev: f64, e_prev: f64) -> f64 {
     let seen = v_prev - design.k_di * (i[0] - i[1]) - design.k_r * i[1];
-    // A share of 0 says that nothing is estimated.
+    // A share of 0 means no estimate.
     if share > 0.0 {
         e_prev + share * (seen - e_prev)
     } else {

@@ -1,4 +1,4 @@
-//! State words of the shared step, each only where the variant needs it.
+//! State words of the shared step, each only if the variant needs it.
 
 use super::CurrentLoop;
 use crate::blocks::set_point::SetPointWords;
@@ -6,18 +6,18 @@ use crate::blocks::{CommutationRule, RotorWords, SpeedRegulator, direction_word,
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
 
-/// What a law needs of the step around it.
+/// Needs of a law from the shared step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
-    /// Whether a commutation is going on.
+    /// Commutation state.
     pub commutation: bool,
-    /// The real voltage of a leg that it turned off.
+    /// Real terminal voltage of an off leg.
     pub off_leg: bool,
     /// The EMF.
     pub emf: EmfUse,
-    /// What the modelled EMF lacks, integrated.
+    /// Integral of the modelled EMF's error.
     pub integral: bool,
-    /// Greatest magnitude of what the law itself adds to the folded words, words of voltage; 0 where it adds nothing.
+    /// Greatest magnitude of the law's own contribution to the folded words, words of voltage.
     pub memory: i64,
 }
 
@@ -28,16 +28,16 @@ impl Needs {
     }
 }
 
-/// What a law uses the EMF for.
+/// Use of the EMF in a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmfUse {
     /// Nothing.
     None,
-    /// It is added to the voltage.
+    /// Added to the voltage.
     FeedForward,
-    /// It takes part in the prediction of the current at the end of the period that begins now.
+    /// Prediction of the current at the end of the present period.
     Prediction,
-    /// Besides, it is part of the voltage that the law asks for then.
+    /// Prediction, and the deadbeat voltage of the target period.
     Deadbeat,
 }
 
@@ -46,9 +46,9 @@ const LEGS: Interval = Interval { low: 0, high: 3 };
 
 /// State words of the shared step.
 pub struct Words<'b> {
-    /// Sector of the last sample, where anything follows the edges.
+    /// Sector of the last sample; if edges are used.
     pub sector_prev: Option<Memory<'b>>,
-    /// Direction of rotation, where no rotor words hold it.
+    /// Direction of rotation; without rotor words only.
     pub direction: Option<Memory<'b>>,
     /// Timing of Hall edges.
     pub rotor: Option<RotorWords<'b>>,
@@ -62,23 +62,23 @@ pub struct Words<'b> {
     pub v_cmd: Option<[Memory<'b>; 2]>,
     /// Commanded terminals and the leg that is off.
     pub t_cmd: Option<([Memory<'b>; 3], Memory<'b>)>,
-    /// Voltage of the period that ended.
+    /// Voltage of the last period.
     pub v_prev: Option<[Memory<'b>; 2]>,
-    /// The leg that was off in the period that ended.
+    /// Off leg of the last period.
     pub off_prev: Option<Memory<'b>>,
-    /// EMF expected of the period that ended.
+    /// EMF expected for the last period.
     pub e_prev: Option<[Memory<'b>; 2]>,
-    /// What the modelled EMF lacks.
+    /// Integral of the modelled EMF's error.
     pub integral: Option<[Memory<'b>; 2]>,
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// Whether the law looks at an EMF of this source.
+    /// Whether the law uses an EMF of this source.
     fn uses(&self, source: EmfSource) -> bool {
         self.needs.emf != EmfUse::None && self.options.emf == source
     }
 
-    /// Whether anything follows the rotor's angle or speed.
+    /// Whether the law uses the rotor's angle or speed.
     fn needs_rotor(&self) -> bool {
         self.uses(EmfSource::Model)
             || self.options.advance > 0.0
@@ -90,7 +90,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, options, needs) = (self.l, self.options, self.needs);
         let estimated = self.uses(EmfSource::Estimated);
         let needs_rotor = self.needs_rotor();
-        // What a period shows of its EMF takes part.
+        // The EMF of the last period is computed.
         let sees = estimated || needs.integral;
         let e_bound = self.e_bound();
         let e_moves = if estimated {
@@ -129,11 +129,11 @@ impl<'b> CurrentLoop<'_, 'b> {
             }),
             e_prev: (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
                 let range = Interval::symmetric(e_bound + e_moves);
-                let doc = "EMF that the last step expected for the period that has ended.";
+                let doc = "EMF that the last step expected for the last period.";
                 l.memories(["e_a_prev", "e_b_prev"], range, doc)
             }),
             integral: needs.integral.then(|| {
-                let doc = "Error of the modelled EMF, integrated, words of voltage.";
+                let doc = "Integral of the modelled EMF's error, words of voltage.";
                 l.memories(["integral_a", "integral_b"], volts, doc)
             }),
         }
@@ -145,14 +145,14 @@ impl<'b> CurrentLoop<'_, 'b> {
         CommutationRule::new(self.l, threshold, timeout, options.advance > 0.0)
     }
 
-    /// Terminals of the last command, and the leg that it turns off.
+    /// Terminal voltages and off leg of the last command.
     fn terminal_words(&self) -> ([Memory<'b>; 3], Memory<'b>) {
         let l = self.l;
         let range = Interval::new(0, l.bus_interval().high);
-        let doc = "Terminal voltage of the last step's command; of an off leg 0.";
+        let doc = "Terminal voltage of the last step's command; 0 of an off leg.";
         let terminals = ["t_a_cmd", "t_b_cmd", "t_c_cmd"];
         let terminals = terminals.map(|name| l.b.memory(name, 0, range, doc));
-        let doc = "Leg that the last step's command turns off: 1 a, 2 b, 3 c, 0 none.";
+        let doc = "Off leg of the last step's command: 1 a, 2 b, 3 c, 0 none.";
         (terminals, l.b.memory("off_cmd", 0, LEGS, doc))
     }
 }

@@ -1,4 +1,4 @@
-//! What it costs to change the state of legs (semantics, section on the weight of switching).
+//! Switching cost of the legs (semantics, section on the weight of switching).
 
 use super::score::{Candidate, Pair};
 use crate::blocks::Lowering;
@@ -6,11 +6,11 @@ use crate::diagnostics::engineering;
 use crate::ir::{Expr, Flag, Memory, Named, Phases, named, pick};
 use crate::laws::whole_vectors::vector_legs;
 
-/// What the change of each leg to high, low and off costs, in multiples of the bus.
+/// Cost of switching each leg high, low and off, as scores over the bus.
 pub(super) struct Changes<'b>(pub(super) [[Expr<'b>; 3]; 3]);
 
 impl<'b> Changes<'b> {
-    /// Looks up what the changes cost: `volts` each, in multiples of the bus.
+    /// Looks up the costs by the vector of the last step.
     pub(super) fn new(l: &Lowering<'b>, memory: Memory<'b>, volts: f64, weight: f64) -> Self {
         let doc = "Cost of switching each leg high, low and off, by the vector of the last step.";
         l.b.stage("cost_of_changes", &[doc]);
@@ -36,7 +36,7 @@ impl<'b> Changes<'b> {
         }))
     }
 
-    /// What it costs to go to a vector.
+    /// Cost of switching to a vector.
     pub(super) fn to(&self, number: usize) -> Expr<'b> {
         let legs = vector_legs()[number];
         let own = |x: usize| match legs[x] {
@@ -47,7 +47,7 @@ impl<'b> Changes<'b> {
         own(0) + own(1) + own(2)
     }
 
-    /// What it costs to go to the zero vector of the sector's pair; flags: leg a, leg b is off in it.
+    /// Cost of switching to the zero vector of the sector's pair; flags: leg a, leg b is off in it.
     pub(super) fn to_zero(&self, is_off: [Flag<'b>; 2]) -> Expr<'b> {
         named! {
             let change_to_zero = pick(is_off, [13, 14, 15].map(|number| self.to(number)));
@@ -55,7 +55,7 @@ impl<'b> Changes<'b> {
         change_to_zero
     }
 
-    /// Of the two vectors that leave one leg off, the one of the lesser score over the bus, and that score.
+    /// The better of the two vectors with one leg off, and its score over the bus.
     pub(super) fn better(&self, pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b> {
         let letter = pair.letter();
         let six = (6 * pair.line(u)).named(&format!("line_{letter}"));

@@ -1,8 +1,8 @@
 //! The vector nearest to the deadbeat voltage, by geometry instead of enumeration (semantics, step 10).
 //!
-//! Over the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector wins while no
-//! phase exceeds a third of the bus. Of two pair vectors with the same leg off the better one is told by
-//! the sign of a line voltage, so three scores remain.
+//! In the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector wins
+//! while no phase exceeds a third of the bus. Of two pair vectors with the same leg off the sign of a
+//! line voltage gives the better one, so three scores remain.
 
 use super::changes::Changes;
 use super::off_legs::OffLegs;
@@ -18,23 +18,23 @@ use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
 const NEAREST_VECTOR: [&str; 3] = [
     "The three-phase vector nearest to the deadbeat voltage, which is the one of least predicted error: V0 while no",
-    "phase exceeds a third of the bus, else the legs are low by the signs of the phase voltages (a zero goes to the vector",
-    "that stands first in V1 to V6).",
+    "phase exceeds a third of the bus, else the legs follow the signs of the phase voltages (on a zero the first of V1 to",
+    "V6 wins).",
 ];
 
-/// The chosen vector, and what else is known of the voltage asked for.
+/// The chosen vector, and intermediate results on the deadbeat voltage.
 pub(super) struct Choice<'b> {
     /// Its number.
     pub vector: Expr<'b>,
     /// Phase voltages.
     pub u: Phases<'b, 3>,
-    /// The legs that are low in the nearest of V1 to V6.
+    /// Low legs of the nearest of V1 to V6.
     pub is_low: [Flag<'b>; 3],
-    /// The greatest phase voltage, and that of the other sign.
+    /// The largest phase voltage, and the largest of the other sign.
     pub heights: [Expr<'b>; 2],
-    /// The greatest magnitude of a phase voltage.
+    /// Largest magnitude of a phase voltage.
     pub largest: Expr<'b>,
-    /// Where the legs would sit if they were off.
+    /// Terminal voltages of the legs if off.
     pub off_legs: Option<OffLegs<'b>>,
 }
 
@@ -89,8 +89,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The same for Table 2's sets, where nothing but the vector is asked for: the three-phase set is looked at in
-    /// commutation alone.
+    /// The same for Table 2's sets if only the vector is needed: the three-phase set is evaluated in
+    /// commutation only.
     pub(super) fn choose_of_table2(
         &self,
         options: &FcsMpcSpec,
@@ -99,7 +99,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         commutating: Flag<'b>,
     ) -> Expr<'b> {
         let (l, pair) = (self.l, u);
-        let doc = "The third phase of the deadbeat voltage.";
+        let doc = "Third phase of the deadbeat voltage.";
         l.b.stage("complete_voltage", &[doc]);
         let u = pair.with_c("u_unsat");
         let off_legs = self.predict_off_legs(options, front, pair);
@@ -116,7 +116,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         vector
     }
 
-    /// The legs that are low in the three-phase vector nearest to `u`, where nothing but the legs is asked for.
+    /// Low legs of the three-phase vector nearest to `u`, if only the legs are needed.
     pub(super) fn choose_low_legs(&self, front: &Front<'b>, u: Phases<'b>) -> Expr<'b> {
         let l = self.l;
         l.b.stage("nearest_vector", &NEAREST_VECTOR);
@@ -131,8 +131,8 @@ impl<'b> CurrentLoop<'_, 'b> {
     }
 }
 
-/// The best pair vector with off legs where their diodes put them, against the zero vector or `three_phase`, whose
-/// score is the greatest phase voltage; with `changes` its score over the bus.
+/// The best pair vector with real off-leg voltages, against the zero vector or `three_phase`, whose
+/// score is the largest phase voltage; with `changes` its score over the bus.
 pub(super) fn nearest_physical<'b>(
     l: &Lowering<'b>,
     off_legs: &OffLegs<'b>,
@@ -149,12 +149,12 @@ pub(super) fn nearest_physical<'b>(
     l.b.stage(
         "nearest_pair",
         &[
-            "The pair vector nearest to the deadbeat voltage: per off leg the score 6 (|v|^2 - 2 u v) of the better of its two",
-            &format!("vectors, the least of three, and {rival} where that is not worse. Ties go to the vector that stands first."),
-            "Both products of a score are rounded as one: pairs whose off leg lies at a rail tie exactly with what has their voltage.",
+            "The pair vector nearest to the deadbeat voltage, or {rival} if that is not worse: the least score 6 (|v|^2 - 2 u v)",
+            "of the better vectors per off leg. Ties go to the first vector. Both products of a score are rounded as one, so that",
+            "a pair with its off leg at a rail ties exactly with the vector of the same voltage.",
         ],
     );
-    // Factors first: their intervals give the shift of all products.
+    // All factors first: their intervals give the shift of the products.
     let mut pairs = PAIRS.map(|pair| {
         let better = match changes {
             Some(changes) => changes.better(pair, bus, u),
@@ -186,7 +186,7 @@ pub(super) fn nearest_physical<'b>(
         (scored(*vector, products.sum(left), &name), letter)
     });
     let best = candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
-    // V0 scores 0, the best three-phase vector less than that or V0 was taken.
+    // The score of V0 is 0; the best three-phase vector scores less, or V0 was chosen.
     let is_negative = three_phase.is_some() && changes.is_none();
     let score = rival_products.sum(left);
     let score = score.map(|score| if is_negative { score.min(0) } else { score });
@@ -194,13 +194,15 @@ pub(super) fn nearest_physical<'b>(
     best.map_or(rival.vector, |(best, _)| best.against(rival))
 }
 
-/// The shift with which the sum of two products fits a word, one bit to spare: a product of n + m bits fits n + m - 1.
+/// The shift at which the sum of two products fits a word with one bit to spare: a product of factors
+/// of n and m bits has n + m - 1.
 fn shift_of_scores(all: &[&mut Products<'_>]) -> u32 {
     let widest = all.iter().map(|products| products.bits()).max();
     widest.map_or(31, |bits| bits.saturating_sub(31))
 }
 
-/// The three-phase vector and the products of its score, which is one over the bus or the greatest phase voltage.
+/// The three-phase vector and the products of its score, from its score over the bus or from the
+/// largest phase voltage.
 fn three_phase_products<'b>(
     bus: Expr<'b>,
     three: Candidate<'b>,
@@ -230,17 +232,17 @@ fn zero_products<'b>(
     (vector, Products(products.collect()))
 }
 
-/// The index of three flags: the sum of 1, 2 and 4.
+/// The index of three flags, with weights 1, 2 and 4.
 fn index_of_flags([first, second, third]: [Flag<'_>; 3]) -> Expr<'_> {
     first.choose(1, 0) + second.choose(2, 0) + third.choose(4, 0)
 }
 
-/// `value - 1` where the flag holds, else `value`: negative, too, for a zero that the flag tells to lie low.
+/// `value - 1` if the flag holds, else `value`: makes a zero that counts as low negative.
 fn lowered_by<'b>(value: Expr<'b>, flag: Flag<'b>) -> Expr<'b> {
     value - flag.choose(1, 0)
 }
 
-/// The greatest magnitude of three voltages that add up to zero: the sum of those above it.
+/// The largest magnitude of three zero-sum voltages: the sum of the positive ones.
 fn largest_of_zero_sum(u: Phases<'_, 3>) -> Expr<'_> {
     named! {
         let u_largest = u.map(|u| u.max(0)).sum();
@@ -248,8 +250,8 @@ fn largest_of_zero_sum(u: Phases<'_, 3>) -> Expr<'_> {
     u_largest
 }
 
-/// A magnitude is more than a third of the bus. A whole voltage is beyond the share exactly where it is beyond
-/// its whole part.
+/// Whether a magnitude exceeds a third of the bus. An integer exceeds the third exactly if it exceeds
+/// its integer part.
 fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Flag<'b> {
     match l.spec.inverter.bus {
         BusSource::Fixed => {
@@ -266,7 +268,7 @@ fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Fl
     }
 }
 
-/// One of the line voltages is farther from zero than half the bus.
+/// Whether a line voltage exceeds half the bus.
 fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) -> Flag<'b> {
     let beyond = [0, 1, 2].map(|order| match l.spec.inverter.bus {
         BusSource::Fixed => {
@@ -283,10 +285,10 @@ fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) ->
     a | b | c
 }
 
-/// The legs that are low in the nearest to `u` of V1 to V6: as a pattern and as flags.
+/// Low legs of the nearest of V1 to V6 to `u`, as a pattern and as flags.
 fn low_legs_of(u: Phases<'_, 3>) -> (Expr<'_>, [Flag<'_>; 3]) {
-    // A zero lies as the leg does in the first of the two tied vectors: b low, a as b, c unlike b. The words tell
-    // by their signs once a one is taken from those that lie low.
+    // A zero takes the leg of the first of the two tied vectors: b low, a like b, c unlike b. A one is
+    // subtracted from words that count as low, so that the sign decides.
     let [a, b, c] = u.0;
     named! {
         let b_is_low = (b - 1).is_below(0);
@@ -297,7 +299,7 @@ fn low_legs_of(u: Phases<'_, 3>) -> (Expr<'_>, [Flag<'_>; 3]) {
     (low_legs, [a_is_low, b_is_low, c_is_low])
 }
 
-/// V0 to V6: the nearest to `u`, and the legs that are low in the nearest of V1 to V6.
+/// The nearest of V0 to V6 to `u`, and the low legs of the nearest of V1 to V6.
 fn nearest_three_phase<'b>(
     l: &Lowering<'b>,
     u: Phases<'b, 3>,
@@ -316,7 +318,7 @@ fn nearest_three_phase<'b>(
     (vector_three, is_low)
 }
 
-/// Of the two vectors that leave one leg off, the one with the greater line voltage: its number and that voltage.
+/// The one of two vectors with one leg off that has the larger line voltage: number and voltage.
 fn better_of_two(pair: Pair, u: Phases<'_, 3>) -> [Expr<'_>; 2] {
     let letter = pair.letter();
     let line = pair.line(u).named(&format!("line_{letter}"));
@@ -328,7 +330,7 @@ fn better_of_two(pair: Pair, u: Phases<'_, 3>) -> [Expr<'_>; 2] {
     ]
 }
 
-/// That vector with its score over the bus, the off leg left out.
+/// That vector with its score over the bus, without the off leg.
 fn along_better<'b>(pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b> {
     let [vector, size] = better_of_two(pair, u);
     let score = 3 * bus - 6 * size;
@@ -338,7 +340,7 @@ fn along_better<'b>(pair: Pair, bus: Expr<'b>, u: Phases<'b, 3>) -> Candidate<'b
     }
 }
 
-/// The pair vector nearest to the voltage, or the pair's zero vector.
+/// The pair vector nearest to the voltage, or the zero vector.
 fn nearest_pair<'b>(
     l: &Lowering<'b>,
     front: &Front<'b>,
@@ -355,8 +357,8 @@ fn pair_stage(l: &Lowering<'_>) {
     l.b.stage(
         "nearest_pair",
         &[
-            "The pair vector nearest to the deadbeat voltage: the one of the greatest line voltage, and the zero vector while",
-            "that is at most half the bus. Ties go to the vector that stands first in V12 to V61.",
+            "The pair vector nearest to the deadbeat voltage: that of the largest line voltage, or the zero vector while it is at",
+            "most half the bus. Ties go to the first of V12 to V61.",
         ],
     );
 }
@@ -365,8 +367,9 @@ fn nearest_nominal<'b>(l: &Lowering<'b>, front: &Front<'b>, u: Phases<'b, 3>) ->
     pair_stage(l);
     let idle = zero_vector(l, front.sector);
     let lines = PAIRS.map(|pair| pair.line(u).named(&format!("line_{}", pair.letter())));
-    // The order of the phase voltages is that of the vector's legs. Equal phases are in the order that the first of
-    // the tied vectors has: a above b, c above b unless a is below both, and a above c where b is above both.
+    // The order of the phase voltages is that of the vector's legs. Equal phases take the order of the
+    // first of the tied vectors: a above b, c above b unless a is below both, a above c if b is above
+    // both.
     let [line_a, line_c, line_b] = lines;
     named! {
         let a_below_b = line_c.is_below(0);
@@ -374,14 +377,14 @@ fn nearest_nominal<'b>(l: &Lowering<'b>, front: &Front<'b>, u: Phases<'b, 3>) ->
         let a_below_c = lowered_by(line_b, !a_below_b).is_below(0);
         let order = index_of_flags([a_below_b, c_below_b, a_below_c]);
     }
-    let doc = "Pair vector of an order of the phase voltages, from the highest to the lowest: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns are none).";
+    let doc = "Pair vector by the order of the phase voltages: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns do not occur).";
     let vectors = vec![8, 0, 9, 10, 7, 12, 0, 11];
     let table = l.b.table("pair_of_order", vectors, &[doc.to_owned()]);
     let beyond = any_beyond_half(l, lines, front.bus.volts);
     beyond.choose(table.at(order), idle)
 }
 
-/// The nearest of all vectors; of the rival the score is the greatest phase voltage.
+/// The nearest of all vectors.
 fn nearest_of_all<'b>(
     l: &Lowering<'b>,
     front: &Front<'b>,

@@ -1,4 +1,4 @@
-//! What the documentation of the type says of the method.
+//! Documentation of the method.
 
 use crate::diagnostics::{engineering, significant};
 use crate::laws::Description;
@@ -20,14 +20,14 @@ pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -
     }
     let mut notes = vec![
         format!(
-            "{begin} allowed one with the least predicted error |i_ref - i(k+2)|^2. The error of a"
+            "{begin} allowed one of the least predicted error |i_ref - i(k+2)|^2. The error of a"
         ),
         format!(
-            "vector v is b |u - v| with u the deadbeat voltage, so the step looks for the vector nearest to u and {}.",
+            "vector v is b |u - v| with u the deadbeat voltage, so the step takes the vector nearest to u, {}.",
             if options.torque_weight > 0.0 {
-                "tries one after the other"
+                "found by enumeration"
             } else {
-                "enumerates nothing"
+                "found by geometry"
             }
         ),
         format!(
@@ -37,22 +37,19 @@ pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -
     ];
     if options.switching_weight > 0.0 {
         notes.push(format!(
-            "A leg that changes its state weighs as much as an error of {}, at the nominal bus and in proportion to it.",
+            "Switching a leg costs as much as an error of {} at the nominal bus, in proportion to the bus.",
             engineering(options.switching_weight, "A")
         ));
     }
     if options.torque_weight > 0.0 {
         notes.push(format!(
-            "The square of the error's component along the sector's mean EMF, which makes torque, weighs {} more.",
+            "The squared error along the sector's mean EMF, which makes torque, has an additional weight of {}.",
             significant(options.torque_weight)
         ));
     }
     if options.modulated {
-        notes.push("It shares the period with the best other vector with which one pulse per leg can share it, each for the time of the".to_owned());
-        notes.push(
-            "least predicted error: their mean is the point nearest to u on the line between them."
-                .to_owned(),
-        );
+        notes.push("It shares the period with the best second vector that one pulse per leg allows; their mean is the point".to_owned());
+        notes.push("nearest to u on the line between them.".to_owned());
     }
     Description {
         title: TITLE,
@@ -62,7 +59,7 @@ pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -
     }
 }
 
-/// Of two periods ahead.
+/// Documentation of the choice over two periods.
 fn two_steps(options: &FcsMpcSpec, stride: f64) -> Description {
     let (sequences, first) = match options.candidates {
         Candidates::ThreePhase => (49, 7),
@@ -71,8 +68,8 @@ fn two_steps(options: &FcsMpcSpec, stride: f64) -> Description {
     Description {
             title: TITLE,
             notes: vec![
-                format!("One voltage vector per period: the first of the best of {sequences} sequences of two, by the predicted errors"),
-                "|i_ref - i(k+2)|^2 + |i_ref - i(k+3)|^2. What the second vector leaves is told by geometry, so that the step".to_owned(),
+                format!("One voltage vector per period: the first of the best of {sequences} sequences of two, by the predicted error"),
+                "|i_ref - i(k+2)|^2 + |i_ref - i(k+3)|^2. The best second vector follows from geometry, so that the step".to_owned(),
                 format!("compares {first} scores."),
                 format!("One three-phase vector moves the current by at most {} per period.", engineering(stride, "A")),
             ],

@@ -1,7 +1,8 @@
 //! A second vector in the period of the chosen one (semantics, step 10a): the nearest point between the two.
 //!
-//! Of three-phase vectors the two nearest to u are corners of one triangle of the hexagon, so the point lies on
-//! its nearest edge: per leg a clamp. A pair vector shares its period with the zero that has the same leg off.
+//! The two three-phase vectors nearest to u are corners of one triangle of the hexagon, so the point
+//! lies on its nearest edge: a clamp per leg. A pair vector shares its period with the zero vector of
+//! the same off leg.
 
 use super::choose::Choice;
 use crate::blocks::{Applied, Command, LOW, Lowering, OFF, PULSED, compare_of};
@@ -9,15 +10,15 @@ use crate::ir::{Expr, Flag, Named, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, Front};
 use crate::laws::whole_vectors::off_leg_table;
 
-/// The pair whose line voltage is pulsed. Terminal voltages say for which share of the period a leg is high, of the bus.
+/// A pulsed pair; the terminal voltage over the bus is the high leg's share of the period.
 struct PulsedPair<'b> {
-    /// The leg that is off.
+    /// The off leg, as flags.
     is_off: [Flag<'b>; 3],
     /// Its number, 1 to 3; 0 where no pair is pulsed.
     off: Expr<'b>,
-    /// A pair is pulsed.
+    /// Whether a pair is pulsed.
     pulsed: Flag<'b>,
-    /// The terminal of its high leg.
+    /// Terminal voltage of its high leg.
     volts: Expr<'b>,
     terminals: Phases<'b, 3>,
 }
@@ -29,7 +30,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let three = nearest_edge(l, front.bus.volts, choice);
         let pair = front.commutation;
         let pair = pair.map(|_| divide_pair(l, front.bus.volts, choice));
-        let doc = "The share of the period for which each leg is high, of the bus; without a sector all legs are low.";
+        let doc = "Share of the period for which each leg is high, as a voltage of the bus; without a sector all legs are low.";
         l.b.stage("share_period", &[doc]);
         named! {
             let sector_is_known = front.sector.is_not(0);
@@ -41,7 +42,8 @@ impl<'b> CurrentLoop<'_, 'b> {
                 sector_is_known.choose(own, 0)
             });
         }
-        let doc = "Legs of the two vectors: a leg is pulsed for its share of the period, and low without any.";
+        let doc =
+            "Legs of the two vectors: each leg is pulsed for its share of the period, or low.";
         l.b.stage("drive_legs", &[doc]);
         named! {
             let compare_chosen = t_chosen.map(|volts| compare_of(l, volts, front.bus, None));
@@ -69,9 +71,9 @@ fn nearest_edge<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Pha
     l.b.stage(
         "nearest_edge",
         &[
-            "Two three-phase vectors and the time of each: the point nearest to the deadbeat voltage on the nearest edge of its",
-            "triangle. While no neighbour of the nearest of V1 to V6 is nearer than V0, V0 shares its period, and its legs are high for",
-            "3/2 of the phase voltage; else that neighbour does, and each leg is at (V + 3 u)/2, within the rails.",
+            "Two three-phase vectors and their times: the point nearest to the deadbeat voltage on the nearest edge of its triangle.",
+            "The nearest of V1 to V6 shares the period with V0, its high legs at 3/2 of the phase voltage; or, if that is nearer,",
+            "with its neighbour, each leg at (V + 3 u)/2 within the rails.",
         ],
     );
     let second = choice.heights[0].min(choice.heights[1]);
@@ -87,14 +89,14 @@ fn nearest_edge<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Pha
     t_three
 }
 
-/// The better vector with the leg off that the chosen vector turns off, for the time of the least error.
+/// The better vector with the chosen vector's leg off, for the time of the least error.
 fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> PulsedPair<'b> {
     let [u_a, u_b, u_c] = choice.u.0;
     l.b.stage(
         "divide_pair",
         &[
-            "A pair vector and the zero with the same leg off: the line voltage counts while that leg floats, and the voltage of the",
-            "pulsed leg alone while a diode holds it at a rail.",
+            "A pair vector and the zero vector with the same leg off: the time follows from the line voltage while that leg floats,",
+            "and from the pulsed leg's voltage while a diode holds it at a rail.",
         ],
     );
     named! {
@@ -105,7 +107,7 @@ fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Puls
     let is_off = [0, 1, 2].map(|x| off_chosen.is(x + 1).named(names[x as usize]));
     let [is_a, is_b, _] = is_off;
     named! {
-        // High and low in the first of the two vectors with that leg off.
+        // The high and the low leg in the first of the two vectors.
         let u_plus = is_a.choose(u_c, u_a);
         let u_minus = is_b.choose(u_c, u_b);
         let pair_is_back = u_plus.is_below(u_minus);
@@ -128,7 +130,7 @@ fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Puls
         let t_pair = volts.clamp(0, bus);
         let pair_is_forward = !pair_is_back;
     }
-    // Forward, a is high with b or c off and c with a off; back, b is high with a or c off and c with b off.
+    // Forward, a is high with b or c off, c with a off; backward, b is high with a or c off, c with b off.
     let of_c = is_b.choose_flag(pair_is_back, pair_is_forward);
     let senses = [pair_is_forward, pair_is_back, of_c];
     let volts = t_pair;
@@ -144,7 +146,7 @@ fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Puls
     }
 }
 
-/// Mean phase voltages a, b of the terminals; an off leg lies midway between the two others.
+/// Mean phase voltages a, b of the terminals; an off leg counts as midway between the two others.
 fn mean_voltage<'b>(
     front: &Front<'b>,
     terminals: Phases<'b, 3>,

@@ -1,4 +1,4 @@
-//! FCS-MPC as IR: the shared step, the choice of a vector, and its legs.
+//! FCS-MPC as a program: the shared step, the choice of a vector, and its legs.
 
 use crate::blocks::Scale;
 use crate::blocks::set_point::{Gain, SetPointWords};
@@ -32,7 +32,7 @@ pub(super) fn lower(
     })
 }
 
-/// Chooses vectors as the options say, and commands them.
+/// Chooses and commands a vector or two, by the options.
 fn apply_best(step: &CurrentLoop<'_, '_>, options: &FcsMpcSpec, set_point: &SetPointWords<'_>) {
     let numbers = if options.pairs() {
         Numbers::Vectors
@@ -53,7 +53,7 @@ fn apply_best(step: &CurrentLoop<'_, '_>, options: &FcsMpcSpec, set_point: &SetP
     }
     if options.weighted() {
         let memory = (options.switching_weight > 0.0).then(|| {
-            let doc = "Vector that the last step chose: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
+            let doc = "Vector of the last step: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero.";
             step.l.b.memory("vector_prev", 0, Interval::new(0, 15), doc)
         });
         let vector = step.choose_weighted(options, &front, u, memory);

@@ -1,23 +1,24 @@
-//! Where each leg would sit if it were off in the target period: at a rail through a diode, or where its EMF puts it.
+//! Terminal voltage of each leg if off in the target period: a rail if its diode conducts, else
+//! floating with its EMF.
 
 use crate::ir::{Expr, Flag, Named, Phases, named, pick};
 use crate::laws::current_loop::{CurrentLoop, Front};
 use crate::spec::FcsMpcSpec;
 
-/// Where each leg would sit if it were off.
+/// Terminal voltages of the legs if off.
 #[derive(Clone, Copy)]
 pub(super) struct OffLegs<'b> {
     bus: Expr<'b>,
-    /// Per leg, whether its predicted current would flow through a diode inward or outward.
+    /// Per leg, whether its predicted current flows through a diode, inward or outward.
     pub conducting: [[Flag<'b>; 2]; 3],
-    /// Twice the terminal beside a driven pair, less the bus.
+    /// Twice the terminal voltage beside a driven pair, less the bus.
     pub offsets: Phases<'b, 3>,
-    /// What the EMF lifts it by above the driven legs' mean.
+    /// Floating terminal voltage above the driven legs' mean.
     lifts: Phases<'b, 3>,
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// None where a vector stands for its nominal voltage.
+    /// None if vectors count with their nominal voltage.
     pub(super) fn predict_off_legs(
         &self,
         options: &FcsMpcSpec,
@@ -36,12 +37,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "predict_off_legs",
             &[
-                "Terminal voltage of each leg if it were off in the target period: a rail while its predicted current flows",
-                "through a diode, else where its EMF puts it. h = K a i(k+1) = K i_ref + e - u needs no product.",
+                "Terminal voltage of each leg if off in the target period: a rail while its predicted current flows through a",
+                "diode, else floating with its EMF. h = K a i(k+1) = K i_ref + e - u needs no product.",
             ],
         );
         let limit = l.volts_word(threshold_volts);
-        let doc = "Predicted current above which an off leg's diode conducts, as the voltage K a i";
+        let doc = "Current threshold of an off leg's diode, as the voltage K a i";
         let limit = || l.voltage("i_comm_volts", limit, doc);
         let bus = front.bus.volts;
         let e = e.with_c("e_off");
@@ -75,13 +76,13 @@ impl<'b> CurrentLoop<'_, 'b> {
     }
 }
 
-/// Where a leg sits: at a rail where its diode conducts inward or outward, else where it is free.
+/// Terminal voltage of an off leg: a rail if its diode conducts, else `free`.
 fn at_rail<'b>([inward, outward]: [Flag<'b>; 2], free: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
     inward.choose(0, outward.choose(bus, free))
 }
 
 impl<'b> OffLegs<'b> {
-    /// Flags of the leg that is off: inward, outward.
+    /// Diode flags of the off leg: inward, outward.
     pub(super) fn conducting_of(&self, is_off: [Flag<'b>; 2]) -> [Flag<'b>; 2] {
         [0, 1].map(|way| pick(is_off, self.conducting.map(|flags| flags[way])))
     }

@@ -1,11 +1,10 @@
-//! Scores of vectors, 6 (|v|^2 - 2 u v): the least is the vector of least predicted error.
+//! Scores of vectors, 6 (|v|^2 - 2 u v): the least score has the least predicted error.
 
 use crate::blocks::Lowering;
 use crate::ir::{Expr, Flag, Lut, Named, Phases};
 use crate::laws::whole_vectors::zero_vectors;
 
-/// Pairs by the leg that is off, in the order of their vectors: V12 | V45 leave a off, V23 | V56 c, V34 | V61 b.
-/// Off phase, the phase that is high in the first vector, the phase that is low in it.
+/// Pairs by off leg, in the order of their vectors: V12 | V45 a off, V23 | V56 c off, V34 | V61 b off.
 pub(super) const PAIRS: [Pair; 3] = [Pair(0, 2, 1), Pair(2, 0, 1), Pair(1, 0, 2)];
 
 /// Off phase, high phase and low phase of the first of two vectors.
@@ -30,7 +29,7 @@ impl Pair {
     }
 }
 
-/// What the compared scores are.
+/// Documentation of scores.
 const SCORE: &str = "Score 6 (|v|^2 - 2 u v) of a vector";
 
 /// A vector and its score.
@@ -41,7 +40,7 @@ pub(super) struct Candidate<'b> {
 }
 
 impl<'b> Candidate<'b> {
-    /// The candidate of the lesser score; on a tie that of the lesser number. `name` is that of the next one.
+    /// The candidate of the lower score; on a tie that of the lower number. `name` is that of `next`.
     pub(super) fn first_least(self, next: Self, name: &str) -> Self {
         let less = next.score.is_below(self.score);
         let tied = next.score.is(self.score) & next.vector.is_below(self.vector);
@@ -54,7 +53,7 @@ impl<'b> Candidate<'b> {
         }
     }
 
-    /// The candidate of the lesser score; on a tie this one. `number` is that of the next one.
+    /// The candidate of the lower score; on a tie this one. `number` is that of `next`.
     pub(super) fn least(self, next: Self, number: usize) -> Self {
         let take = next.score.is_below(self.score);
         let take = take.named(&format!("take_{number}"));
@@ -66,25 +65,25 @@ impl<'b> Candidate<'b> {
         }
     }
 
-    /// The vector, where its score is less than that of the rival; else the rival's.
+    /// The vector if its score is lower than the rival's; else the rival's vector.
     pub(super) fn against(self, rival: Self) -> Expr<'b> {
         let better = self.score.is_below(rival.score);
         better.choose(self.vector, rival.vector)
     }
 }
 
-/// The product of two factors, or the sum of two products, rounded as one.
+/// A sum of products that is rounded once.
 #[derive(Clone)]
 pub(super) struct Products<'b>(pub Vec<[Expr<'b>; 2]>);
 
 impl<'b> Products<'b> {
-    /// Bits of the widest product's factors together.
+    /// Sum of the factors' bits, of the widest product.
     pub(super) fn bits(&self) -> u32 {
         let bits = |[x, y]: &[Expr<'b>; 2]| x.interval().bits() + y.interval().bits();
         self.0.iter().map(bits).max().unwrap_or(0)
     }
 
-    /// The sum, shifted right; none of no product.
+    /// The sum, shifted right; none without a product.
     pub(super) fn sum(&self, shift: u32) -> Option<Expr<'b>> {
         match self.0[..] {
             [] => None,
@@ -94,8 +93,8 @@ impl<'b> Products<'b> {
     }
 }
 
-/// Shifts the first factors so that what a `shift` takes of the products is their upper words, which take no shift of
-/// 64 bits; where one has no room for that, or products fit a word, nothing changes. Returns the shift that is left.
+/// Shifts the first factors left so that `shift` becomes 32, the upper word of each product, without a
+/// 64-bit shift. No change if a factor has no room or the products fit a word. Returns the new shift.
 pub(super) fn as_upper_words(products: &mut [&mut Products<'_>], shift: u32) -> u32 {
     let room = 32_u32.saturating_sub(shift);
     let firsts = || products.iter().flat_map(|products| &products.0);
@@ -110,27 +109,27 @@ pub(super) fn as_upper_words(products: &mut [&mut Products<'_>], shift: u32) -> 
     shift + room
 }
 
-/// States the error of a score that was shifted right by so many bits.
+/// States the error bound of a score that was shifted right by `shift`.
 pub(super) fn state_score<'b>(l: &Lowering<'b>, score: Expr<'b>, shift: u32) {
     let word = f64::from(shift).exp2() / l.scale.voltage().powi(2);
     l.b.state_error("score", score, [SCORE, "V^2"], word);
 }
 
-/// States the error of a voltage of which `weight` times the greatest bus is a score.
+/// States the error bound of a score over `weight` times the largest bus.
 pub(super) fn state_score_over_bus<'b>(l: &Lowering<'b>, voltage: Expr<'b>, weight: f64) {
     let word = weight * l.spec.inverter.greatest_bus() / l.scale.voltage();
     l.b.state_error("score", voltage, [SCORE, "V^2"], word);
 }
 
-/// States the error of the scores V (4 V - 12 u) and V (3 V - 6 line): no phase is further off than the third, and no
-/// line than twice that.
+/// States the error bound of the scores V (4 V - 12 u) and V (3 V - 6 line): the third phase has the
+/// largest error of a phase, and a line at most twice that.
 pub(super) fn state_exact_scores<'b>(l: &Lowering<'b>, u: Phases<'b, 3>) {
     state_score_over_bus(l, u.c(), 12.0);
 }
 
 /// Zero vectors of the pairs of sectors 1 to 6.
 fn zero_vector_table<'b>(l: &Lowering<'b>) -> Lut<'b> {
-    let doc = "Zero vector of the pair of sectors 1 to 6: its legs low, the third off.";
+    let doc = "Zero vector of the pair in sectors 1 to 6: its legs low, the third off.";
     l.b.column("sector", "zero_vector", zero_vectors(), doc)
 }
 

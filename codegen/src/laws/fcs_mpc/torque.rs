@@ -1,4 +1,5 @@
-//! The weight of the torque's error: it couples the legs, so that the list of vectors is enumerated (semantics, step 10w).
+//! The weight of the torque error: it couples the legs, so the vectors are enumerated (semantics, step
+//! 10w).
 
 use super::changes::Changes;
 use super::off_legs::OffLegs;
@@ -12,30 +13,30 @@ use crate::spec::{Candidates, FcsMpcSpec};
 /// Three-phase vectors in the order of their gate patterns, bit 0 leg a, bit 1 leg b, bit 2 leg c.
 const BY_GATES: [usize; 6] = [3, 5, 4, 1, 2, 6];
 
-/// The line that conducts where phase a, b or c is out.
+/// Conducting pair with phase a, b or c off.
 const LINES: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 /// A vector's score as products.
 struct Weighed<'b> {
     vector: Expr<'b>,
-    /// Number, for names.
+    /// Vector number, for names.
     number: usize,
-    /// At most two, rounded as one.
+    /// At most two products, rounded once.
     products: Products<'b>,
     torque: Torque<'b>,
 }
 
-/// What the torque's error adds to a score.
+/// Contribution of the torque error to a score.
 enum Torque<'b> {
-    /// The line of the pair has no voltage.
+    /// None: the pair's line voltage is zero.
     Nothing,
-    /// The product of these.
+    /// The product of these factors.
     Factors(Products<'b>),
-    /// By the phase that is out: 1 the pair's line has the bus, -1 the bus reversed, 0 none.
+    /// The pair's line voltage by off phase: 1 the bus, -1 the bus reversed, 0 none.
     Lines([i32; 3]),
 }
 
-/// The weighing of all candidates.
+/// Scores of all candidates.
 pub(super) struct Weighing<'l, 'b> {
     l: &'l Lowering<'b>,
     u: Phases<'b, 3>,
@@ -44,18 +45,18 @@ pub(super) struct Weighing<'l, 'b> {
     changes: Option<&'l Changes<'b>>,
     commutating: Option<Flag<'b>>,
     pair_zero: Expr<'b>,
-    /// Leg a, leg b is off in the sector's pair.
+    /// Whether leg a, leg b is off in the sector's pair.
     is_out: [Flag<'b>; 2],
     k_weight: Coefficient,
-    /// Twice the line voltage that is asked of the sector's pair.
+    /// Twice the deadbeat line voltage of the sector's pair.
     twice_line: Expr<'b>,
 }
 
-/// A leg that is off beside a driven pair.
+/// An off leg beside a driven pair.
 #[derive(Clone, Copy)]
 struct Beside<'b> {
     terminal: Expr<'b>,
-    /// Twice that, less the bus; none midway.
+    /// Twice its terminal voltage less the bus; none if midway.
     offset: Option<Expr<'b>>,
 }
 
@@ -69,10 +70,10 @@ impl<'l, 'b> Weighing<'l, 'b> {
         changes: Option<&'l Changes<'b>>,
     ) -> Self {
         let (pair_zero, is_out) = zero_of_pair(l, front.sector);
-        // A weight needs few bits, and its product with 16-bit words has few to spare.
+        // A weight needs few bits, and products with 16-bit words have few to spare.
         let word = if options.common.word == 16 { 8 } else { 32 };
         let weight = 3.0 * options.torque_weight;
-        let doc = "Weight of the torque's error in scores.";
+        let doc = "Weight of the torque error in scores.";
         let physical = format!("3 torque_weight = {weight}");
         let k_weight = l.coefficient("k_torque_weight", weight, word, doc, &physical);
         let lines = LINES.map(|[x, y]| u.0[x] - u.0[y]);
@@ -111,7 +112,7 @@ impl<'l, 'b> Weighing<'l, 'b> {
         let three: Vec<Weighed<'b>> = std::iter::once(self.zero()).chain(of_gates).collect();
         let widths = three.iter().chain(&pairs).flat_map(Weighed::all_products);
         let widest = widths.chain(&terms).map(Products::bits).max();
-        // Three products of n + m - 1 bits at the most add up to two bits more.
+        // The sum of three products of at most n + m - 1 bits has two bits more.
         let shift = widest.unwrap_or(62).saturating_sub(30);
         l.product_format("score", shift, "products of two voltages in scores");
         let term = |k: usize, name: &str| terms[k].sum(shift).unwrap_or(bus).named(name);
@@ -128,12 +129,12 @@ impl<'l, 'b> Weighing<'l, 'b> {
         }
     }
 
-    /// The factors of the torque's term where the pair's line has that voltage.
+    /// Factors of the torque term for a line voltage of the pair.
     fn factors(&self, line: Expr<'b>) -> Products<'b> {
         Products(vec![[line, self.k_weight * (line - self.twice_line)]])
     }
 
-    /// What changes cost on top of a score over the bus.
+    /// A score over the bus plus the switching cost.
     fn with_changes(&self, along: Expr<'b>, number: usize) -> Expr<'b> {
         self.changes
             .map_or(along, |changes| along + changes.to(number))
@@ -164,7 +165,7 @@ impl<'l, 'b> Weighing<'l, 'b> {
         }
     }
 
-    /// The zero vector of the sector's pair: its line has no voltage.
+    /// The zero vector of the sector's pair: its line voltage is zero.
     fn pair_zero(&self) -> Weighed<'b> {
         let aside = self
             .off_legs
@@ -228,7 +229,7 @@ impl<'l, 'b> Weighing<'l, 'b> {
         }
     }
 
-    /// What the torque adds to a score.
+    /// The torque term of a score.
     fn term(
         &self,
         torque: &Torque<'b>,
@@ -249,7 +250,7 @@ impl<'l, 'b> Weighing<'l, 'b> {
         }
     }
 
-    /// The first of the least score.
+    /// The first vector of the least score.
     fn least(&self, list: Vec<Weighed<'b>>, shift: u32, terms: [Expr<'b>; 2]) -> Expr<'b> {
         let candidates = list.into_iter().map(|one| {
             let parts = [

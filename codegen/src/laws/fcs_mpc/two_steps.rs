@@ -1,7 +1,7 @@
 //! The choice over two periods (semantics, step 10h).
 //!
-//! Of all sequences of two vectors that begin with the same one, the best is told by geometry: what is left for the
-//! second period is the nearest vector to a known voltage. So a score per first vector remains, in place of their square.
+//! For each first vector the best second one follows from geometry: it is the nearest to a known
+//! voltage. So one score per first vector remains in place of one per sequence.
 
 use super::score::{Candidate, state_score_over_bus};
 use crate::blocks::Lowering;
@@ -10,7 +10,7 @@ use crate::laws::current_loop::{CurrentLoop, Front};
 use crate::laws::whole_vectors::{sixths, vector_legs};
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
-/// What first vectors are compared by.
+/// Quantities of the first vectors' scores.
 struct Sequences<'l, 'b> {
     l: &'l Lowering<'b>,
     with_pairs: bool,
@@ -19,7 +19,7 @@ struct Sequences<'l, 'b> {
     first: Expr<'b>,
     /// a V/6
     sixth: Expr<'b>,
-    /// The deadbeat voltage of the second period behind a zero vector.
+    /// Deadbeat voltage of the second period after a zero vector.
     y: Phases<'b, 3>,
     /// u + a y
     z: Phases<'b, 3>,
@@ -35,20 +35,19 @@ impl<'b> CurrentLoop<'_, 'b> {
         u: Phases<'b>,
     ) -> Expr<'b> {
         let (l, pole, word) = (self.l, self.design.plant.pole, self.options.word);
-        // What it is multiplied with has up to three bits more than a deadbeat voltage.
+        // Its signals have up to three bits more than a deadbeat voltage.
         let narrow = if word == 16 { 12 } else { word };
-        let doc = "Share of the current that is left after one period.";
+        let doc = "Pole of the plant: remainder of a current after one period.";
         let k_pole = l.coefficient("k_pole", pole, narrow, doc, &format!("a = {pole:.6}"));
         let doc = "Weight of the square of the first vector.";
         let k_first = l.coefficient("k_first", 1.0 + pole * pole, word, doc, "1 + a^2");
-        let doc =
-            "Effect of a sixth of the bus in the first period on the voltage wanted in the second.";
+        let doc = "Effect of a sixth of the bus in the first period on the deadbeat voltage of the second.";
         let k_sixth = l.coefficient("k_pole_sixth", pole / 6.0, word, doc, "a/6");
         l.b.stage(
             "second_period",
             &[
-                "The deadbeat voltage of the second period behind a zero vector, y = K (1 - a) i_ref + e + a u: reference and EMF are held.",
-                "A first vector v moves it by -a v. z = u + a y is what the first vector is compared with in both periods.",
+                "Deadbeat voltage of the second period after a zero vector, y = K (1 - a) i_ref + e + a u, with reference and EMF held.",
+                "A first vector v changes it by -a v; z = u + a y is the first vector's target over both periods.",
             ],
         );
         let reference = front.reference;
@@ -69,8 +68,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.b.stage(
             "best_sequence",
             &[
-                "Per first vector its own share of the score, and that of the best second vector: 0 of V0, over the bus 4 V - 12 y of the",
-                "nearest three-phase vector, 3 V - 6 line of the nearest pair. The least is taken, the first of equals.",
+                "Score of each first vector: its own part plus that of the best second vector, which over the bus is 0 for V0, 4 V - 12 y",
+                "for the nearest three-phase vector and 3 V - 6 line for the nearest pair. The least wins, the first on a tie.",
             ],
         );
         named! {
@@ -118,7 +117,7 @@ impl<'b> Sequences<'_, 'b> {
         best.vector
     }
 
-    /// F of a first vector; none for V0.
+    /// A first vector's own part of the score, F; none for V0.
     fn own_share(&self, number: usize) -> Option<Expr<'b>> {
         let legs = vector_legs()[number];
         let place = |sign: i32| legs.iter().position(|&leg| leg == sign);
@@ -136,7 +135,7 @@ impl<'b> Sequences<'_, 'b> {
         Some((self.first << 2) - twelve)
     }
 
-    /// The least B of a second vector behind the first one.
+    /// The best second vector's part of the score, B.
     fn share_ahead(&self, number: usize) -> Expr<'b> {
         let sixths = sixths(vector_legs()[number]);
         let left = Phases::<3>::each(|x| match sixths[x] {

@@ -1,8 +1,8 @@
-//! The choice where the cost has weights (semantics, step 10w).
+//! The choice with weights in the cost (semantics, step 10w).
 //!
-//! A weight of switching alone is folded as the plain choice is: over the three-phase set it gives each leg's sign a
-//! hysteresis, and of two pair vectors with the same leg off the better one is told exactly. The weight of the torque
-//! couples the legs: its list is enumerated ([`super::torque`]).
+//! A switching weight alone keeps the geometric choice: in the three-phase set it gives each leg's sign
+//! a hysteresis, and the better of two pair vectors with the same leg off is exact. A torque weight
+//! couples the legs, so the vectors are enumerated ([`super::torque`]).
 
 use super::changes::Changes;
 use super::choose::nearest_physical;
@@ -29,7 +29,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let volts = volts / l.spec.inverter.v_bus;
             Changes::new(l, memory, volts, options.switching_weight)
         });
-        let doc = "The deadbeat voltage of the third phase.";
+        let doc = "Third phase of the deadbeat voltage.";
         l.b.stage("third_phase", &[doc]);
         let u = pair.with_c("u_unsat");
         let off_legs = self.predict_off_legs(options, front, pair);
@@ -41,8 +41,8 @@ impl<'b> CurrentLoop<'_, 'b> {
                 }
                 changes => {
                     let doc = [
-                        "The scores 6 (|v|^2 - 2 u v) of the list, with what the error along the sector's mean EMF, the line of its pair, weighs",
-                        "on top. Each is a sum of products; the least is taken, the first of equals.",
+                        "Scores 6 (|v|^2 - 2 u v) of all vectors plus the weighted error along the sector's mean EMF, the line of its pair.",
+                        "Each is a sum of products; the least wins, the first on a tie.",
                     ];
                     l.b.stage("weigh_candidates", &doc);
                     let changes = changes.as_ref();
@@ -55,7 +55,7 @@ impl<'b> CurrentLoop<'_, 'b> {
 }
 
 impl<'b> Changes<'b> {
-    /// The folded choice, with a weight of switching alone.
+    /// The geometric choice, with a switching weight only.
     fn fewest(
         &self,
         l: &Lowering<'b>,
@@ -88,8 +88,8 @@ impl<'b> Changes<'b> {
         l.b.stage(
             "nearest_vector",
             &[
-                "The three-phase vector of least cost: a leg is high where twelve times its phase voltage gains more than its change costs",
-                "over staying low. Not all three can be: then the one that gains least is not. V0 while the gains are at most four times the bus.",
+                "The three-phase vector of least cost: a leg is high if twelve times its phase voltage exceeds the cost of high over low.",
+                "If all three would be high, the one of the least gain is low. V0 while the gains are at most four times the bus.",
             ],
         );
         named! {
@@ -123,7 +123,8 @@ impl<'b> Changes<'b> {
         }
     }
 
-    /// The best pair vector with off legs midway, against the zero vector or the best of V0 to V6: exactly, over the bus.
+    /// The best pair vector with off legs midway, against the zero vector or the best of V0 to V6, by exact
+    /// scores over the bus.
     fn nearest_exact(
         &self,
         l: &Lowering<'b>,
@@ -131,7 +132,7 @@ impl<'b> Changes<'b> {
         u: Phases<'b, 3>,
         three_phase: Option<Candidate<'b>>,
     ) -> Expr<'b> {
-        let doc = "The pair vector of least cost against the vector without a pair. Ties go to the vector that stands first in V12 to V61.";
+        let doc = "The pair vector of least cost, or the vector without a pair. Ties go to the first of V12 to V61.";
         l.b.stage("nearest_pair", &[doc]);
         let candidates = PAIRS.into_iter();
         let candidates =

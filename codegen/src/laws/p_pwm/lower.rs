@@ -1,9 +1,11 @@
-//! Proportional control as IR: the shared step, a gain, the voltage limit and the modulator.
+//! Proportional control as a program: the shared step, a gain, the voltage limit and the modulator.
 
 use crate::blocks::set_point::Gain;
 use crate::blocks::{Hexagon, Modulator, Priority, Scale};
 use crate::ir::named;
-use crate::laws::current_loop::{CurrentLoop, EmfUse, LoopDesign, Needs, asked_for, lower_with};
+use crate::laws::current_loop::{
+    CurrentLoop, EmfUse, LoopDesign, Needs, lower_with, unlimited_voltage,
+};
 use crate::scaling::Lowered;
 use crate::spec::{PPwmSpec, Spec};
 
@@ -36,7 +38,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         named! {
             let p = front.reference + k_drop * front.currents.pair();
         }
-        let u = asked_for(l, front.e.map_or(p, |e| p + e));
+        let u = unlimited_voltage(l, front.e.map_or(p, |e| p + e));
         let emf = front.e.map(|e| move || e);
         let hexagon = Hexagon {
             bus: front.bus,

@@ -64,7 +64,7 @@ impl Law for PPwmSpec {
         Cause {
             field: "bandwidth",
             value: engineering(self.bandwidth, "Hz"),
-            remedy: "choose a lower one or a shorter control period",
+            remedy: "choose a lower bandwidth or a shorter control period",
         }
     }
 

@@ -1,4 +1,4 @@
-//! Predictive deadbeat control as IR: the shared step, the voltage limit and the modulator.
+//! Predictive deadbeat control as a program: the shared step, the voltage limit and the modulator.
 
 use crate::blocks::set_point::Gain;
 use crate::blocks::{Hexagon, Modulator, Priority, Scale};
@@ -9,11 +9,11 @@ use crate::laws::current_loop::{
 use crate::scaling::Lowered;
 use crate::spec::{Modulation, PdccSpec, Spec};
 
-/// Where the limit finds the EMF.
+/// Source of the EMF for the voltage limit.
 enum LimitEmf<'b> {
-    /// In the folded words: it is worked out where the limit acts.
+    /// The folded words, from which it is computed if the limit acts.
     Held(Held<'b>),
-    /// Here.
+    /// A computed EMF.
     Known(Phases<'b>),
 }
 
@@ -46,7 +46,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let hexagon = Hexagon {
             bus: front.bus,
             third: front.third,
-            // Of a pair the centred voltages are needed as they are, and of a measured bus before their scaling.
+            // A pair needs the centred voltages themselves, a measured bus those before scaling.
             lifts: !pair && front.bus.ratio.is_none(),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);

@@ -24,9 +24,9 @@ impl LinearLoop for DeadbeatLoop<'_> {
         let Self { options, design } = *self;
         let share = match options.common.emf {
             EmfSource::Estimated => options.common.emf_filter,
-            // Folded or not, it is the same loop.
+            // Folding does not change the loop.
             EmfSource::Held => 1.0,
-            // At standstill what the model lacks is all that is seen.
+            // At standstill the modelled EMF is 0, so the integral alone holds the EMF.
             EmfSource::Model if options.integral => EMF_INTEGRAL_SHARE,
             EmfSource::Model => 0.0,
         };

@@ -1,4 +1,4 @@
-//! What the documentation of the type says of the method, and its switching table.
+//! Documentation of the method, and its switching table.
 
 use super::table::switching_table;
 use crate::diagnostics::engineering;
@@ -29,10 +29,10 @@ pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> 
     let table = switching_table(options, spec.motor.emf_shape);
     let mut notes = vec![
         format!(
-            "Two bands of {} around the reference, on alpha and beta, with memory: each axis asks for a rise (1) or a fall (0) of",
+            "Two hysteresis bands of {} around the reference, on alpha and beta: each axis demands a rise (1) or a fall (0) of",
             engineering(options.band, "A")
         ),
-        "the current predicted for the end of the period, and a table gives the vector.".to_owned(),
+        "the predicted current, and a table gives the vector.".to_owned(),
         format!(
             "One three-phase vector moves the current by at most {} per period.",
             engineering(stride, "A")
@@ -43,7 +43,7 @@ pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> 
     for (set, title) in SETS.iter().enumerate() {
         notes.extend([
             String::new(),
-            format!("Switching table, {title}; columns (alpha, beta), 0 is the zero vector of the sector's pair, its third leg off:"),
+            format!("Switching table, {title}; columns (alpha, beta); 0 is the zero vector of the sector's pair, third leg off:"),
             String::new(),
             "| sector | commutation 11 | 10 | 01 | 00 | otherwise 11 | 10 | 01 | 00 |".to_owned(),
             "|---|---|---|---|---|---|---|---|---|".to_owned(),
@@ -78,11 +78,11 @@ pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> 
 fn origin(table: SwitchingTable) -> &'static str {
     match table {
         SwitchingTable::Derived => {
-            "The table is derived from the geometry of the vectors: an entry is the vector nearest to the EMF plus what the wish adds."
+            "The table is derived from the geometry of the vectors: an entry is the vector nearest to the EMF plus the demanded change."
         }
         SwitchingTable::Printed => {
-            "The motoring rows are those that the paper prints for sector 1, turned through the sectors. They select vectors that\nmove the axes the wrong way: the current is lost at speed. For study only."
+            "The motoring rows are the paper's printed row of sector 1, turned through the sectors. They select vectors that\nmove the axes the wrong way: the current is lost at speed. For study only."
         }
-        SwitchingTable::Given(_) => "The motoring rows are those that the specification gives.",
+        SwitchingTable::Given(_) => "The motoring rows are those of the specification.",
     }
 }

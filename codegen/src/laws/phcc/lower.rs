@@ -1,4 +1,5 @@
-//! Predictive hysteresis control as IR: the shared step, the predicted error, two bands and a table.
+//! Predictive hysteresis control as a program: the shared step, the predicted error, two bands and a
+//! table.
 
 use super::table::{
     BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
@@ -9,7 +10,7 @@ use crate::blocks::{Lowering, Scale};
 use crate::diagnostics::engineering;
 use crate::ir::{Expr, Flag, Interval, Memory, Named, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, EmfUse, Front, LoopDesign, Needs, lower_with};
-use crate::laws::whole_vectors::{Choices, Numbers, WISHES};
+use crate::laws::whole_vectors::{Choices, HYSTERESIS_STATES, Numbers};
 use crate::scaling::Lowered;
 use crate::spec::{EmfShape, PhccCandidates, PhccSpec, Spec};
 
@@ -35,7 +36,7 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
                 memory: 0,
             },
         };
-        // Where a table has what a vector leaves to the next error, what its wishes leave goes into that.
+        // Tables of the vector's contribution to the next error include the hysteresis memory.
         let folds = step.tables_left_over();
         if folds {
             step.needs.memory = bands[1] + 1;
@@ -45,13 +46,13 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
         let axes = [0, 1].map(|axis| {
             let ((name, memory), band) = (axes[axis], bands[axis]);
             let memory = (!folds).then(|| {
-                let doc = "Memory of the axis, added to its error: half the band while its component shall rise, one word more and negative while it shall fall; 0 while it has no wish.";
+                let doc = "Hysteresis memory of the axis, added to its error: half the band after a rise was demanded, minus that and one word more after a fall; 0 at rest.";
                 l.b.memory(memory, 0, Interval::new(-band - 1, band), doc)
             });
             Axis { name, band, memory }
         });
         let q = step.predicted_error(&front);
-        let wishes = compare_with_bands(l, options, design, q, axes);
+        let outputs = compare_with_bands(l, options, design, q, axes);
         let pairs = options.candidates == PhccCandidates::Table2;
         let numbers = match (folds, pairs) {
             (true, pairs) => Numbers::Choices(Choices {
@@ -61,26 +62,26 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
             (false, true) => Numbers::Vectors,
             (false, false) => Numbers::WithoutPairs,
         };
-        let falls = wishes.map(|wish| wish.falls);
+        let falls = outputs.map(|output| output.falls);
         let number = look_up(l, options, &front, falls, numbers);
-        let remembered = wishes.into_iter().filter_map(|wish| wish.remembered);
+        let remembered = outputs.into_iter().filter_map(|output| output.remembered);
         step.apply_vector(&front, number, numbers, remembered.collect());
     })
 }
 
-/// What wishes add to the next errors of phases a and b, words of voltage: alpha's memory to a; to b half of what beta's
-/// exceeds that by, as beta is 2 b + a.
-fn folded_memory(bands: [i64; 2]) -> [[i64; 2]; WISHES] {
-    std::array::from_fn(|wishes| {
-        let falls = [0, 1].map(|axis| wishes >> axis & 1 == 1);
-        let [alpha, beta] = [0, 1].map(|axis| wish(bands[axis], falls[axis]));
-        // Not a word beyond the band, where the difference is odd.
+/// Hysteresis memory in the next errors of phases a and b, words of voltage: alpha's in a, half of
+/// beta's less alpha's in b, since beta is 2 b + a.
+fn folded_memory(bands: [i64; 2]) -> [[i64; 2]; HYSTERESIS_STATES] {
+    std::array::from_fn(|state| {
+        let falls = [0, 1].map(|axis| state >> axis & 1 == 1);
+        let [alpha, beta] = [0, 1].map(|axis| memory_of(bands[axis], falls[axis]));
+        // An odd difference is rounded towards the band's centre.
         [alpha, (beta - alpha + i64::from(falls[1])) >> 1]
     })
 }
 
-/// What an axis adds to its next error, words of voltage; `band` is half of it.
-fn wish(band: i64, falls: bool) -> i64 {
+/// Hysteresis memory of an axis with half the band `band`, words of voltage.
+fn memory_of(band: i64, falls: bool) -> i64 {
     if falls { -band - 1 } else { band }
 }
 
@@ -92,8 +93,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             l.b.stage(
                 "predict_error",
                 &[
-                    "Error of the current predicted for the end of this period, as a voltage: K (i_ref - i(k+1)) with the estimate",
-                    "(9) put into the prediction (7) and the terms collected by their age: K i_ref + k_now i + due.",
+                    "Error of the current predicted for the end of this period, as a voltage: K (i_ref - i(k+1)) with estimate (9)",
+                    "and prediction (7) substituted and the terms collected by age: K i_ref + k_now i + due.",
                 ],
             );
             return deviation(l, held.sum(reference));
@@ -108,7 +109,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                     1.0
                 },
             self.options.word,
-            "Remainder of the present current when the vector takes effect, as the voltage K i.",
+            "Weight of the present current in the predicted error.",
             [if is_delayed { "K a" } else { "K" }, "V/A"],
         );
         let doc: &[&str] = if is_delayed {
@@ -129,7 +130,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     }
 }
 
-/// Names the predicted error of phases a and b, and states its own.
+/// Names the predicted error of phases a and b, and states its error bound.
 fn deviation<'b>(l: &Lowering<'b>, error: Phases<'b>) -> Phases<'b> {
     let doc = "Predicted error of a phase current, as the voltage K (i_ref - i)";
     l.state_phase_volts("deviation", error, doc);
@@ -145,32 +146,32 @@ struct Axis<'b> {
     name: &'static str,
     /// Half its band, words of voltage.
     band: i64,
-    /// What is added to its error, unless that is folded into what is due.
+    /// Memory added to its error, unless folded into `due`.
     memory: Option<Memory<'b>>,
 }
 
-/// What an axis asks for, and what it remembers of that.
+/// Output of an axis' hysteresis, and its new memory.
 #[derive(Clone, Copy)]
-struct Wish<'b> {
-    /// Its component shall fall.
+struct Output<'b> {
+    /// Whether the component is to fall.
     falls: Flag<'b>,
     remembered: Option<(Memory<'b>, Expr<'b>)>,
 }
 
-/// The wishes of the two axes.
+/// Hysteresis outputs of the two axes.
 fn compare_with_bands<'b>(
     l: &Lowering<'b>,
     options: &PhccSpec,
     design: &LoopDesign,
     q: Phases<'b>,
     axes: [Axis<'b>; 2],
-) -> [Wish<'b>; 2] {
+) -> [Output<'b>; 2] {
     let doc = [
-        "Each axis asks for a rise or a fall of its component once the error leaves the band, and keeps asking: while it asks",
-        "for a rise, an error down to the band's lower edge will do, otherwise it takes one above the upper edge. An axis",
-        "that comes from rest goes by the sign. Beta is taken times the square root of 3: (b - c) = 2 b + a.",
+        "Hysteresis of alpha and beta: an axis demands a rise once its error exceeds the band's upper edge, and a fall once it",
+        "is below the lower edge; in between the last demand stays. After rest the sign of the error decides. Beta is scaled",
+        "by the square root of 3: (b - c) = 2 b + a.",
         "",
-        "An error already holds the memory of the last wish, with what is due to it, so that its sign decides.",
+        "The error includes the hysteresis memory (in `due`), so that its sign decides.",
     ];
     let is_folded = axes[0].memory.is_none();
     l.b.stage(
@@ -180,18 +181,18 @@ fn compare_with_bands<'b>(
     named! {
         let q_beta = (q.b() << 1) + q.a();
     }
-    // Alpha, phase a itself, is less far off.
-    let doc = "Predicted error of the current on alpha and beta, which is compared with the band";
+    // Alpha, phase a itself, has the smaller error.
+    let doc = "Predicted current error on alpha and beta, compared with the band";
     let word = 1.0 / (l.scale.voltage() * design.k_di * 3.0_f64.sqrt());
     l.b.state_error("current", q_beta, [doc, "A"], word);
-    [0, 1].map(|x| axes[x].wish(l, options, [q.a(), q_beta][x]))
+    [0, 1].map(|x| axes[x].compare(l, options, [q.a(), q_beta][x]))
 }
 
 impl<'b> Axis<'b> {
-    fn wish(self, l: &Lowering<'b>, options: &PhccSpec, error: Expr<'b>) -> Wish<'b> {
+    fn compare(self, l: &Lowering<'b>, options: &PhccSpec, error: Expr<'b>) -> Output<'b> {
         let falls = |error: Expr<'b>| error.is_below(0).named(&format!("{}_falls", self.name));
         let Some(memory) = self.memory else {
-            return Wish {
+            return Output {
                 falls: falls(error),
                 remembered: None,
             };
@@ -200,24 +201,24 @@ impl<'b> Axis<'b> {
         let falls = falls(lifted.named(&format!("lifted_{}", self.name)));
         let half = engineering(options.band, "A");
         let band = format!("band_{}", self.name);
-        let doc = format!("Half width of the band of {half} as a voltage");
-        let above = l.voltage(&band, wish(self.band, false), &doc);
-        let doc =
-            format!("Half width of the band of {half} and one word more, negative, as a voltage");
-        let below = l.voltage(&format!("{band}_below"), wish(self.band, true), &doc);
+        let doc = format!("Half the band, {half}, as a voltage");
+        let above = l.voltage(&band, memory_of(self.band, false), &doc);
+        let doc = format!("Half the band, {half}, plus one word, negative, as a voltage");
+        let below = l.voltage(&format!("{band}_below"), memory_of(self.band, true), &doc);
         let next = falls.choose(below, above);
         let next = next.named(&format!("memory_{}", self.name));
-        Wish {
+        Output {
             falls,
             remembered: Some((memory, next)),
         }
     }
 }
 
-/// Entries of the switching table, as the numbers that the law works with.
+/// Entries of the switching table in the law's numbering.
 fn entries(options: &PhccSpec, shape: EmfShape, numbers: Numbers) -> Vec<i32> {
     let sets = switching_table(options, shape);
-    // Direction unknown, forward, none, backward (the index wraps); then a set-point of 0 and more, and one below.
+    // Direction unknown, forward, unused, backward (the index wraps); each for a set-point of at least 0
+    // and for a negative one.
     [
         [BRAKING_FORWARD; 2],
         [MOTORING_FORWARD, BRAKING_FORWARD],
@@ -226,21 +227,25 @@ fn entries(options: &PhccSpec, shape: EmfShape, numbers: Numbers) -> Vec<i32> {
     ]
     .iter()
     .flatten()
-    .flat_map(|&set| sets[PER_SET * set..][..PER_SET].as_chunks::<WISHES>().0)
-    // A sign bit is 1 where an axis shall fall.
+    .flat_map(|&set| {
+        sets[PER_SET * set..][..PER_SET]
+            .as_chunks::<HYSTERESIS_STATES>()
+            .0
+    })
+    // A bit of the index is 1 if the axis is to fall.
     .flat_map(|&[both_fall, beta_rises, alpha_rises, both_rise]| {
         let vectors = [both_rise, beta_rises, alpha_rises, both_fall];
         match numbers {
-            Numbers::Choices(_) => {
-                std::array::from_fn(|wishes| vectors[wishes] * WISHES as i32 + wishes as i32)
-            }
+            Numbers::Choices(_) => std::array::from_fn(|state| {
+                vectors[state] * HYSTERESIS_STATES as i32 + state as i32
+            }),
             _ => vectors,
         }
     })
     .collect()
 }
 
-/// The vector that the switching table holds for sector, commutation and wishes, as a number.
+/// The entry of the switching table, by direction, set-point, sector, commutation and hysteresis.
 fn look_up<'b>(
     l: &Lowering<'b>,
     options: &PhccSpec,
@@ -250,28 +255,25 @@ fn look_up<'b>(
 ) -> Expr<'b> {
     let entries = entries(options, l.spec.motor.emf_shape, numbers);
     let (what, name) = match numbers {
-        Numbers::Choices(_) => (
-            "4 vector + 2 if beta shall fall + 1 if alpha shall",
-            "choice",
-        ),
+        Numbers::Choices(_) => ("4 vector + 2 if beta is to fall + 1 if alpha is", "choice"),
         _ => ("Vector", "vector"),
     };
     let table = l.b.table(
         "switching",
         entries,
         &[
-            format!("{what}, by the sum of 128 direction (modulo the table's length), 64 if the set-point is negative, 8 sector,"),
-            "4 if it commutates, 2 if beta shall fall, 1 if alpha shall.".to_owned(),
+            format!("{what}, by 128 direction (modulo the table's length) + 64 if the set-point is negative + 8 sector"),
+            "+ 4 in commutation + 2 if beta is to fall + 1 if alpha is.".to_owned(),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );
     l.b.stage(
         "look_up_vector",
-        &["The switching table: rows by direction, sign of the set-point, sector and commutation, columns by the wishes."],
+        &["Vector from the switching table, by direction, sign of the set-point, sector, commutation and hysteresis."],
     );
     let negative = front.set_point.is_below(0);
     let row = front.sector << 3;
-    // Without a commutation no direction is known.
+    // Without commutation the direction is not known.
     let row = match front.commutation {
         Some(commutation) => (commutation.direction << 7) + row + (commutation.word << 2),
         None => row,

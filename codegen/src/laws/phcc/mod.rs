@@ -12,8 +12,8 @@ use crate::blocks::Scale;
 use crate::scaling::Lowered;
 use crate::spec::{PhccCandidates, PhccSpec, Spec, SwitchingTable};
 
-/// Part of the bus that the line EMF has where a derived switching table without floating legs was designed: with more,
-/// the vectors that it chooses no longer move the current as they should.
+/// Line EMF over the bus at which derived switching tables without floating legs are designed; above
+/// it their vectors no longer move the current as intended.
 const TABLE_EMF: f64 = 0.75;
 
 impl Law for PhccSpec {
@@ -42,7 +42,7 @@ impl Law for PhccSpec {
             part_of_bus: match (self.table, self.candidates) {
                 (SwitchingTable::Derived, PhccCandidates::ThreePhase) => TABLE_EMF,
                 (SwitchingTable::Derived, _) => 1.0,
-                // What a table that is given does says no derivation.
+                // A table from the specification is not analysed.
                 _ => 0.0,
             },
             current: self.band,

@@ -10,13 +10,13 @@ use std::f64::consts::TAU;
 /// Sets of rows.
 const SETS: usize = 4;
 
-/// Number of the set for torque and rotation forward.
+/// Set for torque and rotation forward.
 pub const MOTORING_FORWARD: usize = 0;
-/// Number of the set for torque and rotation backward.
+/// Set for torque and rotation backward.
 pub const MOTORING_BACKWARD: usize = 1;
-/// Number of the set for torque against forward rotation, or where the rotation is not known yet.
+/// Set for torque against forward rotation, or an unknown rotation.
 pub const BRAKING_FORWARD: usize = 2;
-/// Number of the set for torque against backward rotation.
+/// Set for torque against backward rotation.
 pub const BRAKING_BACKWARD: usize = 3;
 
 /// Entries of a sector.
@@ -25,13 +25,13 @@ const PER_SECTOR: usize = 8;
 /// Entries of a set.
 pub const PER_SET: usize = 64;
 
-/// What a set is designed for. Voltages in units of the bus.
+/// Design point of a set; voltages in units of the bus.
 struct Design {
-    /// EMF across the sector's pair at its centre, and the weight of a wish, in commutation.
+    /// Line EMF of the sector's pair at its centre, and the weight of a demand, in commutation.
     switched: (f64, f64),
-    /// The same otherwise.
+    /// The same outside commutation.
     conducting: (f64, f64),
-    /// Angle behind the sector's beginning for which commutation rows are designed, radians.
+    /// Angle after the sector's beginning for which commutation rows are designed, radians.
     entry: f64,
 }
 
@@ -42,14 +42,14 @@ const MOTORING: Design = Design {
     entry: TAU / 40.0,
 };
 
-/// Any speed: at rest only the reverse of a pair brakes, so its zero is never chosen.
+/// Any speed: at rest only a pair's reverse brakes, so its zero is never chosen.
 const BRAKING: Design = Design {
     switched: (0.3, 0.4),
     conducting: (0.0, 0.9),
     entry: TAU / 12.0,
 };
 
-/// Differences that count as none.
+/// Differences that count as zero.
 const TIE: f64 = 1e-9;
 
 /// Entries of one set: sector 1 to 6, commutating, 2 H_a + H_b.
@@ -64,7 +64,7 @@ pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
         SwitchingTable::Printed => printed(),
         SwitchingTable::Given(numbers) => std::array::from_fn(|k| {
             std::array::from_fn(|state| {
-                std::array::from_fn(|wish| numbers[8 * k + 4 * state + wish])
+                std::array::from_fn(|demand| numbers[8 * k + 4 * state + demand])
             })
         }),
     };
@@ -81,9 +81,9 @@ pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
     table
 }
 
-/// Direction that a wish 2 H_a + H_b asks for.
-fn direction(wish: usize) -> Vector2<f64> {
-    let sign = |bit: usize| if wish & bit == 0 { -1.0 } else { 1.0 };
+/// Direction of the demand 2 H_a + H_b.
+fn direction(demand: usize) -> Vector2<f64> {
+    let sign = |bit: usize| if demand & bit == 0 { -1.0 } else { 1.0 };
     Vector2::new(sign(2), sign(1))
 }
 
@@ -98,26 +98,26 @@ fn derive(candidates: PhccCandidates, shape: EmfShape, design: &Design) -> Rows 
             .zip(SECTOR_CURRENT[k])
             .map(|(f, sign)| f * f64::from(sign))
             .sum();
-        let three_phase = |theta: f64, (share, weight): (f64, f64), wish| {
+        let three_phase = |theta: f64, (share, weight): (f64, f64), demand| {
             let [a, b, c] = phases(theta);
-            nearest(clarke(a, b, c) * (share / line) + weight * direction(wish))
+            nearest(clarke(a, b, c) * (share / line) + weight * direction(demand))
         };
         [0, 1].map(|commutating| {
-            std::array::from_fn(|wish| {
+            std::array::from_fn(|demand| {
                 if commutating == 1 {
-                    three_phase(start + design.entry, design.switched, wish)
+                    three_phase(start + design.entry, design.switched, demand)
                 } else if candidates == PhccCandidates::ThreePhase {
-                    three_phase(centre, design.conducting, wish)
+                    three_phase(centre, design.conducting, demand)
                 } else {
                     let (share, weight) = design.conducting;
-                    along_pair(k, share, weight * direction(wish))
+                    along_pair(k, share, weight * direction(demand))
                 }
             })
         })
     })
 }
 
-/// Of V0 to V6 the one nearest to `u`, in units of the bus.
+/// The nearest of V0 to V6 to `u`, in units of the bus.
 fn nearest(u: Vector2<f64>) -> u8 {
     let legs = vector_legs();
     let distance = |vector: u8| (leg_vector(legs[usize::from(vector)], 1.0) - u).norm_squared();
@@ -130,11 +130,11 @@ fn nearest(u: Vector2<f64>) -> u8 {
     })
 }
 
-/// The pair vector of sector S_(k+1), its reverse or its zero, by the motion along its line.
-fn along_pair(k: usize, share: f64, wish: Vector2<f64>) -> u8 {
+/// The pair vector of sector S_(k+1), its reverse or its zero, by the demand along its line.
+fn along_pair(k: usize, share: f64, demand: Vector2<f64>) -> u8 {
     let pair = 7 + k as u8;
     let line = leg_vector(vector_legs()[usize::from(pair)], 1.0).normalize();
-    let wanted = share + 3.0_f64.sqrt() * line.dot(&wish);
+    let wanted = share + 3.0_f64.sqrt() * line.dot(&demand);
     if wanted > 0.5 + TIE {
         pair
     } else if wanted < -0.5 - TIE {
@@ -144,7 +144,7 @@ fn along_pair(k: usize, share: f64, wish: Vector2<f64>) -> u8 {
     }
 }
 
-/// The paper's row of sector 1, turned through the sectors.
+/// The paper's printed row of sector 1, turned through the sectors.
 fn printed() -> Rows {
     std::array::from_fn(|k| {
         let three = |number: usize| 1 + (number % 6) as u8;
@@ -166,9 +166,9 @@ fn mirrored(rows: &Rows) -> Rows {
     };
     let mut mirror = *rows;
     for (k, states) in rows.iter().enumerate() {
-        for (state, wishes) in states.iter().enumerate() {
-            for (wish, &vector) in wishes.iter().enumerate() {
-                mirror[(6 - k) % 6][state][wish ^ 1] = swap(vector);
+        for (state, vectors) in states.iter().enumerate() {
+            for (demand, &vector) in vectors.iter().enumerate() {
+                mirror[(6 - k) % 6][state][demand ^ 1] = swap(vector);
             }
         }
     }
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_turn_reverses_every_wish_and_vector() {
+    fn half_a_turn_reverses_every_demand_and_vector() {
         for design in [&MOTORING, &BRAKING] {
             for candidates in [PhccCandidates::Table2, PhccCandidates::ThreePhase] {
                 for shape in [TRAPEZOID, EmfShape::Sinusoidal] {
@@ -210,7 +210,7 @@ mod tests {
                     let entries = |k: usize| rows[k].iter().flatten().copied();
                     for k in 0..3 {
                         for (entry, here) in entries(k).enumerate() {
-                            // The opposite wish of the same state: bits 0 and 1 of the index.
+                            // The opposite demand in the same state: bits 0 and 1 of the index.
                             let there = entries(k + 3).nth(entry ^ 3);
                             let reversed = there.map(|vector| match vector {
                                 1..=6 => 1 + (vector + 2) % 6,

@@ -1,4 +1,4 @@
-//! PI control as IR: the shared step, two regulators, the voltage limit and the modulator.
+//! PI control as a program: the shared step, two regulators, the voltage limit and the modulator.
 
 use crate::blocks::set_point::Gain;
 use crate::blocks::{
@@ -6,18 +6,18 @@ use crate::blocks::{
 };
 use crate::ir::{Coefficient, Expr, Interval, named};
 use crate::laws::current_loop::{
-    CurrentLoop, EmfUse, Front, LoopDesign, Needs, asked_for, kept, lower_with, read,
+    CurrentLoop, EmfUse, Front, LoopDesign, Needs, kept, lower_with, read, unlimited_voltage,
 };
 use crate::scaling::Lowered;
 use crate::spec::{PiPwmSpec, Spec};
 
-/// What the stage that integrates is about.
+/// Documentation of the integrating stage.
 const INTEGRATION: &[&str] = &[
-    "Integration and tracking anti-windup with one time constant: s + k_i (p + v - u) with u = p + s + e the voltage asked",
-    "for and v what the limit left of it, so the integral part follows v - e.",
+    "Integration and tracking anti-windup with one time constant: s + k_i (p + v - u) with u = p + s + e the voltage before",
+    "the limit and v the limited one, so the integral part tracks v - e.",
 ];
 
-/// What the integral part is whose error is stated.
+/// Documentation of the integral part's error.
 const INTEGRAL: &str = "Integral part after one step";
 
 /// Lowers the controller at a scale.
@@ -68,7 +68,7 @@ struct Regulator<'l, 'b> {
     gain: f64,
     /// Range of the integral part.
     range: Interval,
-    /// -k_p, by which a product is added in one instruction.
+    /// -k_p, so that a multiply-accumulate adds its product.
     k_drop: Coefficient,
     k_i: Coefficient,
 }
@@ -82,7 +82,8 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let doc = "Weight of the present current: the proportional gain k_p = 2 pi f L, negative.";
         let k_drop = l.impedance("k_drop", -gain, word, doc, ["-k_p", "V/A"]);
         let share = options.integral_share(l.spec);
-        let doc = "Share of its distance that the integral part covers in one period, T_s/T_i.";
+        let doc =
+            "Share of its distance to v - e that the integral part covers in one period, T_s/T_i.";
         let k_i = l.coefficient("k_i", share, word, doc, &format!("T_s/T_i = {share:.6}"));
         Self {
             l,
@@ -99,7 +100,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let l = self.l;
         let doc = "Integral part of the regulator, words of voltage.";
         let memories = l.memories(["integral_a", "integral_b"], self.range, doc);
-        let doc = "PI regulator per phase: v = k_p (i_ref - i) + integral, and the EMF where it is fed forward.";
+        let doc = "PI regulator per phase: v = k_p (i_ref - i) + integral, plus the EMF if it is fed forward.";
         l.b.stage("regulate", &[doc]);
         let integral = read(memories);
         let drop = self.k_drop * front.currents.pair();
@@ -115,7 +116,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         }
         let asked = p + integral;
         let asked = front.e.map_or(asked, |e| asked + e);
-        let u = asked_for(l, asked);
+        let u = unlimited_voltage(l, asked);
         let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain));
         let emf = front.e.map(|e| move || e);
         let hexagon = Hexagon {
@@ -163,7 +164,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         named! {
             let u = part + integral;
         }
-        let doc = "Voltage of a winding that the law asks for, before the limit";
+        let doc = "Winding voltage before the limit";
         l.state_volts("voltage", u, doc);
         let line = limit_line(u << 1, front.bus);
         l.b.stage("integrate", INTEGRATION);
@@ -174,7 +175,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         l.state_volts("integral", integral_now, INTEGRAL);
         let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, self.gain));
         let doc =
-            "One leg of the pair pulsed, its partner low, the third off, in commutation as well.";
+            "One leg of the pair pulsed, its partner low, the third off; in commutation as well.";
         l.b.stage("modulate_pair", &[doc]);
         let modulator = Modulator {
             bus: front.bus,
@@ -194,9 +195,9 @@ impl<'l, 'b> Regulator<'l, 'b> {
     }
 }
 
-/// Where the integral part may lie: within the greatest bus. Without an EMF it cannot leave that, as a mean of itself and
-/// the limited voltage; the clamp is there for the proof then, and at the next power of two it takes one instruction
-/// where there is one that saturates.
+/// Range of the integral part: the largest bus. Without an EMF it cannot exceed that, as a mean of
+/// itself and the limited voltage; the clamp then serves the proof and is at the next power of two,
+/// for a saturating instruction.
 fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
     let bus = l.bus_interval().high;
     if options.feed_forward {

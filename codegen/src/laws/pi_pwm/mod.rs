@@ -32,7 +32,7 @@ impl Law for PiPwmSpec {
                     engineering(self.bandwidth, "Hz"),
                 ),
                 format!(
-                    "the integral time of {} (L/R = {}) cancels the winding's pole where the two are equal. The anti-windup tracks",
+                    "the integral time of {} cancels the winding's pole if it equals L/R = {}. The anti-windup tracks",
                     engineering(self.integral_time, "s"),
                     engineering(spec.motor.inductance / spec.motor.resistance, "s"),
                 ),
@@ -80,13 +80,13 @@ impl Law for PiPwmSpec {
             Cause {
                 field: "integral_time",
                 value: engineering(self.integral_time, "s"),
-                remedy: "choose a longer one, such as the default L/R",
+                remedy: "choose a longer integral time, such as the default L/R",
             }
         } else {
             Cause {
                 field: "bandwidth",
                 value: engineering(self.bandwidth, "Hz"),
-                remedy: "choose a lower one or a shorter control period",
+                remedy: "choose a lower bandwidth or a shorter control period",
             }
         }
     }
