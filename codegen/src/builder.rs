@@ -1,5 +1,5 @@
-//! Generation in build scripts: motor files in, one Rust file per motor out, or a header and a source
-//! in C99 per drive.
+//! Generation in build scripts: motor files in, one Rust file per motor out, or a header and a
+//! source in C99 per drive.
 //!
 //! The tokens are those of the macro; the file is formatted for readers.
 
@@ -28,8 +28,8 @@ use std::{env, fs, io};
 ///
 /// and in the crate: `include!(concat!(env!("OUT_DIR"), "/hub.rs"));`
 ///
-/// Without a call of `controller` a motor takes the controller of its file. With several controllers,
-/// each is a type of the same Rust file.
+/// Without a call of `controller` a motor takes the controller of its file. With several
+/// controllers, each is a type of the same Rust file.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
     root: PathBuf,
@@ -209,8 +209,8 @@ impl Builder {
         self
     }
 
-    /// Names the type of the last controller, or of the last motor's own one. The default name comes
-    /// from motor and variant: `HubPdccEmfModelAdvance2`.
+    /// Names the type of the last controller, or of the last motor's own one. The default name
+    /// comes from motor and variant: `HubPdccEmfModelAdvance2`.
     #[must_use]
     pub fn name(mut self, name: impl Into<String>) -> Self {
         let name = name.into();
@@ -247,17 +247,17 @@ impl Builder {
         self
     }
 
-    /// Writes C99 in place of Rust: the type `HubDrive` becomes `hub_drive.h` and `hub_drive.c`, the
-    /// same step bit for bit, beside the shared runtime `hexagen.h` and `hexagen.c`, which is compiled
-    /// once.
+    /// Writes C99 in place of Rust: the type `HubDrive` becomes `hub_drive.h` and `hub_drive.c`,
+    /// the same step bit for bit, beside the shared runtime `hexagen.h` and `hexagen.c`, which is
+    /// compiled once.
     #[must_use]
     pub fn c99(mut self) -> Self {
         self.language = Language::C99;
         self
     }
 
-    /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`. Prints
-    /// the files to watch and the warnings for cargo.
+    /// Generates everything and writes one file per motor: `motors/hub.toml` becomes `hub.rs`.
+    /// Prints the files to watch and the warnings for cargo.
     ///
     /// # Errors
     /// A call without a motor; motors with the same output file; all errors of all specifications,
@@ -336,8 +336,8 @@ fn file_name(motor: &str) -> PathBuf {
     Path::new(stem).with_extension("rs")
 }
 
-/// Checks that each motor has its own Rust file. Names that differ only in case are one file on some
-/// systems.
+/// Checks that each motor has its own Rust file. Names that differ only in case are one file on
+/// some systems.
 fn check_files(motors: &[Motor]) -> Result<(), BuildError> {
     let mut files: BTreeMap<String, &str> = BTreeMap::new();
     for motor in motors {

@@ -1,10 +1,11 @@
 //! Expansion of the macros: tokens in, tokens out, errors as `compile_error!`, warnings as compiler
 //! warnings.
 //!
-//! Macros write constants by value, which compiles faster; files by name. They differ in nothing else.
+//! Macros write constants by value, which compiles faster; files by name. They differ in nothing
+//! else.
 //!
-//! On errors the type is emitted as an empty shape with every method and constant, so that the compiler
-//! reports the errors of the specification only.
+//! On errors the type is emitted as an empty shape with every method and constant, so that the
+//! compiler reports the errors of the specification only.
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::module_name;
@@ -102,8 +103,8 @@ fn surface(input: &MacroInput) -> Surface {
     }
 }
 
-/// Makes the compiler rebuild the crate when the motor file changes. The path is relative to the crate,
-/// so that the output does not depend on the crate's place.
+/// Makes the compiler rebuild the crate when the motor file changes. The path is relative to the
+/// crate, so that the output does not depend on the crate's place.
 fn track(file: &MotorFile) -> TokenStream {
     let path = &file.path;
     quote! {
@@ -111,8 +112,8 @@ fn track(file: &MotorFile) -> TokenStream {
     }
 }
 
-/// The type under the given name, with every trait and constant of its options: the example's drive,
-/// which never runs, since the crate does not compile.
+/// The type under the given name, with every trait and constant of its options: the example's
+/// drive, which never runs, since the crate does not compile.
 fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
     let is = |section: &crate::spec::ast::Section, field: &str, word: &str| {
         section
@@ -210,7 +211,8 @@ mod tests {
         format_rust(&replaced(file.to_token_stream(), &values))
     }
 
-    /// Replaces constants by their values, except at definitions: associated constants have the same names.
+    /// Replaces constants by their values, except at definitions: associated constants have the
+    /// same names.
     fn replaced(tokens: TokenStream, values: &HashMap<String, TokenStream>) -> TokenStream {
         let mut is_definition = false;
         let replace = |token: TokenTree| {

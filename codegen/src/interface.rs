@@ -1,5 +1,5 @@
-//! The emitters' input besides the verified graph: names, documentation and constants, without types of
-//! the specification.
+//! The emitters' input besides the verified graph: names, documentation and constants, without
+//! types of the specification.
 
 /// A value shown to the user as an associated constant of the emitted type.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +105,8 @@ pub struct Interface {
     pub delay: u32,
     /// Whether `step` takes `hall_ticks`.
     pub timer_capture: bool,
-    /// Periods without a call of `set_bus` after which the bus voltage is stale; none if it is fixed.
+    /// Periods without a call of `set_bus` after which the bus voltage is stale; none if it is
+    /// fixed.
     pub bus_periods: Option<i32>,
     /// Limits of samples, and start-up.
     pub limits: Limits,

@@ -6,21 +6,22 @@
 //! macro tokens ─┐
 //!               ├─ parse ─> SpecAst ─ check ─> Spec              (spec: spans end here)
 //! TOML, variant ┘             ║ barrier 1: every error of the specification at once
-//!   design ─> gains, vectors, EMF tables, stable range          (design, laws/*/design: f64, SI)
-//!   scale  ─> formats: the finest that provably fit             (scaling, blocks: real numbers end here)
-//!   lower  ─> Program: SSA over 32-bit words, in stages          (laws and blocks, as ir::expr)
-//!   rewrite ─> the same program in the form that is emitted      (ir::rewrite: all rules)
-//!   verify ─> VerifiedGraph                                      (ir::verify: intervals, stages, words)
+//!   design  ─> gains, vectors, EMF tables, stable range       (design, laws/*/design: f64, SI)
+//!   scale   ─> formats: the finest that provably fit          (scaling, blocks: last real numbers)
+//!   lower   ─> Program: SSA over 32-bit words, in stages      (laws and blocks, as ir::expr)
+//!   rewrite ─> the same program in the form that is emitted   (ir::rewrite: all rules)
+//!   verify  ─> VerifiedGraph                                  (ir::verify: intervals, stages, words)
 //!                             ║ barrier 2: every error of design and scaling at once
-//!   bound  ─> distance of every value from the ideal one         (ir::bounds)
-//!   emit   ─> Rust │ C99 │ data sheet │ IR text │ Gappa scripts        (emit: cannot fail)
+//!   bound   ─> distance of every value from the ideal one     (ir::bounds)
+//!   emit    ─> Rust │ C99 │ data sheet │ IR text │ Gappa scripts   (emit: cannot fail)
 //! ```
 //!
-//! Each stage imports earlier stages and [`diagnostics`] only. Emitters take a [`ir::VerifiedGraph`]
-//! and an [`interface::Interface`], never a specification. Scaling is a search for the finest scale
-//! whose program passes the verifier. A new controller adds its options to `spec::controller`, a variant
-//! of [`spec::ControllerSpec`] and a folder under [`laws`], built on the shared step
-//! ([`laws::current_loop`]) and its [`blocks`] (measurement, rotor angle, EMF, limits, modulation).
+//! Each stage imports earlier stages and [`diagnostics`] only. Emitters take a
+//! [`ir::VerifiedGraph`] and an [`interface::Interface`], never a specification. Scaling is a
+//! search for the finest scale whose program passes the verifier. A new controller adds its options
+//! to `spec::controller`, a variant of [`spec::ControllerSpec`] and a folder under [`laws`], built
+//! on the shared step ([`laws::current_loop`]) and its [`blocks`] (measurement, rotor angle, EMF,
+//! limits, modulation).
 
 mod at_once;
 pub mod blocks;

@@ -1,8 +1,8 @@
 //! The choice of formats: the finest scale at which every value of the program fits its word.
 //!
-//! Currents take the largest number of fraction bits that the ADC's range allows; voltages the largest
-//! whose program passes verification with coefficients and products that fit. Products of 32-bit words
-//! must fit their upper word, unless no scale allows that.
+//! Currents take the largest number of fraction bits that the ADC's range allows; voltages the
+//! largest whose program passes verification with coefficients and products that fit. Products of
+//! 32-bit words must fit their upper word, unless no scale allows that.
 
 use crate::at_once::at_once;
 use crate::blocks::Scale;
@@ -20,7 +20,8 @@ pub struct Lowered {
     pub formats: Vec<FormatEntry>,
     /// Coefficients and constants too large for their word at this scale.
     pub misfits: Vec<String>,
-    /// 32-bit coefficients whose products need more than the upper word, one instruction of most cores.
+    /// 32-bit coefficients whose products need more than the upper word, one instruction of most
+    /// cores.
     pub long_products: Vec<&'static str>,
 }
 
@@ -58,14 +59,15 @@ const FIRST_VOLTAGES: (u32, u32) = (12, 16);
 /// Searches the finest scale for `lower`. A program that fits at a scale fits at every coarser one.
 ///
 /// # Errors
-/// [`Unscalable`] if the coarsest scale does not fit: voltages with one fraction bit, currents with none.
+/// [`Unscalable`] if the coarsest scale does not fit: voltages with one fraction bit, currents with
+/// none.
 pub fn choose_scale(
     inverter: &InverterSpec,
     word: u32,
     lower: impl Fn(Scale) -> Lowered + Sync,
 ) -> Result<Scaled, Unscalable> {
-    // i_c = -(i_a + i_b) and differences of two currents need one bit more than a current; with 16-bit
-    // words currents themselves must fit the word as factors.
+    // i_c = -(i_a + i_b) and differences of two currents need one bit more than a current; with
+    // 16-bit words currents themselves must fit the word as factors.
     let spare = if word == 16 { 15 } else { 30 };
     let Some(current_bits) = u32::checked_sub(spare, inverter.adc_bits) else {
         return Err(Unscalable::TooNarrow {
@@ -139,7 +141,8 @@ fn finest_of(
     finest
 }
 
-/// The verified program if it fits its words at this scale; with `short`, its products their upper word.
+/// The verified program if it fits its words at this scale; with `short`, its products their upper
+/// word.
 fn fit(scale: Scale, lowered: Lowered, short: bool) -> Result<Scaled, Unscalable> {
     let Lowered {
         program,

@@ -1,7 +1,7 @@
 //! Time that this thread spends in each part of the generator, for `cargo xtask compile-time`.
 //!
-//! The time of a nested part is not counted for the outer one; work of a second thread counts as the
-//! time of waiting for it. Nothing else depends on these times.
+//! The time of a nested part is not counted for the outer one; work of a second thread counts as
+//! the time of waiting for it. Nothing else depends on these times.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! Functions of the rotor angle: flux tables behind the modelled EMF, and the proportional reference
-//! (semantics, steps 6 and 8 and the section on tables).
+//! Functions of the rotor angle: flux tables behind the modelled EMF, and the proportional
+//! reference (semantics, steps 6 and 8 and the section on tables).
 
 use super::Lowering;
 use super::number::round_half_up;
@@ -211,7 +211,8 @@ pub fn model_emf<'b>(
     }
 }
 
-/// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and b.
+/// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and
+/// b.
 pub fn proportional_reference<'b>(
     l: &Lowering<'b>,
     rotor: &Rotor<'b>,

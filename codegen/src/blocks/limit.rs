@@ -228,8 +228,8 @@ impl<'b> Hexagon<'b> {
         terminal
     }
 
-    /// Leg voltages relative to the phase of the largest EMF; with a small EMF the terminal voltages
-    /// of the nearest point.
+    /// Leg voltages relative to the phase of the largest EMF; with a small EMF the terminal
+    /// voltages of the nearest point.
     fn torque_priority(&self, l: &Lowering<'b>, free: Free<'b>, e: Phases<'b>) -> Phases<'b, 3> {
         let bus = self.bus.volts;
         let near = self.nearest(free);
@@ -372,8 +372,8 @@ impl<'b> Asked<'b> {
             let beyond_corner = past_corner.is_at_least(0);
         }
         // At least a quarter of the EMF: the light force vanishes in mid-sector, where the exact
-        // quotient would jump along a whole edge for an error of one ulp. The maximum with the nearest
-        // point, whose component is never the larger, makes up for the difference.
+        // quotient would jump along a whole edge for an error of one ulp. The maximum with the
+        // nearest point, whose component is never the larger, makes up for the difference.
         let light_force = x_heavy.choose(force_y, force_x).max(frame.size >> 2);
         let force = beyond_corner.choose(light_force, frame.size).max(1);
         named! {

@@ -112,7 +112,8 @@ impl<'b> Lowering<'b> {
         );
         lowering.format(
             "voltage",
-            // 32 bits at any word length: signals times 16-bit coefficients may be wider than 16 bits.
+            // 32 bits at any word length: signals times 16-bit coefficients may be wider than 16
+            // bits.
             32,
             scale.voltage_bits as i32,
             Rounding::RoundHalfUp,
@@ -160,7 +161,8 @@ impl<'b> Lowering<'b> {
         }
     }
 
-    /// Notes the format of products of two voltages shifted right by `shift`; more than 31 is a misfit.
+    /// Notes the format of products of two voltages shifted right by `shift`; more than 31 is a
+    /// misfit.
     pub fn product_format(&self, name: &str, shift: u32, meaning: &str) {
         if shift > 31 {
             self.misfit(name);

@@ -100,7 +100,8 @@ impl<'b> Modulator<'b> {
         }
     }
 
-    /// Pulses of the limited line voltage of a pair: one leg pulsed, its partner low, the third off.
+    /// Pulses of the limited line voltage of a pair: one leg pulsed, its partner low, the third
+    /// off.
     pub fn pulse_pair(&self, l: &Lowering<'b>, sign: Phases<'b, 3>, line: Expr<'b>) -> Pulses<'b> {
         named! {
             let line_forward = line.is_at_least(0);

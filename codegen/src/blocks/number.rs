@@ -1,8 +1,8 @@
 //! Real numbers as words: coefficients with their shift, limits with their unit.
 //!
-//! Documentation gives every number in physical units and in units of its word: a word of current is
-//! g 2^-f_i ampere and a word of voltage w 2^-f_v volt, with g ampere per ADC count, w volt per timer
-//! count at the nominal bus, f_i and f_v the fraction bits of currents and voltages.
+//! Documentation gives every number in physical units and in units of its word: a word of current
+//! is g 2^-f_i ampere and a word of voltage w 2^-f_v volt, with g ampere per ADC count, w volt per
+//! timer count at the nominal bus, f_i and f_v the fraction bits of currents and voltages.
 
 use super::Lowering;
 use crate::diagnostics::{engineering, significant};
@@ -23,8 +23,8 @@ pub fn round_down(x: f64) -> f64 {
     (x + GUARD).floor()
 }
 
-/// A real coefficient as a word of `word` bits and the largest shift up to `word` at which it fits; `None`
-/// where it does not fit even without fraction bits.
+/// A real coefficient as a word of `word` bits and the largest shift up to `word` at which it fits;
+/// `None` where it does not fit even without fraction bits.
 fn round_coefficient(value: f64, word: u32) -> Option<(i32, u32)> {
     let limit = f64::from(word - 1).exp2() - 1.0;
     let rounded = |shift: u32| round_half_up(value * f64::from(shift).exp2());
@@ -45,11 +45,11 @@ pub fn product_bound(value: f64, word: u32, signal: i64) -> i64 {
 }
 
 impl<'b> Lowering<'b> {
-    /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift of at
-    /// most `word`. `physical` is its text: "1 - a = 0.0302".
+    /// Rounds `value`, a number without unit, to a coefficient of at most `word` bits and a shift
+    /// of at most `word`. `physical` is its text: "1 - a = 0.0302".
     ///
-    /// With a 32-bit word a shift above 32 gains nothing: the coefficient's half ulp times a full-scale
-    /// signal is a quarter ulp of the product.
+    /// With a 32-bit word a shift above 32 gains nothing: the coefficient's half ulp times a
+    /// full-scale signal is a quarter ulp of the product.
     pub fn coefficient(
         &self,
         name: &'static str,
@@ -61,8 +61,8 @@ impl<'b> Lowering<'b> {
         self.rounded(name, value, word, [doc, physical], None)
     }
 
-    /// As [`Self::coefficient`], for a quantity with a unit: `physical` is its text in SI units, "K =
-    /// 4.468 V/A"; `formula` and `unit` are those of `value`.
+    /// As [`Self::coefficient`], for a quantity with a unit: `physical` is its text in SI units, "K
+    /// = 4.468 V/A"; `formula` and `unit` are those of `value`.
     pub fn scaled_coefficient(
         &self,
         name: &'static str,
@@ -126,7 +126,8 @@ impl<'b> Lowering<'b> {
         lines.push(format!(
             "{physical}{in_words}; {shift} fraction bits, {error}."
         ));
-        // The product with a power of two is exact: it is the number that the coefficient stands for.
+        // The product with a power of two is exact: it is the number that the coefficient stands
+        // for.
         let exact = Exact::Number(Real::of(value * f64::from(shift).exp2()));
         let id = self.b.declare_constant(name, raw, exact, &lines);
         self.format(

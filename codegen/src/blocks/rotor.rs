@@ -11,8 +11,8 @@ use crate::spec::HallCapture;
 
 /// A sixth of a turn: floor(2^32 / 6).
 const SIXTH: i64 = 715_827_882;
-/// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up like the
-/// sector starts, so that a sector's first and last angle lie in that sector.
+/// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up like
+/// the sector starts, so that a sector's first and last angle lie in that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;
 
 /// Names of the last six intervals, the latest first.
@@ -129,8 +129,8 @@ fn turned<'b>(l: &Lowering<'b>, hall: &Hall<'b>, old: Expr<'b>) -> Turned<'b> {
     }
 }
 
-/// Direction of rotation, for controllers without an angle; with a commutation rule also the samples
-/// left to the commutation ([`CommutationRule::kept`]).
+/// Direction of rotation, for controllers without an angle; with a commutation rule also the
+/// samples left to the commutation ([`CommutationRule::kept`]).
 pub fn sense_direction<'b>(
     l: &Lowering<'b>,
     direction: Memory<'b>,

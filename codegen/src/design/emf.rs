@@ -1,6 +1,7 @@
 //! The EMF's shape over the electrical angle, and the periodic functions derived from it.
 //!
-//! Convention (`hexagen::conventions`): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase peak.
+//! Convention (`hexagen::conventions`): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase
+//! peak.
 
 use crate::spec::EmfShape;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -11,8 +12,8 @@ fn phase_integral(shape: EmfShape, theta: f64) -> f64 {
         EmfShape::Sinusoidal => -theta.cos(),
         EmfShape::Trapezoidal { flat_top_deg } => {
             let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
-            // From the positive zero crossing the integral rises by `area` over half a turn and falls
-            // over the other half.
+            // From the positive zero crossing the integral rises by `area` over half a turn and
+            // falls over the other half.
             let rise = |x: f64| {
                 if x <= ramp {
                     x * x / (2.0 * ramp)
@@ -77,8 +78,9 @@ pub struct Parabolas {
 }
 
 impl Parabolas {
-    /// Fits with the fewest of 12, 24, 48 or 96 segments whose error is at most `tolerance`, else 96.
-    /// Corners of 120-degree trapezoids lie on segment borders, so their integral is fitted exactly.
+    /// Fits with the fewest of 12, 24, 48 or 96 segments whose error is at most `tolerance`, else
+    /// 96. Corners of 120-degree trapezoids lie on segment borders, so their integral is fitted
+    /// exactly.
     pub fn fit(function: impl Fn(f64) -> f64, tolerance: f64) -> Self {
         let mut best = Self::with_segments(&function, 12);
         for segments in [24, 48, 96] {

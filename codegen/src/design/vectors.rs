@@ -1,4 +1,5 @@
-//! Voltage vectors, sectors and modulation geometry of the two-level inverter (the paper's Table 2, (16)).
+//! Voltage vectors, sectors and modulation geometry of the two-level inverter (the paper's Table 2,
+//! (16)).
 
 use nalgebra::Vector2;
 use std::f64::consts::PI;
@@ -47,14 +48,15 @@ pub fn clarke(a: f64, b: f64, c: f64) -> Vector2<f64> {
     Vector2::new((2.0 * a - b - c) / 3.0, (b - c) / 3.0_f64.sqrt())
 }
 
-/// The vector of a leg pattern on a bus of `v_bus` volt; an open leg sits at the mean of the others.
+/// The vector of a leg pattern on a bus of `v_bus` volt; an open leg sits at the mean of the
+/// others.
 pub fn leg_vector(legs: LegSigns, v_bus: f64) -> Vector2<f64> {
     let [a, b, c] = legs.map(|sign| f64::from(sign) * v_bus / 2.0);
     clarke(a, b, c)
 }
 
-/// Coefficients of (16) for voltage sector `n` (0 to 5, from 60 n degrees): times t_a, t_b as a share of the
-/// period, per volt of v_alpha and v_beta.
+/// Coefficients of (16) for voltage sector `n` (0 to 5, from 60 n degrees): times t_a, t_b as a
+/// share of the period, per volt of v_alpha and v_beta.
 pub fn svm_coefficients(n: u32, v_bus: f64) -> [Vector2<f64>; 2] {
     let scale = 3.0_f64.sqrt() / v_bus;
     let (start, end) = (f64::from(n) * PI / 3.0, f64::from(n + 1) * PI / 3.0);

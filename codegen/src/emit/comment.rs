@@ -1,7 +1,7 @@
 //! Documentation lines as comments, whatever the language.
 
-/// The lines of a comment, each after `sign`. Paragraphs are wrapped; tables, lists, headings and code
-/// keep their lines.
+/// The lines of a comment, each after `sign`. Paragraphs are wrapped; tables, lists, headings and
+/// code keep their lines.
 pub(super) fn comments<T: AsRef<str>>(sign: &str, columns: usize, lines: &[T]) -> String {
     let mut text = Comment {
         sign,

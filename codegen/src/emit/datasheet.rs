@@ -1,5 +1,5 @@
-//! The data sheet of one controller, in Markdown, from the interface and the verified graph alone: it
-//! cannot differ from the code.
+//! The data sheet of one controller, in Markdown, from the interface and the verified graph alone:
+//! it cannot differ from the code.
 
 use crate::diagnostics::significant;
 use crate::interface::{Interface, PublicValue, Rounding};
@@ -224,7 +224,8 @@ fn storage(bits: u32) -> &'static str {
 }
 
 fn memory(sheet: &mut Sheet, program: &Program) {
-    // Fields are in the order of least size; the total is padded to the alignment of the largest word.
+    // Fields are in the order of least size; the total is padded to the alignment of the largest
+    // word.
     let bytes = || program.states.iter().map(|word| word.storage_bits / 8);
     let state = bytes()
         .sum::<u32>()

@@ -1,7 +1,7 @@
 //! Values as expressions, whatever the language.
 //!
-//! A value with a name is that name; a value without one is written where it is used. Comparisons with
-//! a constant have it on the right. All else is as in the graph.
+//! A value with a name is that name; a value without one is written where it is used. Comparisons
+//! with a constant have it on the right. All else is as in the graph.
 
 use super::plan::Context;
 use super::signal::{Leg, Shape};

@@ -1,6 +1,7 @@
 //! Emitters: from a verified graph and its interface to text or tokens.
 //!
-//! Each uses the graph and the interface, never the specification or another emitter. None can fail.
+//! Each uses the graph and the interface, never the specification or another emitter. None can
+//! fail.
 
 pub mod c99;
 mod comment;

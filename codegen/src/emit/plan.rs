@@ -103,8 +103,8 @@ impl<'a> Context<'a> {
             .collect()
     }
 
-    /// Whether the tracking stores a state word: it computes the new value, and the control part does not
-    /// read the old one.
+    /// Whether the tracking stores a state word: it computes the new value, and the control part
+    /// does not read the old one.
     pub(super) fn is_tracked(&self, state: StateId) -> bool {
         let mut next = self.function.next_state.iter();
         let Some(&(_, value)) = next.find(|(known, _)| *known == state) else {
@@ -221,8 +221,8 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The state word that the guarded stage may store itself: the join is its next value, its old value
-    /// stays if the stage does not run, and nothing reads the old value later.
+    /// The state word that the guarded stage may store itself: the join is its next value, its old
+    /// value stays if the stage does not run, and nothing reads the old value later.
     fn stored_inside(&self, stage: &Stage, join: Value, otherwise: Value) -> Option<StateId> {
         let Op::State(kept) = self.function.node(otherwise).op else {
             return None;

@@ -17,8 +17,8 @@ pub(super) fn columns<'a>(
     tables.filter(move |table| table.row == Some(row))
 }
 
-/// A command that is looked up as a whole: the columns of one row hold compare values and leg states,
-/// and have no other use, so they form one column of commands.
+/// A command that is looked up as a whole: the columns of one row hold compare values and leg
+/// states, and have no other use, so they form one column of commands.
 #[derive(Clone, Debug)]
 pub(super) struct WholeCommand<'a> {
     /// The row.
@@ -119,8 +119,8 @@ fn packed(fields: &[usize]) -> usize {
     fields.iter().sum::<usize>().next_multiple_of(widest)
 }
 
-/// The alignment that pads a row to a power of two, if that takes no more than a word: its address is
-/// then a shift of the index.
+/// The alignment that pads a row to a power of two, if that takes no more than a word: its address
+/// is then a shift of the index.
 pub(super) fn padding(
     program: &Program,
     row: &'static str,

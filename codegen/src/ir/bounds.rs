@@ -1,13 +1,13 @@
 //! Bounds on the distance of every value from the ideal computation.
 //!
 //! The ideal computation starts from the same inputs, state and set-point words, has the exact
-//! coefficients, rounds nothing, and takes the same decisions. So a value's error is that of arithmetic
-//! alone, and each decision on inexact values has a tie band: it equals the ideal one if the compared
-//! values differ by more. Minimum, maximum, clamp and magnitude do not increase the distance of two
-//! values, so they are no decisions.
+//! coefficients, rounds nothing, and takes the same decisions. So a value's error is that of
+//! arithmetic alone, and each decision on inexact values has a tie band: it equals the ideal one if
+//! the compared values differ by more. Minimum, maximum, clamp and magnitude do not increase the
+//! distance of two values, so they are no decisions.
 //!
-//! A discarded value needs no bound: a value that reaches a result only under a condition is bounded
-//! under that condition ([`Bounds::operand`]).
+//! A discarded value needs no bound: a value that reaches a result only under a condition is
+//! bounded under that condition ([`Bounds::operand`]).
 
 use super::error::{ErrorInterval, Exact, Real};
 use super::graph::{Function, Program};
@@ -479,8 +479,8 @@ impl<'p> Bounds<'p> {
         }
     }
 
-    /// Of min(floor(n 2^s / d), limit): n/d - N/D = (n - N)/D - (n/d)(d - D)/D, or with (n, d) and (N, D)
-    /// exchanged; one of the quotients is at most the limit, or both are limited.
+    /// Of min(floor(n 2^s / d), limit): n/d - N/D = (n - N)/D - (n/d)(d - D)/D, or with (n, d) and
+    /// (N, D) exchanged; one of the quotients is at most the limit, or both are limited.
     fn quotient(
         &self,
         user: Value,

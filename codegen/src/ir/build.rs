@@ -1,8 +1,8 @@
 //! Construction of programs, function by function and stage by stage, with intervals.
 //!
-//! The builder never fails: a value that leaves its word keeps its interval (clipped far outside the
-//! word), and [`super::verify()`] reports it, so a caller can try scales in turn. Values are returned as
-//! expressions ([`super::expr`]) that refer to the builder.
+//! The builder never fails: a value that leaves its word keeps its interval (clipped far outside
+//! the word), and [`super::verify()`] reports it, so a caller can try scales in turn. Values are
+//! returned as expressions ([`super::expr`]) that refer to the builder.
 
 use super::error::{Exact, Real};
 use super::expr::{Expr, Flag, Lut, Memory, Param};
@@ -157,7 +157,8 @@ impl ProgramBuilder {
         self.table(name, values, &[doc.to_owned()]).in_row(row)
     }
 
-    /// Adds a table of rounded entries, perhaps of a function of the angle; padded as [`Self::table`].
+    /// Adds a table of rounded entries, perhaps of a function of the angle; padded as
+    /// [`Self::table`].
     pub fn rounded_table(
         &self,
         name: &str,

@@ -1,7 +1,8 @@
 //! Error intervals of values, and the real numbers that words represent.
 //!
-//! Errors are in units of the value's last place, as multiples of 2^-24 of it, rounded outward by every
-//! operation, so that a stated bound is never too narrow and a checker with 60 bits can prove it.
+//! Errors are in units of the value's last place, as multiples of 2^-24 of it, rounded outward by
+//! every operation, so that a stated bound is never too narrow and a checker with 60 bits can prove
+//! it.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
 //! Expressions: the values of a function under construction, in which laws are written.
 //!
 //! Each operator adds a node, in Rust's order of evaluation, with the meaning of [`Op::apply`]. The
-//! product `k * x` with a [`Coefficient`] rounds half up at its shift, [`Expr::mul_floor`] rounds down.
-//! A named value becomes a `let` of the emitted code; `named!` takes names from bindings:
+//! product `k * x` with a [`Coefficient`] rounds half up at its shift, [`Expr::mul_floor`] rounds
+//! down. A named value becomes a `let` of the emitted code; `named!` takes names from bindings:
 //!
 //! ```text
 //! named! {

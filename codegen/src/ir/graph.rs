@@ -96,8 +96,8 @@ pub struct Word {
     pub initial: i32,
     /// Its interval.
     pub interval: Interval,
-    /// Storage bits: 32, or 16 for a number that is never negative. A signed halfword is slower to load
-    /// than a word if only the unsigned load has an offset (ARMv6-M).
+    /// Storage bits: 32, or 16 for a number that is never negative. A signed halfword is slower to
+    /// load than a word if only the unsigned load has an offset (ARMv6-M).
     pub storage_bits: u32,
     /// Meaning and format.
     pub doc: String,
@@ -163,8 +163,8 @@ pub struct Function {
     pub next_params: Vec<(ParamId, Value)>,
     /// Quantities whose error is stated.
     pub quantities: Vec<Quantity>,
-    /// Number of the first nodes that are tracking, which runs in periods without control, too. All nodes
-    /// of a setter.
+    /// Number of the first nodes that are tracking, which runs in periods without control, too. All
+    /// nodes of a setter.
     pub tracking: usize,
 }
 
@@ -212,7 +212,8 @@ impl Function {
         value.index() < self.tracking
     }
 
-    /// New value in a period without control of the state word whose controlled new value is `value`.
+    /// New value in a period without control of the state word whose controlled new value is
+    /// `value`.
     pub fn at_rest(&self, value: Value) -> AtRest {
         if self.is_tracking(value) {
             AtRest::Tracked(value)
@@ -261,11 +262,12 @@ impl Function {
 
     /// The interval of `value` if the flag `condition` does not hold.
     ///
-    /// Besides the value's own interval it uses the spread rule: for three numbers that sum to zero, `c =
-    /// -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds each of them by 2/3
-    /// limit (max and min are at most `limit` apart, and two of the three share a sign), max + min, which
-    /// is minus the middle one, by 1/3 limit, and each less floor((max + min)/2), perhaps plus a constant,
-    /// by 1/2 limit: the largest is ceil(spread/2) above it and the smallest floor(spread/2) below.
+    /// Besides the value's own interval it uses the spread rule: for three numbers that sum to
+    /// zero, `c = -(a + b)`, and `spread = max - min` of the three, "not (limit < spread)" bounds
+    /// each of them by 2/3 limit (max and min are at most `limit` apart, and two of the three share
+    /// a sign), max + min, which is minus the middle one, by 1/3 limit, and each less floor((max +
+    /// min)/2), perhaps plus a constant, by 1/2 limit: the largest is ceil(spread/2) above it and
+    /// the smallest floor(spread/2) below.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {

@@ -48,8 +48,8 @@ impl<'g> Machine<'g> {
         Self::of_program(graph.program())
     }
 
-    /// As [`Machine::new`], for a program that need not pass verification, such as one with a planted
-    /// fault.
+    /// As [`Machine::new`], for a program that need not pass verification, such as one with a
+    /// planted fault.
     pub fn of_program(program: &'g Program) -> Self {
         Self {
             program,

@@ -1,4 +1,5 @@
-//! Intervals against all values of small ranges: none too narrow, and none too wide except as stated.
+//! Intervals against all values of small ranges: none too narrow, and none too wide except as
+//! stated.
 
 use super::{
     Bounds, Comparison, Expr, Flag, Function, Interval, Named, Op, Output, Program, ProgramBuilder,
@@ -236,8 +237,8 @@ const HOWS: [Comparison; 4] = [
     Comparison::NotEqual,
 ];
 
-/// Bounds of `x` and `y` under a condition, in a selection and in a guarded stage: never narrower than
-/// all inputs show, and exact for an order of the two.
+/// Bounds of `x` and `y` under a condition, in a selection and in a guarded stage: never narrower
+/// than all inputs show, and exact for an order of the two.
 fn check_condition(
     ranges: &[Interval],
     is_exact: bool,
@@ -375,8 +376,8 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
     assert_eq!(then, Interval::new(1, 5), "x is below 5 there");
 }
 
-/// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and its bounds on each of them, their middle
-/// and each less the middle.
+/// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and its bounds on each of them, their
+/// middle and each less the middle.
 #[test]
 fn a_spread_bounds_its_legs_and_their_middle() {
     let range = Interval::symmetric(15);

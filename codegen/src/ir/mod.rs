@@ -1,10 +1,10 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
-//! [`graph`] defines it, [`op`] its arithmetic, [`build`] constructs it and computes the [`interval`]s,
-//! `rewrite` applies the rewriting rules, `prune` removes dead values, [`verify()`] turns a [`Program`]
-//! into a [`VerifiedGraph`] or lists broken invariants, [`bounds`] computes error bounds, [`interpret`]
-//! runs it, [`text`] prints it, [`cost`] counts operations. Nothing here depends on motors, units or
-//! Rust syntax: physical meaning is text for documentation only.
+//! [`graph`] defines it, [`op`] its arithmetic, [`build`] constructs it and computes the
+//! [`interval`]s, `rewrite` applies the rewriting rules, `prune` removes dead values, [`verify()`]
+//! turns a [`Program`] into a [`VerifiedGraph`] or lists broken invariants, [`bounds`] computes
+//! error bounds, [`interpret`] runs it, [`text`] prints it, [`cost`] counts operations. Nothing
+//! here depends on motors, units or Rust syntax: physical meaning is text for documentation only.
 
 pub mod bounds;
 pub mod build;

@@ -205,7 +205,8 @@ pub enum Op {
         /// Segments of a turn, 1 to 2^16.
         segments: u32,
     },
-    /// the top 31 bits of (u segments mod 2^32): position within the segment, 2^31 = its whole width
+    /// the top 31 bits of (u segments mod 2^32): position within the segment, 2^31 = its whole
+    /// width
     AngleFraction {
         /// Angle.
         angle: Value,
@@ -242,7 +243,8 @@ pub enum Op {
         /// Value if false.
         otherwise: Value,
     },
-    /// Result of a guarded stage: `taken` from inside if the guard held, else `otherwise` from outside
+    /// Result of a guarded stage: `taken` from inside if the guard held, else `otherwise` from
+    /// outside
     Join {
         /// Value of the guarded stage.
         taken: Value,
@@ -361,8 +363,8 @@ impl Op {
         }
     }
 
-    /// Whether a narrow operator is valid for operands in these intervals: its intermediate results fit a
-    /// word. True for all other operators.
+    /// Whether a narrow operator is valid for operands in these intervals: its intermediate results
+    /// fit a word. True for all other operators.
     pub fn is_narrow(&self, x: &[Interval]) -> bool {
         let fits = |interval: Interval| Interval::WORD.contains(interval);
         match *self {
@@ -412,8 +414,8 @@ impl Op {
         }
     }
 
-    /// The exact result for operand values `x` (in the order of [`Op::operands`]), which may exceed a
-    /// word. `None` for leaves and joins, and for operands outside the operator's domain.
+    /// The exact result for operand values `x` (in the order of [`Op::operands`]), which may exceed
+    /// a word. `None` for leaves and joins, and for operands outside the operator's domain.
     pub fn apply(&self, x: &[i64], table: impl Fn(TableId, i64) -> i64) -> Option<i64> {
         let turn = 1_i64 << 32;
         let unsigned = |a: i64| a.rem_euclid(turn);
@@ -479,8 +481,8 @@ impl Op {
         })
     }
 
-    /// An interval of the results for operands in the intervals `x`; exact but for correlations between
-    /// operands. `None` if the operator's domain may be left.
+    /// An interval of the results for operands in the intervals `x`; exact but for correlations
+    /// between operands. `None` if the operator's domain may be left.
     pub fn interval(
         &self,
         x: &[Interval],

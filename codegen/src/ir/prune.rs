@@ -1,7 +1,7 @@
 //! Removal of dead values, joins, stages, constants and tables.
 //!
-//! Building blocks compute the values of all variants; those that a variant does not use are removed
-//! here. State words, set-point words and inputs stay: they are the interface.
+//! Building blocks compute the values of all variants; those that a variant does not use are
+//! removed here. State words, set-point words and inputs stay: they are the interface.
 
 use super::graph::{Function, Program};
 use super::op::{ConstantId, Op, TableId, Value};

@@ -1,8 +1,8 @@
 //! Rewriting: all rules that bring a program into the form that is proved, shown and emitted.
 //!
-//! Each rule replaces an operator by one of the same result that is cheaper on a small core or easier
-//! to read; the operands' proven intervals decide where it is valid. Every rule is tested against
-//! [`Op::apply`] over random and extreme words.
+//! Each rule replaces an operator by one of the same result that is cheaper on a small core or
+//! easier to read; the operands' proven intervals decide where it is valid. Every rule is tested
+//! against [`Op::apply`] over random and extreme words.
 
 use super::graph::{Function, Node, Program, Table};
 use super::interval::Interval;

@@ -1,5 +1,5 @@
-//! Roles of outputs, observations, set-point words and setters: emitters and engines use these, never
-//! names.
+//! Roles of outputs, observations, set-point words and setters: emitters and engines use these,
+//! never names.
 
 use std::fmt;
 

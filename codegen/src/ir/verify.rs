@@ -3,22 +3,23 @@
 //! Invariants:
 //! 1. Every operand is defined earlier; all words, constants, tables and results exist.
 //! 2. Stages and their joins partition the nodes in order.
-//! 3. Values of a guarded stage leave it through its joins only; joins come right after their stage, and
-//!    its guard is defined before it.
+//! 3. Values of a guarded stage leave it through its joins only; joins come right after their
+//!    stage, and its guard is defined before it.
 //! 4. Operand kinds fit, and results are words.
 //! 5. Every stored interval follows from the operands (and, at a join, the guard:
 //!    [`Function::interval_where_not`]) and fits the 32-bit word.
 //! 6. Operators stay in their domain: denominators >= 1, factors and numerators not negative where
 //!    required, clamp limits in order, shifts and segments in range.
 //! 7. Names are unique: of constants and tables, of words, of functions; in a function of inputs,
-//!    outputs, stages and values. A value without a name, unless a constant, is used once, in its stage.
+//!    outputs, stages and values. A value without a name, unless a constant, is used once, in its
+//!    stage.
 //! 8. Tables have a power-of-two length.
 //! 9. The step sets every state word once and no set-point word; a setter sets no state word, and a
-//!    set-point word at most once. New and initial values lie in the word's interval, which fits its
-//!    storage of 16 or 32 bits.
+//!    set-point word at most once. New and initial values lie in the word's interval, which fits
+//!    its storage of 16 or 32 bits.
 //! 10. No dead nodes.
-//! 11. Tracking, which runs in periods without control, ends with a stage and reads no set-point word;
-//!     the interval of every state word that it does not set contains 0.
+//! 11. Tracking, which runs in periods without control, ends with a stage and reads no set-point
+//!     word; the interval of every state word that it does not set contains 0.
 
 use std::collections::HashSet;
 use std::fmt::{self, Display};

@@ -1,4 +1,5 @@
-//! Accuracy in the type's documentation and data sheet: bounds on the distance from the ideal controller.
+//! Accuracy in the type's documentation and data sheet: bounds on the distance from the ideal
+//! controller.
 
 use super::constants::fraction_bits;
 use crate::diagnostics::significant;

@@ -24,7 +24,8 @@ pub trait Law: Sync {
     /// Voltage in a control period.
     fn period(&self) -> Period;
 
-    /// The closed loop between limits, with the coefficients of `design`; none if the law is not linear.
+    /// The closed loop between limits, with the coefficients of `design`; none if the law is not
+    /// linear.
     fn linear<'a>(
         &'a self,
         spec: &'a Spec,

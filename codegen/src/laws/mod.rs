@@ -1,7 +1,8 @@
-//! The laws: one folder each with semantics, design and expressions, around the step that all share.
+//! The laws: one folder each with semantics, design and expressions, around the step that all
+//! share.
 //!
-//! A new controller adds a folder here and its options to `spec::controller`; [`Law`] is its interface
-//! to the rest of the generator.
+//! A new controller adds a folder here and its options to `spec::controller`; [`Law`] is its
+//! interface to the rest of the generator.
 
 mod accuracy;
 mod constants;
@@ -29,7 +30,8 @@ pub use word_choice::{narrow_words, wide_words};
 use crate::spec::Spec;
 use current_loop::LoopDesign;
 
-/// Stable range of true over stated R and L, with exact coefficients; none if the loop is not linear.
+/// Stable range of true over stated R and L, with exact coefficients; none if the loop is not
+/// linear.
 pub fn stable_range(spec: &Spec) -> Option<StableRange> {
     let design = LoopDesign::new(spec, spec.controller.common());
     let linear = law(&spec.controller).linear(spec, &design)?;

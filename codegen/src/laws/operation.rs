@@ -97,6 +97,6 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             engineering(max, "V")
         ));
     }
-    lines.push("Faults that the supervisor cannot detect: `hexagen::Supervisor`.".to_owned());
+    lines.push("What the supervisor cannot see: `hexagen::Supervisor`.".to_owned());
     lines
 }

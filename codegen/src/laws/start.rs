@@ -7,9 +7,9 @@ use crate::design::emf::zero_sum_shape;
 use crate::spec::{EmfShape, EmfSource, Spec};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Turn per period over the filter's share beyond which the estimate, which is advanced at the speed
-/// of its own length, can lag the EMF for good. For a sine, w^2/f^2 = (1 + r)/(r^2 (1 - r)), with r
-/// of the EMF's length, has a solution below 1 from 3.33 on; trapezoids were simulated.
+/// Turn per period over the filter's share beyond which the estimate, which is advanced at the
+/// speed of its own length, can lag the EMF for good. For a sine, w^2/f^2 = (1 + r)/(r^2 (1 - r)),
+/// with r of the EMF's length, has a solution below 1 from 3.33 on; trapezoids were simulated.
 fn loses(shape: EmfShape) -> f64 {
     match shape {
         EmfShape::Sinusoidal => 10.0 / 3.0,
@@ -18,14 +18,15 @@ fn loses(shape: EmfShape) -> f64 {
 }
 
 /// Greatest error of such an estimate over the EMF: it overshoots. (Without the advance at most 1;
-/// found by iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1 and
-/// turns up to 30 degrees.) The integral beside a modelled EMF overshoots as well when the sensors
-/// begin to give the angle.
+/// found by iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1
+/// and turns up to 30 degrees.) The integral beside a modelled EMF overshoots as well when the
+/// sensors begin to give the angle.
 const LACK: f64 = 1.17;
 
 /// Largest line EMF over the bus for an integral that has to learn the EMF: that of a PI regulator
-/// with a slow filter, or that of a modelled EMF until the sensors give the angle. It overshoots, and
-/// beyond the bus the limit keeps a component along a wrong EMF (simulated: trips from 0.88 on).
+/// with a slow filter, or that of a modelled EMF until the sensors give the angle. It overshoots,
+/// and beyond the bus the limit keeps a component along a wrong EMF (simulated: trips from 0.88
+/// on).
 pub(super) const INTEGRATED_EMF: f64 = 0.85;
 
 /// Current of a braking speed loop over its limit: commutations overshoot (simulated).
@@ -37,7 +38,8 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
     (speed * 60.0 / TAU + 1e-6).floor() as i64
 }
 
-/// Greatest rotor speed, mechanical rad/s, at which control may begin at set-point 0 without a trip.
+/// Greatest rotor speed, mechanical rad/s, at which control may begin at set-point 0 without a
+/// trip.
 ///
 /// At the first command the EMF is unknown: no estimate yet, no speed from the Hall sensors. Later
 /// knowledge only helps, and a slow filter may never gain it. So the current is the closed loop's
@@ -71,7 +73,8 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let own = start.current
         + match law.period() {
             Period::Pulses => 0.0,
-            // A pair shares the period with its own zero only: the voltage may lie 30 degrees off that line.
+            // A pair shares the period with its own zero only: the voltage may lie 30 degrees off
+            // that line.
             Period::TwoVectors => vector * 3_f64.sqrt() / 4.0,
             Period::OneVector => vector,
         };
@@ -83,8 +86,8 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
         1.0
     };
     let per_volt = per_volt * lack * hidden;
-    // The third phase's current is the sum of two, each half a count off; three compare values, each
-    // half a count off, put a phase voltage two thirds of a count off.
+    // The third phase's current is the sum of two, each half a count off; three compare values,
+    // each half a count off, put a phase voltage two thirds of a count off.
     let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
     let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
     let room = (inverter.trip_current - rounded - own).max(0.0);

@@ -12,8 +12,8 @@ use crate::spec::{EmfShape, EmfSource, Spec};
 const SINE: f64 = 9.0;
 const TRAPEZOID: f64 = 8.0;
 
-/// The ramps of other flat tops differ from those of 120 degrees: with 60 to 150 degrees of flat top
-/// and 20 degrees or more off, 5 % are reached at 3 to 4 degrees.
+/// The ramps of other flat tops differ from those of 120 degrees: with 60 to 150 degrees of flat
+/// top and 20 degrees or more off, 5 % are reached at 3 to 4 degrees.
 const OTHER: f64 = 3.0;
 const OTHER_PER_DEGREE: f64 = 0.25;
 

@@ -1,8 +1,8 @@
 //! One whole voltage vector per period: its legs, and the state kept of the chosen vector.
 //!
-//! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a pair with
-//! leg a, b or c off. A three-phase vector of which only the legs are used is numbered by the pattern
-//! of its low legs; a vector with hysteresis memory by a number for both.
+//! Vectors are numbered 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 the zero vector of a
+//! pair with leg a, b or c off. A three-phase vector of which only the legs are used is numbered by
+//! the pattern of its low legs; a vector with hysteresis memory by a number for both.
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
 use crate::blocks::{Applied, Command, LOW, Lowering, OFF, PULSED};
@@ -214,7 +214,8 @@ impl<'b> Vector<'_, 'b> {
         self.l.rounded_product(self.k_sixth(), self.l.nominal_bus())
     }
 
-    /// Contribution of the chosen vector's voltage to later steps, from tables; with a fixed bus only.
+    /// Contribution of the chosen vector's voltage to later steps, from tables; with a fixed bus
+    /// only.
     fn tabled_left_over(&self, held: &Held<'b>) -> LeftOver<'b> {
         let volts = fixed_volts(self.numbers, self.fixed_sixth());
         let Some(k_fade) = held.fade() else {
@@ -263,7 +264,8 @@ impl<'b> Vector<'_, 'b> {
         }
     }
 
-    /// The vector's legs. If no vector has an off leg all are pulsed, a low one with compare value 0.
+    /// The vector's legs. If no vector has an off leg all are pulsed, a low one with compare value
+    /// 0.
     fn command(&self) -> Command<'b> {
         let l = self.l;
         let top = l.spec.inverter.timer_period as i32;

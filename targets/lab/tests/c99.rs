@@ -239,6 +239,6 @@ fn a_runtime_of_another_version_is_refused() {
     let other = header.replace("#define HEXAGEN_ABI ", "#define HEXAGEN_ABI 9");
     let files = [("start_up.c", START_UP), ("hexagen.h", other.as_str())];
     let said = said(&starting(), &files);
-    let message = "hub.h is of another version of hexagen than hexagen.h: take both from one.";
+    let message = "hub.h and hexagen.h are of different versions of hexagen: take both from one.";
     assert!(said.contains(message), "{said}");
 }

@@ -68,8 +68,8 @@ fn break_of(text: &str, [width, next]: [usize; 2]) -> Option<usize> {
     best.map(|(_, at)| at)
 }
 
-/// Cost of a line break between a letter and what follows, relative to a comma; none if a line may not
-/// be broken there.
+/// Cost of a line break between a letter and what follows, relative to a comma; none if a line may
+/// not be broken there.
 fn looseness(before: u8, behind: &str) -> Option<usize> {
     let begins = |operators: &[&str]| {
         operators

@@ -1,8 +1,8 @@
 //! The C99 emitter: from a verified graph to a header and a source for toolchains without Rust.
 //!
-//! Same plan as the Rust emitter, so the same stages, names and proven ranges, with the runtime in C
-//! (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed overflow, no
-//! right shift of a negative number. Nothing here can fail.
+//! Same plan as the Rust emitter, so the same stages, names and proven ranges, with the runtime in
+//! C (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed
+//! overflow, no right shift of a negative number. Nothing here can fail.
 
 mod drive;
 mod expression;

@@ -165,8 +165,8 @@ impl Names {
         self.public("state")
     }
 
-    /// The identifier of a signal, state word, input or stage: its name, with an underscore appended if
-    /// that is taken.
+    /// The identifier of a signal, state word, input or stage: its name, with an underscore
+    /// appended if that is taken.
     pub(super) fn local(&self, name: &str) -> String {
         let is_public = || {
             let rest = name.strip_prefix(&self.prefix);

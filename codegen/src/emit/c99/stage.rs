@@ -12,9 +12,9 @@ use std::fmt::Write as _;
 
 /// The function of a stage.
 ///
-/// A stage with one result returns it. With several, a guarded stage, which may be off the normal path,
-/// returns a structure, so that no word of the caller needs an address; any other writes through
-/// pointers, which inlining removes.
+/// A stage with one result returns it. With several, a guarded stage, which may be off the normal
+/// path, returns a structure, so that no word of the caller needs an address; any other writes
+/// through pointers, which inlining removes.
 pub(super) struct StageFunction<'a> {
     context: &'a Context<'a>,
     names: &'a Names,
@@ -221,8 +221,8 @@ impl<'a> StageFunction<'a> {
         text + &format!("}} {};\n\n", self.structure())
     }
 
-    /// Adds the statements that hand the results over, and returns the function's type. A single result is
-    /// not bound to its name first.
+    /// Adds the statements that hand the results over, and returns the function's type. A single
+    /// result is not bound to its name first.
     fn hand_over(&self, statements: &mut Vec<String>) -> String {
         let printer = self.printer(false);
         let shaped = |outcome: &Outcome| printer.shaped(outcome.value, outcome.signal.shape);

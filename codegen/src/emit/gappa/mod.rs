@@ -1,10 +1,10 @@
 //! Gappa scripts: the interval of every value of a program, and its distance from the ideal one.
 //!
-//! A segment is a stage in one case of [`cases`]. Its inputs are variables with the interval and error
-//! proved by earlier segments; sums, products and shifts are defined twice, with the code's rounding
-//! and without. All other operators cut: a minimum, maximum, clamp or magnitude does not increase the
-//! distance of two values, a selected value is one of two, a table's entry has its documented error,
-//! so their results are variables again.
+//! A segment is a stage in one case of [`cases`]. Its inputs are variables with the interval and
+//! error proved by earlier segments; sums, products and shifts are defined twice, with the code's
+//! rounding and without. All other operators cut: a minimum, maximum, clamp or magnitude does not
+//! increase the distance of two values, a selected value is one of two, a table's entry has its
+//! documented error, so their results are variables again.
 //!
 //! A script is one implication; with constants alone it has no hypotheses. Its goals are the
 //! generator's own bounds.

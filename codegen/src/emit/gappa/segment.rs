@@ -364,8 +364,8 @@ impl<'a> Segment<'a> {
         pair
     }
 
-    /// Two scripts for each quotient: with the code's quotient within the limit, and with the ideal one
-    /// within it. If both exceed it, both are the limit.
+    /// Two scripts for each quotient: with the code's quotient within the limit, and with the ideal
+    /// one within it. If both exceed it, both are the limit.
     fn divisions(&self, stage: &str) -> Vec<Script> {
         let mut scripts = vec![];
         for value in self.values() {

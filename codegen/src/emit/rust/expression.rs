@@ -248,7 +248,8 @@ fn shift(a: &Source, operator: &Source, bits: u32) -> Written {
     Written::new(quote!(#a #operator #bits), Binding::Shift)
 }
 
-/// A method of the word, or a function of `hexagen::arith`; `parameter` is its shift or its number of segments.
+/// A method of the word, or a function of `hexagen::arith`; `parameter` is its shift or its number
+/// of segments.
 fn call(
     program: &Program,
     primitive: Primitive,

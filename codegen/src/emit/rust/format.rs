@@ -1,7 +1,7 @@
 //! Emitted tokens as text for readers.
 //!
-//! `prettyplease` formats, the same on every machine. Two things are added: blank lines between items,
-//! and array patterns on one line.
+//! `prettyplease` formats, the same on every machine. Two things are added: blank lines between
+//! items, and array patterns on one line.
 
 use proc_macro2::TokenStream;
 use std::io::Write as _;
@@ -78,8 +78,8 @@ fn is_name(text: &str) -> bool {
             .all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// A blank line before every item, except between imports and between constants, and before the last
-/// part of a step.
+/// A blank line before every item, except between imports and between constants, and before the
+/// last part of a step.
 fn separate_items(text: &str) -> String {
     let mut separated = String::with_capacity(text.len());
     let lines: Vec<&str> = text.lines().collect();

@@ -1,7 +1,7 @@
 //! Groups of signals: the phases of one quantity, or numbered words.
 //!
-//! `i_a, i_b, i_c` are one array in signatures, which keeps them short. Grouping depends on names and
-//! shapes alone, so it is the same on both sides of a call.
+//! `i_a, i_b, i_c` are one array in signatures, which keeps them short. Grouping depends on names
+//! and shapes alone, so it is the same on both sides of a call.
 
 use super::super::signal::{Shape, Signal};
 use super::names::snake;

@@ -1,7 +1,8 @@
 //! The Rust emitter: from a verified graph to a type that reads as if written by hand.
 //!
-//! `stage` makes a function of each planned stage, `function` the entries that call them, `expression`
-//! writes operators, `interface` the type. The same graph gives the same tokens; nothing here can fail.
+//! `stage` makes a function of each planned stage, `function` the entries that call them,
+//! `expression` writes operators, `interface` the type. The same graph gives the same tokens;
+//! nothing here can fail.
 
 mod expression;
 mod format;
@@ -103,8 +104,8 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
 }
 
 impl RustText {
-    /// The type and its code. All but the type is inside an anonymous constant, so that its names cannot
-    /// clash.
+    /// The type and its code. All but the type is inside an anonymous constant, so that its names
+    /// cannot clash.
     pub fn into_tokens(self, surface: &Surface) -> TokenStream {
         let Surface {
             name,
@@ -139,8 +140,8 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
 fn tokens(code: &Source) -> TokenStream {
     let code = code.as_str();
     let tokens = if proc_macro::is_available() {
-        // In a macro the compiler parses the text: `proc_macro2` would parse it a second time, which
-        // takes longer than all the rest of the emission.
+        // In a macro the compiler parses the text: `proc_macro2` would parse it a second time,
+        // which takes longer than all the rest of the emission.
         code.parse().map(proc_macro::TokenStream::into).ok()
     } else {
         code.parse().ok()

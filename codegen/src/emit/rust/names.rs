@@ -36,8 +36,8 @@ pub(super) fn snake(name: &str) -> Source {
     }
 }
 
-/// Keywords of edition 2024. (A parser knows them, too, but is slow for thousands of names in macros,
-/// which run unoptimised.)
+/// Keywords of edition 2024. (A parser knows them, too, but is slow for thousands of names in
+/// macros, which run unoptimised.)
 const KEYWORDS: [&str; 53] = [
     "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
     "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
@@ -137,8 +137,8 @@ pub(super) fn loaded(word: &Word, place: &Source) -> Source {
     }
 }
 
-/// The identifiers in `code` that may name an item, comments and literals left out: capitalised ones
-/// (types, constants) and those before `(` or `::` (functions, modules). (In macros, which run
+/// The identifiers in `code` that may name an item, comments and literals left out: capitalised
+/// ones (types, constants) and those before `(` or `::` (functions, modules). (In macros, which run
 /// unoptimised, collecting all signals as well would take a tenth of the generator's time.)
 pub(super) fn item_names(code: &Source) -> HashSet<&str> {
     let (code, mut found, mut at) = (code.as_str(), HashSet::new(), 0);
@@ -167,8 +167,8 @@ fn is_called(behind: &[u8]) -> bool {
     behind.starts_with(b"(") || behind.starts_with(b"::")
 }
 
-/// Whether a byte may be part of an identifier, non-ASCII ones included. (A table: this runs for every
-/// byte in macros, which are unoptimised.)
+/// Whether a byte may be part of an identifier, non-ASCII ones included. (A table: this runs for
+/// every byte in macros, which are unoptimised.)
 const LETTERS: [bool; 256] = {
     let (mut letters, mut byte) = ([false; 256], 0);
     while byte < letters.len() {
@@ -188,7 +188,8 @@ fn text_length(code: &[u8]) -> usize {
     at + 1
 }
 
-/// Length of the raw string literal that `code`, after its `r`, begins with; 1 for a raw identifier.
+/// Length of the raw string literal that `code`, after its `r`, begins with; 1 for a raw
+/// identifier.
 fn raw_text_length(code: &str) -> usize {
     let inside = code.trim_start_matches('#');
     let hashes = &code[..code.len() - inside.len()];

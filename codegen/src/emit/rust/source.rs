@@ -1,7 +1,7 @@
 //! Emitted Rust as text, written through templates that look like those of the `quote` crate.
 //!
-//! In macros, which run unoptimised, a text takes a third of the time of tokens; the compiler parses it
-//! in one piece. Texts may also be made in any thread, tokens may not.
+//! In macros, which run unoptimised, a text takes a third of the time of tokens; the compiler
+//! parses it in one piece. Texts may also be made in any thread, tokens may not.
 
 use std::fmt;
 

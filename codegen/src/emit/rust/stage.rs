@@ -274,8 +274,8 @@ impl<'a> StageFunction<'a> {
         parameters
     }
 
-    /// The return type, and the function's last expression; a single result is not bound to its name
-    /// first.
+    /// The return type, and the function's last expression; a single result is not bound to its
+    /// name first.
     fn result(&self, statements: &mut Vec<Source>) -> (Source, Source) {
         let scope = self.scope(false);
         if self.plan.outcomes.is_empty() {

@@ -9,8 +9,8 @@ use crate::ir::{Phases, named};
 const SOFT_BAND: f64 = 0.1;
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// Shifts of phases a, b, c, words of the nominal bus. `reference` is the reference current and `held`
-    /// the measured one, both as voltages with `stiffness` volt per ampere.
+    /// Shifts of phases a, b, c, words of the nominal bus. `reference` is the reference current and
+    /// `held` the measured one, both as voltages with `stiffness` volt per ampere.
     pub fn dead_time_shifts(
         &self,
         reference: Phases<'b>,

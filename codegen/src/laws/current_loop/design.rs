@@ -5,7 +5,8 @@ use crate::scaling::Scaled;
 use crate::spec::{EmfShape, LoopOptions, Spec};
 use std::f64::consts::{FRAC_PI_6, PI};
 
-/// Coefficients of prediction, EMF estimate and deadbeat voltage (semantics page of predictive deadbeat), SI.
+/// Coefficients of prediction, EMF estimate and deadbeat voltage (semantics page of predictive
+/// deadbeat), SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopDesign {
     /// Discrete plant.
@@ -14,26 +15,27 @@ pub struct LoopDesign {
     pub k_di: f64,
     /// (1 - a)/b = R, ohm.
     pub k_r: f64,
-    /// K a^2 (delay 1) or K a (delay 0), V/A: weight of the present current in the deadbeat voltage.
+    /// K a^2 (delay 1) or K a (delay 0), V/A: weight of the present current in the deadbeat
+    /// voltage.
     pub k_hold: f64,
     /// 1 - a.
     pub k_decay: f64,
-    /// Largest plausible change of current per period, ampere: twice the one of the largest bus or of
-    /// the ADC's range, rounded up to a power of two of ADC counts for a saturating instruction.
+    /// Largest plausible change of current per period, ampere: twice the one of the largest bus or
+    /// of the ADC's range, rounded up to a power of two of ADC counts for a saturating instruction.
     pub di_limit: f64,
     /// Largest plausible zero-sum phase EMF, volt.
     pub e_limit: f64,
-    /// Motion of an estimated EMF in one period per product of two line EMFs, 1/V; of a sine, the tangent
-    /// of its turn over sqrt(3), per line EMF.
+    /// Motion of an estimated EMF in one period per product of two line EMFs, 1/V; of a sine, the
+    /// tangent of its turn over sqrt(3), per line EMF.
     pub slope: f64,
     /// Line EMF above which that motion no longer grows, volt.
     pub line_limit: f64,
 }
 
 /// Largest advance per period, radian, of an estimate with the filter share `filter`, such that its
-/// errors shrink. The linearised motion of a trapezoid amplifies them by sqrt(1 + 2 angle^2). A sine
-/// turned to second order grows by angle^4/8, and an error of its length, from which the speed is
-/// taken, by 5/8 angle^4.
+/// errors shrink. The linearised motion of a trapezoid amplifies them by sqrt(1 + 2 angle^2). A
+/// sine turned to second order grows by angle^4/8, and an error of its length, from which the speed
+/// is taken, by 5/8 angle^4.
 fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
     let growth = 1.0 / (1.0 - filter);
     let turn = match shape {

@@ -30,8 +30,8 @@ pub(super) fn plausible<'b>(l: &Lowering<'b>, e: Expr<'b>) -> Expr<'b> {
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// EMF over the target period and over the present one; none if the law needs none. `outgoing` is the
-    /// outgoing phase, 0 to 2.
+    /// EMF over the target period and over the present one; none if the law needs none. `outgoing`
+    /// is the outgoing phase, 0 to 2.
     pub(super) fn emf(
         &self,
         words: &Words<'b>,
@@ -60,8 +60,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         })
     }
 
-    /// Largest phase EMF before the advance, words of voltage: the bus; with floating legs the range of
-    /// [`Self::meet_emf`].
+    /// Largest phase EMF before the advance, words of voltage: the bus; with floating legs the
+    /// range of [`Self::meet_emf`].
     pub(super) fn e_bound(&self) -> i64 {
         if self.options.emf == EmfSource::Model {
             return self.l.volts_word(self.design.e_limit);
@@ -187,7 +187,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         Some(e_past)
     }
 
-    /// Sets the EMF of a floating leg by the motor's geometry; the difference of the other two stays.
+    /// Sets the EMF of a floating leg by the motor's geometry; the difference of the other two
+    /// stays.
     fn meet_emf(
         &self,
         words: &Words<'b>,

@@ -1,6 +1,6 @@
-//! Prediction and deadbeat control with the EMF held over the delay, folded: in place of estimate and
-//! prediction, the contribution of past samples and commands to the voltage, or error, of this step
-//! and the next (semantics, `emf: held`).
+//! Prediction and deadbeat control with the EMF held over the delay, folded: in place of estimate
+//! and prediction, the contribution of past samples and commands to the voltage, or error, of this
+//! step and the next (semantics, `emf: held`).
 
 use super::emf::plausible;
 use super::{CurrentLoop, EmfUse, Remembered, kept, read, unlimited_voltage};
@@ -34,7 +34,8 @@ pub struct Held<'b> {
 pub struct LeftOver<'b> {
     /// Contribution to the next step: a v in deadbeat control with delay 1, else v.
     pub left: Phases<'b>,
-    /// Contribution to the step after the next, with delay 1: (1 + a) v in deadbeat control, else v.
+    /// Contribution to the step after the next, with delay 1: (1 + a) v in deadbeat control, else
+    /// v.
     pub both: Option<Phases<'b>>,
 }
 

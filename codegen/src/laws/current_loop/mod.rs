@@ -1,5 +1,5 @@
-//! The step that all controllers share: from the sample to the deadbeat voltage, and the state for the
-//! next step (semantics page of predictive deadbeat, steps 1 to 9 and 12).
+//! The step that all controllers share: from the sample to the deadbeat voltage, and the state for
+//! the next step (semantics page of predictive deadbeat, steps 1 to 9 and 12).
 
 mod coefficients;
 mod dead_time;
@@ -220,7 +220,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             tracked.direction = Some(rotor.direction);
             tracked.rotor = Some(rotor);
         } else if let Some(direction) = words.direction {
-            // Without an angle the commutation begins in the stage that senses the direction, at a rare edge.
+            // Without an angle the commutation begins in the stage that senses the direction, at a
+            // rare edge.
             let (direction, kept) = sense_direction(l, direction, &hall, words.pair);
             tracked.direction = Some(direction);
             tracked.kept = kept;
@@ -262,7 +263,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             _ if options.advance > 0.0 => {
                 quasi_square_reference(l, Corner::Sector(sector), set_point)
             }
-            // Without phase advance the table is indexed by the Hall code; an invalid one turns the legs off.
+            // Without phase advance the table is indexed by the Hall code; an invalid one turns the
+            // legs off.
             _ => {
                 let code = tracked.sample.hall;
                 quasi_square_reference(l, Corner::HallCode(code), set_point)
@@ -270,8 +272,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// Observations: the EMF of the target period, or of the present one if the law only predicts, and
-    /// the speed.
+    /// Observations: the EMF of the target period, or of the present one if the law only predicts,
+    /// and the speed.
     fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
         let predicts = self.needs.emf == EmfUse::Prediction;
         if let Some(e) = if predicts { present } else { target } {
@@ -288,8 +290,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         self.needs.predicts() && self.options.emf == EmfSource::Held
     }
 
-    /// Whether tables hold the contribution of whole vectors to later steps: with a held EMF and a fixed
-    /// bus.
+    /// Whether tables hold the contribution of whole vectors to later steps: with a held EMF and a
+    /// fixed bus.
     pub fn tables_left_over(&self) -> bool {
         self.holds_emf() && matches!(self.l.spec.inverter.bus, BusSource::Fixed)
     }
@@ -303,8 +305,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The voltage applied in the period that begins now (delay 1) by a command with an off leg, with the
-    /// EMF of that period.
+    /// The voltage applied in the period that begins now (delay 1) by a command with an off leg,
+    /// with the EMF of that period.
     fn applied_now(
         &self,
         words: &Words<'b>,
@@ -374,8 +376,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         Deadbeat { u, shifts }
     }
 
-    /// Step 12: state for the next step. `v_cmd`: the commanded voltages; `applied`: the terminal voltages
-    /// in their place, for commands with an off leg.
+    /// Step 12: state for the next step. `v_cmd`: the commanded voltages; `applied`: the terminal
+    /// voltages in their place, for commands with an off leg.
     pub fn remember(
         &self,
         front: &Front<'b>,

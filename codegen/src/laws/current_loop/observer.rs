@@ -7,8 +7,8 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::ir::{Coefficient, Expr, Named, Phases, named};
 use crate::spec::EmfShape;
 
-/// The line EMF's limit, words of voltage, and the left shift (right if negative) that scales it to a
-/// full word, q.
+/// The line EMF's limit, words of voltage, and the left shift (right if negative) that scales it to
+/// a full word, q.
 #[derive(Clone, Copy, Debug)]
 struct LineRange {
     limit: i64,
@@ -27,8 +27,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// `k_slope`: words of voltage per upper word of the square of a shifted line EMF; of a sine, turn per
-    /// shifted line EMF.
+    /// `k_slope`: words of voltage per upper word of the square of a shifted line EMF; of a sine,
+    /// turn per shifted line EMF.
     fn slope_value(&self, range: LineRange) -> f64 {
         let word = 1.0 / self.l.scale.voltage();
         self.design.slope * word * f64::from(self.slope_exponent(range)).exp2()
@@ -84,7 +84,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         )
     }
 
-    /// The estimate `e` of the period that just ended, advanced to the target and to the present period.
+    /// The estimate `e` of the period that just ended, advanced to the target and to the present
+    /// period.
     pub(super) fn move_emf(&self, sector: Expr<'b>, e: Phases<'b>) -> (Phases<'b>, Phases<'b>) {
         let (range, shape) = (self.line_range(), self.l.spec.motor.emf_shape);
         let doc = match shape {
@@ -128,7 +129,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         ((before + twice).named("e"), e_now)
     }
 
-    /// Weights of the EMF of phases a and b in the line EMF of the conducting pair (c is minus their sum).
+    /// Weights of the EMF of phases a and b in the line EMF of the conducting pair (c is minus
+    /// their sum).
     fn line_weights(&self, sector: Expr<'b>) -> Phases<'b> {
         named! {
             let line_weight = Phases::<2>::each(|phase| {
@@ -144,8 +146,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         line_weight
     }
 
-    /// Zero-sum motion of a ramp: two thirds for the off phase, minus one third for the two others. The
-    /// weights are applied before the product, so that they do not double its rounding.
+    /// Zero-sum motion of a ramp: two thirds for the off phase, minus one third for the two others.
+    /// The weights are applied before the product, so that they do not double its rounding.
     fn ramping(&self, k_slope: Coefficient, line: Expr<'b>, weights: Phases<'b>) -> Phases<'b> {
         named! {
             let e_line_square = line.mul_floor(line, self.options.word);
@@ -157,9 +159,9 @@ impl<'b> CurrentLoop<'_, 'b> {
         motion
     }
 
-    /// Motions of a sine over one period, and over two with delay 1. To first order the length would grow
-    /// by half the turn's square in every period of the feedback, so the second order is included; over
-    /// two periods it counts four times.
+    /// Motions of a sine over one period, and over two with delay 1. To first order the length
+    /// would grow by half the turn's square in every period of the feedback, so the second order is
+    /// included; over two periods it counts four times.
     fn turning(&self, k_slope: Coefficient, line: Expr<'b>, e: Phases<'b>) -> [Phases<'b>; 2] {
         named! {
             let e_turn = k_slope * line;
@@ -176,8 +178,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         [motion, motion_twice]
     }
 
-    /// `e` turned by 90 degrees, times the turn: sqrt(3) times a phase of it is the line value of the two
-    /// others.
+    /// `e` turned by 90 degrees, times the turn: sqrt(3) times a phase of it is the line value of
+    /// the two others.
     fn turned(&self, turn: Expr<'b>, e: Phases<'b>) -> Phases<'b> {
         let [a, b] = e.0;
         let lines = Phases([-(a + (b << 1)), (a << 1) + b]);

@@ -1,4 +1,5 @@
-//! Stability of linear current loops: closed-loop poles on a plant whose R and L are not the model's.
+//! Stability of linear current loops: closed-loop poles on a plant whose R and L are not the
+//! model's.
 
 use super::LoopDesign;
 use crate::design::DiscretePlant;
@@ -18,7 +19,8 @@ pub struct StableRange {
 pub trait LinearLoop {
     /// Length of the state.
     fn order(&self) -> usize;
-    /// The state a period later: affine in the plant's pole and gain, which affect only the current.
+    /// The state a period later: affine in the plant's pole and gain, which affect only the
+    /// current.
     fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64>;
 
     /// One period as a matrix.
@@ -43,8 +45,8 @@ pub trait LinearLoop {
             .fold(0.0, f64::max)
     }
 
-    /// Greatest current per volt, A/V, in response to an EMF that steps up at rest and then turns by up to
-    /// `turn` radian a period, with the stated motor.
+    /// Greatest current per volt, A/V, in response to an EMF that steps up at rest and then turns
+    /// by up to `turn` radian a period, with the stated motor.
     fn greatest_response(&self, spec: &Spec, turn: f64) -> f64 {
         let real = real_plant(spec, 1.0, 1.0);
         // The response to one period of a volt, whose superposition is that to any EMF.
@@ -107,11 +109,12 @@ fn real_plant(spec: &Spec, resistance_ratio: f64, inductance_ratio: f64) -> Disc
     )
 }
 
-/// Characteristic polynomial of a loop on any plant, from the highest power, whose coefficient is 1.
+/// Characteristic polynomial of a loop on any plant, from the highest power, whose coefficient is
+/// 1.
 ///
-/// The plant's pole and gain are in one row of the loop's matrix, and a determinant is linear in each
-/// row, so three polynomials give all others. The search for a stable range evaluates hundreds, in
-/// macros that run unoptimised.
+/// The plant's pole and gain are in one row of the loop's matrix, and a determinant is linear in
+/// each row, so three polynomials give all others. The search for a stable range evaluates
+/// hundreds, in macros that run unoptimised.
 struct CharacteristicPolynomial {
     fixed: Vec<f64>,
     of_pole: Vec<f64>,

@@ -1,8 +1,9 @@
-//! The vector nearest to the deadbeat voltage, by geometry instead of enumeration (semantics, step 10).
+//! The vector nearest to the deadbeat voltage, by geometry instead of enumeration (semantics, step
+//! 10).
 //!
-//! In the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector wins
-//! while no phase exceeds a third of the bus. Of two pair vectors with the same leg off the sign of a
-//! line voltage gives the better one, so three scores remain.
+//! In the three-phase set the nearest vector has the sign bits of u as gates, and the zero vector
+//! wins while no phase exceeds a third of the bus. Of two pair vectors with the same leg off the
+//! sign of a line voltage gives the better one, so three scores remain.
 
 use super::changes::Changes;
 use super::off_legs::OffLegs;
@@ -89,8 +90,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The same for Table 2's sets if only the vector is needed: the three-phase set is evaluated in
-    /// commutation only.
+    /// The same for Table 2's sets if only the vector is needed: the three-phase set is evaluated
+    /// in commutation only.
     pub(super) fn choose_of_table2(
         &self,
         options: &FcsMpcSpec,
@@ -194,8 +195,8 @@ pub(super) fn nearest_physical<'b>(
     best.map_or(rival.vector, |(best, _)| best.against(rival))
 }
 
-/// The shift at which the sum of two products fits a word with one bit to spare: a product of factors
-/// of n and m bits has n + m - 1.
+/// The shift at which the sum of two products fits a word with one bit to spare: a product of
+/// factors of n and m bits has n + m - 1.
 fn shift_of_scores(all: &[&mut Products<'_>]) -> u32 {
     let widest = all.iter().map(|products| products.bits()).max();
     widest.map_or(31, |bits| bits.saturating_sub(31))
@@ -250,8 +251,8 @@ fn largest_of_zero_sum(u: Phases<'_, 3>) -> Expr<'_> {
     u_largest
 }
 
-/// Whether a magnitude exceeds a third of the bus. An integer exceeds the third exactly if it exceeds
-/// its integer part.
+/// Whether a magnitude exceeds a third of the bus. An integer exceeds the third exactly if it
+/// exceeds its integer part.
 fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Flag<'b> {
     match l.spec.inverter.bus {
         BusSource::Fixed => {
@@ -287,8 +288,8 @@ fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) ->
 
 /// Low legs of the nearest of V1 to V6 to `u`, as a pattern and as flags.
 fn low_legs_of(u: Phases<'_, 3>) -> (Expr<'_>, [Flag<'_>; 3]) {
-    // A zero takes the leg of the first of the two tied vectors: b low, a like b, c unlike b. A one is
-    // subtracted from words that count as low, so that the sign decides.
+    // A zero takes the leg of the first of the two tied vectors: b low, a like b, c unlike b. A one
+    // is subtracted from words that count as low, so that the sign decides.
     let [a, b, c] = u.0;
     named! {
         let b_is_low = (b - 1).is_below(0);
@@ -367,9 +368,9 @@ fn nearest_nominal<'b>(l: &Lowering<'b>, front: &Front<'b>, u: Phases<'b, 3>) ->
     pair_stage(l);
     let idle = zero_vector(l, front.sector);
     let lines = PAIRS.map(|pair| pair.line(u).named(&format!("line_{}", pair.letter())));
-    // The order of the phase voltages is that of the vector's legs. Equal phases take the order of the
-    // first of the tied vectors: a above b, c above b unless a is below both, a above c if b is above
-    // both.
+    // The order of the phase voltages is that of the vector's legs. Equal phases take the order of
+    // the first of the tied vectors: a above b, c above b unless a is below both, a above c if b is
+    // above both.
     let [line_a, line_c, line_b] = lines;
     named! {
         let a_below_b = line_c.is_below(0);

@@ -1,8 +1,9 @@
-//! A second vector in the period of the chosen one (semantics, step 10a): the nearest point between the two.
+//! A second vector in the period of the chosen one (semantics, step 10a): the nearest point between
+//! the two.
 //!
-//! The two three-phase vectors nearest to u are corners of one triangle of the hexagon, so the point
-//! lies on its nearest edge: a clamp per leg. A pair vector shares its period with the zero vector of
-//! the same off leg.
+//! The two three-phase vectors nearest to u are corners of one triangle of the hexagon, so the
+//! point lies on its nearest edge: a clamp per leg. A pair vector shares its period with the zero
+//! vector of the same off leg.
 
 use super::choose::Choice;
 use crate::blocks::{Applied, Command, LOW, Lowering, OFF, PULSED, compare_of};
@@ -130,7 +131,8 @@ fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Puls
         let t_pair = volts.clamp(0, bus);
         let pair_is_forward = !pair_is_back;
     }
-    // Forward, a is high with b or c off, c with a off; backward, b is high with a or c off, c with b off.
+    // Forward, a is high with b or c off, c with a off; backward, b is high with a or c off, c with
+    // b off.
     let of_c = is_b.choose_flag(pair_is_back, pair_is_forward);
     let senses = [pair_is_forward, pair_is_back, of_c];
     let volts = t_pair;

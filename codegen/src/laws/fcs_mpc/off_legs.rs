@@ -87,7 +87,8 @@ impl<'b> OffLegs<'b> {
         [0, 1].map(|way| pick(is_off, self.conducting.map(|flags| flags[way])))
     }
 
-    /// The factors of the score of a pair's zero vector, by flags of leg a and leg b being off in it.
+    /// The factors of the score of a pair's zero vector, by flags of leg a and leg b being off in
+    /// it.
     pub(super) fn zero(&self, u: Phases<'b, 3>, is_off: [Flag<'b>; 2]) -> [Expr<'b>; 2] {
         let free = pick(is_off, self.lifts.0).clamp(0, self.bus);
         named! {

@@ -4,7 +4,8 @@ use crate::blocks::Lowering;
 use crate::ir::{Expr, Flag, Lut, Named, Phases};
 use crate::laws::whole_vectors::zero_vectors;
 
-/// Pairs by off leg, in the order of their vectors: V12 | V45 a off, V23 | V56 c off, V34 | V61 b off.
+/// Pairs by off leg, in the order of their vectors: V12 | V45 a off, V23 | V56 c off, V34 | V61 b
+/// off.
 pub(super) const PAIRS: [Pair; 3] = [Pair(0, 2, 1), Pair(2, 0, 1), Pair(1, 0, 2)];
 
 /// Off phase, high phase and low phase of the first of two vectors.
@@ -40,7 +41,8 @@ pub(super) struct Candidate<'b> {
 }
 
 impl<'b> Candidate<'b> {
-    /// The candidate of the lower score; on a tie that of the lower number. `name` is that of `next`.
+    /// The candidate of the lower score; on a tie that of the lower number. `name` is that of
+    /// `next`.
     pub(super) fn first_least(self, next: Self, name: &str) -> Self {
         let less = next.score.is_below(self.score);
         let tied = next.score.is(self.score) & next.vector.is_below(self.vector);
@@ -93,8 +95,9 @@ impl<'b> Products<'b> {
     }
 }
 
-/// Shifts the first factors left so that `shift` becomes 32, the upper word of each product, without a
-/// 64-bit shift. No change if a factor has no room or the products fit a word. Returns the new shift.
+/// Shifts the first factors left so that `shift` becomes 32, the upper word of each product,
+/// without a 64-bit shift. No change if a factor has no room or the products fit a word. Returns
+/// the new shift.
 pub(super) fn as_upper_words(products: &mut [&mut Products<'_>], shift: u32) -> u32 {
     let room = 32_u32.saturating_sub(shift);
     let firsts = || products.iter().flat_map(|products| &products.0);
@@ -121,8 +124,8 @@ pub(super) fn state_score_over_bus<'b>(l: &Lowering<'b>, voltage: Expr<'b>, weig
     l.b.state_error("score", voltage, [SCORE, "V^2"], word);
 }
 
-/// States the error bound of the scores V (4 V - 12 u) and V (3 V - 6 line): the third phase has the
-/// largest error of a phase, and a line at most twice that.
+/// States the error bound of the scores V (4 V - 12 u) and V (3 V - 6 line): the third phase has
+/// the largest error of a phase, and a line at most twice that.
 pub(super) fn state_exact_scores<'b>(l: &Lowering<'b>, u: Phases<'b, 3>) {
     state_score_over_bus(l, u.c(), 12.0);
 }

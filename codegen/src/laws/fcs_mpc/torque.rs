@@ -1,5 +1,5 @@
-//! The weight of the torque error: it couples the legs, so the vectors are enumerated (semantics, step
-//! 10w).
+//! The weight of the torque error: it couples the legs, so the vectors are enumerated (semantics,
+//! step 10w).
 
 use super::changes::Changes;
 use super::off_legs::OffLegs;

@@ -1,8 +1,8 @@
 //! The choice with weights in the cost (semantics, step 10w).
 //!
-//! A switching weight alone keeps the geometric choice: in the three-phase set it gives each leg's sign
-//! a hysteresis, and the better of two pair vectors with the same leg off is exact. A torque weight
-//! couples the legs, so the vectors are enumerated ([`super::torque`]).
+//! A switching weight alone keeps the geometric choice: in the three-phase set it gives each leg's
+//! sign a hysteresis, and the better of two pair vectors with the same leg off is exact. A torque
+//! weight couples the legs, so the vectors are enumerated ([`super::torque`]).
 
 use super::changes::Changes;
 use super::choose::nearest_physical;
@@ -123,8 +123,8 @@ impl<'b> Changes<'b> {
         }
     }
 
-    /// The best pair vector with off legs midway, against the zero vector or the best of V0 to V6, by exact
-    /// scores over the bus.
+    /// The best pair vector with off legs midway, against the zero vector or the best of V0 to V6,
+    /// by exact scores over the bus.
     fn nearest_exact(
         &self,
         l: &Lowering<'b>,

@@ -1,5 +1,5 @@
-//! Predictive hysteresis control as a program: the shared step, the predicted error, two bands and a
-//! table.
+//! Predictive hysteresis control as a program: the shared step, the predicted error, two bands and
+//! a table.
 
 use super::table::{
     BRAKING_BACKWARD, BRAKING_FORWARD, MOTORING_BACKWARD, MOTORING_FORWARD, PER_SET,
@@ -217,8 +217,8 @@ impl<'b> Axis<'b> {
 /// Entries of the switching table in the law's numbering.
 fn entries(options: &PhccSpec, shape: EmfShape, numbers: Numbers) -> Vec<i32> {
     let sets = switching_table(options, shape);
-    // Direction unknown, forward, unused, backward (the index wraps); each for a set-point of at least 0
-    // and for a negative one.
+    // Direction unknown, forward, unused, backward (the index wraps); each for a set-point of at
+    // least 0 and for a negative one.
     [
         [BRAKING_FORWARD; 2],
         [MOTORING_FORWARD, BRAKING_FORWARD],

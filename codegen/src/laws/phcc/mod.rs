@@ -12,8 +12,8 @@ use crate::blocks::Scale;
 use crate::scaling::Lowered;
 use crate::spec::{PhccCandidates, PhccSpec, Spec, SwitchingTable};
 
-/// Line EMF over the bus at which derived switching tables without floating legs are designed; above
-/// it their vectors no longer move the current as intended.
+/// Line EMF over the bus at which derived switching tables without floating legs are designed;
+/// above it their vectors no longer move the current as intended.
 const TABLE_EMF: f64 = 0.75;
 
 impl Law for PhccSpec {
