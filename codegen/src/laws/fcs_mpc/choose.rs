@@ -150,7 +150,7 @@ pub(super) fn nearest_physical<'b>(
     l.b.stage(
         "nearest_pair",
         &[
-            "The pair vector nearest to the deadbeat voltage, or {rival} if that is not worse: the least score 6 (|v|^2 - 2 u v)",
+            &format!("The pair vector nearest to the deadbeat voltage, or {rival} if that is not worse: the least score 6 (|v|^2 - 2 u v)"),
             "of the better vectors per off leg. Ties go to the first vector. Both products of a score are rounded as one, so that",
             "a pair with its off leg at a rail ties exactly with the vector of the same voltage.",
         ],

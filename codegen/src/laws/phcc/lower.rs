@@ -262,8 +262,10 @@ fn look_up<'b>(
         "switching",
         entries,
         &[
-            format!("{what}, by 128 direction (modulo the table's length) + 64 if the set-point is negative + 8 sector"),
-            "+ 4 in commutation + 2 if beta is to fall + 1 if alpha is.".to_owned(),
+            format!(
+                "{what}, by 128 direction (modulo the table's length) + 64 if the set-point is negative + 8 sector \
+                + 4 in commutation + 2 if beta is to fall + 1 if alpha is."
+            ),
             "Vectors: 0 V0, 1 to 6 V1 to V6, 7 to 12 V12 to V61, 13 to 15 a pair's zero with leg a, b, c off.".to_owned(),
         ],
     );
