@@ -11,7 +11,7 @@
 //! }
 //! ```
 
-use super::build::ProgramBuilder;
+use super::draft::ProgramBuilder;
 use super::interval::Interval;
 use super::op::{Comparison, ConstantId, Op, ParamId, StateId, TableId, Value};
 use std::array;
@@ -402,7 +402,10 @@ pub fn pick<'b, T: Choice<'b>>([is_a, is_b]: [Flag<'b>; 2], [a, b, c]: [T; 3]) -
 impl<'b> Memory<'b> {
     /// The word as it was before the step; a second read is the same value.
     pub fn read(self) -> Expr<'b> {
-        self.b.read_state(self.id)
+        Expr {
+            b: self.b,
+            value: self.b.read_word(Op::State(self.id)),
+        }
     }
 
     /// Sets the word's new value.
@@ -414,7 +417,10 @@ impl<'b> Memory<'b> {
 impl<'b> Param<'b> {
     /// The word; a second read is the same value.
     pub fn read(self) -> Expr<'b> {
-        self.b.read_param(self.id)
+        Expr {
+            b: self.b,
+            value: self.b.read_word(Op::Param(self.id)),
+        }
     }
 
     /// Sets the word's new value.
@@ -578,7 +584,10 @@ impl<'b> Mul<Expr<'b>> for Coefficient {
     type Output = Expr<'b>;
 
     fn mul(self, signal: Expr<'b>) -> Expr<'b> {
-        let factor = signal.b.read_constant(self.id);
+        let factor = Expr {
+            b: signal.b,
+            value: signal.b.push("", Op::Constant(self.id)),
+        };
         signal.mul_round(factor, self.shift)
     }
 }

@@ -1,14 +1,15 @@
 //! The intermediate representation: integer programs in SSA form, grouped into named stages.
 //!
-//! [`graph`] defines it, [`op`] its arithmetic, [`build`] constructs it and computes the
+//! [`graph`] defines it, [`op`] its arithmetic, `build` constructs it and computes the
 //! [`interval`]s, `rewrite` applies the rewriting rules, `prune` removes dead values, [`verify()`]
 //! turns a [`Program`] into a [`VerifiedGraph`] or lists broken invariants, [`bounds`] computes
 //! error bounds, [`interpret`] runs it, [`text`] prints it, [`cost`] counts operations. Nothing
 //! here depends on motors, units or Rust syntax: physical meaning is text for documentation only.
 
 pub mod bounds;
-pub mod build;
+mod build;
 pub mod cost;
+mod draft;
 pub mod error;
 pub mod expr;
 pub mod graph;
@@ -26,8 +27,8 @@ pub mod verify;
 mod verify_tests;
 
 pub use bounds::{Bounds, Case, StatedError, cases, stated_errors};
-pub use build::ProgramBuilder;
 pub use cost::{Cost, PathCost, live_words};
+pub use draft::ProgramBuilder;
 pub use error::{ErrorInterval, Exact, Real};
 pub(crate) use expr::named;
 pub use expr::{
