@@ -80,7 +80,7 @@ pub struct OptionEntry {
     pub name: &'static str,
     /// Its value, as the normalised specification has it.
     pub value: String,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
 }
 

@@ -39,7 +39,7 @@ pub struct Gain {
     pub value: f64,
     /// Its symbol.
     pub symbol: &'static str,
-    /// What the symbol stands for.
+    /// Formula of the symbol.
     pub formula: &'static str,
 }
 

@@ -273,7 +273,7 @@ impl Drive<'_> {
             _ => "The command takes effect in the next period.",
         };
         let mut text = doc(&[
-            "Runs one control period: from the samples at its start to the inverter's command.",
+            "Runs one control period: takes the measurements of its beginning, returns the inverter's command.",
             effect,
         ]);
         if self.interface.timer_capture {
@@ -310,7 +310,7 @@ impl Drive<'_> {
         } else {
             text.extend(doc(&[
                 "",
-                "A call that interrupts another one has no effect; one that was interrupted for good keeps later calls from having an effect for 65536 control periods.",
+                "A call that interrupts another one has no effect; one that never resumes after an interruption blocks later calls for 65,536 control periods.",
                 "From an interrupt that can interrupt the control loop: at most once per control period.",
             ]));
             let mut words = code.words;
@@ -385,29 +385,29 @@ impl Drive<'_> {
                 "reset",
                 &[
                     "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
-                    "Ignored while calibrating and pre-charging. What follows is control, not start-up. With a speed loop the set-point is the speed, and speed 0 brakes a rotor that turns, with up to the current that is set.",
+                    "Ignored while calibrating and pre-charging. Control follows directly, without start-up. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
                 ],
                 reset,
             ),
             command(
                 "calibrate",
                 &[
-                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, where the specification has one, and",
-                    "control at the set-point that stands follow by themselves. Ignored when tripped.",
+                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if specified, and control with the",
+                    "present set-point follow automatically. Ignored when tripped.",
                 ],
                 run("calibrate"),
             ),
             command(
                 "precharge",
                 &[
-                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a motor that turns; control follows by itself.",
-                    "Accepted from control, too: call it at rest only. Ignored when tripped, while calibrating, and where the specification has no pre-charge.",
+                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor; control follows automatically.",
+                    "Accepted during control, too: call it only at rest. Ignored when tripped, while calibrating, and if the specification has no pre-charge.",
                 ],
                 run("precharge"),
             ),
             Method {
                 doc: doc(&[
-                    "Mode and fault of the drive, as of the last control period or call: from any context.",
+                    "Mode and fault of the drive after the last control period or call; may be called from any context.",
                 ]),
                 head: format!(
                     "hexagen_status {}(const {})",
