@@ -10,6 +10,7 @@ mod pdcc;
 pub mod phcc;
 mod pi_pwm;
 mod pulses;
+mod scores;
 mod two_steps;
 mod weighted;
 mod whole;

@@ -1,7 +1,7 @@
 //! The choice of FCS-MPC over two periods: every sequence of two vectors (section 10h).
 
 use super::Inputs;
-use super::fcs_mpc::score_by_bus;
+use super::scores::score_by_bus;
 use crate::exact::{Coefficient, Word, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;

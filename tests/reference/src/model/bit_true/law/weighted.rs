@@ -1,7 +1,7 @@
 //! The choice of FCS-MPC with weights in its cost (section 10w).
 
 use super::Inputs;
-use super::fcs_mpc::Choice;
+use super::scores::{Choice, first_least};
 use crate::exact::{Coefficient, Word, halve, round_half_up, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -91,21 +91,6 @@ fn kind(vector: usize) -> usize {
         (None, _) => 3,
         _ => 4,
     }
-}
-
-/// The first with the least score.
-pub fn first_least<W: Word>(
-    list: impl Iterator<Item = usize>,
-    score: impl Fn(usize) -> W,
-) -> usize {
-    let mut least: Option<(usize, W)> = None;
-    for vector in list {
-        let found = score(vector);
-        if least.is_none_or(|(_, known)| found < known) {
-            least = Some((vector, found));
-        }
-    }
-    least.map_or(0, |(vector, _)| vector)
 }
 
 /// Cost of the torque's error.
