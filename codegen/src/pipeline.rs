@@ -443,7 +443,7 @@ kind = "pdcc"
             (
                 &sine,
                 "pdcc:emf_filter=0.01",
-                "beyond 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf: model`",
+                "above 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf: model`",
             ),
         ] {
             let told = told(motor, variant);
