@@ -96,7 +96,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 
 /// Warnings about a drive that is generated nevertheless.
 pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
-    let mut warnings = vec![];
+    let mut warnings = origins.warnings().to_vec();
     if law(&spec.controller).loses_current() {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
     }
@@ -438,12 +438,12 @@ kind = "pdcc"
             (
                 &slow,
                 "pdcc",
-                "warning[HX0602]: `emf`: estimated (default), but the EMF turns 12 electrical degrees per control period at rated speed; above 9 the torque may be more than 5 % off; choose `emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most 187.5 us",
+                "warning[HX0602]: `emf`: estimated (default), but the EMF turns 12 electrical degrees per control period at rated speed; above 9 the torque may be more than 5 % off; choose `emf=model` with `reference=proportional` and `hall_capture=timer`, or a control period of at most 187.5 us",
             ),
             (
                 &sine,
                 "pdcc:emf_filter=0.01",
-                "above 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf: model`",
+                "above 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf=model`",
             ),
         ] {
             let told = told(motor, variant);

@@ -77,6 +77,8 @@ codes! {
     HallCodes = 211,
     /// A unit on a plain number.
     UnwantedUnit = 212,
+    /// A unit that says one of two quantities.
+    AmbiguousUnit = 213,
     /// The control period is too long for L/R.
     PeriodTooLong = 301,
     /// The bus cannot drive the motor at rated speed.
@@ -111,6 +113,8 @@ codes! {
     AdcOffset = 316,
     /// An ADC count is too coarse for the quantity measured.
     AdcTooCoarse = 317,
+    /// Speed constant or no-load speed and EMF constant contradict each other.
+    SpeedContradiction = 318,
     /// A controller that does not exist.
     UnknownController = 401,
     /// An option of a controller that does not exist in this version.
@@ -139,6 +143,8 @@ codes! {
     SwitchingTableLosesCurrent = 601,
     /// The EMF turns too far per control period for its estimate.
     EstimateTurnsTooFar = 602,
+    /// A mean over block commutation was probably taken for a peak.
+    MeanForPeak = 603,
     /// The trip current is far above the largest set-point.
     TripFarAbove = 610,
     /// Hysteresis control may reach the trip current without a fault.

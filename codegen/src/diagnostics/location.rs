@@ -41,6 +41,45 @@ impl Location {
     }
 }
 
+impl Location {
+    /// A text for people with its settings as they are written at this place. Texts say them as the
+    /// macro does, in backticks: `word: 32`; a file takes `word = 32`, a variant `word=32`.
+    pub(super) fn in_its_words(&self, text: &str) -> String {
+        if matches!(self, Self::Macro(_)) {
+            return text.to_owned();
+        }
+        let mut pieces: Vec<String> = text.split('`').map(str::to_owned).collect();
+        for (index, piece) in pieces.iter_mut().enumerate() {
+            // Between two backticks.
+            if index % 2 == 1
+                && let Some((name, value)) = piece.split_once(": ")
+                && !name.is_empty()
+                && name.chars().all(|c| c.is_ascii_lowercase() || c == '_')
+            {
+                *piece = self.setting(name, value);
+            }
+        }
+        pieces.join("`")
+    }
+
+    fn setting(&self, name: &str, value: &str) -> String {
+        match self {
+            Self::Macro(_) => format!("{name}: {value}"),
+            Self::Variant { .. } => format!("{name}={}", value.replace(' ', "")),
+            Self::File { .. } => {
+                let name = if name == "controller" { "kind" } else { name };
+                let is_bare = value.starts_with(['"', '[', '{'])
+                    || value.parse::<f64>().is_ok_and(f64::is_finite);
+                if is_bare {
+                    format!("{name} = {value}")
+                } else {
+                    format!("{name} = \"{value}\"")
+                }
+            }
+        }
+    }
+}
+
 /// `file:line:col`, as editors and terminals recognise it; a macro call is named `macro`.
 impl fmt::Display for Location {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -8,12 +8,14 @@
 pub mod catalogue;
 mod code;
 mod collector;
+mod explanation;
 mod location;
 mod number;
 mod render;
 
 pub use code::Code;
 pub use collector::{Collector, Diagnostics};
+pub use explanation::Explanation;
 pub use location::Location;
 pub use number::{
     at_least, at_most, engineering, frequency, list, percent, rpm, rpm_at_least, rpm_at_most,
@@ -47,7 +49,7 @@ impl Diagnostic {
     pub(crate) fn new(code: Code, location: &Location, message: impl Into<String>) -> Self {
         Self {
             code,
-            message: message.into(),
+            message: location.in_its_words(&message.into()),
             location: location.clone(),
             notes: Vec::new(),
         }
@@ -57,7 +59,7 @@ impl Diagnostic {
     #[must_use]
     pub(crate) fn with_note(mut self, location: &Location, message: impl Into<String>) -> Self {
         self.notes.push(Note {
-            message: message.into(),
+            message: location.in_its_words(&message.into()),
             location: location.clone(),
         });
         self

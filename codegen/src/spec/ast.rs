@@ -4,6 +4,7 @@
 //! checked beyond the spelling of values. What could not be read is kept as a diagnostic, so that
 //! the checks report it together with everything else.
 
+pub use super::basis::Basis;
 use super::units::Unit;
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 use std::fmt;
@@ -91,44 +92,8 @@ pub struct Number {
 impl Number {
     /// The value in SI units (as it stands without a unit).
     pub fn si(&self) -> f64 {
-        self.unit.map_or(self.value, |unit| unit.to_si(self.value))
-    }
-}
-
-/// What a resistance, inductance or EMF constant refers to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Basis {
-    /// Of one phase winding.
-    PerPhase,
-    /// Between two terminals.
-    LineToLine,
-    /// Of the phase voltage.
-    Phase,
-    /// Amplitude.
-    Peak,
-    /// Root mean square.
-    Rms,
-}
-
-impl Basis {
-    /// Every basis word.
-    pub const ALL: [Self; 5] = [
-        Self::PerPhase,
-        Self::LineToLine,
-        Self::Phase,
-        Self::Peak,
-        Self::Rms,
-    ];
-
-    /// The word as written.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::PerPhase => "per_phase",
-            Self::LineToLine => "line_to_line",
-            Self::Phase => "phase",
-            Self::Peak => "peak",
-            Self::Rms => "rms",
-        }
+        let unit = self.unit.as_ref();
+        unit.map_or(self.value, |unit| unit.to_si(self.value))
     }
 }
 
@@ -241,7 +206,7 @@ impl fmt::Display for Value {
 impl fmt::Display for Number {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(&self.digits)?;
-        if let Some(unit) = self.unit {
+        if let Some(unit) = &self.unit {
             write!(out, " {}", unit.symbol)?;
         }
         for basis in &self.basis {

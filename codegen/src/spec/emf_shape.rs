@@ -4,7 +4,7 @@
 //! third of a turn; shapes have half-wave symmetry and amplitude 1.
 
 use super::EmfShape;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 impl EmfShape {
     /// Unit EMF of phase a at the electrical angle `theta_e` (radian), from -1 to 1.
@@ -46,6 +46,46 @@ impl EmfShape {
                 }
             }
         }
+    }
+
+    /// Mean torque per ampere of a sinusoidal current's peak over the phase constant: 1.5 times the
+    /// fundamental of the phase EMF.
+    pub fn sine_factor(self) -> f64 {
+        1.5 * match self {
+            Self::Sinusoidal => 1.0,
+            Self::Trapezoidal { flat_top_deg } => {
+                let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
+                4.0 / PI * ramp.sin() / ramp
+            }
+        }
+    }
+
+    /// Root mean square of the phase EMF over its peak: 1/sqrt(2) for a sine, 0.882 for a flat top
+    /// of 120 degrees.
+    pub fn phase_rms(self) -> f64 {
+        match self {
+            Self::Sinusoidal => FRAC_1_SQRT_2,
+            Self::Trapezoidal { flat_top_deg } => {
+                // Of the ramps' squares a third is left.
+                (1.0 - 2.0 / 3.0 * (180.0 - flat_top_deg) / 180.0).sqrt()
+            }
+        }
+    }
+
+    /// Root mean square of the line-to-line EMF over the peak of the phase EMF: sqrt(1.5) for a
+    /// sine, 1.491 for a flat top of 120 degrees.
+    pub fn line_to_line_rms(self) -> f64 {
+        if self == Self::Sinusoidal {
+            return 1.5_f64.sqrt();
+        }
+        const STEPS: u32 = 36_000;
+        let sum: f64 = (0..STEPS)
+            .map(|step| {
+                let theta_e = PI * (f64::from(step) + 0.5) / f64::from(STEPS);
+                (self.at(theta_e) - self.at(theta_e - TAU / 3.0)).powi(2)
+            })
+            .sum();
+        (sum / f64::from(STEPS)).sqrt()
     }
 
     /// Torque per ampere of a current parallel to the EMF over the phase constant, the ampere
@@ -127,6 +167,25 @@ mod tests {
             let mean = angles(30.0, 90.0).map(line).sum::<f64>() / STEPS as f64;
             assert!(near(mean, shape.quasi_square_factor()), "{shape:?} {mean}");
         }
+    }
+
+    #[test]
+    fn means_of_whole_turns_agree_with_integration() {
+        let mean = |values: &dyn Fn(f64) -> f64| {
+            angles(0.0, 360.0).map(values).sum::<f64>() / STEPS as f64
+        };
+        for shape in SHAPES {
+            let line = |theta: f64| shape.at(theta) - shape.at(theta - TAU / 3.0);
+            let phase_rms = mean(&|theta| shape.at(theta).powi(2)).sqrt();
+            assert!(near(phase_rms, shape.phase_rms()), "{shape:?} {phase_rms}");
+            let line_rms = mean(&|theta| line(theta).powi(2)).sqrt();
+            assert!(near(line_rms, shape.line_to_line_rms()), "{shape:?}");
+            let torque = mean(&|theta| 3.0 * shape.at(theta) * theta.sin());
+            assert!(near(torque, shape.sine_factor()), "{shape:?} {torque}");
+        }
+        let trapezoid = SHAPES[1];
+        // Of 120 degrees: between two lines 60 degrees of 2 E and ramps to 1 E and on to 0.
+        assert!(near(trapezoid.line_to_line_rms(), (20.0_f64 / 9.0).sqrt()));
     }
 
     #[test]

@@ -5,8 +5,10 @@
 //!
 #![doc = include_str!("reference.md")]
 #![doc = include_str!("options.md")]
+#![doc = include_str!("units.md")]
 
 pub mod ast;
+mod basis;
 pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
@@ -40,6 +42,7 @@ pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
 pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 pub use option_texts::help as option_help;
 pub use rule::Rule;
+pub use schema::section_of;
 pub use toml_syntax::parse_toml;
 pub use variant::{apply_variant, variant_of};
 pub use words::Word;

@@ -206,7 +206,7 @@ mod tests {
                         dimensions,
                     },
                 ) => {
-                    let dimension = number.unit.map(|unit| unit.dimension);
+                    let dimension = number.unit.as_ref().map(|unit| unit.dimension);
                     (low..=high).contains(&number.si())
                         && dimension.is_some_and(|given| dimensions.contains(&given))
                 }

@@ -18,6 +18,7 @@ pub(crate) const MOTOR: &[Rule] = &[
     text("name", "\"HubDrive\""),
     text("description", "\"Rear hub drive\""),
     integer("pole_pairs", 1, 64, "4"),
+    integer("poles", 2, 128, "8"),
     quantity(
         "resistance",
         &[D::Resistance],
@@ -40,6 +41,13 @@ pub(crate) const MOTOR: &[Rule] = &[
         f64::MAX,
         "17.3 V/krpm line_to_line peak",
     ),
+    quantity(
+        "speed_constant",
+        &[D::SpeedConstant],
+        f64::MIN_POSITIVE,
+        f64::MAX,
+        "58 rpm/V",
+    ),
     word("emf_shape", "trapezoidal"),
     quantity("flat_top", &[D::Angle], 1.0, 179.0, "120 deg"),
     quantity("rated_current", &[D::Current], 0.01, 1e4, "20 A"),
@@ -49,9 +57,11 @@ pub(crate) const MOTOR: &[Rule] = &[
         &[D::TorqueConstant],
         1e-5,
         100.0,
-        "0.16 Nm/A",
+        "0.16 Nm/A block_mean",
     ),
     quantity("rated_speed", &[D::Speed], RPM, 2e5 * RPM, "2000 rpm"),
+    quantity("no_load_speed", &[D::Speed], RPM, 3e5 * RPM, "5000 rpm"),
+    quantity("nominal_voltage", &[D::Voltage], 0.5, 2000.0, "24 V"),
     quantity("inertia", &[D::Inertia], 1e-9, 100.0, "24 g cm2"),
     quantity("inductance_tolerance", &[D::Ratio], 0.0, 0.9, "10 %"),
     quantity("resistance_tolerance", &[D::Ratio], 0.0, 0.9, "30 %"),
@@ -108,7 +118,9 @@ fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
 }
 
 /// Fields that state one quantity in two ways.
-const ALTERNATIVES: [[&str; 2]; 3] = [
+const ALTERNATIVES: [[&str; 2]; 5] = [
+    ["pole_pairs", "poles"],
+    ["back_emf", "speed_constant"],
     ["f_pwm", "sampling_time"],
     ["timer_clock", "timer_period"],
     ["adc_range", "adc_gain"],
@@ -140,6 +152,13 @@ pub(crate) fn dimensions(name: &str) -> &'static [D] {
         Some(Kind::Quantity { dimensions, .. }) => dimensions,
         _ => &[],
     }
+}
+
+/// A field that takes this quantity.
+#[cfg(test)]
+pub(crate) fn field_of(dimension: D) -> &'static str {
+    let mut takers = fields().filter(|(_, rule)| dimensions(rule.name).contains(&dimension));
+    takers.next().map_or("none", |(_, rule)| rule.name)
 }
 
 /// An example of the field's value.
@@ -177,12 +196,17 @@ pub(crate) fn references(name: &str) -> &'static [(Basis, &'static str)] {
             (Basis::Phase, "of one phase"),
             (Basis::LineToLine, "between two terminals"),
         ],
+        "torque_constant" => &[
+            (Basis::BlockMean, "per ampere of block commutation"),
+            (Basis::PerPeakAmpere, "per ampere of the current's peak"),
+            (Basis::PerRmsAmpere, "per ampere of its root mean square"),
+        ],
         _ => &[],
     }
 }
 
 /// The section that has a field of this name.
-pub(crate) fn section_of(name: &str) -> Option<&'static str> {
+pub fn section_of(name: &str) -> Option<&'static str> {
     fields()
         .find(|(_, rule)| rule.name == name)
         .map(|(section, _)| section)

@@ -5,7 +5,7 @@
 
 use super::ast::{Basis, Number, Value};
 use super::schema;
-use super::units::Unit;
+use super::units::{Unit, in_letters};
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub(super) fn unreadable(field: &str, text: &str, at: &Location) -> Value {
 }
 
 fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
-    let lexemes = lex(text);
+    let lexemes = lex(&in_letters(text));
     let (sign, unsigned) = match lexemes.as_slice() {
         [Lexeme::Symbol('-'), rest @ ..] => ("-", rest),
         all => ("", all),
@@ -192,10 +192,27 @@ fn read_unit(
     }
     let longest = (1..=lexemes.len())
         .rev()
-        .find_map(|end| Some((unit_of(&lexemes[..end])?, &lexemes[end..])));
-    let (unit, rest) = longest.map_or((None, lexemes), |(unit, rest)| (Some(unit), rest));
-    if let Some(basis) = rest.iter().map(basis_of).collect() {
+        .find_map(|end| Some((Unit::parse(&written(&lexemes[..end]))?, &lexemes[end..])));
+    let (unit, rest) = match longest {
+        Some((unit, rest)) => (Some(unit), rest),
+        None => (None, lexemes),
+    };
+    if let Some(mut basis) = basis_words(rest) {
+        let (unit, amplitude) =
+            unit.map_or((None, None), |(unit, amplitude)| (Some(unit), amplitude));
+        basis.extend(amplitude.filter(|amplitude| !basis.contains(amplitude)));
         return Ok((unit, basis));
+    }
+    let unknown = &lexemes[..lexemes.len() - basis_at_end(lexemes).0];
+    let symbol = spelt(unknown);
+    if let Some(readings) = Unit::readings(&written(unknown)) {
+        return Err(catalogue::ambiguous_unit(
+            at,
+            field,
+            &given(unknown),
+            &symbol,
+            readings,
+        ));
     }
     let takes_basis = !schema::references(field).is_empty();
     if unit.is_some() && takes_basis && rest.iter().all(is_part_of_word) {
@@ -208,40 +225,35 @@ fn read_unit(
             &remedy,
         ));
     }
-    let end = lexemes
-        .iter()
-        .rposition(|lexeme| basis_of(lexeme).is_none())
-        .map_or(0, |last| last + 1);
-    let symbol = spelt(&lexemes[..end]);
     let nearest = Unit::nearest(&symbol, schema::dimensions(field));
     let examples = schema::examples(field, &named(lexemes));
     Err(catalogue::unknown_unit(
         at,
         field,
-        &given(&lexemes[..end]),
+        &given(unknown),
         &symbol,
         nearest,
         &examples,
     ))
 }
 
-/// The first misplaced signs: a product's belongs between two words, a power's before its number, a
-/// hyphen within a word.
+/// The first signs that mean nothing where they stand: a product's stands between two words, a
+/// power's before its number, a hyphen within a word, a product or before a power.
 fn stray_signs(lexemes: &[Lexeme]) -> Option<String> {
     let is_word = |lexeme: Option<&Lexeme>| matches!(lexeme, Some(Lexeme::Word(_)));
-    let is_factor =
-        |lexeme: Option<&Lexeme>| is_word(lexeme) && lexeme.and_then(basis_of).is_none();
+    let is_basis = |lexeme: &Lexeme| basis_words(std::slice::from_ref(lexeme)).is_some();
+    let is_factor = |lexeme: Option<&Lexeme>| is_word(lexeme) && !lexeme.is_some_and(is_basis);
     let is_number = |lexeme: Option<&Lexeme>| matches!(lexeme, Some(Lexeme::Number(_)));
     let first = lexemes.iter().enumerate().position(|(index, lexeme)| {
         let before = index.checked_sub(1).and_then(|before| lexemes.get(before));
         let after = lexemes.get(index + 1);
         match lexeme {
-            Lexeme::Symbol('*' | '·') => {
+            Lexeme::Symbol('*' | '\u{b7}' | '.') => {
                 !(is_word(before) || is_number(before)) || !is_factor(after)
             }
             Lexeme::Symbol('^') => !is_word(before) || !is_number(after),
-            Lexeme::Symbol('-') => !is_word(before) || !is_word(after),
-            Lexeme::Symbol(sign) => !matches!(sign, '/' | '(' | ')' | '%' | '°'),
+            Lexeme::Symbol('-') => !is_word(before) || !(is_word(after) || is_number(after)),
+            Lexeme::Symbol(sign) => !matches!(sign, '/' | '(' | ')' | '%'),
             Lexeme::Word(_) | Lexeme::Number(_) => false,
         }
     })?;
@@ -252,19 +264,11 @@ fn stray_signs(lexemes: &[Lexeme]) -> Option<String> {
     Some(signs.collect())
 }
 
-/// The unit that these lexemes are as a whole.
-fn unit_of(lexemes: &[Lexeme]) -> Option<Unit> {
-    match lexemes.last() {
-        Some(Lexeme::Symbol('*' | '·' | '^')) => None,
-        _ => Unit::from_symbol(&spelt(lexemes)),
-    }
-}
-
 /// A unit's spelling: products with a space, powers without a caret.
 fn spelt(lexemes: &[Lexeme]) -> String {
     let kept: Vec<Lexeme> = lexemes
         .iter()
-        .filter(|lexeme| !matches!(lexeme, Lexeme::Symbol('*' | '·' | '^')))
+        .filter(|lexeme| !matches!(lexeme, Lexeme::Symbol('*' | '\u{b7}' | '.' | '^')))
         .cloned()
         .collect();
     written(&kept)
@@ -290,74 +294,99 @@ fn written(lexemes: &[Lexeme]) -> String {
     text
 }
 
-fn basis_of(lexeme: &Lexeme) -> Option<Basis> {
-    match lexeme {
-        Lexeme::Word(word) => Basis::ALL.into_iter().find(|basis| basis.word() == word),
-        _ => None,
+/// How data sheets name a basis, words apart.
+const PHRASES: &[(&[&str], Basis)] = &[
+    (&["per", "phase"], Basis::PerPhase),
+    (&["line", "to", "line"], Basis::LineToLine),
+    (&["line", "line"], Basis::LineToLine),
+    (&["l", "to", "l"], Basis::LineToLine),
+    (&["l", "l"], Basis::LineToLine),
+    (&["ll"], Basis::LineToLine),
+    (&["phase", "to", "phase"], Basis::LineToLine),
+    (&["phase", "phase"], Basis::LineToLine),
+    (&["terminal", "to", "terminal"], Basis::LineToLine),
+    (&["terminal"], Basis::LineToLine),
+    (&["terminals"], Basis::LineToLine),
+    (&["lead", "to", "lead"], Basis::LineToLine),
+    (&["phase"], Basis::Phase),
+    (&["peak"], Basis::Peak),
+    (&["pk"], Basis::Peak),
+    (&["amplitude"], Basis::Peak),
+    (&["rms"], Basis::Rms),
+    (&["block", "mean"], Basis::BlockMean),
+    (&["per", "peak", "ampere"], Basis::PerPeakAmpere),
+    (&["per", "rms", "ampere"], Basis::PerRmsAmpere),
+];
+
+/// The basis that words say as a whole, joined by spaces, hyphens or underscores, in any case.
+fn basis_words(lexemes: &[Lexeme]) -> Option<Vec<Basis>> {
+    let mut words = Vec::new();
+    for lexeme in lexemes {
+        match lexeme {
+            Lexeme::Word(word) => words.extend(word.split('_').map(str::to_lowercase)),
+            Lexeme::Symbol('-') => {}
+            _ => return None,
+        }
     }
+    let mut rest = words.as_slice();
+    let mut basis = Vec::new();
+    while !rest.is_empty() {
+        let starts = |phrase: &[&str]| {
+            phrase.len() <= rest.len() && rest.iter().zip(phrase).all(|(word, known)| word == known)
+        };
+        let (phrase, meant) = PHRASES
+            .iter()
+            .filter(|(phrase, _)| starts(phrase))
+            .max_by_key(|(phrase, _)| phrase.len())?;
+        basis.push(*meant);
+        rest = &rest[phrase.len()..];
+    }
+    Some(basis)
 }
 
-/// The basis words among the lexemes.
+/// The longest end of the lexemes that is basis words: how many, and which.
+fn basis_at_end(lexemes: &[Lexeme]) -> (usize, Vec<Basis>) {
+    (0..lexemes.len())
+        .find_map(|begin| Some((lexemes.len() - begin, basis_words(&lexemes[begin..])?)))
+        .unwrap_or_default()
+}
+
+/// The basis words at the end of the lexemes.
 fn named(lexemes: &[Lexeme]) -> Vec<Basis> {
-    lexemes.iter().filter_map(basis_of).collect()
+    basis_at_end(lexemes).1
 }
 
 fn is_part_of_word(lexeme: &Lexeme) -> bool {
     matches!(lexeme, Lexeme::Word(_) | Lexeme::Symbol('-'))
 }
 
-/// Other words for a value between two terminals, letters alone.
-const BETWEEN_TERMINALS: [&str; 12] = [
-    "line",
-    "lineline",
-    "linetoline",
-    "ll",
-    "ltol",
-    "phasephase",
-    "phasetophase",
-    "terminal",
-    "terminals",
-    "terminalterminal",
-    "terminaltoterminal",
-    "leadtolead",
-];
-
-/// The unknown words behind a unit, and the remedy: the basis that they stand for, or the choice.
+/// What is unknown of the words behind a unit, and the choice that there is.
 fn basis_remedy(field: &str, lexemes: &[Lexeme]) -> (String, String) {
-    let spelt_without = |left_out: fn(Basis) -> bool| {
-        let kept = lexemes
-            .iter()
-            .filter(|lexeme| !basis_of(lexeme).is_some_and(left_out));
-        written(&kept.cloned().collect::<Vec<_>>())
-    };
-    let references = schema::references(field);
-    let whole = spelt_without(|basis| matches!(basis, Basis::Peak | Basis::Rms));
-    let letters: String = whole
-        .chars()
-        .filter(|c| c.is_alphanumeric())
-        .flat_map(char::to_lowercase)
-        .collect();
-    let meant = if BETWEEN_TERMINALS.contains(&letters.as_str()) {
-        Some(Basis::LineToLine)
-    } else if letters == "perphase" {
-        references.first().map(|(basis, _)| *basis)
-    } else {
-        None
-    };
-    if let Some(basis) = meant {
-        return (whole, format!("did you mean `{}`?", basis.word()));
-    }
-    let words: Vec<(&str, &str)> = references
+    let words: Vec<(&str, &str)> = schema::references(field)
         .iter()
         .map(|(basis, meaning)| (basis.word(), *meaning))
         .collect();
     let mut remedy = format!("write {}", catalogue::with_meanings(&words));
     if field == "back_emf" {
-        remedy.push_str(", with `peak` (the amplitude)");
+        remedy.push_str(", with `peak` (the amplitude) or `rms`");
     }
-    let unknown = spelt_without(|_| true);
-    let has_letters = unknown.contains(char::is_alphanumeric);
-    (if has_letters { unknown } else { whole }, remedy)
+    let unknown: Vec<Lexeme> = lexemes
+        .iter()
+        .filter(|lexeme| {
+            basis_words(std::slice::from_ref(lexeme)).is_none_or(|basis| basis.is_empty())
+        })
+        .cloned()
+        .collect();
+    let whole = written(lexemes);
+    let is_word = |lexeme: &Lexeme| matches!(lexeme, Lexeme::Word(_));
+    (
+        if unknown.iter().any(is_word) {
+            written(&unknown)
+        } else {
+            whole
+        },
+        remedy,
+    )
 }
 
 /// `[1, 5, 4, 6, 2, 3]` without its brackets; a comma behind the last one is fine.
@@ -414,6 +443,20 @@ mod tests {
             ("0.1648 V s/rad phase peak", "0.1648 V s/rad phase peak"),
             ("2.40e-6 kg*m^2", "2.40e-6 kg m2"),
             ("24 g cm2", "24 g cm2"),
+            ("24 oz-in-s2", "24 oz-in-s2"),
+            ("17.3 V/1000rpm", "17.3 V/1000rpm"),
+            ("5Arms", "5 A rms"),
+            (
+                "12.2 Vrms/krpm line-to-line",
+                "12.2 V/krpm line_to_line rms",
+            ),
+            ("3000 1/min", "3000 1/min"),
+            ("3000/min", "3000 /min"),
+            ("3000 min - 1", "3000 min-1"),
+            ("3000 min\u{207b}\u{b9}", "3000 min-1"),
+            ("3.3 N.m", "3.3 N m"),
+            ("135 mohm Phase-to-Phase", "135 mohm line_to_line"),
+            ("36.9 mNm/A block mean", "36.9 mNm/A block_mean"),
             ("135 m\u{3a9} per_phase", "135 mohm per_phase"),
             ("220\u{b5}H", "220 uH"),
             ("120 \u{b0}", "120 deg"),
@@ -437,23 +480,23 @@ mod tests {
         for (text, message) in [
             (
                 "",
-                "`resistance`: cannot read ``; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
+                "`resistance`: cannot read ``; write it like `resistance = \"135 mohm per_phase\"` or `resistance = \"135 mohm line_to_line\"`",
             ),
             (
                 "star delta",
-                "`resistance`: cannot read `star delta`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
+                "`resistance`: cannot read `star delta`; write it like `resistance = \"135 mohm per_phase\"` or `resistance = \"135 mohm line_to_line\"`",
             ),
             (
-                "135 mOhm",
-                "`resistance`: 135 mOhm has the unknown unit `mOhm`; did you mean `mohm`?",
+                "135 mOHM",
+                "`resistance`: 135 mOHM has the unknown unit `mOHM`; did you mean `mohm`?",
             ),
             (
                 "1e999 ohm",
-                "`resistance`: cannot read `1e999 ohm`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
+                "`resistance`: cannot read `1e999 ohm`; write it like `resistance = \"135 mohm per_phase\"` or `resistance = \"135 mohm line_to_line\"`",
             ),
             (
                 "[1, x]",
-                "`resistance`: cannot read `[1, x]`; write it like `135 mohm per_phase` or `135 mohm line_to_line`",
+                "`resistance`: cannot read `[1, x]`; write it like `resistance = \"135 mohm per_phase\"` or `resistance = \"135 mohm line_to_line\"`",
             ),
         ] {
             match parse("resistance", text) {

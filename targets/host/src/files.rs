@@ -9,6 +9,14 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// When the file cannot be written.
 pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+    write_new(path, contents, true)
+}
+
+/// As [`write_whole`]; a file that is there stays as it is, unless it is to be replaced.
+///
+/// # Errors
+/// As [`write_whole`], or a file that is there.
+pub fn write_new(path: &Path, contents: &[u8], replace: bool) -> io::Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -19,7 +27,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
         .map(Path::to_owned)
         .collect();
     std::fs::create_dir_all(folder)
-        .and_then(|()| write_into(folder, path, contents))
+        .and_then(|()| write_into(folder, path, contents, replace))
         .inspect_err(|_| {
             // Innermost first; a folder that is no longer empty stays.
             for folder in &missing {
@@ -29,7 +37,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
 }
 
 /// Writes a file of a folder that exists.
-fn write_into(folder: &Path, path: &Path, contents: &[u8]) -> io::Result<()> {
+fn write_into(folder: &Path, path: &Path, contents: &[u8], replace: bool) -> io::Result<()> {
     let mut beside = tempfile::Builder::new();
     // Results are no secrets: the usual permissions of new files.
     #[cfg(unix)]
@@ -39,6 +47,10 @@ fn write_into(folder: &Path, path: &Path, contents: &[u8]) -> io::Result<()> {
     }
     let mut file = beside.prefix(".hexagen-").tempfile_in(folder)?;
     file.write_all(contents)?;
-    file.persist(path)?;
+    if replace {
+        file.persist(path)?;
+    } else {
+        file.persist_noclobber(path)?;
+    }
     Ok(())
 }

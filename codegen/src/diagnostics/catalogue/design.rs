@@ -113,7 +113,7 @@ mod tests {
                     (0.83, 1.257),
                     "choose `emf: model`",
                 ),
-                "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf: model` or narrow the tolerance to 17 %",
+                "m.toml:3:5: error[HX0501]: `inductance_tolerance`: 30 %, but the loop is stable only while the true inductance is 83 % to 125.7 % of the stated one; choose `emf = \"model\"` or narrow the tolerance to 17 %",
             ),
             (
                 outside_stable_range(
@@ -128,11 +128,11 @@ mod tests {
             ),
             (
                 unstable_loop(&at, "emf_filter", "0.001", 1.25, "choose `emf: model`"),
-                "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose `emf: model`",
+                "m.toml:3:5: error[HX0503]: `emf_filter`: 0.001 makes the current loop unstable with the motor as stated (largest pole 1.25, must be below 1); choose `emf = \"model\"`",
             ),
             (
                 word_too_narrow(&at, "voltage `u_a`", Some(19), 16),
-                "m.toml:3:5: error[HX0504]: `word`: 16 bits, but 19 are needed for voltage `u_a`; choose `word: 32`, or lower `adc_bits`",
+                "m.toml:3:5: error[HX0504]: `word`: 16 bits, but 19 are needed for voltage `u_a`; choose `word = 32`, or lower `adc_bits`",
             ),
             (
                 word_too_narrow(&at, "coefficient `k_di`", None, 32),

@@ -1,5 +1,6 @@
 //! Texts about motor and inverter values that do not fit together.
 
+use super::internal;
 use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, frequency, percent, rpm_at_least,
     rpm_at_most, significant,
@@ -31,12 +32,14 @@ fn with_parts(mut error: Diagnostic, parts: &[&Part]) -> Diagnostic {
 
 /// The EMF constant is far from that of any motor; `phase`, `low`, `high`: peak phase EMF over
 /// mechanical speed, V s/rad.
-pub fn implausible_emf(at: &Location, given: &str, phase: f64, low: f64, high: f64) -> Diagnostic {
+pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        at,
+        &stated.location,
         format!(
-            "`back_emf`: {given} is {} per phase, outside {} to {}; check the number and its unit",
+            "`{}`: {} is {} per phase, outside {} to {}; check the number and its unit",
+            stated.field,
+            stated.given,
             engineering(phase, "V/(rad/s)"),
             engineering(low, "V/(rad/s)"),
             engineering(high, "V/(rad/s)"),
@@ -82,13 +85,16 @@ pub enum BusRemedy {
     Current(f64),
 }
 
-/// EMF and resistive drop of the rating exceed the bus. `emf`: line to line at rated speed, volt;
-/// `drop`: of rated current in two phases, volt.
+/// Below this share of the bus a resistive drop may be right; beyond this multiple of it an EMF is
+/// one of another basis.
+const LIKELY: [f64; 2] = [0.5, 1.5];
+
+/// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
+/// rated speed; `drop`: of rated current in two phases.
 pub fn bus_too_low(
     bus: &Part,
-    [speed, current, back_emf, resistance]: [&Part; 4],
-    emf: f64,
-    drop: f64,
+    [speed, current, stated, resistance]: [&Part; 4],
+    [volts, emf, drop]: [f64; 3],
     remedy: BusRemedy,
 ) -> Diagnostic {
     let remedy = match remedy {
@@ -100,85 +106,128 @@ pub fn bus_too_low(
             )
         }
     };
+    let culprit = if drop > LIKELY[0] * volts {
+        resistance
+    } else if emf > LIKELY[1] * volts {
+        stated
+    } else {
+        speed
+    };
+    let parts: Vec<&Part> = [bus, speed, current, stated, resistance]
+        .into_iter()
+        .filter(|part| part.field != culprit.field)
+        .collect();
     with_parts(
         Diagnostic::new(
             Code::BusTooLow,
-            &bus.location,
+            &culprit.location,
             format!(
-                "`bus_voltage`: {}, but {} at {} take {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `back_emf` ({}) and `resistance` ({})",
-                bus.given,
+                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `{}` ({}) and `resistance` ({})",
+                culprit.field,
+                culprit.given,
                 current.quoted(),
                 speed.quoted(),
                 engineering(emf + drop, "V"),
+                bus.given,
                 engineering(emf, "V"),
                 engineering(drop, "V"),
                 engineering(at_least(emf + drop), "V"),
-                back_emf.given,
+                stated.field,
+                stated.given,
                 resistance.given,
             ),
         ),
-        &[speed, current, back_emf, resistance],
+        &parts,
     )
 }
 
-/// Rated torque against EMF constant and rated current; `expected` in Nm. `fitting`: changes that
-/// would fit, with the torque that each gives, Nm.
-pub fn torque_contradiction(
-    torque: &Part,
-    current: &Part,
-    back_emf: &Part,
-    given: f64,
-    expected: f64,
-    fitting: &[(String, f64)],
-) -> Diagnostic {
+/// What contradicts the EMF constant.
+#[derive(Clone, Debug)]
+pub struct Contradiction<'a> {
+    /// The kind of claim.
+    pub code: Code,
+    /// The value that is most likely wrong.
+    pub culprit: &'a Part,
+    /// The value that is claimed, and what it refers to.
+    pub claim: &'a [&'a Part],
+    /// The EMF constant.
+    pub stated: &'a Part,
+    /// What follows from the constant, by the current's shape.
+    pub expected: Vec<String>,
+    /// The first of them, as a constant, over what is claimed.
+    pub ratio: f64,
+    /// The value falls as the constant rises.
+    pub inverse: bool,
+    /// All that take part.
+    pub parts: &'a [&'a Part],
+    /// Readings that fit, with what follows from them.
+    pub fitting: &'a [(String, String)],
+}
+
+/// Rated torque, torque constant, speed constant or no-load speed against the EMF constant.
+pub fn contradiction(of: &Contradiction) -> Diagnostic {
+    let [claimed, reference @ ..] = of.claim else {
+        return internal(&of.culprit.location, "a contradiction without a claim");
+    };
+    let at: String = reference
+        .iter()
+        .map(|part| format!(" at {}", part.quoted()))
+        .collect();
+    let shapes = match of.expected.as_slice() {
+        [block, sine] => format!("{block} with quasi-square and {sine} with sinusoidal current"),
+        expected => expected.join(" or "),
+    };
+    let ratio = if of.inverse { 1.0 / of.ratio } else { of.ratio };
+    let advice = if of.fitting.is_empty() {
+        "no other basis or shape fits either, so check the numbers against the data sheet"
+            .to_owned()
+    } else {
+        let fits: Vec<String> = of
+            .fitting
+            .iter()
+            .map(|(change, value)| format!("{change} ({value})"))
+            .collect();
+        format!("it would fit with {}", fits.join(", or with "))
+    };
+    let gives = format!("{} gives {shapes}{at}", of.stated.quoted());
+    let told = if of.culprit.field == claimed.field {
+        format!("`{}`: {}, but {gives}", claimed.field, claimed.given)
+    } else if of.culprit.field == of.stated.field {
+        let given = &of.stated.given;
+        format!(
+            "`{}`: {given} gives {shapes}{at}, not {}",
+            of.stated.field,
+            claimed.quoted()
+        )
+    } else {
+        let culprit = of.culprit;
+        format!(
+            "`{}`: {}: {gives}, not {}",
+            culprit.field,
+            culprit.given,
+            claimed.quoted()
+        )
+    };
+    let parts: Vec<&Part> = of
+        .parts
+        .iter()
+        .copied()
+        .filter(|part| part.field != of.culprit.field)
+        .collect();
     with_parts(
         Diagnostic::new(
-            Code::TorqueContradiction,
-            &torque.location,
+            of.code,
+            &of.culprit.location,
             format!(
-                "`rated_torque`: {}, but `back_emf` {} at `rated_current` {} gives {} ({}, at most 15 % are allowed); {}",
-                torque.given,
-                back_emf.given,
-                current.given,
-                engineering(expected, "Nm"),
-                deviation(expected, given),
-                advice(fitting, "Nm"),
+                "{told} ({}, at most 15 % are allowed); {advice}",
+                deviation(ratio),
             ),
         ),
-        &[current, back_emf],
+        &parts,
     )
 }
 
-/// Torque constant against EMF constant; `quasi_square`, `sinusoidal`: what the EMF constant
-/// gives per peak ampere of either current shape, Nm/A.
-pub fn torque_constant_contradiction(
-    constant: &Part,
-    back_emf: &Part,
-    given: f64,
-    quasi_square: f64,
-    sinusoidal: f64,
-    fitting: &[(String, f64)],
-) -> Diagnostic {
-    with_parts(
-        Diagnostic::new(
-            Code::TorqueConstantContradiction,
-            &constant.location,
-            format!(
-                "`torque_constant`: {}, but `back_emf` {} gives {} with quasi-square current and {} with sinusoidal current per peak ampere ({}, at most 15 % are allowed); {}",
-                constant.given,
-                back_emf.given,
-                engineering(quasi_square, "Nm/A"),
-                engineering(sinusoidal, "Nm/A"),
-                deviation(quasi_square, given),
-                advice(fitting, "Nm/A"),
-            ),
-        ),
-        &[back_emf],
-    )
-}
-
-fn deviation(expected: f64, given: f64) -> String {
-    let ratio = expected / given;
+fn deviation(ratio: f64) -> String {
     if ratio >= 1.0 {
         format!("{} more", percent(ratio - 1.0))
     } else {
@@ -186,16 +235,24 @@ fn deviation(expected: f64, given: f64) -> String {
     }
 }
 
-fn advice(fitting: &[(String, f64)], unit: &str) -> String {
-    if fitting.is_empty() {
-        return "no other basis or shape fits either, so check the numbers against the data sheet"
-            .to_owned();
-    }
-    let fits: Vec<String> = fitting
-        .iter()
-        .map(|(what, value)| format!("{what} ({})", engineering(*value, unit)))
-        .collect();
-    format!("it would fit with {}", fits.join(", or with "))
+/// EMF and torque constant are one number: `peak` as it was taken, and what it is if it is a mean,
+/// V s/rad.
+pub fn mean_for_peak(stated: &Part, torque: &Part, peak: f64, true_peak: f64) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::MeanForPeak,
+            &stated.location,
+            format!(
+                "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; if so, say `block_mean`: the line-to-line peak is then {} in place of {}",
+                stated.field,
+                stated.given,
+                torque.quoted(),
+                engineering(true_peak, "V/(rad/s)"),
+                engineering(peak, "V/(rad/s)"),
+            ),
+        ),
+        &[torque],
+    )
 }
 
 /// The current sensors do not reach the rated current; `range` in ampere.

@@ -33,7 +33,9 @@ pub fn not_a_section(at: &Location, name: &str) -> Diagnostic {
 pub fn assumption(at: &Location, field: &str, values: &[String]) -> Diagnostic {
     let examples: Vec<String> = values
         .iter()
-        .map(|value| format!("{{ value = \"{value}\", reason = \"not in the data sheet\" }}"))
+        .map(|value| {
+            format!("{field}: {{ value = \"{value}\", reason = \"not in the data sheet\" }}")
+        })
         .collect();
     Diagnostic::new(
         Code::MalformedValue,
@@ -119,19 +121,20 @@ fn assignments(name: &str, values: &[String]) -> String {
     list(&all, "or")
 }
 
-/// None of several alternative fields is given.
-pub fn missing_alternative(
-    at: &Location,
-    section: &str,
-    names: [&str; 2],
-    examples: [&str; 2],
-) -> Diagnostic {
+/// None of several alternative fields is given; each with an example of its value.
+pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, &str)]) -> Diagnostic {
+    let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
+    let examples: Vec<String> = fields
+        .iter()
+        .map(|(name, example)| format!("{name}: {example}"))
+        .collect();
     Diagnostic::new(
         Code::MissingField,
         at,
         format!(
-            "`{section}` lacks the field `{0}` or `{1}`; add one, for example `{0}: {2}` or `{1}: {3}`",
-            names[0], names[1], examples[0], examples[1]
+            "`{section}` lacks the field {}; add one, for example {}",
+            list(&names, "or"),
+            list(&examples, "or"),
         ),
     )
 }

@@ -8,7 +8,10 @@ pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[Stri
     Diagnostic::new(
         Code::MalformedValue,
         at,
-        format!("`{field}`: cannot read `{given}`; {}", like(examples)),
+        format!(
+            "`{field}`: cannot read `{given}`; {}",
+            like(at, field, examples)
+        ),
     )
 }
 
@@ -25,7 +28,7 @@ pub fn stray_signs(
         at,
         format!(
             "`{field}`: cannot read `{signs}` in `{given}`; {}",
-            like(examples)
+            like(at, field, examples)
         ),
     )
 }
@@ -69,13 +72,31 @@ pub fn unknown_unit(
     examples: &[String],
 ) -> Diagnostic {
     let advice = nearest.map_or_else(
-        || like(examples),
+        || like(at, field, examples),
         |symbol| format!("did you mean `{symbol}`?"),
     );
     Diagnostic::new(
         Code::UnknownUnit,
         at,
         format!("`{field}`: {given} has the unknown unit `{unit}`; {advice}"),
+    )
+}
+
+/// A unit that says one of two quantities; `readings`: a unit of each, and what it means.
+pub fn ambiguous_unit(
+    at: &Location,
+    field: &str,
+    given: &str,
+    unit: &str,
+    readings: [(&str, &str); 2],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::AmbiguousUnit,
+        at,
+        format!(
+            "`{field}`: {given} has the unit `{unit}`, which has two meanings; write {}",
+            with_meanings(&readings)
+        ),
     )
 }
 
@@ -93,7 +114,7 @@ pub fn wrong_dimension(
         at,
         format!(
             "`{field}`: {given} is {got}, but {wanted} is expected; {}",
-            like(examples)
+            like(at, field, examples)
         ),
     )
 }
@@ -103,7 +124,10 @@ pub fn missing_unit(at: &Location, field: &str, given: &str, examples: &[String]
     Diagnostic::new(
         Code::MissingUnit,
         at,
-        format!("`{field}`: {given} has no unit; {}", like(examples)),
+        format!(
+            "`{field}`: {given} has no unit; {}",
+            like(at, field, examples)
+        ),
     )
 }
 
@@ -112,7 +136,10 @@ pub fn unwanted_unit(at: &Location, field: &str, given: &str, plain: &str) -> Di
     Diagnostic::new(
         Code::UnwantedUnit,
         at,
-        format!("`{field}`: {given} has a unit, but a plain number is expected; write `{plain}`"),
+        format!(
+            "`{field}`: {given} has a unit, but a plain number is expected; write {}",
+            list(&[written(at, field, plain)], "or")
+        ),
     )
 }
 
@@ -121,14 +148,14 @@ pub fn missing_basis(
     at: &Location,
     field: &str,
     given: &str,
-    forms: &[(String, &str)],
+    forms: &[(String, String)],
 ) -> Diagnostic {
     Diagnostic::new(
         Code::MissingBasis,
         at,
         format!(
             "`{field}`: {given} has no basis; write {}",
-            with_meanings(forms)
+            with_meanings(&in_field(at, field, forms))
         ),
     )
 }
@@ -189,7 +216,7 @@ pub fn wrong_kind(
         at,
         format!(
             "`{field}`: {given}, but {wanted} is expected; {}",
-            like(examples)
+            like(at, field, examples)
         ),
     )
 }
@@ -208,7 +235,10 @@ pub fn not_above_zero(at: &Location, field: &str, given: &str, examples: &[Strin
     Diagnostic::new(
         Code::NotPositive,
         at,
-        format!("`{field}`: {given} is not above zero; {}", like(examples)),
+        format!(
+            "`{field}`: {given} is not above zero; {}",
+            like(at, field, examples)
+        ),
     )
 }
 
@@ -257,7 +287,20 @@ pub fn not_a_power_of_two(
     )
 }
 
-/// Hall codes that do not form a Hall sequence; `why` is a clause.
+/// A number of poles that makes no pairs.
+pub fn odd_poles(at: &Location, given: &str, poles: u32) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        at,
+        format!(
+            "`poles`: {given} is odd, and poles come in pairs; give the magnets' poles, as {} or {}, or `pole_pairs: {poles}` if pairs are meant",
+            poles - 1,
+            poles + 1,
+        ),
+    )
+}
+
+/// Hall codes that are no Hall sequence; `why` is a clause.
 pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
     Diagnostic::new(
         Code::HallCodes,
@@ -269,15 +312,34 @@ pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
 }
 
 /// How a value is written, by examples.
-fn like(examples: &[String]) -> String {
-    format!("write it like {}", list(examples, "or"))
+fn like(at: &Location, field: &str, examples: &[String]) -> String {
+    let examples: Vec<String> = examples
+        .iter()
+        .map(|example| written(at, field, example))
+        .collect();
+    format!("write it like {}", list(&examples, "or"))
 }
 
 /// `` `a` (what a means) or `b` (what b means) ``.
-pub(crate) fn with_meanings<S: AsRef<str>>(words: &[(S, &str)]) -> String {
+pub(crate) fn with_meanings<S: AsRef<str>>(words: &[(S, S)]) -> String {
     let explained: Vec<String> = words
         .iter()
-        .map(|(word, meaning)| format!("`{}` ({meaning})", word.as_ref()))
+        .map(|(word, meaning)| format!("`{}` ({})", word.as_ref(), meaning.as_ref()))
         .collect();
     explained.join(" or ")
+}
+
+/// Values as they are written at a place: in a file with their field, for TOML has quotes.
+fn in_field(at: &Location, field: &str, forms: &[(String, String)]) -> Vec<(String, String)> {
+    forms
+        .iter()
+        .map(|(value, meaning)| (written(at, field, value), meaning.clone()))
+        .collect()
+}
+
+fn written(at: &Location, field: &str, value: &str) -> String {
+    match at {
+        Location::File { .. } => format!("{field}: {value}"),
+        Location::Macro(_) | Location::Variant { .. } => value.to_owned(),
+    }
 }

@@ -1,188 +1,295 @@
-//! The EMF constant against rated torque, rated current and torque constant.
+//! The EMF constant against what else states it: rated torque and current, torque constant, speed
+//! constant, no-load speed.
 //!
-//! All of them state the same constant. Where they disagree, a basis or the EMF shape is usually
-//! wrong: the checks try the others and name those that would fit.
+//! All of them say the same thing about a motor. Where they do not, some basis or shape is wrong:
+//! the commonest mistake of this field. One contradiction is one error, at the value that is most
+//! likely wrong; it tells which other reading would fit.
 
-use super::motor::{Motor, Winding, is_line_to_line, phase_constant};
-use super::reader::Given;
-use crate::diagnostics::{Collector, catalogue};
+use super::emf::{Emf, Reading, quasi_square_peak};
+use super::inverter::Inverter;
+use super::motor::Motor;
+use super::reader::Reader;
+use crate::diagnostics::catalogue::{self, Contradiction, Part};
+use crate::diagnostics::{Code, Collector, Diagnostic, engineering, rpm};
 use crate::spec::EmfShape;
 use crate::spec::units::Dimension;
-use std::f64::consts::SQRT_2;
 
-/// Accepted deviation: data sheets round, and rate torque with iron losses.
+/// Data sheets round, and rate torque with iron losses: so much is no contradiction.
 const TOLERANCE: f64 = 0.15;
 
-pub(super) fn check(motor: &Motor, errors: &mut Collector) {
-    let Some(constants) = Constants::of(motor) else {
-        return;
-    };
-    check_rated_torque(motor, &constants, errors);
-    check_torque_constant(motor, &constants, errors);
+/// So near are two printed constants that are one number.
+const EQUAL: f64 = 0.01;
+
+/// Something that follows from the phase constant and is stated, too.
+struct Claim<'a> {
+    code: Code,
+    /// The fields that state it, the one with the value first.
+    parts: Vec<&'a Part>,
+    /// As a constant, in V s/rad or Nm/A.
+    constant: f64,
+    /// What it may be over the phase constant.
+    factors: Vec<f64>,
+    /// The value as it is told, of a constant.
+    told: Box<dyn Fn(f64) -> String + 'a>,
 }
 
-/// The EMF constant and how it is stated.
-struct Constants<'a> {
-    back_emf: &'a Given<'a>,
-    line_to_line: bool,
-    winding: Winding,
-    shape: EmfShape,
-    pole_pairs: u32,
+impl Claim<'_> {
+    fn agrees(&self, phase: f64) -> bool {
+        let fits = |factor: &f64| fits(factor * phase, self.constant);
+        self.factors.iter().any(fits)
+    }
 }
 
-/// One reading of the EMF constant: the change, and the torque per peak ampere, Nm/A.
-struct Reading {
+/// Another reading of one field: what is changed, where, and the phase constant or the claim's
+/// constant over what they were.
+struct Other<'a> {
     change: String,
-    quasi_square: f64,
-    sinusoidal: f64,
-}
-
-impl<'a> Constants<'a> {
-    fn of(motor: &'a Motor) -> Option<Self> {
-        // An implausible constant is an error of its own.
-        motor.emf_constant?;
-        let (back_emf, winding) = (motor.back_emf.as_ref()?, motor.winding?);
-        Some(Self {
-            back_emf,
-            line_to_line: is_line_to_line(back_emf, winding),
-            winding,
-            shape: motor.emf_shape?,
-            pole_pairs: motor.pole_pairs?,
-        })
-    }
-
-    fn reading(&self, change: &str, line_to_line: bool, shape: EmfShape, factor: f64) -> Reading {
-        let phase = factor * phase_constant(self.back_emf, line_to_line, shape, self.pole_pairs);
-        Reading {
-            change: change.to_owned(),
-            quasi_square: phase * shape.quasi_square_factor(),
-            sinusoidal: phase * 1.5,
-        }
-    }
-
-    fn stated(&self) -> Reading {
-        self.reading("", self.line_to_line, self.shape, 1.0)
-    }
-
-    /// The other basis, the other shape, rms for peak, then two changes at once: one mistake is
-    /// likelier than two.
-    fn others(&self) -> Vec<Reading> {
-        let basis = !self.line_to_line;
-        let basis_text = if basis {
-            "`back_emf` as `line_to_line`"
-        } else {
-            "`back_emf` as `phase`"
-        };
-        let (shape, shape_text) = match self.shape {
-            EmfShape::Trapezoidal { .. } => (EmfShape::Sinusoidal, "`emf_shape: sinusoidal`"),
-            EmfShape::Sinusoidal => (
-                EmfShape::Trapezoidal {
-                    flat_top_deg: 120.0,
-                },
-                "`emf_shape: trapezoidal`",
-            ),
-        };
-        let rms = "`back_emf` taken as rms";
-        let mut readings = vec![
-            self.reading(shape_text, self.line_to_line, shape, 1.0),
-            self.reading(rms, self.line_to_line, self.shape, SQRT_2),
-            self.reading(
-                &format!("{shape_text} and {rms}"),
-                self.line_to_line,
-                shape,
-                SQRT_2,
-            ),
-        ];
-        // Flux linkages and speed constants have a fixed basis.
-        if self.back_emf.dimension == Some(Dimension::EmfConstant) && self.winding == Winding::Star
-        {
-            readings.insert(0, self.reading(basis_text, basis, self.shape, 1.0));
-            let both = format!("{basis_text} and {shape_text}");
-            readings.push(self.reading(&both, basis, shape, 1.0));
-            readings.push(self.reading(
-                &format!("{basis_text} and {rms}"),
-                basis,
-                self.shape,
-                SQRT_2,
-            ));
-        }
-        readings
-    }
+    at: &'a Part,
+    phase: f64,
 }
 
 fn fits(expected: f64, given: f64) -> bool {
     (expected / given - 1.0).abs() <= TOLERANCE
 }
 
-/// The readings that fit; two changes only where no single one fits.
-fn fitting(candidates: Vec<(String, f64)>, given: f64) -> Vec<(String, f64)> {
-    let (single, double): (Vec<_>, Vec<_>) = candidates
+/// Reports a contradiction; returns whether there is one. `warnings` takes what is no contradiction
+/// but probably a mean that was taken for a peak.
+pub(super) fn check(
+    reader: &Reader,
+    motor: &Motor,
+    inverter: &Inverter,
+    errors: &mut Collector,
+    warnings: &mut Vec<Diagnostic>,
+) -> bool {
+    // An implausible constant is an error of its own.
+    let (Some(phase), Some(shape), Some(pole_pairs)) =
+        (motor.emf_constant, motor.emf_shape, motor.pole_pairs)
+    else {
+        return false;
+    };
+    let [stated, rest @ ..] = motor.emf.as_slice() else {
+        return false;
+    };
+    let claims = claims(motor, inverter, rest, shape, pole_pairs);
+    let (agreeing, failing): (Vec<&Claim>, Vec<&Claim>) =
+        claims.iter().partition(|claim| claim.agrees(phase));
+    let [first, more @ ..] = failing.as_slice() else {
+        warnings.extend(mean_for_peak(stated, rest, shape, pole_pairs));
+        return false;
+    };
+    let shape_part = reader.part("emf_shape", String::new);
+    let others = others(stated, shape, pole_pairs, &shape_part);
+    let fitting = fitting(others, first, motor, phase);
+    let implied = first.constant / first.factors[0];
+    let stated_part = &stated.given.part;
+    let culprit = if !more.is_empty() && failing.iter().all(|claim| claim.agrees(implied)) {
+        // Two against one.
+        stated_part
+    } else if more.is_empty() && !agreeing.is_empty() {
+        first.parts[0]
+    } else {
+        fitting
+            .first()
+            .map_or(first.parts[0], |(other, _)| other.at)
+    };
+    let mut parts = first.parts.clone();
+    parts.push(stated_part);
+    parts.extend(more.iter().flat_map(|claim| claim.parts.iter().copied()));
+    let fitting: Vec<(String, String)> = fitting
+        .iter()
+        .map(|(other, constant)| (other.change.clone(), (first.told)(*constant)))
+        .collect();
+    let expected: Vec<f64> = first.factors.iter().map(|factor| factor * phase).collect();
+    errors.push(catalogue::contradiction(&Contradiction {
+        code: first.code,
+        culprit,
+        claim: &first.parts,
+        stated: stated_part,
+        expected: expected
+            .iter()
+            .map(|constant| (first.told)(*constant))
+            .collect(),
+        ratio: expected[0] / first.constant,
+        inverse: matches!(first.code, Code::SpeedContradiction),
+        parts: &parts,
+        fitting: &fitting,
+    }));
+    true
+}
+
+/// Everything that is stated beside the constant that is taken.
+fn claims<'a>(
+    motor: &'a Motor,
+    inverter: &'a Inverter,
+    rest: &'a [Emf<'a>],
+    shape: EmfShape,
+    pole_pairs: u32,
+) -> Vec<Claim<'a>> {
+    let (block, sine) = (shape.quasi_square_factor(), shape.sine_factor());
+    let mut claims = Vec::new();
+    if let (Some(torque), Some(current)) = (&motor.rated_torque, &motor.rated_current) {
+        let mut factors = vec![block];
+        // A sinusoidal current of the same peak, too.
+        factors.extend((shape == EmfShape::Sinusoidal).then_some(sine));
+        let amperes = current.si;
+        claims.push(Claim {
+            code: Code::TorqueContradiction,
+            parts: vec![&torque.part, &current.part],
+            constant: torque.si / amperes,
+            factors,
+            told: Box::new(move |constant| engineering(constant * amperes, "Nm")),
+        });
+    }
+    for other in rest {
+        let is_speed = other.given.dimension == Some(Dimension::SpeedConstant);
+        let factors = if other.reading == Reading::PerAmpere {
+            vec![block, sine]
+        } else {
+            vec![other.reading.factor(shape)]
+        };
+        claims.push(Claim {
+            code: if is_speed {
+                Code::SpeedContradiction
+            } else {
+                Code::TorqueConstantContradiction
+            },
+            parts: vec![&other.given.part],
+            constant: other.constant(pole_pairs),
+            factors,
+            told: Box::new(move |constant| {
+                if is_speed {
+                    format!("{}/V", rpm(1.0 / constant))
+                } else {
+                    engineering(constant, "Nm/A")
+                }
+            }),
+        });
+    }
+    let voltage = motor.nominal_voltage.as_ref().or(inverter.v_bus.as_ref());
+    if let (Some(speed), Some(voltage)) = (&motor.no_load_speed, voltage) {
+        let volts = voltage.si;
+        claims.push(Claim {
+            code: Code::SpeedContradiction,
+            parts: vec![&speed.part, &voltage.part],
+            constant: volts / speed.si,
+            factors: vec![block],
+            told: Box::new(move |constant| rpm(volts / constant)),
+        });
+    }
+    claims
+}
+
+/// Other readings of the constant that is taken: its other bases, the other shape, and two of them
+/// together.
+fn others<'a>(
+    stated: &'a Emf<'a>,
+    shape: EmfShape,
+    pole_pairs: u32,
+    shape_part: &'a Part,
+) -> Vec<Other<'a>> {
+    use Reading::{BlockMean, LinePeak, LineRms, PerPeakAmpere, PerRmsAmpere, PhasePeak, PhaseRms};
+    let part = &stated.given.part;
+    let readings: &[Reading] = match stated.given.dimension {
+        Some(Dimension::EmfConstant) => &[PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean],
+        Some(Dimension::FluxLinkage) => &[PhasePeak, PhaseRms],
+        Some(Dimension::SpeedConstant) => &[LinePeak, LineRms, BlockMean],
+        _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
+    };
+    let (other_shape, word) = match shape {
+        EmfShape::Trapezoidal { .. } => (EmfShape::Sinusoidal, "sinusoidal"),
+        EmfShape::Sinusoidal => {
+            let flat_top_deg = 120.0;
+            (EmfShape::Trapezoidal { flat_top_deg }, "trapezoidal")
+        }
+    };
+    let constant = stated.constant(pole_pairs);
+    // Of the torque that a phase constant makes with block currents.
+    let scaled = |reading: Reading, of: EmfShape| {
+        constant / reading.factor(of) * of.quasi_square_factor() / shape.quasi_square_factor()
+    };
+    let as_words = |reading: Reading| format!("`{}` as `{}`", part.field, reading.words());
+    let different = readings
+        .iter()
+        .copied()
+        .filter(|reading| *reading != stated.reading);
+    let single = different.clone().map(|reading| Other {
+        change: as_words(reading),
+        at: part,
+        phase: scaled(reading, shape),
+    });
+    let shape_text = format!("`emf_shape: {word}`");
+    let by_shape = Other {
+        change: shape_text.clone(),
+        at: shape_part,
+        phase: scaled(stated.reading, other_shape),
+    };
+    let double = different.map(|reading| Other {
+        change: format!("{} and {shape_text}", as_words(reading)),
+        at: part,
+        phase: scaled(reading, other_shape),
+    });
+    single.chain([by_shape]).chain(double).collect()
+}
+
+/// Those readings that fit, with the constant that they give, single changes first; two changes only
+/// where no single one fits.
+fn fitting<'a>(
+    others: Vec<Other<'a>>,
+    claim: &Claim<'a>,
+    motor: &'a Motor,
+    phase: f64,
+) -> Vec<(Other<'a>, f64)> {
+    let factor = claim.factors[0];
+    let mut candidates: Vec<(Other, f64)> = Vec::new();
+    // The claim's own field may be the one that is misread.
+    let current = motor.rated_current.as_ref();
+    if claim.code == Code::TorqueContradiction
+        && let Some(current) = current.filter(|current| current.basis.is_empty())
+    {
+        let change = "`rated_current` as `rms`".to_owned();
+        let at = &current.part;
+        let constant = factor * phase * quasi_square_peak();
+        candidates.push((Other { change, at, phase }, constant));
+    }
+    if claim.code == Code::TorqueConstantContradiction {
+        let at = claim.parts[0];
+        let change = "`torque_constant` as `per_rms_ampere`".to_owned();
+        let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
+        let constant = Reading::PerRmsAmpere.factor(shape) * phase;
+        candidates.push((Other { change, at, phase }, constant));
+    }
+    candidates.extend(others.into_iter().map(|other| {
+        let constant = factor * other.phase;
+        (other, constant)
+    }));
+    let fitting = candidates
         .into_iter()
-        .filter(|(_, expected)| fits(*expected, given))
-        .partition(|(change, _)| !change.contains(" and "));
+        .filter(|(_, constant)| fits(*constant, claim.constant));
+    let (single, double): (Vec<_>, Vec<_>) =
+        fitting.partition(|(other, _)| !other.change.contains(" and "));
     if single.is_empty() { double } else { single }
 }
 
-/// Accepted: torque within 15 % of k_t times the current, whether the current is quasi-square or
-/// sinusoidal (of the same peak).
-fn check_rated_torque(motor: &Motor, constants: &Constants, errors: &mut Collector) -> Option<()> {
-    let (torque, current) = (motor.rated_torque.as_ref()?, motor.rated_current.as_ref()?);
-    let stated = constants.stated();
-    let expected = stated.quasi_square * current.si;
-    let sinusoidal_machine = constants.shape == EmfShape::Sinusoidal;
-    if fits(expected, torque.si)
-        || (sinusoidal_machine && fits(stated.sinusoidal * current.si, torque.si))
-    {
-        return Some(());
+/// A peak and a torque constant that are one number: only the mean over block commutation is both.
+fn mean_for_peak(
+    stated: &Emf,
+    rest: &[Emf],
+    shape: EmfShape,
+    pole_pairs: u32,
+) -> Option<Diagnostic> {
+    if shape != EmfShape::Sinusoidal || stated.reading != Reading::LinePeak {
+        return None;
     }
-    let mut candidates: Vec<(String, f64)> = constants
-        .others()
-        .into_iter()
-        .map(|reading| (reading.change, reading.quasi_square * current.si))
-        .collect();
-    candidates.insert(
-        0,
-        ("`rated_current` taken as rms".to_owned(), SQRT_2 * expected),
-    );
-    errors.push(catalogue::torque_contradiction(
-        &torque.part,
-        &current.part,
-        &constants.back_emf.part,
-        torque.si,
-        expected,
-        &fitting(candidates, torque.si),
-    ));
-    Some(())
-}
-
-/// Accepted: a torque constant within 15 % of what the EMF constant gives with either shape of
-/// current.
-fn check_torque_constant(
-    motor: &Motor,
-    constants: &Constants,
-    errors: &mut Collector,
-) -> Option<()> {
-    let constant = motor.torque_constant.as_ref()?;
-    let stated = constants.stated();
-    if fits(stated.quasi_square, constant.si) || fits(stated.sinusoidal, constant.si) {
-        return Some(());
-    }
-    let mut candidates: Vec<(String, f64)> = constants
-        .others()
-        .into_iter()
-        .map(|reading| (reading.change, reading.quasi_square))
-        .collect();
-    let rms = "`torque_constant` taken per rms ampere".to_owned();
-    candidates.insert(0, (rms, SQRT_2 * stated.sinusoidal));
-    errors.push(catalogue::torque_constant_contradiction(
-        &constant.part,
-        &constants.back_emf.part,
-        constant.si,
-        stated.quasi_square,
-        stated.sinusoidal,
-        &fitting(candidates, constant.si),
-    ));
-    Some(())
+    let peak = stated.constant(pole_pairs);
+    let torque = rest.iter().find(|other| {
+        let is_of_block = matches!(other.reading, Reading::PerAmpere | Reading::BlockMean);
+        is_of_block && other.given.dimension == Some(Dimension::TorqueConstant)
+    })?;
+    let is_equal = (torque.constant(pole_pairs) / peak - 1.0).abs() <= EQUAL;
+    is_equal.then(|| {
+        let true_peak = peak * Reading::LinePeak.factor(shape) / Reading::BlockMean.factor(shape);
+        catalogue::mean_for_peak(&stated.given.part, &torque.given.part, peak, true_peak)
+    })
 }
 
 #[cfg(test)]
@@ -221,6 +328,7 @@ mod tests {
         // it without.
         let (flat, sine) = (0.1648 / 2.0, 0.1648 / 3.0_f64.sqrt());
         let quasi_square = |phase: f64, share: f64| phase * share;
+        // A sine current meets the fundamental of a flat top's EMF, 4/pi sin(30 deg)/(pi/6) of it.
         let (of_flat, of_sine) = (
             quasi_square(flat, 2.0),
             // The mean of a sine over the 60 degrees about the crossing of two phases' tops.
@@ -251,7 +359,7 @@ mod tests {
             "trapezoidal",
             "torque_constant",
             "Nm/A",
-            range(1.5 * flat, of_flat),
+            range(1.5 * 1.215_854_203_708_053 * flat, of_flat),
             constant,
         );
         check_edges(

@@ -6,6 +6,7 @@
 mod consistency;
 mod controller;
 mod currents;
+mod emf;
 mod finish;
 mod inverter;
 mod motor;
@@ -39,8 +40,14 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let (controller, capture) =
         controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
 
-    consistency::check(&motor, &mut errors);
-    relations::check(&motor_reader, &motor, &inverter, &mut errors);
+    let mut warnings = Vec::new();
+    let contradicts =
+        consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
+    relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
+    if !contradicts {
+        // Torque and EMF in one wrong basis are one mistake.
+        relations::check_bus(&motor_reader, &motor, &inverter, &mut errors);
+    }
     let finished = finish::inverter(
         &inverter_reader,
         &inverter,
@@ -50,7 +57,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         &mut errors,
     );
 
-    let origins = Origins::new(ast);
+    let origins = Origins::new(ast, warnings);
     match (motor.finish(), finished, controller) {
         (Some(motor), Some(inverter), Some(controller)) => {
             let name = ast.name.text.clone();

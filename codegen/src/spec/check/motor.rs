@@ -1,71 +1,54 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
+use super::emf::{self, Emf, Winding, quasi_square_peak};
 use super::reader::{Given, Reader};
-use crate::diagnostics::{Collector, catalogue, list};
-use crate::spec::ast::Basis;
+use crate::diagnostics::{Collector, catalogue, engineering};
+use crate::spec::ast::{Basis, Value};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{EmfShape, MotorSpec};
 
-/// How the phases are connected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Winding {
-    Star,
-    Delta,
-}
-
-/// The motor data that could be read.
+/// The motor as far as it could be read.
 pub(super) struct Motor<'a> {
     pub description: String,
     pub pole_pairs: Option<u32>,
     pub resistance: Option<f64>,
     pub inductance: Option<f64>,
-    pub winding: Option<Winding>,
-    pub back_emf: Option<Given<'a>>,
+    /// The EMF constant as it is stated, and whatever else states it.
+    pub emf: Vec<Emf<'a>>,
     pub emf_constant: Option<f64>,
     pub emf_shape: Option<EmfShape>,
     pub rated_current: Option<Given<'a>>,
     pub rated_torque: Option<Given<'a>>,
-    pub torque_constant: Option<Given<'a>>,
     pub rated_speed: Option<Given<'a>>,
+    pub no_load_speed: Option<Given<'a>>,
+    pub nominal_voltage: Option<Given<'a>>,
     pub inertia: Option<f64>,
     pub inductance_tolerance: f64,
     pub resistance_tolerance: f64,
     pub hall_codes: [u8; 6],
 }
 
-/// Plausible peak phase EMF constants, V s/rad.
-const EMF_CONSTANT: [f64; 2] = [1e-5, 100.0];
-
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a> {
-    reader.require(
-        errors,
-        &[
-            "pole_pairs",
-            "resistance",
-            "inductance",
-            "winding",
-            "back_emf",
-            "emf_shape",
-            "rated_current",
-            "rated_speed",
-        ],
-    );
-    let pole_pairs = reader.integer(errors, "pole_pairs");
-    let winding = reader.word(
-        errors,
-        "winding",
-        &[("star", Winding::Star), ("delta", Winding::Delta)],
-    );
+    let names = [
+        "resistance",
+        "inductance",
+        "emf_shape",
+        "rated_current",
+        "rated_speed",
+    ];
+    reader.require(errors, &names);
+    reader.require_any_of(errors, &emf::FIELDS);
+    reader.require_one_of(errors, ["pole_pairs", "poles"]);
+    let pole_pairs = read_pole_pairs(reader, errors);
+    let winding = read_winding(reader, errors);
     let resistance = read_winding_value(reader, errors, "resistance", winding);
     let inductance = read_winding_value(reader, errors, "inductance", winding);
     let emf_shape = read_shape(reader, errors);
-    let back_emf = read_back_emf(reader, winding, errors);
-    let emf_constant = match (&back_emf, winding, emf_shape, pole_pairs) {
-        (Some(given), Some(winding), Some(shape), Some(pole_pairs)) => {
-            let line_to_line = is_line_to_line(given, winding);
-            let constant = phase_constant(given, line_to_line, shape, pole_pairs);
-            check_emf_constant(given, constant, errors)
+    let emf = emf::read(reader, winding, emf_shape, errors);
+    let emf_constant = match (emf.first(), emf_shape, pole_pairs) {
+        (Some(stated), Some(shape), Some(pole_pairs)) => {
+            emf::check_plausible(stated, stated.phase_constant(shape, pole_pairs), errors)
         }
         _ => None,
     };
@@ -74,14 +57,14 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
         pole_pairs,
         resistance,
         inductance,
-        winding,
-        back_emf,
+        emf,
         emf_constant,
         emf_shape,
         rated_current: read_rated_current(reader, errors),
         rated_torque: reader.plain_quantity(errors, "rated_torque"),
-        torque_constant: read_torque_constant(reader, errors),
         rated_speed: reader.plain_quantity(errors, "rated_speed"),
+        no_load_speed: reader.plain_quantity(errors, "no_load_speed"),
+        nominal_voltage: read_nominal_voltage(reader, errors),
         inertia: reader
             .plain_quantity(errors, "inertia")
             .map(|given| given.si),
@@ -133,9 +116,17 @@ fn read_winding_value(
             Winding::Delta => Some(given.si / 3.0),
         },
         [] => {
-            let forms: Vec<(String, &str)> = schema::references(name)
+            let unit = if name == "resistance" { "ohm" } else { "H" };
+            let half = engineering(given.si / 2.0, unit);
+            let forms: Vec<(String, String)> = schema::references(name)
                 .iter()
-                .map(|(basis, meaning)| (format!("{text} {}", basis.word()), *meaning))
+                .map(|(basis, meaning)| {
+                    let meaning = match basis {
+                        Basis::LineToLine => format!("{meaning}: {half} per phase of a star"),
+                        _ => (*meaning).to_owned(),
+                    };
+                    (format!("{text} {}", basis.word()), meaning)
+                })
                 .collect();
             errors.push(catalogue::missing_basis(at, name, text, &forms));
             None
@@ -146,6 +137,60 @@ fn read_winding_value(
             None
         }
     }
+}
+
+/// As given, or half of the poles.
+fn read_pole_pairs(reader: &Reader, errors: &mut Collector) -> Option<u32> {
+    if reader.field("pole_pairs").is_some() {
+        return reader.integer(errors, "pole_pairs");
+    }
+    let poles = reader.integer(errors, "poles")?;
+    if poles % 2 == 1 {
+        let part = reader.part("poles", String::new);
+        errors.push(catalogue::odd_poles(&part.location, &part.given, poles));
+        return None;
+    }
+    Some(poles / 2)
+}
+
+/// The connection of the phases. Values between terminals say all of it by themselves.
+fn read_winding(reader: &Reader, errors: &mut Collector) -> Option<Winding> {
+    let words = [("star", Winding::Star), ("delta", Winding::Delta)];
+    if reader.field("winding").is_some() {
+        return reader.word(errors, "winding", &words);
+    }
+    let depends = ["resistance", "inductance", "back_emf"].map(|name| {
+        reader.field(name).is_some_and(|field| match &field.value {
+            Value::Number(number) => {
+                let is_linkage = number
+                    .unit
+                    .as_ref()
+                    .is_some_and(|unit| unit.dimension == Dimension::FluxLinkage);
+                let of_phase = [Basis::PerPhase, Basis::Phase];
+                is_linkage || of_phase.iter().any(|basis| number.basis.contains(basis))
+            }
+            _ => false,
+        })
+    });
+    if depends.contains(&true) {
+        reader.require(errors, &["winding"]);
+        return None;
+    }
+    Some(Winding::Star)
+}
+
+/// The voltage at which the no-load speed holds, of use with it alone.
+fn read_nominal_voltage<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Given<'a>> {
+    let given = reader.plain_quantity(errors, "nominal_voltage")?;
+    if reader.field("no_load_speed").is_none() {
+        errors.push(catalogue::needless_field(
+            &given.part.location,
+            "nominal_voltage",
+            &given.part.given,
+            "no_load_speed: 5000 rpm",
+        ));
+    }
+    Some(given)
 }
 
 fn read_shape(reader: &Reader, errors: &mut Collector) -> Option<EmfShape> {
@@ -171,137 +216,18 @@ fn read_shape(reader: &Reader, errors: &mut Collector) -> Option<EmfShape> {
     Some(EmfShape::Sinusoidal)
 }
 
-/// Reads the EMF constant and checks that its basis is stated and possible.
-fn read_back_emf<'a>(
-    reader: &Reader<'a>,
-    winding: Option<Winding>,
-    errors: &mut Collector,
-) -> Option<Given<'a>> {
-    let given = reader.quantity(errors, "back_emf")?;
-    let (at, text) = (&given.part.location, &given.part.given);
-    let unit = given.number.unit?;
-    let has = |basis: Basis| given.basis.contains(&basis);
-    let line_stated = has(Basis::Phase) || has(Basis::LineToLine);
-    let mut refuse = |basis: Basis, remedy: &str| {
-        errors.push(catalogue::wrong_basis(
-            at,
-            "back_emf",
-            text,
-            basis.word(),
-            remedy,
-        ));
-        None
-    };
-    if has(Basis::PerPhase) {
-        return refuse(Basis::PerPhase, "write `phase` or `line_to_line`");
-    }
-    if has(Basis::Phase) && has(Basis::LineToLine) {
-        return refuse(
-            Basis::LineToLine,
-            "it is given as `phase` already; keep one of the two",
-        );
-    }
-    if has(Basis::Rms) {
-        let peak = crate::diagnostics::significant(given.number.value * 2f64.sqrt());
-        let forms: Vec<String> = [Basis::Phase, Basis::LineToLine]
-            .into_iter()
-            .filter(|&basis| has(basis) || !line_stated)
-            .map(|basis| format!("{peak} {} {} peak", unit.symbol, basis.word()))
-            .collect();
-        return refuse(
-            Basis::Rms,
-            &format!(
-                "give the peak; for a sinusoidal EMF it is sqrt(2) times as much, {}",
-                list(&forms, "or")
-            ),
-        );
-    }
-    match unit.dimension {
-        Dimension::SpeedConstant if has(Basis::Phase) => {
-            return refuse(
-                Basis::Phase,
-                "a speed constant refers to the line-to-line peak; give V/krpm with `phase peak` instead",
-            );
-        }
-        Dimension::FluxLinkage if has(Basis::LineToLine) => {
-            return refuse(
-                Basis::LineToLine,
-                "a flux linkage refers to the phase peak; give V/krpm with `line_to_line peak` instead",
-            );
-        }
-        Dimension::FluxLinkage if winding == Some(Winding::Delta) => {
-            let remedy = "the flux linkage of a delta winding is ambiguous; give V/krpm with `line_to_line peak`";
-            return refuse(Basis::Phase, remedy);
-        }
-        Dimension::SpeedConstant | Dimension::FluxLinkage => return Some(given),
-        _ => {}
-    }
-    if line_stated && has(Basis::Peak) {
-        return Some(given);
-    }
-    let forms: Vec<(String, &str)> = if line_stated {
-        vec![(format!("{text} peak"), "the amplitude")]
-    } else {
-        let plain = format!("{} {}", given.number.digits, unit.symbol);
-        schema::references("back_emf")
-            .iter()
-            .map(|(basis, meaning)| (format!("{plain} {} peak", basis.word()), *meaning))
-            .collect()
-    };
-    errors.push(catalogue::missing_basis(at, "back_emf", text, &forms));
-    None
-}
-
-/// Whether the constant is the line-to-line peak, as the phase value of a delta is.
-pub(super) fn is_line_to_line(given: &Given, winding: Winding) -> bool {
-    match given.dimension {
-        Some(Dimension::SpeedConstant) => true,
-        Some(Dimension::FluxLinkage) => false,
-        _ => given.basis.contains(&Basis::LineToLine) || winding == Winding::Delta,
-    }
-}
-
-/// Peak phase EMF of the equivalent star over mechanical speed, V s/rad.
-pub(super) fn phase_constant(
-    given: &Given,
-    line_to_line: bool,
-    shape: EmfShape,
-    pole_pairs: u32,
-) -> f64 {
-    let mechanical = match given.dimension {
-        Some(Dimension::SpeedConstant) => 1.0 / given.si,
-        Some(Dimension::FluxLinkage) => given.si * f64::from(pole_pairs),
-        _ => given.si,
-    };
-    if line_to_line {
-        mechanical / shape.line_to_line_peak()
-    } else {
-        mechanical
-    }
-}
-
-fn check_emf_constant(given: &Given, constant: f64, errors: &mut Collector) -> Option<f64> {
-    let [low, high] = EMF_CONSTANT;
-    if (low..=high).contains(&constant) {
-        return Some(constant);
-    }
-    errors.push(catalogue::implausible_emf(
-        &given.part.location,
-        &given.part.given,
-        constant,
-        low,
-        high,
-    ));
-    None
-}
-
-/// The rated current is the peak of the quasi-square wave.
+/// The rated current is the peak of the quasi-square wave; a root mean square is that of the wave
+/// that heats the windings as much.
 fn read_rated_current<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Given<'a>> {
     let given = reader.quantity(errors, "rated_current")?;
     match given.basis {
         [] | [Basis::Peak] => Some(given),
+        [Basis::Rms] => Some(Given {
+            si: given.si * quasi_square_peak(),
+            ..given
+        }),
         [.., last] => {
-            let remedy = "give the peak of the phase current; for a sinusoidal current it is sqrt(2) times the rms value";
+            let remedy = "write `peak` (of the block or sine wave) or `rms` of the phase current";
             let (at, text) = (&given.part.location, &given.part.given);
             errors.push(catalogue::wrong_basis(
                 at,
@@ -315,27 +241,7 @@ fn read_rated_current<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option
     }
 }
 
-/// Torque per peak ampere.
-fn read_torque_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Given<'a>> {
-    let given = reader.quantity(errors, "torque_constant")?;
-    match given.basis {
-        [] | [Basis::Peak] => Some(given),
-        [.., last] => {
-            let remedy = "give the torque per peak ampere; a sinusoidal one per rms ampere is sqrt(2) times as large";
-            let (at, text) = (&given.part.location, &given.part.given);
-            errors.push(catalogue::wrong_basis(
-                at,
-                "torque_constant",
-                text,
-                last.word(),
-                remedy,
-            ));
-            None
-        }
-    }
-}
-
-/// Each code from 1 to 6 once, neighbours one bit apart, last and first included.
+/// Each of 1 to 6 once, neighbours (and last and first) one bit apart.
 fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
     let (list, part) = reader.integers(errors, "hall_codes")?;
     let codes: Vec<u8> = list

@@ -1,6 +1,6 @@
 //! Where the values of a checked specification were written, for the errors of later stages.
 
-use crate::diagnostics::Location;
+use crate::diagnostics::{Diagnostic, Location};
 use crate::spec::ast::{Section, SpecAst};
 use std::collections::BTreeMap;
 
@@ -10,6 +10,7 @@ pub struct Origins {
     name: Location,
     sections: BTreeMap<&'static str, Location>,
     fields: BTreeMap<String, Origin>,
+    warnings: Vec<Diagnostic>,
 }
 
 /// Where and how a field was written.
@@ -24,11 +25,12 @@ pub struct Origin {
 }
 
 impl Origins {
-    pub(super) fn new(ast: &SpecAst) -> Self {
+    pub(super) fn new(ast: &SpecAst, warnings: Vec<Diagnostic>) -> Self {
         let mut origins = Self {
             name: ast.name.location.clone(),
             sections: BTreeMap::new(),
             fields: BTreeMap::new(),
+            warnings,
         };
         origins.take("motor", &ast.motor);
         origins.take("inverter", &ast.inverter);
@@ -72,6 +74,11 @@ impl Origins {
             || format!("{default} (default)"),
             |origin| origin.given.clone(),
         )
+    }
+
+    /// What the checks warn of: values that fit, and are probably not meant so.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
     }
 
     /// Every field that was written, by path.

@@ -1,24 +1,19 @@
-//! Other names for fields, common in data sheets. Spelling cannot find them: `speed_constant` is
-//! spelt like `torque_constant`, but means the reciprocal of `back_emf`.
+//! Names of data sheets for what a field takes in its own way. Spelling says nothing about them:
+//! a speed constant is nearer to `torque_constant` by its letters, and its reciprocal by its sense.
 
 use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
-const POLES: [&str; 5] = [
-    "poles",
+const POLES: [&str; 4] = [
     "pole_count",
     "pole_number",
     "number_of_poles",
     "magnet_poles",
 ];
 
-const SPEED_CONSTANT: [&str; 5] = [
-    "speed_constant",
-    "velocity_constant",
-    "kv",
-    "k_v",
-    "kv_rating",
-];
+const SPEED_CONSTANT: [&str; 4] = ["velocity_constant", "kv", "k_v", "kv_rating"];
+
+const TORQUE_CONSTANT: [&str; 4] = ["kt", "k_t", "km", "k_m"];
 
 const EMF_CONSTANT: [&str; 7] = [
     "emf_constant",
@@ -30,41 +25,51 @@ const EMF_CONSTANT: [&str; 7] = [
     "k_e",
 ];
 
-/// The field that a name stands for.
+/// Words of data sheets and files for those that fields take.
+const WORDS: [(&str, &str); 6] = [
+    ("wye", "star"),
+    ("y", "star"),
+    ("sine", "sinusoidal"),
+    ("trapezoid", "trapezoidal"),
+    ("true", "on"),
+    ("false", "off"),
+];
+
+/// The word that another one stands for.
+pub(super) fn word(given: &str) -> Option<&'static str> {
+    let row = WORDS.iter().find(|(other, _)| *other == given)?;
+    Some(row.1)
+}
+
+/// The field that takes what the name stands for.
 pub(super) fn meant(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
     let is_in = |names: &[&str]| names.contains(&name.as_str());
     if is_in(&POLES) {
-        Some("pole_pairs")
-    } else if is_in(&SPEED_CONSTANT) || is_in(&EMF_CONSTANT) {
+        Some("poles")
+    } else if is_in(&SPEED_CONSTANT) {
+        Some("speed_constant")
+    } else if is_in(&TORQUE_CONSTANT) {
+        Some("torque_constant")
+    } else if is_in(&EMF_CONSTANT) {
         Some("back_emf")
     } else {
         None
     }
 }
 
-/// What to write in the field `meant` in place of `field`, a clause.
+/// What to write in the field `meant` for the value of another one, a clause.
 pub(super) fn remedy(meant: &str, field: &Field) -> String {
-    let number = match &field.value {
-        Value::Number(number) => Some(number),
-        _ => None,
+    let Value::Number(number) = &field.value else {
+        return format!("did you mean `{meant}`?");
     };
-    if meant == "pole_pairs" {
-        let half = number.map(|number| number.si() / 2.0);
-        return match half.filter(|half| half.fract() == 0.0 && *half > 0.0) {
-            Some(half) => format!("write `pole_pairs: {half}`, half of the poles"),
-            None => "write `pole_pairs`, half of the poles".to_owned(),
-        };
+    let dimension = number.unit.as_ref().map(|unit| unit.dimension);
+    match meant {
+        "poles" => format!("write `poles: {number}`"),
+        "speed_constant" if dimension == Some(Dimension::SpeedConstant) => {
+            format!("write `speed_constant: {number}`")
+        }
+        "speed_constant" => "write `speed_constant` with the unit `rpm/V`".to_owned(),
+        _ => format!("did you mean `{meant}`?"),
     }
-    if SPEED_CONSTANT.contains(&field.name.to_lowercase().as_str()) {
-        let dimension = number.and_then(|number| Some(number.unit?.dimension));
-        let setting = match number {
-            Some(number) if dimension == Some(Dimension::SpeedConstant) => {
-                format!("`back_emf: {number}`")
-            }
-            _ => "`back_emf` with the unit `rpm/V`".to_owned(),
-        };
-        return format!("write {setting}: speed over the line-to-line peak of the EMF");
-    }
-    "did you mean `back_emf`?".to_owned()
 }

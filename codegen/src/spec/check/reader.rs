@@ -121,13 +121,19 @@ impl<'a> Reader<'a> {
                 &one.name_location,
                 &one.name,
             )),
-            [None, None] if self.may_lack(names[0]) => errors.push(catalogue::missing_alternative(
-                &self.at,
-                self.name,
-                names,
-                names.map(schema::example),
-            )),
+            [None, None] => self.require_any_of(errors, &names),
             _ => {}
+        }
+    }
+
+    /// Reports when none of some fields is given.
+    pub fn require_any_of(&self, errors: &mut Collector, names: &[&str]) {
+        if names.iter().all(|name| self.may_lack(name)) {
+            let fields: Vec<(&str, &str)> = names
+                .iter()
+                .map(|name| (*name, schema::example(name)))
+                .collect();
+            errors.push(catalogue::missing_alternative(&self.at, self.name, &fields));
         }
     }
 
@@ -201,7 +207,7 @@ impl<'a> Reader<'a> {
                 };
                 let given = Given {
                     si: number.si(),
-                    dimension: number.unit.map(|unit| unit.dimension),
+                    dimension: number.unit.as_ref().map(|unit| unit.dimension),
                     basis: &number.basis,
                     number,
                     part,
@@ -412,9 +418,11 @@ impl<'a> Reader<'a> {
             Value::Word(word) => word.clone(),
             other => other.to_string(),
         };
+        let plain = given.replace('-', "_").to_lowercase();
+        let other = other_names::word(&plain);
         let found = choices
             .iter()
-            .find(|(word, _)| *word == given)
+            .find(|(word, _)| *word == plain || Some(*word) == other)
             .map(|(_, choice)| *choice);
         if found.is_none() {
             let known: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
@@ -470,6 +478,9 @@ impl<'a> Reader<'a> {
 /// Reports basis words where none can be; returns whether there are none.
 fn refuse_basis(errors: &mut Collector, given: &Given, remedy: &str) -> bool {
     if let Some(basis) = given.basis.first() {
+        // Without the word the number would be another quantity.
+        let is_other = matches!(basis, Basis::Rms | Basis::BlockMean);
+        let remedy = if is_other { "give the peak" } else { remedy };
         let (at, text) = (&given.part.location, &given.part.given);
         errors.push(catalogue::wrong_basis(
             at,

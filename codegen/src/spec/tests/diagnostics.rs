@@ -14,7 +14,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// A macro call without errors.
-const COMPLETE_CALL: &str = "pub Hub {
+pub(super) const COMPLETE_CALL: &str = "pub Hub {
     motor: {
         pole_pairs: 4,
         resistance: 135 mohm per_phase,
@@ -72,7 +72,7 @@ fn cases(list: &'static str) -> impl Iterator<Item = (&'static str, &'static str
 }
 
 /// A complete specification after the changes of a delta.
-fn changed(complete: &str, delta: &str) -> String {
+pub(super) fn changed(complete: &str, delta: &str) -> String {
     delta.split("; ").fold(complete.to_owned(), |text, change| {
         if let Some((old, new)) = change.split_once(" => ") {
             assert!(text.contains(old), "{old} of {delta}");
@@ -152,7 +152,7 @@ fn found_in_call(text: &str) -> Vec<Diagnostic> {
 }
 
 /// What a motor file makes, errors or warnings.
-fn found_in_file(text: &str) -> Vec<Diagnostic> {
+pub(super) fn found_in_file(text: &str) -> Vec<Diagnostic> {
     found(parse_toml(text, "motors/hub.toml"))
 }
 

@@ -1,6 +1,8 @@
 //! Tests of the specification as a whole.
 
+mod data_sheets;
 mod diagnostics;
+mod explanations;
 mod front_ends;
 mod inverter;
 mod motors;

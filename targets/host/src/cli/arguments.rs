@@ -2,7 +2,8 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
-    compare, generate, limit, motors, prove, report, reproduce, simulate, verify,
+    check, compare, completions, explain, generate, limit, motors, new, prove, report, reproduce,
+    simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
@@ -51,6 +52,14 @@ pub enum Command {
     Reproduce(reproduce::Options),
     /// Lists the motors of the library
     Motors(motors::Options),
+    /// Writes a commented motor file, from values of a data sheet or from questions
+    New(new::Options),
+    /// Says within a second whether and how well a drive will work
+    Check(check::Options),
+    /// Explains a code of an error or warning: cause, example, remedy
+    Explain(explain::Options),
+    /// Prints a script that completes the command line in a shell
+    Completions(completions::Options),
 }
 
 /// What `generate` prints.

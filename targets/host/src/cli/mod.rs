@@ -13,7 +13,8 @@ mod quantity;
 pub use arguments::{Arguments, Command, Emit, PlantArguments, RunArguments, Selection, parse_rpm};
 pub use failure::Failure;
 pub use output::{
-    note, print_blocks, print_json, print_table, print_text, tell_warnings, warn, write_file,
+    note, print_blocks, print_json, print_table, print_text, shortened, tell_warnings, warn,
+    write_file,
 };
 pub use progress::{Bar, spinner};
 
@@ -48,6 +49,10 @@ pub fn run() -> ExitCode {
         Command::Compare(options) => commands::compare::run(&options),
         Command::Reproduce(options) => commands::reproduce::run(&options),
         Command::Motors(options) => commands::motors::run(&options),
+        Command::New(options) => commands::new::run(&options),
+        Command::Check(options) => commands::check::run(&options),
+        Command::Explain(options) => commands::explain::run(&options),
+        Command::Completions(options) => commands::completions::run(&options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -25,9 +25,46 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line to stderr; errors of stderr are ignored.
+/// Columns of a line that is meant to be read at a glance.
+const COLUMNS: usize = 100;
+
+/// A line of at most 100 columns; what is cut off is a mark.
+pub fn shortened(line: &str) -> String {
+    if line.chars().count() <= COLUMNS {
+        return line.to_owned();
+    }
+    let kept: String = line.chars().take(COLUMNS - 1).collect();
+    format!("{kept}\u{2026}")
+}
+
+/// Prints lines to stderr, with colours on a terminal (unless `NO_COLOR` is set). There is no place
+/// to tell that this failed.
 pub fn note(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let lines: Vec<String> = text.lines().map(coloured).collect();
+    let _ = writeln!(anstream::stderr().lock(), "{}", lines.join("\n"));
+}
+
+/// A message's line with its severity in colour: `file:1:2: error[HX0205]: …`, `warning: …`.
+fn coloured(line: &str) -> String {
+    const SEVERITIES: [(&str, &str); 2] = [("error", "\x1b[1;31m"), ("warning", "\x1b[1;33m")];
+    let found = SEVERITIES.iter().find_map(|(word, colour)| {
+        let begin = if line.starts_with(word) {
+            0
+        } else {
+            line.find(&format!(": {word}["))? + 2
+        };
+        let end = begin + line[begin..].find(':')?;
+        Some((begin, end, colour))
+    });
+    let Some((begin, end, colour)) = found else {
+        return line.to_owned();
+    };
+    format!(
+        "{}{colour}{}\x1b[0m{}",
+        &line[..begin],
+        &line[begin..end],
+        &line[end..]
+    )
 }
 
 /// Prints one JSON object to stdout.
@@ -82,6 +119,21 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_severity_alone_is_coloured() {
+        for (line, expected) in [
+            (
+                "hub.toml:3:1: error[HX0205]: no error: none",
+                "hub.toml:3:1: \x1b[1;31merror[HX0205]\x1b[0m: no error: none",
+            ),
+            ("warning: slow", "\x1b[1;33mwarning\x1b[0m: slow"),
+            ("errors are none of this", "errors are none of this"),
+            ("a note", "a note"),
+        ] {
+            assert_eq!(coloured(line), expected);
+        }
+    }
 
     #[test]
     fn files_appear_whole_and_replace_what_was_there() {

@@ -3,10 +3,14 @@
 //! Each has its options, a function that collects plain data, and one that prints them as a table
 //! or as JSON.
 
+pub mod check;
 pub mod compare;
+pub mod completions;
+pub mod explain;
 pub mod generate;
 pub mod limit;
 pub mod motors;
+pub mod new;
 pub mod prove;
 pub mod report;
 pub mod reproduce;

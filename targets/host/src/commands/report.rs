@@ -1,12 +1,12 @@
 //! `hexagen report`: the result table and the page of one motor.
 
-use crate::cli::{Bar, Failure, print_blocks, print_json, print_text};
+use crate::cli::{Bar, Failure, print_json, print_table, print_text, shortened};
 use crate::render;
 use clap::Args;
-use hexagen_lab::report::{results_blocks, results_page};
-use hexagen_lab::results::{PAPER_MOTOR, Plan};
+use hexagen_lab::report::{results_page, variants_table, verdict};
+use hexagen_lab::results::{PAPER_MOTOR, Plan, Results};
 use hexagen_lab::verification::mismatches;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Default folder of the page.
 pub(super) const FOLDER: &str = "target/hexagen";
@@ -20,6 +20,9 @@ pub struct Options {
     /// Folder of the page [default: target/hexagen]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Print the table of all variants, best first
+    #[arg(long)]
+    pub all: bool,
     /// Print the page as one JSON object: its prose, tables and plots
     #[arg(long)]
     pub json: bool,
@@ -40,10 +43,28 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         print_json(&page)?;
     } else {
-        print_text(&page.title)?;
-        print_blocks(&page.opening)?;
-        print_blocks(&results_blocks(&data))?;
-        print_text(&format!("Page: {}", path.display()))?;
+        print_text(&lines(&data, &path).join("\n"))?;
+        if options.all {
+            print_table(&variants_table(&data))?;
+            for text in &data.notes {
+                print_text(text)?;
+            }
+        }
     }
     mismatches(&checked).map_or(Ok(()), |lines| Err(Failure::Check(lines)))
+}
+
+/// The verdict in at most 12 lines of at most 100 columns.
+fn lines(data: &Results, page: &Path) -> Vec<String> {
+    let page = ("page", page.display().to_string());
+    let (verdict, rows) = verdict(data).unwrap_or_default();
+    let head = format!("{}: {verdict}", data.file);
+    let rows = rows.into_iter().chain([page]);
+    let rows = rows.map(|(name, text)| format!("{name:<11} {text}"));
+    [head]
+        .into_iter()
+        .chain(rows)
+        // Texts of pages keep numbers and units together.
+        .map(|line| shortened(&line.replace('\u{a0}', " ")))
+        .collect()
 }

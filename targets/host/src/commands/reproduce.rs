@@ -6,9 +6,13 @@ use super::report::FOLDER;
 use crate::cli::{Bar, Failure, print_blocks, print_json, print_text};
 use crate::render;
 use clap::Args;
-use hexagen_lab::report::{reproduction_blocks, reproduction_page};
+use hexagen_lab::report::{Section, reproduction_blocks, reproduction_page, results_blocks};
 use hexagen_lab::reproduction::{Effort, reproduce};
+use hexagen_lab::results::Plan;
 use std::path::PathBuf;
+
+/// Title of the table of figures.
+const EXPECTED: &str = "Measured and expected figures";
 
 /// Options of `reproduce`.
 #[derive(Args, Clone, Debug, Default)]
@@ -29,11 +33,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     render::prepare_folder(&folder)?;
     let data = reproduce(&Effort::full(), &Bar::default())?;
-    let page = reproduction_page(&data);
+    let table = results_blocks(&Plan::of_paper()?.table(&Bar::default())?);
+    let mut page = reproduction_page(&data);
+    page.sections
+        .push(Section::new("expected", EXPECTED, table.clone()));
     let path = render::write(&page, &folder)?;
     if options.json {
         return print_json(&page);
     }
     print_blocks(&reproduction_blocks(&data))?;
+    print_text(EXPECTED)?;
+    print_blocks(&table)?;
     print_text(&format!("Page: {}", path.display()))
 }

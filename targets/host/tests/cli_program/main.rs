@@ -2,6 +2,7 @@
 
 mod generate;
 mod input;
+mod newcomer;
 mod output;
 mod reproduce;
 mod robustness;

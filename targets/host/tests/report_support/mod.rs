@@ -14,7 +14,7 @@ use hexagen_lab::closed_loop::{
 use hexagen_lab::engine::{EngineKind, Model};
 use hexagen_lab::plant::{PlantParams, Truth};
 use hexagen_lab::results::{
-    Capture, DesignRow, ErrorsSeen, GeneratedTexts, Record, Results, Run, RunPoint, SameWords,
+    Capture, DesignRow, ErrorsSeen, GeneratedTexts, Own, Record, Results, Run, RunPoint, SameWords,
     SignalError, SpeedMark, Variant, Verification, design_table,
 };
 use hexagen_lab::robustness::{Cell, Column, DisturbedFigures, Heat, Outcome, Robustness};
@@ -386,6 +386,10 @@ pub fn data() -> Results {
                 false,
             ),
         ],
+        own: Some(Own {
+            variant: 0,
+            operations: 153,
+        }),
         errors: vec![errors("pdcc", 32, 9.4e-6), errors("phcc", 16, 0.24)],
         robustness: Some(robustness()),
         marks: vec![

@@ -11,6 +11,7 @@ mod table;
 
 pub use pages::{
     reproduction_blocks, reproduction_page, results_blocks, results_page, robustness_blocks,
+    variants_table, verdict,
 };
 pub use palette::{AXIS, Color, DEMAND, GRID, IDEAL, INK, PHASES, VARIANTS, variant};
 pub use plot::Plot;

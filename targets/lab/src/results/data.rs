@@ -38,6 +38,8 @@ pub struct Results {
     pub verification: Option<Verification>,
     /// The variants in the table's order.
     pub variants: Vec<Variant>,
+    /// The motor file's own controller; none where the table alone is wanted.
+    pub own: Option<Own>,
     /// Errors of single steps of the default controllers, per word length, in the plots' order.
     pub errors: Vec<ErrorsSeen>,
     /// The default controllers on plants that differ from the motor file.
@@ -46,6 +48,15 @@ pub struct Results {
     pub marks: Vec<SpeedMark>,
     /// Paragraphs below the result table: known differences and their reasons.
     pub notes: Vec<String>,
+}
+
+/// The motor file's own controller, of which the verdict is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Own {
+    /// Place among the variants.
+    pub variant: usize,
+    /// Operations of a step, at worst.
+    pub operations: u32,
 }
 
 /// Result of the bit-for-bit check of emitted against bit-true code.

@@ -172,6 +172,17 @@ pub struct DesignRow {
     pub is_plotted: bool,
 }
 
+/// The row of a motor file's own controller, of which nothing is expected.
+pub fn own_row() -> DesignRow {
+    DesignRow {
+        label: "The motor file's controller",
+        variant: "",
+        timer: Expected::default(),
+        sampled: None,
+        is_plotted: true,
+    }
+}
+
 /// The rows of the design document's table, with the nearest variant for each that does not exist:
 /// the 660 W motor at 48 V, 50 us, delay 1, 3.3 Nm.
 pub fn design_table() -> Vec<DesignRow> {

@@ -7,12 +7,12 @@ mod planned;
 
 pub use collect::Plan;
 pub use data::{
-    Capture, ErrorsSeen, GeneratedTexts, Record, Results, Run, RunPoint, SameWords, SignalError,
-    SpeedMark, Variant, Verification,
+    Capture, ErrorsSeen, GeneratedTexts, Own, Record, Results, Run, RunPoint, SameWords,
+    SignalError, SpeedMark, Variant, Verification,
 };
 pub use expected::{
     Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
-    judge_mean, judge_pp, judge_rms,
+    judge_mean, judge_pp, judge_rms, own_row,
 };
 pub use planned::{Planned, held};
 

@@ -9,11 +9,13 @@ mod stability;
 mod table;
 mod texts;
 mod torque_speed;
+mod verdict;
 mod waves;
 
 pub use paper::{reproduction_blocks, reproduction_page};
 pub use robustness::robustness_blocks;
-pub use table::results_blocks;
+pub use table::{results_blocks, variants_table};
+pub use verdict::verdict;
 
 use super::{Block, Key, PHASES, Page, Section, Sign, variant};
 use crate::results::{Capture, Results, Variant};
@@ -28,7 +30,7 @@ pub fn results_page(data: &Results) -> Page {
         file: format!("report-{}", file_stem(&data.file)),
         title: facts::title(data),
         heading: facts::motor_name(data).to_owned(),
-        opening: facts::opening(data),
+        opening: [verdict::verdict_blocks(data), facts::opening(data)].concat(),
         sections: vec![
             Section::new("motor", "Motor and inverter", facts::facts(data)),
             Section::new("results", "Results", results_blocks(data)),

@@ -6,7 +6,7 @@ use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::engine::Model;
 use crate::report::{Block, Cell, Column, Label, Table, Tone};
 use crate::results::{
-    Judged, Results, Run, RunPoint, Variant, judge_limit, judge_mean, judge_pp, judge_rms,
+    Capture, Judged, Results, Run, RunPoint, Variant, judge_limit, judge_mean, judge_pp, judge_rms,
 };
 use crate::text::{TorqueScale, number, ripple};
 
@@ -50,6 +50,83 @@ fn met(data: &Results) -> Option<String> {
         "{count} Expected figures are next to the measured ones; the tolerances are 1 % of mean torque, \
          15 % or 0.5 points of ripple, and 2 points of the speed limit."
     ))
+}
+
+/// One row per variant, best first: its fixed-point code, and how far the ideal model and sampled
+/// edges differ from it.
+pub fn variants_table(data: &Results) -> Table {
+    let unit = TorqueScale::of(data.torque).unit;
+    let mut columns = vec![Column::text("Variant")];
+    for rpm in &data.speeds_rpm {
+        let group = format!("{} rpm", number(*rpm, 0));
+        let figures = [("Mean", unit), ("Ripple", "% pp")];
+        columns.extend(figures.map(|(name, unit)| Column::number(name, unit).of(group.clone())));
+    }
+    columns.push(Column::number("Limit", "%"));
+    columns.push(Column::number("Ideal", "% pp more"));
+    columns.push(Column::number("Sampled", "% pp more"));
+    let mut table = Table::new("variants", columns);
+    let mut order: Vec<&Variant> = data
+        .variants
+        .iter()
+        .filter(|variant| !variant.runs.is_empty())
+        .collect();
+    // Held furthest first; of those that hold as far, the smoothest.
+    let key = |variant: &Variant| {
+        let run = &variant.runs[0];
+        let limit = run.limit.as_ref().and_then(|limit| limit.limit_pct);
+        (
+            limit.unwrap_or(0.0),
+            -ripple_at_top(run).unwrap_or(f64::MAX),
+        )
+    };
+    order.sort_by(|left, right| {
+        let (left, right) = (key(left), key(right));
+        right.0.total_cmp(&left.0).then(right.1.total_cmp(&left.1))
+    });
+    for variant in order {
+        table.row(variant_row(data, variant));
+    }
+    table
+}
+
+/// Peak-to-peak ripple at the highest speed of the table, percent.
+fn ripple_at_top(run: &Run) -> Option<f64> {
+    run.points.last()?.figures.ripple_pp_pct
+}
+
+fn variant_row(data: &Results, variant: &Variant) -> Vec<Cell> {
+    let scale = TorqueScale::of(data.torque);
+    let fixed = &variant.runs[0];
+    let mut cells = vec![Cell::from(variant.label.clone())];
+    for &rpm in &data.speeds_rpm {
+        match point_at(fixed, rpm) {
+            Some(point) if point.tripped.is_none() => cells.extend([
+                Cell::from(scale.text(point.figures.mean_torque_nm, 0)),
+                Cell::from(ripple(point.figures.ripple_pp_pct)),
+            ]),
+            _ => cells.push(Cell::from("trips").toned(Tone::Missed).across(2)),
+        }
+    }
+    cells.push(limit_cell(fixed));
+    let more = |model: Model, capture| {
+        let run = variant
+            .runs
+            .iter()
+            .find(|run| run.model == model && run.capture == capture)?;
+        Some(ripple_at_top(run)? - ripple_at_top(fixed)?)
+    };
+    let ideal = more(Model::Ideal, fixed.capture);
+    let sampled = if fixed.capture == Capture::Timer {
+        more(Model::Fixed, Capture::Sampled)
+    } else {
+        None
+    };
+    for difference in [ideal, sampled] {
+        let text = difference.map_or("-".to_owned(), |points| format!("{points:+.1}"));
+        cells.push(Cell::from(text));
+    }
+    cells
 }
 
 fn table(data: &Results) -> Table {

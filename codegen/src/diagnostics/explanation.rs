@@ -1,0 +1,439 @@
+//! What each code is about: cause, example and remedy, as `hexagen explain` prints them.
+
+use super::Code;
+
+/// Cause, example and remedy of a code.
+#[derive(Clone, Copy, Debug)]
+pub struct Explanation {
+    /// Why there is such an error or warning.
+    pub cause: &'static str,
+    /// Lines of a motor file that make it; for what no file makes, whatever does.
+    pub wrong: &'static str,
+    /// The same lines as they are accepted.
+    pub right: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+const fn say(
+    cause: &'static str,
+    wrong: &'static str,
+    right: &'static str,
+    remedy: &'static str,
+) -> Explanation {
+    Explanation {
+        cause,
+        wrong,
+        right,
+        remedy,
+    }
+}
+
+impl Code {
+    /// The code of its text, with or without `HX` and leading zeros.
+    pub fn from_text(text: &str) -> Option<Self> {
+        let upper = text.trim().to_uppercase();
+        let digits = upper.strip_prefix("HX").unwrap_or(&upper);
+        let number: u16 = digits.parse().ok()?;
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|code| code.number() == number)
+    }
+
+    /// What it is about.
+    pub fn explanation(self) -> Explanation {
+        match self.number() / 100 {
+            1 => self.of_structure(),
+            2 => self.of_values(),
+            3 => self.of_drives(),
+            4 => self.of_controllers(),
+            _ => self.of_designs(),
+        }
+    }
+
+    fn of_structure(self) -> Explanation {
+        match self {
+            Self::UnknownSection => say(
+                "A file has the sections motor, inverter, controller, assumed and source; a macro call the first three.",
+                "[controler]",
+                "[controller]",
+                "Correct the name, or remove the section.",
+            ),
+            Self::UnknownField => say(
+                "The section has no field of this name, so its value would have no effect.",
+                "resistence = \"135 mohm per_phase\"",
+                "resistance = \"135 mohm per_phase\"",
+                "Correct the name; `cargo doc` of hexagen-codegen lists all fields under `spec`.",
+            ),
+            Self::DuplicateField => say(
+                "A field or section is written twice, and only one value can hold.",
+                "pole_pairs = 4\npole_pairs = 5",
+                "pole_pairs = 4",
+                "Keep one of the two.",
+            ),
+            Self::MissingField => say(
+                "The field has no default: the controller cannot be designed without it.",
+                "",
+                "winding = \"star\"",
+                "Add the field; what the data sheet lacks goes under [assumed.motor] or [assumed.inverter] with a reason.",
+            ),
+            Self::MissingSection => say(
+                "A drive needs a motor, an inverter and a controller.",
+                "",
+                "[controller]\nkind = \"pdcc\"",
+                "Add the section.",
+            ),
+            Self::MisplacedField => say(
+                "The field belongs to another section.",
+                "[motor]\ndead_time = \"500 ns\"",
+                "[motor]",
+                "Move it to the section that the message names.",
+            ),
+            Self::MotorFile => say(
+                "The motor file of a macro call cannot be read, is not UTF-8, or its path is absolute.",
+                "motor: \"/home/me/hub.toml\"",
+                "motor: \"motors/hub.toml\"",
+                "Give a path relative to the crate's Cargo.toml, so that every machine builds the same.",
+            ),
+            Self::InvalidName => say(
+                "The drive's name becomes the name of a Rust type.",
+                "[motor]\nname = \"hub drive\"",
+                "[motor]\nname = \"HubDrive\"",
+                "Begin with a capital letter; letters, digits and underscores may follow.",
+            ),
+            Self::ExclusiveFields => say(
+                "Two fields state the same quantity, and may contradict each other.",
+                "timer_clock = \"72 MHz\"\ntimer_period = 1800",
+                "timer_clock = \"72 MHz\"",
+                "Keep the one that the data sheet states.",
+            ),
+            Self::DependentField => say(
+                "The value of one field needs another, or makes it useless.",
+                "bus_voltage = \"48 V\"\nbus_min = \"40 V\"",
+                "bus_voltage = \"48 V\"",
+                "Add what is needed, or remove what has no use.",
+            ),
+            _ => say(
+                "The text is no TOML, or the macro call has not the shape `pub Name { section: { field: value, … }, … }`.",
+                "resistance = 135 mohm per_phase",
+                "resistance = \"135 mohm per_phase\"",
+                "In files quantities stand in quotes; in macros fields are parted by commas.",
+            ),
+        }
+    }
+
+    fn of_values(self) -> Explanation {
+        match self {
+            Self::MalformedValue => say(
+                "The value is neither a number with its unit, nor a word, nor a list.",
+                "rated_current = \"20 A!\"",
+                "rated_current = \"20 A\"",
+                "Write the number, its unit and its basis, apart by spaces.",
+            ),
+            Self::UnknownUnit => say(
+                "There is no such unit; a wrong prefix would be a factor of a thousand, so none is guessed.",
+                "f_pwm = \"20 KHz\"",
+                "f_pwm = \"20 kHz\"",
+                "Use a unit of the list under `spec`; upper and lower case differ (m is milli, M is mega).",
+            ),
+            Self::AmbiguousUnit => say(
+                "The unit stands for two quantities: volt-seconds are an EMF over mechanical speed, or a flux linkage over electrical speed, which differ by the pole pairs.",
+                "back_emf = \"0.1648 V s line_to_line peak\"",
+                "back_emf = \"0.1648 V s/rad line_to_line peak\"",
+                "Write the unit of the one that is meant.",
+            ),
+            Self::WrongDimension => say(
+                "The unit measures another quantity than the field takes.",
+                "resistance = \"135 mH per_phase\"",
+                "resistance = \"135 mohm per_phase\"",
+                "Check the field and the unit.",
+            ),
+            Self::MissingUnit => say(
+                "A bare number would have to be guessed: ohm or milliohm, hertz or kilohertz.",
+                "bus_voltage = \"48\"",
+                "bus_voltage = \"48 V\"",
+                "Write the unit behind the number.",
+            ),
+            Self::MissingBasis => say(
+                "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings differ by up to a factor of two, so none is guessed.",
+                "resistance = \"135 mohm\"",
+                "resistance = \"135 mohm per_phase\"",
+                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`.",
+            ),
+            Self::WrongBasis => say(
+                "The value cannot refer to what the word says.",
+                "resistance = \"135 mohm phase\"",
+                "resistance = \"135 mohm per_phase\"",
+                "Use a basis that the message names.",
+            ),
+            Self::UnknownWord => say(
+                "The field takes one of some words, and this is none of them.",
+                "winding = \"triangle\"",
+                "winding = \"delta\"",
+                "Use a word that the message lists.",
+            ),
+            Self::WrongKind => say(
+                "The field takes a number where a word stands, or the reverse, or a whole number.",
+                "pole_pairs = 4.5",
+                "pole_pairs = 4",
+                "Write what the message asks for.",
+            ),
+            Self::NotPositive => say(
+                "Zero and negative values of this quantity are no motor's or inverter's.",
+                "rated_current = \"0 A\"",
+                "rated_current = \"20 A\"",
+                "Check the number; signs of currents and speeds are set at run time.",
+            ),
+            Self::OutOfRange => say(
+                "The limits are wider than any motor that this program is made for: a value outside is a slip of unit or decimal point.",
+                "bus_voltage = \"48 kV\"",
+                "bus_voltage = \"48 V\"",
+                "Check the number and the prefix of its unit.",
+            ),
+            Self::HallCodes => say(
+                "Three Hall sensors 120 electrical degrees apart show six codes, each one bit from the next.",
+                "pole_pairs = 4\nhall_codes = [1, 2, 3, 4, 5, 6]",
+                "pole_pairs = 4\nhall_codes = [1, 5, 4, 6, 2, 3]",
+                "Turn the motor forward by hand with the legs off, and note the codes in the order in which they come.",
+            ),
+            _ => say(
+                "The field takes a plain number.",
+                "pole_pairs = \"4 A\"",
+                "pole_pairs = 4",
+                "Remove the unit.",
+            ),
+        }
+    }
+
+    fn of_drives(self) -> Explanation {
+        match self {
+            Self::PeriodTooLong => say(
+                "Between two samples the current decays by itself: with R Ts/L above 0.5 a prediction says little.",
+                "f_pwm = \"1 kHz\"",
+                "f_pwm = \"20 kHz\"",
+                "Raise the PWM frequency, or check R and L and their bases.",
+            ),
+            Self::BusTooLow => say(
+                "The line-to-line EMF at rated speed and what rated current drops in two phases exceed the bus: no steady state reaches the rating.",
+                "rated_speed = \"5000 rpm\"",
+                "rated_speed = \"2000 rpm\"",
+                "Data sheets often print the no-load speed as speed: write it as `no_load_speed`, and the speed under load as `rated_speed`; else check the bases of EMF and resistance.",
+            ),
+            Self::TorqueContradiction => say(
+                "Torque is EMF constant times current; rated torque and current say another constant than the one that is stated, by more than 15 %.",
+                "back_emf = \"0.1648 V/(rad/s) phase peak\"\nrated_torque = \"3.3 Nm\"",
+                "back_emf = \"0.1648 V/(rad/s) line_to_line peak\"\nrated_torque = \"3.3 Nm\"",
+                "Try the reading that the message says would fit, and compare with the data sheet.",
+            ),
+            Self::TorqueConstantContradiction => say(
+                "Torque constant and EMF constant are one property of a motor in two units; these differ by more than 15 %.",
+                "rated_speed = \"2000 rpm\"\ntorque_constant = \"0.274 Nm/A\"",
+                "rated_speed = \"2000 rpm\"\ntorque_constant = \"0.165 Nm/A block_mean\"",
+                "Say the basis of the torque constant: block_mean, per_peak_ampere or per_rms_ampere.",
+            ),
+            Self::SpeedContradiction => say(
+                "A motor without load turns until its EMF is the voltage; speed constant or no-load speed say another EMF constant than the one that is stated.",
+                "rated_speed = \"2000 rpm\"\nno_load_speed = \"5600 rpm\"",
+                "rated_speed = \"2000 rpm\"\nno_load_speed = \"2700 rpm\"",
+                "If the no-load speed holds at another voltage than the bus, write that as `nominal_voltage`; else check the basis of the EMF.",
+            ),
+            Self::AdcRangeTooSmall => say(
+                "Currents above the sensors' range cannot be controlled.",
+                "adc_range = \"15 A\"",
+                "adc_range = \"40 A\"",
+                "Widen the range, or lower rated_current.",
+            ),
+            Self::TripAboveAdcRange => say(
+                "A current that no count shows cannot trip the drive.",
+                "bus_voltage = \"48 V\"\ntrip_current = \"45 A\"",
+                "bus_voltage = \"48 V\"\ntrip_current = \"38 A\"",
+                "Lower the trip current below the range, or leave it out.",
+            ),
+            Self::MaxCurrentAboveTrip => say(
+                "The largest set-point makes phase currents that trip the drive in health.",
+                "bus_voltage = \"48 V\"\nmax_current = \"39 A\"\ntrip_current = \"38 A\"",
+                "bus_voltage = \"48 V\"\nmax_current = \"20 A\"\ntrip_current = \"38 A\"",
+                "Lower the set-point or raise the trip current.",
+            ),
+            Self::TimerPeriod => say(
+                "The centre-aligned timer counts clock/(2 f_pwm): below 100 the period is coarse, above 65535 a 16-bit timer overflows.",
+                "timer_clock = \"1 MHz\"",
+                "timer_clock = \"72 MHz\"",
+                "Choose a timer clock or PWM frequency that the message names.",
+            ),
+            Self::HallTimer => say(
+                "The capture timer counts 2 to 65535 ticks in a control period.",
+                "bus_voltage = \"48 V\"\nhall_timer_clock = \"30 kHz\"\n[controller]\nkind = \"pdcc\"\nhall_capture = \"timer\"",
+                "bus_voltage = \"48 V\"\nhall_timer_clock = \"1 MHz\"\n[controller]\nkind = \"pdcc\"\nhall_capture = \"timer\"",
+                "Choose a clock near 1 MHz.",
+            ),
+            Self::MinimumSpeed => say(
+                "At the least speed a sector lasts longer than the 16-bit age of a Hall edge counts.",
+                "bus_voltage = \"48 V\"\nhall_timer_clock = \"1 MHz\"\nminimum_speed = \"10 rpm\"\n[controller]\nkind = \"pdcc\"\nhall_capture = \"timer\"",
+                "bus_voltage = \"48 V\"\nhall_timer_clock = \"1 MHz\"\nminimum_speed = \"40 rpm\"\n[controller]\nkind = \"pdcc\"\nhall_capture = \"timer\"",
+                "Raise the least speed, below which the angle is the sector's centre, or slow the capture clock.",
+            ),
+            Self::SpeedOrder => say(
+                "The least speed is below the rated one, and that at most the greatest.",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"1500 rpm\"",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"3000 rpm\"",
+                "Change one of the two.",
+            ),
+            Self::TooFewPeriods => say(
+                "With fewer than six control periods in an electrical turn a sector can pass unseen.",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"60000 rpm\"",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"3000 rpm\"",
+                "Raise the PWM frequency or lower maximum_speed.",
+            ),
+            Self::BusMeasurement => say(
+                "The limits of a measured bus lie on either side of the nominal voltage, inside the ADC's range.",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"50 V\"\nbus_voltage = \"48 V\"",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_voltage = \"48 V\"",
+                "Widen the range, or narrow bus_min and bus_max.",
+            ),
+            Self::CommutationThreshold => say(
+                "A commutation ends when the outgoing phase's current is below this threshold, which must be above the ADC's noise and well below the rated current.",
+                "kind = \"pdcc\"\nmodulation = \"pair\"\ncommutation_threshold = \"25 A\"",
+                "kind = \"pdcc\"\nmodulation = \"pair\"\ncommutation_threshold = \"0.5 A\"",
+                "Use a few ADC counts, at most a tenth of the rated current.",
+            ),
+            Self::DeadTime => say(
+                "Dead time is voltage that the controller cannot command.",
+                "bus_voltage = \"48 V\"\ndead_time = \"6 us\"",
+                "bus_voltage = \"48 V\"\ndead_time = \"500 ns\"",
+                "Shorten it, or lower the PWM frequency.",
+            ),
+            Self::AdcOffset => say(
+                "Both signs of the current need room in the ADC's range.",
+                "adc_bits = 12\nadc_offset = 100",
+                "adc_bits = 12\nadc_offset = 2048",
+                "Give the count at zero current; it lies near the middle.",
+            ),
+            _ => say(
+                "Half a count of error is too much of what is measured.",
+                "bus_voltage = \"48 V\"\nmax_current = \"19 mA\"",
+                "bus_voltage = \"48 V\"\nmax_current = \"20 A\"",
+                "Narrow the range, use more bits, or raise the value.",
+            ),
+        }
+    }
+
+    fn of_controllers(self) -> Explanation {
+        match self {
+            Self::UnknownController => say(
+                "There is no controller of this name.",
+                "kind = \"pdc\"",
+                "kind = \"pdcc\"",
+                "Use one that the message lists; `hexagen --help` says what each takes.",
+            ),
+            Self::OptionUnavailable => say(
+                "The option is known, and this version does not have it.",
+                "kind = \"pdcc\"\nmodulation = \"table2\"",
+                "kind = \"pdcc\"\nmodulation = \"three_phase\"",
+                "Use a word that the message lists.",
+            ),
+            Self::OptionOfOtherController => say(
+                "The option belongs to another controller.",
+                "kind = \"pdcc\"\ncandidates = \"all\"",
+                "kind = \"pdcc\"",
+                "Remove it, or choose that controller.",
+            ),
+            Self::OptionWithoutEffect => say(
+                "Beside another option this one changes nothing, so one of the two is a slip.",
+                "kind = \"pdcc\"\nemf = \"model\"\nemf_filter = 0.5",
+                "kind = \"pdcc\"\nemf = \"model\"",
+                "Remove one of the two.",
+            ),
+            Self::Variant => say(
+                "A controller on the command line is its name, a colon and options.",
+                "--controller pdcc:advance",
+                "--controller pdcc:advance=1.5,emf=model",
+                "Write `name:key=value,key=value`.",
+            ),
+            Self::VectorTooStrong => say(
+                "A controller that applies whole vectors moves the current by more than its rating in one period: it cannot hold it.",
+                "resistance = \"18.2 mohm per_phase\"\ninductance = \"8.32 uH per_phase\"\nback_emf = \"0.0195 V/(rad/s) line_to_line peak\"\nrated_current = \"5 A\"\nkind = \"fcs-mpc\"",
+                "resistance = \"18.2 mohm per_phase\"\ninductance = \"8.32 uH per_phase\"\nback_emf = \"0.0195 V/(rad/s) line_to_line peak\"\nrated_current = \"5 A\"\nkind = \"pdcc\"",
+                "Shorten the control period, or take pdcc or pi-pwm, which pulse.",
+            ),
+            Self::Band => say(
+                "A hysteresis band as wide as the rated current controls nothing.",
+                "kind = \"phcc\"\nband = \"20 A\"",
+                "kind = \"phcc\"\nband = \"1 A\"",
+                "Narrow it; what one vector moves the current by in a period is a good start.",
+            ),
+            _ => say(
+                "A switching table has 48 rows of vectors: six sectors, with and without commutation, four states of the bands.",
+                "kind = \"phcc\"\ntable = [0, 7, 16]",
+                "kind = \"phcc\"\ntable = \"derived\"",
+                "Write all 48 numbers, or `derived`.",
+            ),
+        }
+    }
+
+    fn of_designs(self) -> Explanation {
+        match self {
+            Self::InductanceOutsideStableRange => say(
+                "With an inductance off by as much as its tolerance says the current loop is unstable.",
+                "pole_pairs = 4\ninductance_tolerance = \"60 %\"",
+                "pole_pairs = 4\ninductance_tolerance = \"10 %\"",
+                "Use `emf = \"model\"`, filter the estimate, or narrow the tolerance if the inductance is known better.",
+            ),
+            Self::ResistanceOutsideStableRange => say(
+                "With a resistance off by as much as its tolerance says the current loop is unstable.",
+                "pole_pairs = 4\nresistance_tolerance = \"80 %\"\nf_pwm = \"2 kHz\"\nkind = \"pi-pwm\"\nbandwidth = \"300 Hz\"",
+                "pole_pairs = 4\nresistance_tolerance = \"10 %\"\nf_pwm = \"2 kHz\"\nkind = \"pi-pwm\"\nbandwidth = \"100 Hz\"",
+                "Lower the bandwidth, or narrow the tolerance.",
+            ),
+            Self::Unstable => say(
+                "The closed loop's largest pole is not below 1 even with the motor as stated.",
+                "kind = \"pi-pwm\"\nbandwidth = \"4 kHz\"",
+                "kind = \"pi-pwm\"\nbandwidth = \"1 kHz\"",
+                "Lower the bandwidth; a fifteenth of the PWM frequency is a good start.",
+            ),
+            Self::WordTooNarrow => say(
+                "A signal or coefficient of this motor does not fit words of 16 bits.",
+                "adc_bits = 16\nkind = \"pdcc\"\nword = 16",
+                "adc_bits = 16\nkind = \"pdcc\"\nword = 32",
+                "Use 32 bits, fewer ADC bits or a narrower range.",
+            ),
+            Self::SwitchingTableLosesCurrent => say(
+                "The table that the paper prints loses the current; it is there for study.",
+                "kind = \"phcc\"\ntable = \"printed\"",
+                "kind = \"phcc\"\ntable = \"derived\"",
+                "Use `derived` for a drive.",
+            ),
+            Self::EstimateTurnsTooFar => say(
+                "The EMF of the last period stands for that of the next but one; at this speed it has turned too far by then.",
+                "f_pwm = \"4 kHz\"",
+                "f_pwm = \"20 kHz\"",
+                "Use `emf = \"model\"`, or a shorter period.",
+            ),
+            Self::MeanForPeak => say(
+                "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",
+                "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
+                "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
+                "Write `block_mean` in place of `line_to_line peak`.",
+            ),
+            Self::TripFarAbove => say(
+                "A fault makes as much current as the trip level before the drive stops.",
+                "bus_voltage = \"48 V\"\ntrip_current = \"39 A\"\nmax_current = \"2 A\"",
+                "bus_voltage = \"48 V\"\nmax_current = \"2 A\"",
+                "Lower it to about twice the largest set-point, unless switches and magnets bear more.",
+            ),
+            Self::SwingAboveTrip => say(
+                "In commutations of slow rotation hysteresis control lets a current swing above the trip level.",
+                "a phcc drive whose adc_range is little above its rated current",
+                "the same drive with a wider adc_range or a lower max_current",
+                "Lower max_current or widen adc_range.",
+            ),
+            _ => say(
+                "The generator broke one of its own rules: a bug of this program, not of the specification.",
+                "any specification",
+                "none",
+                "Please report it with the motor file and the whole message.",
+            ),
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! What states the EMF constant: `back_emf`, `speed_constant` or `torque_constant`, each of its own
+//! basis.
+//!
+//! The phase constant is the peak EMF of a phase of the equivalent star over mechanical speed. Every
+//! basis is that times a number, which follows from the shape of the EMF.
+
+use super::reader::{Given, Reader};
+use crate::diagnostics::{Collector, catalogue, engineering};
+use crate::spec::EmfShape;
+use crate::spec::ast::Basis;
+use crate::spec::schema;
+use crate::spec::units::Dimension;
+use std::f64::consts::SQRT_2;
+
+/// The fields that state it, in the order in which they are taken.
+pub(super) const FIELDS: [&str; 3] = ["back_emf", "speed_constant", "torque_constant"];
+
+/// Plausible peak phase EMF constants, V s/rad.
+const PLAUSIBLE: [f64; 2] = [1e-5, 100.0];
+
+/// How the phases are connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Winding {
+    Star,
+    Delta,
+}
+
+/// Peak of a quasi-square wave, which is 0 in a third of the turn, over its root mean square.
+pub(super) fn quasi_square_peak() -> f64 {
+    1.5_f64.sqrt()
+}
+
+/// What a constant refers to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// Amplitude of a phase's EMF.
+    PhasePeak,
+    /// Amplitude between two terminals.
+    LinePeak,
+    /// Root mean square of a phase's EMF.
+    PhaseRms,
+    /// Root mean square between two terminals.
+    LineRms,
+    /// Mean over a sector of block commutation: of the EMF between its two terminals, or of the
+    /// torque per ampere.
+    BlockMean,
+    /// Torque per ampere of the peak of a current of the EMF's own shape.
+    PerPeakAmpere,
+    /// Torque per ampere of that current's root mean square.
+    PerRmsAmpere,
+    /// Torque per ampere of a peak, of a block or of a sine: where the sheet does not say.
+    PerAmpere,
+}
+
+impl Reading {
+    /// The constant over the phase constant.
+    pub fn factor(self, shape: EmfShape) -> f64 {
+        let is_sine = shape == EmfShape::Sinusoidal;
+        match self {
+            Self::PhasePeak => 1.0,
+            Self::LinePeak => shape.line_to_line_peak(),
+            Self::PhaseRms => shape.phase_rms(),
+            Self::LineRms => shape.line_to_line_rms(),
+            Self::PerPeakAmpere if is_sine => shape.sine_factor(),
+            Self::PerRmsAmpere if is_sine => shape.sine_factor() * SQRT_2,
+            Self::PerRmsAmpere => shape.quasi_square_factor() * quasi_square_peak(),
+            Self::BlockMean | Self::PerPeakAmpere | Self::PerAmpere => shape.quasi_square_factor(),
+        }
+    }
+
+    /// Basis words that say it, for messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::PhasePeak => "phase peak",
+            Self::LinePeak => "line_to_line peak",
+            Self::PhaseRms => "phase rms",
+            Self::LineRms => "line_to_line rms",
+            Self::BlockMean => "block_mean",
+            Self::PerPeakAmpere => "per_peak_ampere",
+            Self::PerRmsAmpere => "per_rms_ampere",
+            Self::PerAmpere => "",
+        }
+    }
+}
+
+/// A statement of the EMF constant.
+#[derive(Clone, Debug)]
+pub(super) struct Emf<'a> {
+    pub given: Given<'a>,
+    pub reading: Reading,
+}
+
+impl Emf<'_> {
+    /// As written, in V s/rad or Nm/A per mechanical angle.
+    pub fn constant(&self, pole_pairs: u32) -> f64 {
+        let si = self.given.si;
+        match self.given.dimension {
+            Some(Dimension::SpeedConstant) => 1.0 / si,
+            Some(Dimension::FluxLinkage) => si * f64::from(pole_pairs),
+            _ => si,
+        }
+    }
+
+    /// Peak phase EMF of the equivalent star over mechanical speed, V s/rad.
+    pub fn phase_constant(&self, shape: EmfShape, pole_pairs: u32) -> f64 {
+        self.constant(pole_pairs) / self.reading.factor(shape)
+    }
+}
+
+/// All statements, the one that is taken first.
+pub(super) fn read<'a>(
+    reader: &Reader<'a>,
+    winding: Option<Winding>,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) -> Vec<Emf<'a>> {
+    let is_alone = FIELDS[..2].iter().all(|name| reader.field(name).is_none());
+    let all = [
+        read_back_emf(reader, winding, shape, errors),
+        read_speed_constant(reader, errors),
+        read_torque_constant(reader, is_alone, shape, errors),
+    ];
+    // Where the first is in error the others must not take its place.
+    let is_readable = FIELDS
+        .iter()
+        .zip(&all)
+        .find(|(name, _)| reader.field(name).is_some())
+        .is_some_and(|(_, stated)| stated.is_some());
+    if is_readable {
+        all.into_iter().flatten().collect()
+    } else {
+        Vec::new()
+    }
+}
+
+fn refuse(given: &Given, basis: Basis, remedy: &str, errors: &mut Collector) {
+    let part = &given.part;
+    errors.push(catalogue::wrong_basis(
+        &part.location,
+        part.field,
+        &part.given,
+        basis.word(),
+        remedy,
+    ));
+}
+
+/// The EMF constant, whose basis must be stated and possible.
+fn read_back_emf<'a>(
+    reader: &Reader<'a>,
+    winding: Option<Winding>,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) -> Option<Emf<'a>> {
+    let given = reader.quantity(errors, "back_emf")?;
+    let has = |basis: Basis| given.basis.contains(&basis);
+    let phase = has(Basis::Phase) || has(Basis::PerPhase);
+    let line = has(Basis::LineToLine);
+    let amplitudes = [Basis::Peak, Basis::Rms, Basis::BlockMean];
+    let stated: Vec<Basis> = amplitudes.into_iter().filter(|&basis| has(basis)).collect();
+    let of_torque = [Basis::PerPeakAmpere, Basis::PerRmsAmpere];
+    if let Some(basis) = of_torque.into_iter().find(|&basis| has(basis)) {
+        refuse(
+            &given,
+            basis,
+            "that is a basis of `torque_constant`",
+            errors,
+        );
+        return None;
+    }
+    if phase && line {
+        let remedy = "it is given as `phase` already; keep one of the two";
+        refuse(&given, Basis::LineToLine, remedy, errors);
+        return None;
+    }
+    if let [first, second, ..] = stated[..] {
+        let remedy = format!(
+            "it is given as `{}` already; keep one of the two",
+            first.word()
+        );
+        refuse(&given, second, &remedy, errors);
+        return None;
+    }
+    let dimension = given.dimension?;
+    if has(Basis::BlockMean) && (phase || dimension == Dimension::FluxLinkage) {
+        let remedy = "a mean over block commutation is one between two terminals; give `peak` or `rms` of the phase";
+        refuse(&given, Basis::BlockMean, remedy, errors);
+        return None;
+    }
+    match dimension {
+        Dimension::SpeedConstant if phase => {
+            let remedy = "a speed constant refers to the voltage between two terminals; give V/krpm with `phase peak` instead";
+            refuse(&given, Basis::Phase, remedy, errors);
+            return None;
+        }
+        Dimension::FluxLinkage if line => {
+            let remedy =
+                "a flux linkage refers to the phase; give V/krpm with `line_to_line peak` instead";
+            refuse(&given, Basis::LineToLine, remedy, errors);
+            return None;
+        }
+        Dimension::FluxLinkage if winding == Some(Winding::Delta) => {
+            let remedy = "the flux linkage of a delta winding is ambiguous; give V/krpm with `line_to_line peak`";
+            refuse(&given, Basis::Phase, remedy, errors);
+            return None;
+        }
+        _ => {}
+    }
+    let between_lines = match dimension {
+        Dimension::SpeedConstant => Some(true),
+        Dimension::FluxLinkage => Some(false),
+        // The phase of a delta lies between two lines.
+        _ if phase => winding.map(|winding| winding == Winding::Delta),
+        _ => line.then_some(true),
+    };
+    let amplitude = match stated.first() {
+        None if dimension != Dimension::EmfConstant => Some(Basis::Peak),
+        stated => stated.copied(),
+    };
+    let reading = match (between_lines, amplitude) {
+        (_, Some(Basis::BlockMean)) => Reading::BlockMean,
+        (Some(true), Some(Basis::Peak)) => Reading::LinePeak,
+        (Some(true), Some(Basis::Rms)) => Reading::LineRms,
+        (Some(false), Some(Basis::Peak)) => Reading::PhasePeak,
+        (Some(false), Some(Basis::Rms)) => Reading::PhaseRms,
+        // A winding in error says nothing of a phase.
+        (None, Some(_)) if phase => return None,
+        _ => {
+            push_forms(&given, [phase, line], amplitude, shape, errors);
+            return None;
+        }
+    };
+    Some(Emf { given, reading })
+}
+
+/// The readings of an EMF constant that does not say its basis, each with the torque per ampere of
+/// block commutation that it means.
+fn push_forms(
+    given: &Given,
+    [phase, line]: [bool; 2],
+    amplitude: Option<Basis>,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) {
+    use Reading::{BlockMean, LinePeak, LineRms, PhasePeak, PhaseRms};
+    let fits = |reading: &Reading| {
+        let refers = match reading {
+            PhasePeak | PhaseRms => !line,
+            _ => !phase,
+        };
+        let means = match amplitude {
+            None => true,
+            Some(Basis::Rms) => matches!(reading, PhaseRms | LineRms),
+            Some(_) => matches!(reading, PhasePeak | LinePeak),
+        };
+        refers && means
+    };
+    let meaning = |reading: Reading| {
+        let what = match reading {
+            PhasePeak => "amplitude of one phase",
+            LinePeak => "amplitude between two terminals",
+            PhaseRms => "root mean square of one phase",
+            LineRms => "root mean square between two terminals",
+            _ => "mean over block commutation, between two terminals",
+        };
+        shape.map_or_else(
+            || what.to_owned(),
+            |shape| {
+                let torque = given.si / reading.factor(shape) * shape.quasi_square_factor();
+                format!("{what}: {}", engineering(torque, "Nm/A"))
+            },
+        )
+    };
+    let forms: Vec<(String, String)> = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean]
+        .into_iter()
+        .filter(fits)
+        .map(|reading| (with_words(given, reading.words()), meaning(reading)))
+        .collect();
+    let part = &given.part;
+    errors.push(catalogue::missing_basis(
+        &part.location,
+        part.field,
+        &part.given,
+        &forms,
+    ));
+}
+
+/// The number with other basis words.
+fn with_words(given: &Given, words: &str) -> String {
+    let unit = given.number.unit.as_ref().map_or("", |unit| &unit.symbol);
+    format!("{} {unit} {words}", given.number.digits)
+}
+
+/// A speed constant is over the peak between two terminals where nothing else is said.
+fn read_speed_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Emf<'a>> {
+    let given = reader.quantity(errors, "speed_constant")?;
+    let others: Vec<Basis> = given
+        .basis
+        .iter()
+        .copied()
+        .filter(|basis| *basis != Basis::LineToLine)
+        .collect();
+    let reading = match others[..] {
+        [] | [Basis::Peak] => Reading::LinePeak,
+        [Basis::Rms] => Reading::LineRms,
+        [Basis::BlockMean] => Reading::BlockMean,
+        [.., last] => {
+            let remedy = "it is speed over the voltage between two terminals: its peak, `rms` or `block_mean`";
+            refuse(&given, last, remedy, errors);
+            return None;
+        }
+    };
+    Some(Emf { given, reading })
+}
+
+/// The torque constant; only where it is to give the EMF must it say its basis.
+fn read_torque_constant<'a>(
+    reader: &Reader<'a>,
+    is_alone: bool,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) -> Option<Emf<'a>> {
+    let given = reader.quantity(errors, "torque_constant")?;
+    let reading = match given.basis {
+        [] if !is_alone => Reading::PerAmpere,
+        [] => {
+            let readings = [
+                (Basis::BlockMean, Reading::BlockMean),
+                (Basis::PerPeakAmpere, Reading::PerPeakAmpere),
+                (Basis::PerRmsAmpere, Reading::PerRmsAmpere),
+            ];
+            let references = schema::references("torque_constant").iter();
+            let forms: Vec<(String, String)> = references
+                .zip(readings)
+                .map(|((_, meaning), (_, reading))| {
+                    let meaning = shape.map_or_else(
+                        || (*meaning).to_owned(),
+                        |shape| {
+                            let peak = given.si / reading.factor(shape) * shape.line_to_line_peak();
+                            let peak = engineering(peak, "V/(rad/s)");
+                            format!("{meaning}: {peak} line to line, peak")
+                        },
+                    );
+                    (with_words(&given, reading.words()), meaning)
+                })
+                .collect();
+            let part = &given.part;
+            errors.push(catalogue::missing_basis(
+                &part.location,
+                part.field,
+                &part.given,
+                &forms,
+            ));
+            return None;
+        }
+        [Basis::BlockMean] => Reading::BlockMean,
+        [Basis::Peak | Basis::PerPeakAmpere] => Reading::PerPeakAmpere,
+        [Basis::Rms | Basis::PerRmsAmpere] => Reading::PerRmsAmpere,
+        [.., last] => {
+            let remedy = "write `block_mean`, `per_peak_ampere` or `per_rms_ampere`";
+            refuse(&given, *last, remedy, errors);
+            return None;
+        }
+    };
+    Some(Emf { given, reading })
+}
+
+/// The phase constant, if any motor may have it.
+pub(super) fn check_plausible(stated: &Emf, constant: f64, errors: &mut Collector) -> Option<f64> {
+    let [low, high] = PLAUSIBLE;
+    if (low..=high).contains(&constant) {
+        return Some(constant);
+    }
+    let part = &stated.given.part;
+    errors.push(catalogue::implausible_emf(part, constant, low, high));
+    None
+}

@@ -1,0 +1,256 @@
+//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second.
+//!
+//! The drive is designed and verified as for generation, and runs on the simulated motor at two
+//! speeds from one start each; `report` compares, measures and plots.
+
+use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
+use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::HallCapture;
+use hexagen_lab::closed_loop::{Held, Measurement, RunOptions, STARTS, Trip, measure};
+use hexagen_lab::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use hexagen_lab::text::significant;
+use serde::Serialize;
+
+/// Options of `check`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor file, or name of a library motor
+    #[arg(value_name = "MOTOR")]
+    pub motor: String,
+    /// Controller variant [default: the motor file's]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub controller: Option<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Speeds of the runs over the rated one.
+const SPEEDS: [f64; 2] = [0.2, 1.0];
+
+/// Ripple that is worth a word, peak to peak in percent of the mean.
+const RIPPLE: f64 = 25.0;
+
+/// Fewest ADC counts of the rated current for a smooth current.
+const COUNTS: f64 = 200.0;
+
+/// A run at one speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Mechanical speed, rpm.
+    pub rpm: f64,
+    /// Mean torque over the demanded one, percent; none for a drive that trips.
+    pub torque_pct: Option<f64>,
+    /// Ripple of the torque, peak to peak in percent of its mean.
+    pub ripple_pp_pct: Option<f64>,
+    /// Trip.
+    pub tripped: Option<Trip>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Checked {
+    /// Name of the motor.
+    pub motor: String,
+    /// Controller variant.
+    pub controller: String,
+    /// Whether it neither trips nor falls short of its torque at rated speed.
+    pub works: bool,
+    /// The verdict in words.
+    pub verdict: String,
+    /// Demanded torque, Nm.
+    pub torque_nm: f64,
+    /// Voltage that the rating takes, line to line, volt.
+    pub rating_v: f64,
+    /// Speed at which rated current takes the whole bus, rpm.
+    pub bus_limit_rpm: f64,
+    /// ADC counts of the rated current.
+    pub rated_counts: f64,
+    /// Runs, slow and at rated speed.
+    pub points: Vec<Point>,
+    /// Warnings of the generator.
+    pub warnings: Vec<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// All diagnostics; a drive that does not work.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let motor = SelectedMotor::find(&options.motor, &PlantOptions::default())?;
+    let drive = motor.prepare_for_torque(options.controller.as_deref())?;
+    let checked = Checked::of(&drive)?;
+    if options.json {
+        print_json(&checked)?;
+    } else {
+        tell_warnings(&drive);
+        print_text(&checked.lines(&drive, &options.motor).join("\n"))?;
+    }
+    if checked.works {
+        Ok(())
+    } else {
+        Err(Failure::Check(format!("error: {}", checked.verdict)))
+    }
+}
+
+impl Checked {
+    fn of(drive: &Prepared) -> Result<Self, Failure> {
+        let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+        let points = SPEEDS
+            .iter()
+            .map(|share| at_speed(drive, share * motor.rated_speed))
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let line_to_line = motor.emf_constant * motor.emf_shape.line_to_line_peak();
+        let drop = 2.0 * motor.resistance * motor.rated_current;
+        let bus_limit = (inverter.v_bus - drop) / line_to_line;
+        let mut checked = Self {
+            motor: drive.motor.clone(),
+            controller: drive.variant.clone(),
+            works: true,
+            verdict: String::new(),
+            torque_nm: drive.demand(),
+            rating_v: line_to_line * motor.rated_speed + drop,
+            bus_limit_rpm: bus_limit * 30.0 / std::f64::consts::PI,
+            rated_counts: motor.rated_current / inverter.adc_gain.abs(),
+            points,
+            warnings: drive.warnings.clone(),
+        };
+        let (works, verdict) = checked.judge();
+        (checked.works, checked.verdict) = (works, verdict);
+        Ok(checked)
+    }
+
+    fn judge(&self) -> (bool, String) {
+        if let Some(trip) = self.points.iter().find_map(|point| point.tripped) {
+            return (false, format!("does not work: {trip}"));
+        }
+        let lost = |point: &Point| {
+            let torque = point.torque_pct.unwrap_or(0.0);
+            Held::AtLeast.lost(torque, 100.0).is_some()
+        };
+        let [slow, rated] = self.points.as_slice() else {
+            return (false, "does not work: it was not run".to_owned());
+        };
+        if lost(slow) {
+            return (
+                false,
+                "does not work: it lacks torque even where the bus has room".to_owned(),
+            );
+        }
+        let mut buts = Vec::new();
+        if lost(rated) {
+            buts.push(format!(
+                "at rated speed the bus leaves {} % of the torque",
+                significant(rated.torque_pct.unwrap_or(0.0), 3)
+            ));
+        }
+        if slow.ripple_pp_pct.is_some_and(|ripple| ripple > RIPPLE) {
+            buts.push("the torque ripples".to_owned());
+        }
+        if self.rated_counts < COUNTS {
+            let counts = significant(self.rated_counts, 3);
+            buts.push(format!("rated current is {counts} ADC counts only"));
+        }
+        if !self.warnings.is_empty() {
+            buts.push("see the warnings".to_owned());
+        }
+        let verdict = if buts.is_empty() {
+            "works: it holds its torque at rated speed".to_owned()
+        } else {
+            format!("works, but {}", buts.join("; "))
+        };
+        (true, verdict)
+    }
+
+    /// At most ten lines of at most 100 columns.
+    fn lines(&self, drive: &Prepared, given: &str) -> Vec<String> {
+        let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+        let edges = match inverter.hall_capture {
+            HallCapture::Sampled => "edges seen at samples (an edge timer would tell angles finer)",
+            HallCapture::Timer { .. } => "edges by a capture timer",
+        };
+        let mut lines = vec![
+            format!("{}: {}", self.motor, self.verdict),
+            format!(
+                "motor       {} pole pairs, {}, {} per phase; {}, {}",
+                motor.pole_pairs,
+                engineering(motor.resistance, "ohm"),
+                engineering(motor.inductance, "H"),
+                engineering(
+                    motor.emf_constant * motor.emf_shape.quasi_square_factor(),
+                    "Nm/A"
+                ),
+                motor
+                    .inertia
+                    .map_or("inertia unknown".to_owned(), |inertia| format!(
+                        "{} kg m2",
+                        significant(inertia, 3)
+                    )),
+            ),
+            format!(
+                "controller  {}, words of {} bits, {edges}",
+                self.controller,
+                drive.spec.controller.common().word
+            ),
+            format!(
+                "sensing     {} bits to {}: {} a count, rated current {} counts; trips at {}",
+                inverter.adc_bits,
+                engineering(
+                    inverter.adc_gain.abs() * f64::from(1_u32 << inverter.adc_bits) / 2.0,
+                    "A"
+                ),
+                engineering(inverter.adc_gain.abs(), "A"),
+                significant(self.rated_counts, 3),
+                engineering(inverter.trip_current, "A"),
+            ),
+            format!(
+                "bus         the rating takes {} of {}; rated current lasts to {:.0} rpm",
+                engineering(self.rating_v, "V"),
+                engineering(inverter.v_bus, "V"),
+                self.bus_limit_rpm,
+            ),
+        ];
+        lines.extend(self.points.iter().map(|point| self.line(point)));
+        lines.push(format!(
+            "stable      with R and L as far off as their tolerances, {:.0} % and {:.0} %",
+            100.0 * motor.resistance_tolerance,
+            100.0 * motor.inductance_tolerance,
+        ));
+        lines.push(format!("next        hexagen report {given}"));
+        lines.iter().map(|line| shortened(line)).collect()
+    }
+
+    fn line(&self, point: &Point) -> String {
+        let head = format!("{:>6.0} rpm ", point.rpm);
+        let demand = engineering(self.torque_nm, "Nm");
+        match (point.torque_pct, point.ripple_pp_pct, point.tripped) {
+            (_, _, Some(trip)) => format!("{head} trips: {trip}"),
+            (Some(torque), ripple, None) => format!(
+                "{head} {} % of {demand}, ripple {} % peak to peak",
+                significant(torque, 3),
+                ripple.map_or("-".to_owned(), |ripple| significant(ripple, 2)),
+            ),
+            (None, _, None) => format!("{head} no torque"),
+        }
+    }
+}
+
+/// The fixed-point program at a speed, in rad/s, with the demanded torque.
+fn at_speed(drive: &Prepared, omega_m: f64) -> Result<Point, Failure> {
+    let demand = drive.demand();
+    let run = RunOptions {
+        starts: vec![STARTS[0]],
+        ..run_of(&drive.spec, omega_m, demand)
+    };
+    let maker = drive.maker(Model::Fixed, drive.set_point(demand));
+    let measured: Measurement = measure(&plant_of(&drive.spec), &run, maker)?;
+    let figures = measured.figures;
+    let torque_pct = figures.mean_torque_nm.map(|torque| 100.0 * torque / demand);
+    Ok(Point {
+        rpm: omega_m * 30.0 / std::f64::consts::PI,
+        torque_pct: torque_pct.filter(|_| measured.tripped.is_none()),
+        ripple_pp_pct: figures.ripple_pp_pct,
+        tripped: measured.tripped,
+    })
+}

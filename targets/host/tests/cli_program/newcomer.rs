@@ -1,0 +1,243 @@
+//! From a data sheet to a checked drive: `new`, `check`, `explain`, `completions`.
+
+use crate::support::{PAPER, Said, hexagen, number, run};
+use std::fs;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// Maxon's EC 45 flat of 70 W on a board of 8 A, as its catalogue words it.
+const EC_45: [&str; 14] = [
+    "pole_pairs=8",
+    "resistance=0.573 ohm phase to phase",
+    "inductance=0.301 mH phase to phase",
+    "torque_constant=40.4 mNm/A block_mean",
+    "emf_shape=sine",
+    "rated_current=3.29 A",
+    "rated_torque=134 mNm",
+    "rated_speed=4750 rpm",
+    "no_load_speed=5600 rpm",
+    "inertia=181 gcm2",
+    "bus_voltage=24 V",
+    "timer_clock=170 MHz",
+    "adc_range=8 A",
+    "dead_time=500 ns",
+];
+
+/// Teknic's Hudson M-2311P on 48 V.
+const HUDSON: [&str; 11] = [
+    "poles=8",
+    "resistance=0.69 ohms phase-to-phase",
+    "inductance=0.733 mH phase-to-phase",
+    "back_emf=6.64 Vpeak/kRPM line-to-line",
+    "emf_shape=sine",
+    "rated_current=7.1 A",
+    "rated_torque=60 oz-in",
+    "rated_speed=3000 RPM",
+    "bus_voltage=48 V",
+    "timer_clock=72 MHz",
+    "adc_range=20 A",
+];
+
+/// A hub motor of a balancing board, by its kV rating, on 36 V.
+const HUB: [&str; 10] = [
+    "poles=30",
+    "resistance=0.4 ohm terminal",
+    "inductance=0.6 mH terminal",
+    "speed_constant=16 rpm/V",
+    "emf_shape=trapezoidal",
+    "rated_current=10 A",
+    "rated_speed=400 rpm",
+    "bus_voltage=36 V",
+    "timer_clock=72 MHz",
+    "adc_range=30 A",
+];
+
+#[test]
+fn a_new_file_of_a_data_sheet_is_checked_in_ten_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, values) in [("ec45", &EC_45[..]), ("hudson", &HUDSON), ("hub", &HUB)] {
+        let path = folder.path().join(format!("motors/{name}.toml"));
+        let path = path.to_str().expect("a plain path");
+        let made = run(["new", path].iter().chain(values));
+        assert_eq!((made.code, made.stderr.as_str()), (0, ""), "{made:?}");
+        assert!(made.stdout.contains("next: hexagen check"), "{made:?}");
+        let text = fs::read_to_string(path).expect("is there");
+        assert!(
+            text.contains("# Speed under load at rated torque.\nrated_speed = "),
+            "{text}"
+        );
+
+        let begin = Instant::now();
+        let said = run(["check", path]);
+        let took = begin.elapsed();
+        assert_eq!(said.code, 0, "{said:?}");
+        assert!(
+            said.stdout.starts_with(&format!("{name}: works")),
+            "{said:?}"
+        );
+        assert_short(&said);
+        // A second of a machine that does nothing else, optimised.
+        assert!(took < Duration::from_secs(30), "{took:?}");
+        let json = run(["check", path, "--json"]).json();
+        assert_eq!(json["works"], true);
+        // At rated speed the bus of some has no room for commutations.
+        let slow = &json["points"][0];
+        assert!(number(slow, "torque_pct") > 97.0, "{slow}");
+    }
+}
+
+#[track_caller]
+fn assert_short(said: &Said) {
+    let lines: Vec<&str> = said.stdout.lines().collect();
+    assert!(lines.len() <= 10, "{}", said.stdout);
+    for line in lines {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+}
+
+#[test]
+fn every_motor_of_the_library_is_checked() {
+    let list = run(["motors", "--json"]).json();
+    for motor in list["motors"].as_array().expect("motors") {
+        let name = motor["name"].as_str().expect("a name");
+        let said = run(["check", name]);
+        if motor["generates"] == true {
+            assert!(said.code <= 1, "{said:?}");
+            assert!(said.stdout.starts_with(&format!("{name}: ")), "{said:?}");
+            assert_short(&said);
+            assert_eq!(said.code == 0, said.stdout.contains(": works"), "{said:?}");
+        } else {
+            said.assert_bad_input(&["error[HX"]);
+        }
+    }
+}
+
+/// Whether a comment is a field, and not a sentence.
+fn is_field(comment: &str) -> bool {
+    let is_name = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    comment
+        .split_once(" = ")
+        .is_some_and(|(name, _)| is_name(name))
+}
+
+#[test]
+fn what_is_missing_stands_in_the_file_to_be_filled_in() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hub.toml");
+    let path = path.to_str().expect("a plain path");
+    // The answers come from a pipe: no questions.
+    let output = hexagen()
+        .args(["new", path, "poles=30", "emf_shape=trapezoid"])
+        .stdin(Stdio::null())
+        .output();
+    let said = Said::from(output.expect("the program starts"));
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(
+        said.stdout
+            .contains("fill in resistance, inductance, back_emf, "),
+        "{said:?}"
+    );
+    let text = fs::read_to_string(path).expect("is there");
+    assert!(text.contains("\npoles = 30\n"), "{text}");
+    assert!(
+        text.contains("\n# resistance = \"0.27 ohm terminal\"\n"),
+        "{text}"
+    );
+    run(["check", path]).assert_bad_input(&["error[HX0105]: `motor` lacks the field `resistance`"]);
+    // Uncommented, the examples are a drive.
+    let filled = text
+        .lines()
+        .map(|line| match line.strip_prefix("# ") {
+            Some(field) if is_field(field) => field,
+            _ => line,
+        })
+        .collect::<Vec<_>>()
+        .join("\n")
+        .replace("poles = 30", "poles = 8");
+    fs::write(path, filled).expect("can be written");
+    let said = run(["check", path]);
+    assert_eq!(said.code, 0, "{said:?}");
+}
+
+#[test]
+fn a_file_that_is_there_is_not_replaced_without_being_told_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hub.toml");
+    fs::write(&path, "mine").expect("can be written");
+    let name = path.to_str().expect("a plain path");
+    let new = |more: &[&str]| run(["new", name].iter().chain(more).chain(&HUB));
+    new(&[]).assert_bad_input(&["is there already", "--force"]);
+    assert_eq!(fs::read_to_string(&path).expect("is there"), "mine");
+    assert_eq!(new(&["--force"]).code, 0);
+    assert!(
+        fs::read_to_string(&path)
+            .expect("is there")
+            .starts_with("# A motor")
+    );
+    assert_eq!(fs::read_dir(folder.path()).expect("is there").count(), 1);
+}
+
+#[test]
+fn values_in_error_are_told_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hub.toml");
+    let name = path.to_str().expect("a plain path");
+    for (value, texts) in [
+        (
+            "resistance=0.4 ohm",
+            &["HX0205", "line_to_line", "Nothing was written"][..],
+        ),
+        ("poles=15", &["HX0210", "15 is odd"]),
+        (
+            "resistence=0.4 ohm terminal",
+            &["HX0103", "did you mean `resistance`?"],
+        ),
+        ("colour=red", &["HX0103"]),
+        ("poles", &["write FIELD=VALUE"]),
+        ("rated_speed=400", &["HX0204", "rated_speed = \"2000 rpm\""]),
+        ("winding=triangle", &["HX0207", "`star` or `delta`"]),
+    ] {
+        run(["new", name, value]).assert_bad_input(texts);
+        assert!(!path.exists(), "{value}");
+    }
+    run(["new", name, "poles=8", "poles=10"]).assert_bad_input(&["given twice"]);
+}
+
+#[test]
+fn a_drive_that_does_not_work_fails() {
+    let said = run(["check", PAPER, "--controller", "pdcc:colour=red"]);
+    said.assert_bad_input(&["colour"]);
+    run(["check", "trivedi"]).assert_bad_input(&["no motor `trivedi`"]);
+}
+
+#[test]
+fn codes_are_explained() {
+    for code in ["HX0302", "hx302", "302"] {
+        let said = run(["explain", code]);
+        assert_eq!(said.code, 0, "{said:?}");
+        for text in [
+            "HX0302 (error)",
+            "rated_speed = \"5000 rpm\"",
+            "no_load_speed",
+        ] {
+            assert!(said.stdout.contains(text), "{said:?}");
+        }
+    }
+    let json = run(["explain", "HX0603", "--json"]).json();
+    assert_eq!(json["is_warning"], true);
+    let all = run(["explain", "--json"]).json();
+    assert!(all["codes"].as_array().expect("a list").len() > 50);
+    run(["explain", "HX9999"]).assert_bad_input(&["no code `HX9999`"]);
+}
+
+#[test]
+fn shells_complete_the_commands() {
+    for shell in ["bash", "zsh", "fish"] {
+        let said = run(["completions", shell]);
+        assert_eq!(said.code, 0, "{said:?}");
+        for command in ["explain", "check", "--controller"] {
+            let plain = command.trim_start_matches('-');
+            assert!(said.stdout.contains(plain), "{shell}: {command}");
+        }
+    }
+}

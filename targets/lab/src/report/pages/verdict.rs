@@ -1,0 +1,205 @@
+//! Verdict on a motor with its file's own controller, and the best of all variants beside it.
+
+use super::capture_name;
+use crate::closed_loop::{LimitOutcome, SpeedLimit};
+use crate::report::{Block, Cell, Column, Table};
+use crate::results::{Results, Run, Variant};
+use crate::text::{grouped, number, quantity, ripple};
+use std::f64::consts::TAU;
+
+/// The verdict, and what it rests on: name and text of each line.
+pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> {
+    let own = data.own?;
+    let variant = data.variants.get(own.variant)?;
+    let run = variant.runs.first()?;
+    let rows = vec![
+        ("motor", motor(data)),
+        ("controller", controller(data, variant, run)),
+        ("torque", torque(data, variant, run)),
+        ("ripple", ripples(run)),
+        ("losses", losses(data, variant)),
+        (
+            "step",
+            format!(
+                "at most {} operations every {}",
+                own.operations,
+                quantity(data.inverter.t_s, "s")
+            ),
+        ),
+        ("verified", verified(data)),
+        ("best", best(data, own.variant)),
+    ];
+    let rows = rows.into_iter().filter(|(_, text)| !text.is_empty());
+    Some((judged(data, variant, run), rows.collect()))
+}
+
+/// The verdict as the page's first blocks.
+pub(super) fn verdict_blocks(data: &Results) -> Vec<Block> {
+    let Some((verdict, rows)) = verdict(data) else {
+        return Vec::new();
+    };
+    let columns = [Column::text("What"), Column::text("Found")];
+    let mut table = Table::new("verdict", columns);
+    for (name, text) in rows {
+        table.row([Cell::from(name), Cell::from(text)]);
+    }
+    vec![Block::Prose(format!("**{verdict}**")), Block::Table(table)]
+}
+
+fn judged(data: &Results, variant: &Variant, run: &Run) -> String {
+    let trip = run.points.iter().find_map(|point| point.tripped);
+    if let Some(trip) = trip {
+        return format!("Does not work: {trip}.");
+    }
+    let Some(limit) = &run.limit else {
+        return "Not measured.".to_owned();
+    };
+    match (limit.outcome, limit.limit_pct) {
+        (LimitOutcome::NeverHeld, _) | (_, None) => {
+            "Does not work: it never holds its torque.".to_owned()
+        }
+        (LimitOutcome::NotReached, Some(_)) => {
+            format!(
+                "Works: it holds {} beyond rated speed.",
+                held(data, variant)
+            )
+        }
+        (LimitOutcome::Found, Some(percent)) if percent >= 100.0 => {
+            format!("Works: it holds {} past rated speed.", held(data, variant))
+        }
+        (LimitOutcome::Found, Some(percent)) => format!(
+            "Works, but holds {} up to {percent:.0} % of rated speed only.",
+            held(data, variant)
+        ),
+    }
+}
+
+fn held(data: &Results, variant: &Variant) -> String {
+    match variant.reach {
+        Some(torque) => format!("{} (what max_current allows)", quantity(torque, "Nm")),
+        None => format!("its rated {}", quantity(data.torque, "Nm")),
+    }
+}
+
+fn motor(data: &Results) -> String {
+    let motor = &data.motor;
+    format!(
+        "{} pole pairs; rated {}, {}, {} rpm; bus {}",
+        motor.pole_pairs,
+        quantity(motor.rated_current, "A"),
+        quantity(data.torque, "Nm"),
+        number(motor.rated_speed * 60.0 / TAU, 0),
+        quantity(data.inverter.v_bus, "V"),
+    )
+}
+
+fn controller(data: &Results, variant: &Variant, run: &Run) -> String {
+    format!(
+        "{}; {}, {}-bit ADC, Hall edges {}",
+        variant.variant,
+        quantity(1.0 / data.inverter.t_s, "Hz"),
+        data.inverter.adc_bits,
+        capture_name(run.capture),
+    )
+}
+
+fn limit_text(limit: &SpeedLimit) -> Option<String> {
+    let (rpm, percent) = (limit.limit_rpm?, limit.limit_pct?);
+    let beyond = if limit.outcome == LimitOutcome::NotReached {
+        "beyond "
+    } else {
+        ""
+    };
+    Some(format!(
+        "{beyond}{} rpm, {} % of rated speed",
+        number(rpm, 0),
+        number(percent, 0)
+    ))
+}
+
+fn torque(data: &Results, variant: &Variant, run: &Run) -> String {
+    let torque = quantity(variant.reach.unwrap_or(data.torque), "Nm");
+    let limit = run.limit.as_ref().and_then(limit_text);
+    limit.map_or_else(String::new, |limit| format!("{torque} up to {limit}"))
+}
+
+fn ripples(run: &Run) -> String {
+    let points = run.points.iter().filter(|point| point.tripped.is_none());
+    let all: Vec<String> = points
+        .map(|point| {
+            format!(
+                "{} % at {} rpm",
+                ripple(point.figures.ripple_pp_pct),
+                number(point.rpm, 0)
+            )
+        })
+        .collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    format!("{}, peak to peak", all.join(", "))
+}
+
+/// Copper losses of the recorded currents.
+fn losses(data: &Results, variant: &Variant) -> String {
+    let all: Vec<String> = variant
+        .records
+        .iter()
+        .filter(|record| !record.trace.i_a.is_empty())
+        .map(|record| {
+            let trace = &record.trace;
+            let currents = trace.i_a.iter().zip(&trace.i_b);
+            let squares = currents.map(|(a, b)| a * a + b * b + (a + b) * (a + b));
+            let mean = squares.sum::<f64>() / trace.i_a.len() as f64;
+            format!(
+                "{} at {} rpm",
+                quantity(mean * data.motor.resistance, "W"),
+                number(record.rpm, 0)
+            )
+        })
+        .collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    format!("{} in the windings", all.join(", "))
+}
+
+fn verified(data: &Results) -> String {
+    data.verification
+        .as_ref()
+        .map_or_else(String::new, |check| {
+            let (steps, engine) = (grouped(check.steps), &check.engine);
+            match check.mismatches {
+                0 => format!("{steps} steps of {engine} code equal the bit-true model, every bit"),
+                wrong => {
+                    format!("NOT: {engine} code of {wrong} controllers differs from the model")
+                }
+            }
+        })
+}
+
+/// The variant that holds the torque to the highest speed, where it is another one.
+fn best(data: &Results, own: usize) -> String {
+    let limit_of = |variant: &Variant| {
+        let limit = variant.runs.first()?.limit.as_ref()?;
+        limit.limit_pct
+    };
+    let own_limit = data.variants.get(own).and_then(limit_of).unwrap_or(0.0);
+    let best = data
+        .variants
+        .iter()
+        .filter(|variant| variant.reach.is_none())
+        .filter_map(|variant| Some((limit_of(variant)?, variant)))
+        .max_by(|left, right| left.0.total_cmp(&right.0));
+    match best {
+        // Within the tolerance of the search the file's own is as good.
+        Some((limit, variant)) if limit > own_limit + 1.0 => {
+            format!(
+                "{}: up to {} % (--all has all)",
+                variant.label,
+                number(limit, 0)
+            )
+        }
+        _ => "none of the other variants holds the torque further (--all has all)".to_owned(),
+    }
+}
