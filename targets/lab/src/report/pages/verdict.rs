@@ -185,10 +185,13 @@ fn best(data: &Results, own: usize) -> String {
         limit.limit_pct
     };
     let own_limit = data.variants.get(own).and_then(limit_of).unwrap_or(0.0);
+    // Those that make less torque with the same largest set-point are no match.
+    let torque_of = |variant: &Variant| variant.reach.unwrap_or(data.torque);
+    let own_torque = data.variants.get(own).map_or(data.torque, torque_of);
     let best = data
         .variants
         .iter()
-        .filter(|variant| variant.reach.is_none())
+        .filter(|variant| torque_of(variant) >= 0.99 * own_torque)
         .filter_map(|variant| Some((limit_of(variant)?, variant)))
         .max_by(|left, right| left.0.total_cmp(&right.0));
     match best {
