@@ -75,10 +75,10 @@ impl EmfShape {
     /// Root mean square of the line-to-line EMF over the peak of the phase EMF: sqrt(1.5) for a
     /// sine, 1.491 for a flat top of 120 degrees.
     pub fn line_to_line_rms(self) -> f64 {
+        const STEPS: u32 = 36_000;
         if self == Self::Sinusoidal {
             return 1.5_f64.sqrt();
         }
-        const STEPS: u32 = 36_000;
         let sum: f64 = (0..STEPS)
             .map(|step| {
                 let theta_e = PI * (f64::from(step) + 0.5) / f64::from(STEPS);

@@ -169,10 +169,11 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
     let [claimed, reference @ ..] = of.claim else {
         return internal(&of.culprit.location, "a contradiction without a claim");
     };
-    let at: String = reference
+    let references: Vec<String> = reference
         .iter()
         .map(|part| format!(" at {}", part.quoted()))
         .collect();
+    let at = references.concat();
     let shapes = match of.expected.as_slice() {
         [block, sine] => format!("{block} with quasi-square and {sine} with sinusoidal current"),
         expected => expected.join(" or "),
