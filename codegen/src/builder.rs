@@ -8,7 +8,7 @@ use crate::emit::c99::{RUNTIME, Sources, emit_c99};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
 use crate::pipeline::{Generated, generate, warnings};
-use crate::spec::{SpecAst, apply_variant, check, motor_text, parse_toml};
+use crate::spec::{Board, SpecAst, apply_variant, check, motor_text, parse_toml};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -55,6 +55,7 @@ enum Language {
 #[derive(Clone, Debug)]
 struct Motor {
     path: String,
+    board: Option<String>,
     drives: Vec<Wanted>,
 }
 
@@ -182,9 +183,21 @@ impl Builder {
     pub fn motor(mut self, path: impl Into<String>) -> Self {
         self.motors.push(Motor {
             path: path.into(),
+            board: None,
             drives: vec![],
         });
         self.in_folder = false;
+        self
+    }
+
+    /// The board of the last [`Self::motor`], in place of its file's: a name of the library, or a
+    /// path relative to the crate. Its fields replace those of the motor file.
+    #[must_use]
+    pub fn board(mut self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        if let Some(motor) = self.owner("board", &name) {
+            motor.board = Some(name);
+        }
         self
     }
 
@@ -323,6 +336,7 @@ impl Builder {
             names.sort_unstable();
             motors.extend(names.into_iter().map(|path| Motor {
                 path,
+                board: None,
                 drives: vec![],
             }));
         }
@@ -386,15 +400,36 @@ struct Source {
 }
 
 impl Builder {
+    /// The specification of a motor with its board; tells the paths of the boards' files.
+    fn specification(
+        &self,
+        text: &str,
+        motor: &Motor,
+        files: &mut Vec<String>,
+    ) -> Result<SpecAst, Diagnostics> {
+        let mut ast = parse_toml(text, &motor.path)?;
+        if let Some(board) = &motor.board {
+            let mut board = Board::named(board.as_str().into())?;
+            files.extend(board.read(&self.root, Path::new(""))?);
+            ast.put_on(board);
+        }
+        ast.read_board(&self.root, &motor.path, files)?;
+        Ok(ast)
+    }
+
     fn source_of(&self, motor: &Motor) -> Result<Source, BuildError> {
         println!("cargo:rerun-if-changed={}", motor.path);
         let bytes = fs::read(self.root.join(&motor.path)).map_err(|error| BuildError::Io {
             path: motor.path.clone(),
             error,
         })?;
+        let mut files = vec![];
         let ast = motor_text(bytes, &motor.path)
-            .and_then(|text| parse_toml(&text, &motor.path))
-            .map_err(|errors| BuildError::Specification(vec![errors]))?;
+            .and_then(|text| self.specification(&text, motor, &mut files));
+        for file in files {
+            println!("cargo:rerun-if-changed={file}");
+        }
+        let ast = ast.map_err(|errors| BuildError::Specification(vec![errors]))?;
         let own = [Wanted::default()];
         let drives = if motor.drives.is_empty() {
             &own[..]

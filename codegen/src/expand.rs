@@ -7,13 +7,13 @@
 //! On errors the type is emitted as an empty shape with every method and constant, so that the
 //! compiler reports the errors of the specification only.
 
-use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::diagnostics::{Anchors, Diagnostic, Diagnostics};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, write_rust};
 use crate::interface::Interface;
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
-use crate::spec::{MacroInput, MotorFile, SpecAst, check, is_absolute, parse_macro, parse_toml};
+use crate::spec::{MacroInput, SpecAst, check, parse_macro, parse_toml};
 use crate::stopwatch::Part;
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, quote};
@@ -24,34 +24,27 @@ use std::path::Path;
 pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     let input = match Part::Parsing.timed(|| parse_macro(tokens)) {
         Ok(input) => input,
-        Err(errors) => return errors.to_compile_errors(&TokenStream::new()),
+        Err(errors) => return errors.to_compile_errors(&Anchors::default()),
     };
     let surface = surface(&input);
-    match generate_input(&input, root) {
+    let (mut files, anchors) = (vec![], input.anchors());
+    let generated = generate_input(&input, root, &mut files);
+    let tracking = files.iter().map(|file| track(file));
+    match generated {
         Ok((Generated { graph, interface }, warnings)) => {
-            let tracking = input.motor_file.iter().map(track);
             let name = surface.name.to_string();
             // A documented constant costs more compile time than its value at every use.
             let graph = graph.without_constant_names();
             let code = Part::Emission.timed(|| write_rust(&graph, &interface, &name));
             // In a macro the compiler itself parses the text.
             let code = code.into_tokens(&surface);
-            let anchor = input.anchor();
             let warnings = warnings
                 .iter()
-                .map(|warning| warning.to_compile_warning(&anchor));
+                .map(|warning| warning.to_compile_warning(&anchors));
             quote!(#code #(#warnings)* #(#tracking)*)
         }
         Err(errors) => {
-            let errors = errors.to_compile_errors(&input.anchor());
-            let tracking = input
-                .motor_file
-                .iter()
-                .filter(|file| {
-                    let path = file.path.value();
-                    !is_absolute(&path) && root.join(path).is_file()
-                })
-                .map(track);
+            let errors = errors.to_compile_errors(&anchors);
             let shape = empty_shape(&input.ast, &surface);
             quote!(#errors #shape #(#tracking)*)
         }
@@ -85,8 +78,9 @@ pub fn expand_verify(tokens: TokenStream) -> TokenStream {
 fn generate_input(
     input: &MacroInput,
     root: &Path,
+    files: &mut Vec<String>,
 ) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
-    let (spec, origins) = Part::Parsing.timed(|| check(&input.load(root)?))?;
+    let (spec, origins) = Part::Parsing.timed(|| check(&input.load(root, files)?))?;
     Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
 }
 
@@ -103,10 +97,9 @@ fn surface(input: &MacroInput) -> Surface {
     }
 }
 
-/// Makes the compiler rebuild the crate when the motor file changes. The path is relative to the
-/// crate, so that the output does not depend on the crate's place.
-fn track(file: &MotorFile) -> TokenStream {
-    let path = &file.path;
+/// Makes the compiler rebuild the crate when a motor's or board's file changes. The path is relative
+/// to the crate, so that the output does not depend on the crate's place.
+fn track(path: &str) -> TokenStream {
     quote! {
         const _: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", #path));
     }
@@ -291,13 +284,19 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_file_is_tracked_by_its_place_in_the_crate() {
+    fn files_are_tracked_by_their_places_in_the_crate() {
         let folder = std::env::temp_dir().join(format!("hexagen-track-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         std::fs::write(folder.join("hub.toml"), include_str!("example.toml"))
             .expect("a motor file");
+        std::fs::write(
+            folder.join("mine.toml"),
+            "[inverter]\ndead_time = \"500 ns\"\n",
+        )
+        .expect("a board's file");
         let expand = |name: &TokenStream| {
-            let call = quote!(pub #name { motor: "hub.toml", controller: pdcc });
+            let call =
+                quote!(pub #name { motor: "hub.toml", board: "mine.toml", controller: pdcc });
             expand_controller(call, &folder).to_string()
         };
         let text = expand(&quote!(Hub));
@@ -305,12 +304,13 @@ mod tests {
         std::fs::remove_dir_all(&folder).expect("the folder is ours");
         assert_eq!(text, again);
         assert!(!text.contains("compile_error"), "{text}");
-        let tracking = quote!(include_str!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/",
-            "hub.toml"
-        )));
-        assert!(text.contains(&tracking.to_string()), "no tracking");
+        for file in ["hub.toml", "mine.toml"] {
+            let tracking = quote!(include_str!(
+                concat!(env!("CARGO_MANIFEST_DIR"), "/", #file)
+            ))
+            .to_string();
+            assert!(text.contains(&tracking), "no tracking of {file}");
+        }
         assert!(
             !text.contains(&*folder.to_string_lossy()),
             "an absolute path leaks"

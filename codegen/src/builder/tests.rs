@@ -183,7 +183,34 @@ fn a_motor_file_that_is_no_text_is_refused_with_its_byte() {
     fs::remove_dir_all(&folder).expect("the folder is ours");
     let told = outcome.expect_err("is Latin-1").to_string();
     assert!(
-        told.contains("hub.toml:2:6: error[HX0108]: the motor file is not UTF-8: byte 13"),
+        told.contains("hub.toml:2:6: error[HX0108]: the file is not UTF-8: byte 13"),
         "{told}"
+    );
+}
+
+#[test]
+fn a_board_of_the_builder_replaces_what_the_motor_file_says() {
+    let folder = std::env::temp_dir().join(format!("hexagen-board-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    fs::write(folder.join("hub.toml"), include_str!("../example.toml")).expect("a motor file");
+    let board = "[inverter]\ntimer_clock = \"170 MHz\"\n";
+    fs::write(folder.join("mine.toml"), board).expect("a board's file");
+    let written = Builder::new()
+        .root(&folder)
+        .out_dir(&folder)
+        .motor("hub.toml")
+        .board("mine.toml")
+        .generate()
+        .expect("the example generates");
+    let text = fs::read_to_string(&written[0].files[0]).expect("the file is there");
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    assert!(text.contains("TIMER_PERIOD: u16 = 4250;"), "72 MHz still");
+    assert!(
+        refusal("no-board", |b| b.motor("front/hub.toml").board("vesc4"))
+            .contains("vesc4:1:1: error[HX0112]")
+    );
+    assert!(
+        refusal("early-board", |b| b.board("vesc-4").motor("front/hub.toml"))
+            .contains("stands before the first motor")
     );
 }

@@ -45,7 +45,7 @@ codes! {
     MissingSection = 106,
     /// A field stands in the wrong section.
     MisplacedField = 107,
-    /// A motor file cannot be read or its path is not relative.
+    /// A motor or board file cannot be read or its path is not relative.
     MotorFile = 108,
     /// The drive's name is not a type name.
     InvalidName = 109,
@@ -53,6 +53,8 @@ codes! {
     ExclusiveFields = 110,
     /// A field that another field's value requires or excludes.
     DependentField = 111,
+    /// A board that the library does not have.
+    UnknownBoard = 112,
     /// A value that cannot be read.
     MalformedValue = 201,
     /// A unit that does not exist.
@@ -115,6 +117,8 @@ codes! {
     AdcTooCoarse = 317,
     /// Speed constant or no-load speed and EMF constant contradict each other.
     SpeedContradiction = 318,
+    /// A bus voltage that the board is not made for.
+    OutsideOfBoard = 330,
     /// A controller that does not exist.
     UnknownController = 401,
     /// An option of a controller that does not exist in this version.

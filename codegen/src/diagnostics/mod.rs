@@ -21,6 +21,7 @@ pub use number::{
     at_least, at_most, engineering, frequency, list, percent, rpm, rpm_at_least, rpm_at_most,
     significant,
 };
+pub use render::Anchors;
 
 /// One error or warning: kind, text and the places involved.
 #[derive(Clone, Debug)]

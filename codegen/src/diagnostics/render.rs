@@ -39,27 +39,48 @@ impl fmt::Display for Diagnostics {
     }
 }
 
+/// What is marked in a macro call for places outside of it.
+#[derive(Clone, Debug, Default)]
+pub struct Anchors {
+    /// The tokens for all files but the one below.
+    pub other: TokenStream,
+    /// A file that has tokens of its own.
+    pub file: Option<(String, TokenStream)>,
+}
+
+impl Anchors {
+    /// The tokens of a place.
+    fn of<'a>(&'a self, place: &'a Location) -> &'a TokenStream {
+        match (place, &self.file) {
+            (Location::Macro(tokens), _) => tokens,
+            (Location::File { file, .. }, Some((name, tokens))) if file == name => tokens,
+            _ => &self.other,
+        }
+    }
+}
+
 impl Diagnostics {
     /// One `compile_error!` per error and one per note in the macro call, so that every field
     /// involved is marked: the compiler has no stable way to attach notes.
     ///
-    /// Places outside the macro call (a motor file) are marked at `anchor`, the path literal or
-    /// the type name, and named `file:line:col` in the message.
-    pub fn to_compile_errors(&self, anchor: &TokenStream) -> TokenStream {
+    /// Places outside the macro call (in files) are marked at `anchors`, the files' literals or the
+    /// type name, and named `file:line:col` in the message.
+    pub fn to_compile_errors(&self, anchors: &Anchors) -> TokenStream {
         self.as_slice()
             .iter()
-            .flat_map(|error| error.to_compile_errors(anchor))
+            .flat_map(|error| error.to_compile_errors(anchors))
             .collect()
     }
 }
 
 impl Diagnostic {
     /// A compiler warning. On stable Rust a macro can warn only by using something deprecated.
-    pub fn to_compile_warning(&self, anchor: &TokenStream) -> TokenStream {
+    pub fn to_compile_warning(&self, anchors: &Anchors) -> TokenStream {
         let name = self.code.to_string();
-        let (tokens, message) = match &self.location {
-            Location::Macro(tokens) => (tokens, self.message.clone()),
-            place => (anchor, format!("{place}: {}", self.message)),
+        let tokens = anchors.of(&self.location);
+        let message = match &self.location {
+            Location::Macro(_) => self.message.clone(),
+            place => format!("{place}: {}", self.message),
         };
         let span = tokens.clone().into_iter().next().map(|token| token.span());
         let name = Ident::new(&name, span.unwrap_or_else(Span::call_site));
@@ -72,7 +93,7 @@ impl Diagnostic {
         }
     }
 
-    fn to_compile_errors(&self, anchor: &TokenStream) -> TokenStream {
+    fn to_compile_errors(&self, anchors: &Anchors) -> TokenStream {
         let mut message = format!("[{}] {}", self.code, self.message);
         if !matches!(self.location, Location::Macro(_)) {
             message = format!("{}: {message}", self.location);
@@ -91,11 +112,7 @@ impl Diagnostic {
                 }
             }
         }
-        let primary = match &self.location {
-            Location::Macro(tokens) => tokens,
-            _ => anchor,
-        };
-        let mut errors = compile_error(primary, &message);
+        let mut errors = compile_error(anchors.of(&self.location), &message);
         errors.extend(
             marked
                 .into_iter()
@@ -112,7 +129,7 @@ fn compile_error(tokens: &TokenStream, message: &str) -> TokenStream {
 
 #[cfg(test)]
 mod tests {
-    use crate::diagnostics::{Code, Collector, Diagnostic, Location};
+    use crate::diagnostics::{Anchors, Code, Collector, Diagnostic, Location};
     use proc_macro2::TokenStream;
 
     fn tokens(text: &str) -> TokenStream {
@@ -154,7 +171,10 @@ mod tests {
         let rendered = errors
             .finish()
             .expect("has errors")
-            .to_compile_errors(&tokens("\"hub.toml\""))
+            .to_compile_errors(&Anchors {
+                other: tokens("\"hub.toml\""),
+                file: None,
+            })
             .to_string();
         assert_eq!(rendered.matches("compile_error").count(), 3);
         assert!(

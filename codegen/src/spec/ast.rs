@@ -16,7 +16,9 @@ pub struct SpecAst {
     pub name: Name,
     /// The motor's fields.
     pub motor: Section,
-    /// The inverter's fields.
+    /// The board that has the inverter's other fields.
+    pub board: Option<Board>,
+    /// The inverter's own fields.
     pub inverter: Section,
     /// The controller's fields; its kind is the field `kind`.
     pub controller: Section,
@@ -97,12 +99,48 @@ impl Number {
     }
 }
 
+/// A board as a specification names it.
+#[derive(Clone, Debug)]
+pub struct Board {
+    /// The name or path, and where it was written.
+    pub name: Name,
+    /// What stands in its file; none while that was not read.
+    pub file: Option<BoardFile>,
+}
+
+/// What stands in a board's file.
+#[derive(Clone, Debug, Default)]
+pub struct BoardFile {
+    /// One line.
+    pub description: Option<String>,
+    /// Its fields.
+    pub inverter: Section,
+    /// Where the data come from: key and text.
+    pub source: Vec<(String, String)>,
+    /// What could not be read.
+    pub malformed: Vec<Diagnostic>,
+}
+
+/// A name that no file holds: of a command line, or of a build script.
+impl From<&str> for Name {
+    fn from(text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            location: Location::Variant {
+                text: text.to_owned(),
+                column: 1,
+            },
+        }
+    }
+}
+
 impl SpecAst {
     /// An empty specification of the given name.
     pub fn new(name: Name) -> Self {
         Self {
             name,
             motor: Section::default(),
+            board: None,
             inverter: Section::default(),
             controller: Section::default(),
             source: Vec::new(),
@@ -131,9 +169,16 @@ impl SpecAst {
 
     /// Replaces fields by those of `over`, and the name. A controller of another kind replaces the
     /// whole controller.
+    /// A board of `over` replaces this tree's, and its fields this tree's own.
     pub fn overlay(&mut self, over: Self) {
         self.name = over.name;
         self.motor.overlay(over.motor);
+        if let Some(board) = over.board {
+            let file = board.file.as_ref();
+            let fields = file.map_or(&[][..], |file| &file.inverter.fields);
+            self.inverter.remove_quantities(fields);
+            self.board = Some(board);
+        }
         self.inverter.overlay(over.inverter);
         self.controller.overlay_controller(over.controller);
         self.source.extend(over.source);
@@ -149,17 +194,21 @@ impl Section {
 
     /// Replaces fields of the same quantity by those of `over`.
     pub(super) fn overlay(&mut self, over: Self) {
-        self.fields.retain(|field| {
-            !over
-                .fields
-                .iter()
-                .any(|new| super::schema::same_quantity(&new.name, &field.name))
-        });
+        self.remove_quantities(&over.fields);
         self.fields.extend(over.fields);
         self.incomplete |= over.incomplete;
         if over.location.is_some() {
             self.location = over.location;
         }
+    }
+
+    /// Removes what other fields state.
+    fn remove_quantities(&mut self, others: &[Field]) {
+        self.fields.retain(|field| {
+            !others
+                .iter()
+                .any(|other| super::schema::same_quantity(&other.name, &field.name))
+        });
     }
 
     /// As [`Section::overlay`], but drops the options of another kind of controller.

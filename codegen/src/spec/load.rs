@@ -1,24 +1,75 @@
 //! Reading motor files.
 
-use super::SpecAst;
-use super::toml_syntax::parse_toml;
+use super::ast::{Board, SpecAst};
+use super::toml_syntax::{parse_board, parse_toml};
 use crate::diagnostics::{Diagnostics, Location, catalogue};
 use std::path::Path;
 
-/// Reads and parses the motor file `relative` under `root` (the crate's folder).
+/// Reads and parses the motor file `relative` under `root` (the crate's folder), and the board's file
+/// that it names; tells the paths of both in `files`.
 ///
 /// Messages name the relative path only. `at`: where the path was written.
 ///
 /// # Errors
 /// If the path is absolute, or the file cannot be read, is not UTF-8 or is not TOML.
-pub fn load_motor_file(root: &Path, relative: &str, at: &Location) -> Result<SpecAst, Diagnostics> {
+pub fn load_motor_file(
+    root: &Path,
+    relative: &str,
+    at: &Location,
+    files: &mut Vec<String>,
+) -> Result<SpecAst, Diagnostics> {
     if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
     }
     let bytes = std::fs::read(root.join(relative)).map_err(|error| {
         catalogue::unreadable_motor_file(at, relative, &error.kind().to_string())
     })?;
-    parse_toml(&motor_text(bytes, relative)?, relative)
+    files.push(relative.to_owned());
+    let mut ast = parse_toml(&motor_text(bytes, relative)?, relative)?;
+    ast.read_board(root, relative, files)?;
+    Ok(ast)
+}
+
+impl Board {
+    /// Reads the file, where that is still to be done; its path relative to `root`, which a path
+    /// under `folder` is. Nothing of a board of the library.
+    ///
+    /// # Errors
+    /// If the path is absolute, or the file cannot be read or is no TOML.
+    pub fn read(&mut self, root: &Path, folder: &Path) -> Result<Option<String>, Diagnostics> {
+        if self.file.is_some() {
+            return Ok(None);
+        }
+        let (given, at) = (&self.name.text, &self.name.location);
+        if is_absolute(given) {
+            return Err(catalogue::absolute_board_file(at).into());
+        }
+        let relative = folder.join(given).to_string_lossy().replace('\\', "/");
+        let bytes = std::fs::read(root.join(&relative)).map_err(|error| {
+            catalogue::unreadable_board_file(at, &relative, &error.kind().to_string())
+        })?;
+        self.file = Some(parse_board(&motor_text(bytes, &relative)?, &relative)?);
+        Ok(Some(relative))
+    }
+}
+
+impl SpecAst {
+    /// Reads the board's file that the motor file `relative` under `root` names; tells its path.
+    ///
+    /// # Errors
+    /// If its path is absolute, or it cannot be read, is not UTF-8 or is no TOML.
+    pub fn read_board(
+        &mut self,
+        root: &Path,
+        relative: &str,
+        files: &mut Vec<String>,
+    ) -> Result<(), Diagnostics> {
+        let folder = Path::new(relative).parent().unwrap_or(Path::new(""));
+        if let Some(board) = &mut self.board {
+            files.extend(board.read(root, folder)?);
+        }
+        Ok(())
+    }
 }
 
 /// The text of a motor file; `file_name` is used in messages.
@@ -36,7 +87,7 @@ pub fn motor_text(bytes: Vec<u8>, file_name: &str) -> Result<String, Diagnostics
 }
 
 /// Whether a path is absolute on any system.
-pub(crate) fn is_absolute(path: &str) -> bool {
+pub(super) fn is_absolute(path: &str) -> bool {
     Path::new(path).has_root() || path.contains(':')
 }
 
@@ -63,14 +114,14 @@ mod tests {
             line: 1,
             column: 1,
         };
-        let error = load_motor_file(Path::new("/nowhere"), "/etc/hub.toml", &at)
+        let error = load_motor_file(Path::new("/nowhere"), "/etc/hub.toml", &at, &mut vec![])
             .expect_err("is absolute")
             .to_string();
         assert!(
             error.contains("absolute") && !error.contains("/etc"),
             "{error}"
         );
-        let error = load_motor_file(Path::new("/nowhere"), "hub.toml", &at)
+        let error = load_motor_file(Path::new("/nowhere"), "hub.toml", &at, &mut vec![])
             .expect_err("does not exist")
             .to_string();
         assert_eq!(

@@ -3,10 +3,11 @@
 //! Works on token trees, comma by comma, so that one unreadable entry costs only itself; `syn`
 //! reads attributes, visibility and literals.
 
-use super::ast::{Field, Name, Section, SpecAst, Value};
+use super::ast::{Board, Field, Name, Section, SpecAst, Value};
+use super::board_library::library_file;
 use super::value::{parse_value, plain_number, unreadable};
 use super::{load_motor_file, schema};
-use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
+use crate::diagnostics::{Anchors, Diagnostic, Diagnostics, Location, catalogue};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::path::Path;
@@ -22,39 +23,53 @@ pub struct MacroInput {
     /// Name of the type.
     pub name: syn::Ident,
     /// The motor file, if the call names one.
-    pub motor_file: Option<MotorFile>,
+    pub motor_file: Option<FileName>,
+    /// The board's name or file, if the call names one.
+    pub board: Option<FileName>,
     /// The fields of the call alone.
     pub ast: SpecAst,
 }
 
-/// `motor: "motors/hub.toml"`.
+/// `motor: "motors/hub.toml"`, `board: "vesc-4"`.
 #[derive(Clone, Debug)]
-pub struct MotorFile {
-    /// The path literal, relative to the crate's root. For `include_str!` tracking.
+pub struct FileName {
+    /// The literal: a path relative to the crate's root, or of a board its name.
     pub path: syn::LitStr,
 }
 
 impl MacroInput {
     /// The whole specification: the motor file under `root` (the crate's folder), if one is named,
-    /// with the call's own fields laid over it.
+    /// with the call's own fields and its board laid over it. Tells the paths of all that was read
+    /// in `files`.
     ///
     /// # Errors
-    /// If the file cannot be read or is not TOML.
-    pub fn load(&self, root: &Path) -> Result<SpecAst, Diagnostics> {
+    /// If a file cannot be read or is not TOML.
+    pub fn load(&self, root: &Path, files: &mut Vec<String>) -> Result<SpecAst, Diagnostics> {
+        let mut call = self.ast.clone();
+        if let Some(board) = &mut call.board {
+            files.extend(board.read(root, Path::new(""))?);
+        }
         let Some(file) = &self.motor_file else {
-            return Ok(self.ast.clone());
+            return Ok(call);
         };
         let location = Location::Macro(file.path.to_token_stream());
-        let mut ast = load_motor_file(root, &file.path.value(), &location)?;
-        ast.overlay(self.ast.clone());
+        let mut ast = load_motor_file(root, &file.path.value(), &location, files)?;
+        ast.overlay(call);
         Ok(ast)
     }
 
-    /// Where errors of a motor file are marked: the path literal, else the type's name.
-    pub fn anchor(&self) -> TokenStream {
-        match &self.motor_file {
-            Some(file) => file.path.to_token_stream(),
-            None => self.name.to_token_stream(),
+    /// Where errors of files are marked: the literal of the board's file for those in it, else that
+    /// of the motor file or, without one, the type's name.
+    pub fn anchors(&self) -> Anchors {
+        let tokens = |file: &FileName| file.path.to_token_stream();
+        let motor = self.motor_file.as_ref().map(tokens);
+        let board = self.board.as_ref().map(|board| {
+            let name = board.path.value();
+            (library_file(&name).unwrap_or(name), tokens(board))
+        });
+        Anchors {
+            other: motor.unwrap_or_else(|| self.name.to_token_stream()),
+            file: board,
         }
     }
 }
@@ -73,6 +88,7 @@ pub fn parse_macro(tokens: TokenStream) -> Result<MacroInput, Diagnostics> {
         attributes,
         visibility,
         motor_file: None,
+        board: None,
         ast: SpecAst::new(Name {
             text: name.to_string(),
             location,
@@ -220,7 +236,31 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
                 return Err(twice(&at, &input.ast.motor, "motor"));
             }
             input.ast.motor.location = Some(at);
-            input.motor_file = Some(MotorFile { path });
+            input.motor_file = Some(FileName { path });
+        }
+        ("board", [TokenTree::Literal(literal)]) => {
+            let path: syn::LitStr = syn::parse2(TokenTree::from(literal.clone()).into())
+                .map_err(|_| expected_section(value, "board"))?;
+            if let Some(first) = &input.board {
+                let first = Location::Macro(first.path.to_token_stream());
+                return Err(catalogue::duplicate_field(&at, &first, "board"));
+            }
+            let name = Name {
+                text: path.value(),
+                location: location(value),
+            };
+            input.board = Some(FileName { path });
+            match Board::named(name) {
+                Ok(board) => input.ast.board = Some(board),
+                Err(errors) => {
+                    // What the board would have given is not missing.
+                    input.ast.excuse("inverter");
+                    input
+                        .ast
+                        .malformed
+                        .extend(errors.as_slice().iter().cloned());
+                }
+            }
         }
         ("motor", [TokenTree::Group(group)]) if group.delimiter() == Delimiter::Brace => {
             let section = &mut input.ast.motor;
@@ -243,11 +283,11 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
             )?;
         }
         ("controller", tokens) => read_controller(input, at, tokens)?,
-        ("motor" | "inverter", _) => return Err(expected_section(value, &name)),
+        ("motor" | "board" | "inverter", _) => return Err(expected_section(value, &name)),
         _ => {
             input
                 .ast
-                .unknown_section(&at, &name, &["motor", "inverter", "controller"]);
+                .unknown_section(&at, &name, &["motor", "board", "inverter", "controller"]);
         }
     }
     Ok(())
@@ -256,6 +296,9 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
 fn expected_section(value: &[TokenTree], name: &str) -> Diagnostic {
     let wanted = match name {
         "motor" => "`motor` takes braces with fields or the path of a motor file",
+        "board" => {
+            "`board` takes the name of a board or the path of its file, in quotes, as in `board: \"vesc-4\"`"
+        }
         "controller" => {
             "`controller` takes the name of a controller and braces with its options, as in `controller: pdcc { emf: model }`"
         }

@@ -9,6 +9,8 @@
 
 pub mod ast;
 mod basis;
+mod board;
+mod board_library;
 pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
@@ -29,20 +31,20 @@ mod value;
 mod variant;
 mod words;
 
-pub use ast::SpecAst;
+pub use ast::{Board, BoardFile, SpecAst};
+pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
 pub use controller::{
     Candidates, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, Kind, LimitRule,
     LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates, PhccSpec, PiPwmSpec,
     Reference, SpeedLoop, SwitchingTable,
 };
-pub(crate) use load::is_absolute;
 pub use load::{load_motor_file, motor_text};
-pub use macro_syntax::{MacroInput, MotorFile, parse_macro};
+pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
 pub use option_texts::help as option_help;
 pub use rule::Rule;
 pub use schema::section_of;
-pub use toml_syntax::parse_toml;
+pub use toml_syntax::{parse_board, parse_toml};
 pub use variant::{apply_variant, variant_of};
 pub use words::Word;

@@ -1,10 +1,13 @@
-//! Front end: a TOML motor file to a [`SpecAst`].
+//! Front end: a TOML motor file to a [`SpecAst`], a board's file to a [`BoardFile`].
 //!
 //! Sections `[motor]`, `[inverter]`, `[controller]` with the macro's fields and values as strings;
 //! `[assumed.motor]` and `[assumed.inverter]` with `{ value = "…", reason = "…" }` for what the
-//! data sheet lacks; `[source]` free text. Every place is kept as file, line and column.
+//! data sheet lacks; `[source]` free text; before them `board`, a name or a path. A board's file
+//! has `[board]` with a description, and of the sections the inverter's and `[source]` alone. Every
+//! place is kept as file, line and column.
 
-use super::ast::{Field, Name, Section, SpecAst, Value};
+use super::ast::{Board, BoardFile, Field, Name, Section, SpecAst, Value};
+use super::board_library::{BOARDS, file_of};
 use super::schema;
 use super::value::{free_text, no_text, parse_value, plain_number, unreadable};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
@@ -13,6 +16,7 @@ use std::path::Path;
 use toml_edit::{Document, Item, Key, TableLike};
 
 const SECTIONS: [&str; 5] = ["motor", "inverter", "controller", "assumed", "source"];
+const BOARD_SECTIONS: [&str; 4] = ["board", "inverter", "assumed", "source"];
 
 /// Parses the text of a motor file; `file_name` is used in messages and, without folder and
 /// extension, as the default name of the drive.
@@ -31,6 +35,13 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
     });
     for (name, item) in document.iter() {
         let at = file.key(document.key(name), item);
+        if name == "board" && !item.is_table_like() {
+            match file.read_board(item) {
+                Ok(board) => ast.board = Some(board),
+                Err(errors) => ast.malformed.extend(errors.as_slice().iter().cloned()),
+            }
+            continue;
+        }
         let Some(table) = item.as_table_like() else {
             if SECTIONS.contains(&name) {
                 ast.malformed.push(catalogue::not_a_section(&at, name));
@@ -44,7 +55,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             "motor" => file.read_fields(&mut ast.motor, at, table),
             "inverter" => file.read_fields(&mut ast.inverter, at, table),
             "controller" => file.read_fields(&mut ast.controller, at, table),
-            "assumed" => file.read_assumed(&mut ast, table),
+            "assumed" => file.read_assumed(&mut ast, table, &["motor", "inverter"]),
             "source" => file.read_source(&mut ast, table),
             _ => ast.unknown_section(&at, name, &SECTIONS),
         }
@@ -69,6 +80,77 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
         }
     }
     Ok(ast)
+}
+
+/// Parses the text of a board's file; `file_name` is used in messages.
+///
+/// # Errors
+/// If the text is no TOML. Errors in fields are kept and come with [`super::check`].
+pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics> {
+    let file = File {
+        name: file_name,
+        text,
+    };
+    let document = Document::parse(text).map_err(|error| file.syntax_error(&error))?;
+    let mut ast = SpecAst::new(Name {
+        text: String::new(),
+        location: file.at(0),
+    });
+    let mut description = None;
+    for (name, item) in document.iter() {
+        let at = file.key(document.key(name), item);
+        let table = item.as_table_like();
+        match (name, table) {
+            ("board", Some(table)) => {
+                let mut about = Section::default();
+                file.read_fields(&mut about, at, table);
+                for field in about.fields {
+                    match (field.name.as_str(), field.value) {
+                        ("description", Value::Text(text)) => description = Some(text),
+                        ("description", Value::Malformed(error)) => ast.malformed.push(*error),
+                        (name, _) => ast.malformed.push(catalogue::unknown_section(
+                            &field.name_location,
+                            &format!("board.{name}"),
+                            &["board.description"],
+                        )),
+                    }
+                }
+            }
+            ("inverter", Some(table)) => file.read_fields(&mut ast.inverter, at, table),
+            ("assumed", Some(table)) => file.read_assumed(&mut ast, table, &["inverter"]),
+            ("source", Some(table)) => file.read_source(&mut ast, table),
+            (name, None) if BOARD_SECTIONS.contains(&name) => {
+                ast.malformed.push(catalogue::not_a_section(&at, name));
+            }
+            _ => ast.unknown_section(&at, name, &BOARD_SECTIONS),
+        }
+    }
+    Ok(BoardFile {
+        description,
+        inverter: ast.inverter,
+        source: ast.source,
+        malformed: ast.malformed,
+    })
+}
+
+impl Board {
+    /// A board by its name: one of the library is read, a file is not yet.
+    ///
+    /// # Errors
+    /// If the library has no board of that name and it is no path of a TOML file.
+    pub fn named(name: Name) -> Result<Self, Diagnostics> {
+        let known = BOARDS.iter().find(|board| board.name == name.text);
+        let extension = Path::new(&name.text).extension();
+        let file = match known {
+            Some(board) => Some(parse_board(board.text, &file_of(board.name))?),
+            None if extension.is_some_and(|extension| extension == "toml") => None,
+            None => {
+                let names = BOARDS.map(|board| board.name);
+                return Err(catalogue::unknown_board(&name.location, &name.text, &names).into());
+            }
+        };
+        Ok(Self { name, file })
+    }
 }
 
 struct File<'a> {
@@ -115,17 +197,29 @@ impl File<'_> {
         }
     }
 
+    /// `board = "vesc-4"`.
+    fn read_board(&self, item: &Item) -> Result<Board, Diagnostics> {
+        let location = self.span(item.span());
+        let Some(text) = item.as_str() else {
+            let wanted = "`board` takes the name of a board or the path of its file, in quotes";
+            return Err(catalogue::syntax(&location, wanted).into());
+        };
+        Board::named(Name {
+            text: text.to_owned(),
+            location,
+        })
+    }
+
     /// `[assumed.motor]`: `field = { value = "…", reason = "…" }`.
-    fn read_assumed(&self, ast: &mut SpecAst, assumed: &dyn TableLike) {
+    fn read_assumed(&self, ast: &mut SpecAst, assumed: &dyn TableLike, known: &[&str]) {
         for (name, item) in assumed.iter() {
             let at = self.key(assumed.key(name), item);
             let section = match name {
-                "motor" => &mut ast.motor,
+                "motor" if known.contains(&name) => &mut ast.motor,
                 "inverter" => &mut ast.inverter,
                 _ => {
-                    let known = ["motor", "inverter"];
                     ast.malformed
-                        .push(catalogue::unknown_section(&at, name, &known));
+                        .push(catalogue::unknown_section(&at, name, known));
                     continue;
                 }
             };

@@ -30,6 +30,19 @@ fn with_parts(mut error: Diagnostic, parts: &[&Part]) -> Diagnostic {
     error
 }
 
+/// A bus voltage on the far side, `below` or `above`, of a board's limit.
+pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::OutsideOfBoard,
+        &given.location,
+        format!(
+            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply or take another board",
+            given.field, given.given, limit.field, limit.given
+        ),
+    );
+    with_parts(error, &[limit])
+}
+
 /// The EMF constant is far from that of any motor; `phase`, `low`, `high`: peak phase EMF over
 /// mechanical speed, V s/rad.
 pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagnostic {

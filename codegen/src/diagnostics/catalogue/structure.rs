@@ -200,7 +200,7 @@ pub fn motor_file_is_no_text(at: &Location, byte: u8, offset: usize) -> Diagnost
     Diagnostic::new(
         Code::MotorFile,
         at,
-        format!("the motor file is not UTF-8: byte {offset} is 0x{byte:02X}; save it as UTF-8"),
+        format!("the file is not UTF-8: byte {offset} is 0x{byte:02X}; save it as UTF-8"),
     )
 }
 
@@ -210,6 +210,42 @@ pub fn absolute_motor_file(at: &Location) -> Diagnostic {
         Code::MotorFile,
         at,
         "`motor`: the file's path is absolute; give a path relative to the crate's Cargo.toml, so that the output is the same on every machine",
+    )
+}
+
+/// A board that is neither one of the library nor a TOML file.
+pub fn unknown_board(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
+    let meant = nearest(name, known).map_or_else(
+        || ";".to_owned(),
+        |meant| format!("; did you mean {meant:?}?"),
+    );
+    Diagnostic::new(
+        Code::UnknownBoard,
+        at,
+        format!(
+            "`board`: the library has no {name:?}{meant} give one of {} or the path of a TOML file, for example \"boards/mine.toml\"",
+            known.join(", ")
+        ),
+    )
+}
+
+/// A board file cannot be read; `why` is the system's reason.
+pub fn unreadable_board_file(at: &Location, path: &str, why: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        format!(
+            "`board`: the file {path:?} cannot be read ({why}); give a name of the library or a path relative to the file that names it, in a macro to the crate's Cargo.toml"
+        ),
+    )
+}
+
+/// A board file's path is absolute.
+pub fn absolute_board_file(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        "`board`: the file's path is absolute; give a relative one, so that the output is the same on every machine",
     )
 }
 

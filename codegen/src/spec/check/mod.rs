@@ -32,7 +32,9 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
 
     let fallback = &ast.name.location;
     let motor_reader = Reader::new("motor", &ast.motor, schema::MOTOR, fallback);
-    let inverter_reader = Reader::new("inverter", &ast.inverter, schema::INVERTER, fallback);
+    let (whole_inverter, of_board) = ast.whole_inverter();
+    errors.extend(of_board);
+    let inverter_reader = Reader::new("inverter", &whole_inverter, schema::INVERTER, fallback);
     motor_reader.check_fields(&mut errors, |_, _| false);
     let motor = motor::read(&motor_reader, &mut errors);
     inverter_reader.check_fields(&mut errors, |_, _| false);
@@ -57,7 +59,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         &mut errors,
     );
 
-    let origins = Origins::new(ast, warnings);
+    let origins = Origins::new(ast, &whole_inverter, warnings);
     match (motor.finish(), finished, controller) {
         (Some(motor), Some(inverter), Some(controller)) => {
             let name = ast.name.text.clone();

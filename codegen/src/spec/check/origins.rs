@@ -25,7 +25,8 @@ pub struct Origin {
 }
 
 impl Origins {
-    pub(super) fn new(ast: &SpecAst, warnings: Vec<Diagnostic>) -> Self {
+    /// Of a specification whose inverter has its board's fields.
+    pub(super) fn new(ast: &SpecAst, inverter: &Section, warnings: Vec<Diagnostic>) -> Self {
         let mut origins = Self {
             name: ast.name.location.clone(),
             sections: BTreeMap::new(),
@@ -33,7 +34,7 @@ impl Origins {
             warnings,
         };
         origins.take("motor", &ast.motor);
-        origins.take("inverter", &ast.inverter);
+        origins.take("inverter", inverter);
         origins.take("controller", &ast.controller);
         origins
     }

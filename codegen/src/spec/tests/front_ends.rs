@@ -96,7 +96,7 @@ fn the_macro_keeps_attributes_visibility_and_name() {
     assert!(matches!(input.visibility, syn::Visibility::Public(_)));
     assert_eq!(input.name, "HubDrive");
     assert!(input.motor_file.is_none());
-    assert_eq!(input.anchor().to_string(), "HubDrive");
+    assert_eq!(input.anchors().other.to_string(), "HubDrive");
 }
 
 #[test]
@@ -128,9 +128,9 @@ fn a_motor_file_is_overridden_field_by_field() {
             controller: pdcc { advance: 1 },
         }"#,
     );
-    assert_eq!(input.anchor().to_string(), "\"motors/hub.toml\"");
+    assert_eq!(input.anchors().other.to_string(), "\"motors/hub.toml\"");
     let ast = input
-        .load(&folder)
+        .load(&folder, &mut vec![])
         .unwrap_or_else(|errors| panic!("{errors}"));
     std::fs::remove_dir_all(&folder).expect("removes the folder");
     let (spec, origins) = check(&ast).unwrap_or_else(|errors| panic!("{errors}"));

@@ -1,5 +1,6 @@
 //! Tests of the specification as a whole.
 
+mod boards;
 mod data_sheets;
 mod diagnostics;
 mod explanations;

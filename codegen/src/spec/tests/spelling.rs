@@ -204,11 +204,11 @@ fn bytes_that_are_no_text_are_told_with_their_place() {
     // "é" of an editor that saves in Latin-1.
     std::fs::write(folder.join("hub.toml"), b"[motor]\n# caf\xe9\n").expect("a file");
     let at = Location::in_file("macro", "", 0);
-    let told = load_motor_file(&folder, "hub.toml", &at);
+    let told = load_motor_file(&folder, "hub.toml", &at, &mut vec![]);
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
     assert_eq!(
         told.expect_err("is Latin-1").to_string(),
-        "hub.toml:2:6: error[HX0108]: the motor file is not UTF-8: byte 13 is 0xE9; save it as UTF-8"
+        "hub.toml:2:6: error[HX0108]: the file is not UTF-8: byte 13 is 0xE9; save it as UTF-8"
     );
 }
 

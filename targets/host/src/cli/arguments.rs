@@ -2,8 +2,8 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
-    check, compare, completions, explain, generate, limit, motors, new, prove, report, reproduce,
-    simulate, verify,
+    boards, check, compare, completions, explain, generate, limit, motors, new, prove, report,
+    reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
@@ -52,6 +52,8 @@ pub enum Command {
     Reproduce(reproduce::Options),
     /// Lists the motors of the library
     Motors(motors::Options),
+    /// Lists the boards of the library, and which motors fit each
+    Boards(boards::Options),
     /// Writes a commented motor file, from values of a data sheet or from questions
     New(new::Options),
     /// Says within a second whether and how well a drive will work
@@ -124,6 +126,10 @@ impl Selection {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Plant")]
 pub struct PlantArguments {
+    /// Board, a name of the library or a file, of plant and controller alike: the specification
+    /// changes [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Dead time of the inverter's legs [default: the motor file's]
     #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     pub dead_time: Option<f64>,
@@ -168,6 +174,7 @@ impl PlantArguments {
     /// The options as the laboratory takes them.
     pub fn options(&self) -> PlantOptions {
         PlantOptions {
+            board: self.board.clone(),
             dead_time: self.dead_time,
             adc_bits: self.adc_bits,
             adc_range: self.adc_range.clone(),

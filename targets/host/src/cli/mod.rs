@@ -49,6 +49,7 @@ pub fn run() -> ExitCode {
         Command::Compare(options) => commands::compare::run(&options),
         Command::Reproduce(options) => commands::reproduce::run(&options),
         Command::Motors(options) => commands::motors::run(&options),
+        Command::Boards(options) => commands::boards::run(&options),
         Command::New(options) => commands::new::run(&options),
         Command::Check(options) => commands::check::run(&options),
         Command::Explain(options) => commands::explain::run(&options),

@@ -13,6 +13,9 @@ pub struct Options {
     /// Motor file, or name of a library motor
     #[arg(value_name = "MOTOR")]
     pub motor: String,
+    /// Board, a name of the library or a file [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Controller variant [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<String>,
@@ -49,7 +52,11 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
 /// # Errors
 /// Diagnostics, or a file that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let motor = SelectedMotor::find(&options.motor, &PlantOptions::default())?;
+    let plant = PlantOptions {
+        board: options.board.clone(),
+        ..PlantOptions::default()
+    };
+    let motor = SelectedMotor::find(&options.motor, &plant)?;
     let drive = motor.prepare(options.controller.as_deref())?;
     tell_warnings(&drive);
     match options.emit {

@@ -28,6 +28,9 @@ pub struct Options {
     /// Motor files or names of library motors [default: the whole library]
     #[arg(value_name = "MOTOR")]
     pub motors: Vec<String>,
+    /// Board, a name of the library or a file [default: the motor files']
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Controller variant, or `all`, with 32-bit and with 16-bit words [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
@@ -198,7 +201,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     let checker = gappa_version()?;
     let coq = options.coq.as_ref().map(|_| coq_version());
-    let (drives, refused) = select(&options.motors, &variants, takes_all)?;
+    let (drives, refused) = select(
+        &options.motors,
+        options.board.as_deref(),
+        &variants,
+        takes_all,
+    )?;
     let certify = options.coq.as_ref().map(|folder| Certify {
         folder,
         checks: matches!(coq, Some(Ok(_))),

@@ -15,23 +15,28 @@ pub struct Refused {
     pub reason: String,
 }
 
-/// The motors (none: the library) with each of the variants (none: that of the motor's file), and
-/// the refused ones of `all` controllers. A controller that is named must not be refused.
+/// The motors (none: the library), on another board than their files', with each of the variants
+/// (none: that of the motor's file), and the refused ones of `all` controllers. A controller that is
+/// named must not be refused.
 ///
 /// # Errors
 /// Unknown motors, and all diagnostics.
 pub fn select(
     motors: &[String],
+    board: Option<&str>,
     variants: &[Option<String>],
     takes_all: bool,
 ) -> Result<(Vec<Prepared>, Vec<Refused>), Failure> {
-    let none = PlantOptions::default();
+    let plant = PlantOptions {
+        board: board.map(str::to_owned),
+        ..PlantOptions::default()
+    };
     let motors = if motors.is_empty() {
-        SelectedMotor::library(&none)?
+        SelectedMotor::library(&plant)?
     } else {
         motors
             .iter()
-            .map(|motor| SelectedMotor::find(motor, &none))
+            .map(|motor| SelectedMotor::find(motor, &plant))
             .collect::<Result<_, _>>()?
     };
     let (mut drives, mut refused) = (vec![], vec![]);

@@ -20,6 +20,9 @@ pub struct Options {
     /// Motor files or names of library motors [default: the whole library]
     #[arg(value_name = "MOTOR")]
     pub motors: Vec<String>,
+    /// Board, a name of the library or a file [default: the motor files']
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Controller variant, or `all` [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<Selection>,
@@ -91,7 +94,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         Some(selection) => selection.variants().into_iter().map(Some).collect(),
     };
     let takes_all = options.controller == Some(Selection::All);
-    let (drives, refused) = select(&options.motors, &variants, takes_all)?;
+    let (drives, refused) = select(
+        &options.motors,
+        options.board.as_deref(),
+        &variants,
+        takes_all,
+    )?;
     let verifiers = options.language.verifiers(&drives)?;
     for (drive, verifier) in drives.iter().zip(&verifiers) {
         if let Some(reason) = verifier.why_interpreted() {

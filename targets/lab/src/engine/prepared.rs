@@ -14,6 +14,7 @@ use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
 };
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
+use std::path::Path;
 
 /// One drive: specification, generated program and reference models at rest.
 #[derive(Clone, Debug)]
@@ -55,7 +56,8 @@ pub struct SetPoint {
 /// # Errors
 /// All diagnostics of specification, design and scaling.
 pub fn prepare(motor: &MotorSource, variant: Option<&str>) -> Result<Prepared, Diagnostics> {
-    let ast = parse_toml(&motor.text, &motor.file)?;
+    let mut ast = parse_toml(&motor.text, &motor.file)?;
+    ast.read_board(Path::new(""), &motor.file, &mut vec![])?;
     prepare_ast(ast, &motor.name, variant)
 }
 

@@ -4,12 +4,17 @@ use super::{MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run
 use crate::LabError;
 use crate::closed_loop::RunOptions;
 use crate::plant::{Mechanics, PlantError, PlantParams};
-use hexagen_codegen::spec::{SpecAst, parse_toml};
+use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::diagnostics::catalogue::unreadable_board_file;
+use hexagen_codegen::spec::{Board, SpecAst, motor_text, parse_board, parse_toml};
 use std::f64::consts::TAU;
+use std::path::Path;
 
 /// Deviations of a simulated plant from the motor's file; none by default.
 #[derive(Clone, Debug, Default)]
 pub struct PlantOptions {
+    /// The board, a name of the library or a file, of plant and controller alike: the specification changes.
+    pub board: Option<String>,
     /// Dead time of the inverter's legs in seconds.
     pub dead_time: Option<f64>,
     /// Bits of the current ADCs, of plant and controller: the specification changes.
@@ -67,6 +72,10 @@ impl SelectedMotor {
 
     fn read(source: MotorSource, plant: &PlantOptions) -> Result<Self, LabError> {
         let mut ast = parse_toml(&source.text, &source.file)?;
+        match &plant.board {
+            Some(board) => ast.put_on(board_of(board)?),
+            None => ast.read_board(Path::new(""), &source.file, &mut vec![])?,
+        }
         plant.change_specification(&mut ast)?;
         Ok(Self { source, ast })
     }
@@ -95,6 +104,19 @@ impl SelectedMotor {
     }
 }
 
+/// The board of a name of the library, or else of a path.
+fn board_of(given: &str) -> Result<Board, LabError> {
+    let mut board = Board::named(given.into())?;
+    if board.file.is_none() {
+        let bytes = std::fs::read(given).map_err(|error| {
+            let reason = error.kind().to_string();
+            Diagnostics::from(unreadable_board_file(&board.name.location, given, &reason))
+        })?;
+        board.file = Some(parse_board(&motor_text(bytes, given)?, given)?);
+    }
+    Ok(board)
+}
+
 impl PlantOptions {
     /// ADC bits and range apply to the controller, too: they override the specification.
     fn change_specification(&self, ast: &mut SpecAst) -> Result<(), LabError> {
@@ -103,10 +125,6 @@ impl PlantOptions {
             .adc_range
             .as_ref()
             .map(|range| format!("adc_range = \"{range}\""));
-        if range.is_some() {
-            // The other field for the same quantity.
-            ast.inverter.fields.retain(|field| field.name != "adc_gain");
-        }
         let lines: Vec<String> = bits.into_iter().chain(range).collect();
         if lines.is_empty() {
             return Ok(());

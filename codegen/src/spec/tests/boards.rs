@@ -1,0 +1,240 @@
+//! Boards: three layers, each error in the file or call that it was written in.
+
+use super::front_ends::macro_input;
+use crate::spec::{BOARDS, Origins, Spec, check, parse_board, parse_toml};
+use std::path::Path;
+
+const MOTOR: &str = r#"
+[motor]
+pole_pairs = 4
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.1648 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A"
+rated_torque = "3.3 Nm"
+rated_speed = "2000 rpm"
+[inverter]
+bus_voltage = "48 V"
+sampling_time = "50 us"
+timer_clock = "72 MHz"
+adc_bits = 12
+adc_range = "40 A"
+[controller]
+kind = "pdcc"
+"#;
+
+const BOARD: &str = r#"
+[board]
+description = "Mine"
+[inverter]
+bus_min = "10 V"
+bus_max = "50 V"
+bus_adc_bits = 12
+bus_adc_range = "60 V"
+f_pwm = "16 kHz"
+timer_clock = "170 MHz"
+dead_time = "500 ns"
+adc_bits = 12
+adc_gain = "29 mA/count"
+"#;
+
+/// A crate with a motor and a board, in folders of their own; gone when dropped.
+struct Folder(std::path::PathBuf);
+
+impl Folder {
+    fn new(name: &str, motor: &str, board: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("hexagen-{name}-{}", std::process::id()));
+        for (part, file, text) in [
+            ("motors", "hub.toml", motor),
+            ("boards", "mine.toml", board),
+        ] {
+            std::fs::create_dir_all(folder.join(part)).expect("creates a folder");
+            std::fs::write(folder.join(part).join(file), text).expect("writes a file");
+        }
+        Self(folder)
+    }
+
+    /// The specification of a call, and the files that it rests on.
+    fn check(&self, call: &str) -> (Result<(Spec, Origins), String>, Vec<String>) {
+        let mut files = vec![];
+        let ast = macro_input(call).load(&self.0, &mut files);
+        let checked = ast.and_then(|ast| check(&ast));
+        (checked.map_err(|errors| errors.to_string()), files)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn a_call_stands_over_its_board_and_that_over_the_motor_file() {
+    let folder = Folder::new("layers", MOTOR, BOARD);
+    let (checked, files) = folder.check(
+        r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml",
+            inverter: { dead_time: 300 ns }, controller: pdcc }"#,
+    );
+    let (spec, origins) = checked.unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(files, ["boards/mine.toml", "motors/hub.toml"]);
+    let inverter = &spec.inverter;
+    assert_eq!((inverter.v_bus, inverter.adc_gain), (48.0, 0.029));
+    // 5313 counts of 170 MHz, up and down.
+    assert_eq!(inverter.timer_period, 5313);
+    let at = |path| origins.at(path).to_string();
+    assert_eq!(at("inverter.bus_voltage"), "motors/hub.toml:13:15");
+    assert_eq!(at("inverter.adc_gain"), "boards/mine.toml:13:12");
+    assert!(at("inverter.dead_time").starts_with("macro:"));
+}
+
+#[test]
+fn a_motor_file_stands_over_the_board_that_it_names() {
+    let motor = format!("board = \"../boards/mine.toml\"\n{MOTOR}");
+    let folder = Folder::new("named", &motor, BOARD);
+    let (checked, files) = folder.check(r#"Rear { motor: "motors/hub.toml" }"#);
+    let (spec, origins) = checked.unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(files, ["motors/hub.toml", "motors/../boards/mine.toml"]);
+    assert_eq!(
+        (spec.inverter.t_s, spec.inverter.timer_period),
+        (50e-6, 1800)
+    );
+    assert_eq!(
+        origins.at("inverter.dead_time").to_string(),
+        "motors/../boards/mine.toml:11:13"
+    );
+    // Read as text alone, the file is not at hand.
+    let alone = parse_toml(&motor, "hub.toml").and_then(|ast| check(&ast));
+    let alone = alone.expect_err("has no board").to_string();
+    assert!(
+        alone.contains("hub.toml:1:9: error[HX0108]: `board`"),
+        "{alone}"
+    );
+}
+
+#[test]
+fn errors_point_into_the_board_s_file() {
+    let board = BOARD
+        .replace("500 ns", "500 nss")
+        .replace("[board]", "[motor]");
+    let folder = Folder::new("errors", MOTOR, &board);
+    let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+    let text = folder.check(call).0.expect_err("has errors");
+    assert!(
+        text.contains("boards/mine.toml:2:2: error[HX0102]"),
+        "{text}"
+    );
+    assert!(
+        text.contains("boards/mine.toml:11:13: error[HX0202]"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_bus_that_is_not_the_board_s_is_refused_with_both_places() {
+    let folder = Folder::new("bus", &MOTOR.replace("48 V", "60 V"), BOARD);
+    let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+    let text = folder.check(call).0.expect_err("the bus is too high");
+    assert_eq!(
+        text,
+        "motors/hub.toml:13:15: error[HX0330]: `bus_voltage`: 60 V is above the board's `bus_max` of 50 V; \
+         give the voltage of its supply or take another board\n\
+         boards/mine.toml:6:11: note: `bus_max` 50 V"
+    );
+}
+
+#[test]
+fn what_a_board_has_and_the_drive_does_without_is_no_error() {
+    let folder = Folder::new("measured", MOTOR, BOARD);
+    let call = |bus: &str| {
+        format!(
+            r#"Rear {{ motor: "motors/hub.toml", board: "boards/mine.toml", inverter: {{ {bus} }} }}"#
+        )
+    };
+    assert!(folder.check(&call("")).0.is_ok());
+    assert!(folder.check(&call("v_bus: measured")).0.is_ok());
+    // Of the call it is one.
+    let own = folder
+        .check(&call("bus_min: 12 V"))
+        .0
+        .expect_err("is of no use");
+    assert!(own.contains("v_bus: measured"), "{own}");
+}
+
+#[test]
+fn a_board_that_there_is_not_is_told_by_name() {
+    let folder = Folder::new("unknown", MOTOR, BOARD);
+    let told = |board: &str| {
+        let call = format!(r#"Rear {{ motor: "motors/hub.toml", board: {board} }}"#);
+        folder.check(&call).0.expect_err("there is none")
+    };
+    let text = told("\"vesc4\"");
+    assert!(
+        text.contains("`board`: the library has no \"vesc4\"; did you mean \"vesc-4\"?"),
+        "{text}"
+    );
+    assert!(told("\"boards/other.toml\"").contains("cannot be read"));
+    assert!(told("\"/boards/mine.toml\"").contains("absolute"));
+    assert!(told("vesc").contains("in quotes"));
+    // A file of the library names itself.
+    let text = folder.check(r#"Rear { motor: "motors/hub.toml", board: "st-b-g431b-esc1" }"#);
+    let text = text.0.expect_err("25 V are its most");
+    assert!(
+        text.contains("hexagen/boards/st-b-g431b-esc1.toml:6:11: note"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_board_of_a_call_takes_the_place_of_the_motor_file_s() {
+    let motor = format!("board = \"vesc-4\"\n{MOTOR}");
+    let folder = Folder::new("replaced", &motor, BOARD);
+    let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+    let (checked, files) = folder.check(call);
+    let (spec, _) = checked.unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(files, ["boards/mine.toml", "motors/hub.toml"]);
+    assert_eq!(spec.inverter.dead_time, 500e-9);
+    assert!(Path::new(&files[1]).is_relative());
+}
+
+#[test]
+fn the_library_is_its_folder() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("boards");
+    let files = std::fs::read_dir(folder).expect("the folder of boards");
+    let mut names: Vec<String> = files
+        .map(|file| file.expect("an entry").file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    names.sort_unstable();
+    let known = BOARDS.map(|board| format!("{}.toml", board.name));
+    assert_eq!(names, known);
+}
+
+#[test]
+fn every_board_reads_and_says_where_its_numbers_are_from() {
+    for board in BOARDS {
+        let file = parse_board(board.text, board.name).expect("is TOML");
+        assert!(
+            file.malformed.is_empty(),
+            "{}: {:?}",
+            board.name,
+            file.malformed
+        );
+        assert!(file.description.is_some(), "{}", board.name);
+        for field in &file.inverter.fields {
+            let has_source = |key: &str| {
+                file.source
+                    .iter()
+                    .any(|(name, text)| name == key && !text.is_empty())
+            };
+            assert!(
+                field.assumed.is_some() || has_source(&field.name),
+                "{}: no source of `{}`",
+                board.name,
+                field.name
+            );
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Every motor of the library on every board: which fit follows from a few numbers of both, and
+//! these generate; the others are refused for what does not fit.
+
+use hexagen_codegen::spec::ast::Value;
+use hexagen_codegen::spec::{BOARDS, BoardFile, Spec, parse_board};
+use hexagen_lab::boards::library_of_boards;
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
+
+/// What a board's file says, SI units.
+struct Numbers {
+    bus: [f64; 2],
+    /// Ampere per count of 12 bits.
+    gain: f64,
+    /// Second; none where the motor's file says it.
+    period: Option<f64>,
+}
+
+fn numbers(file: &BoardFile) -> Numbers {
+    let number = |name: &str| match file.inverter.field(name).map(|field| &field.value) {
+        Some(Value::Number(number)) => Some(number.si()),
+        _ => None,
+    };
+    let all = |name| number(name).unwrap_or_else(|| panic!("no {name}"));
+    let shunt = number("shunt")
+        .map(|shunt| all("adc_reference") / (4096.0 * shunt * all("amplifier_gain")));
+    let periods = number("pwm_per_control").unwrap_or(1.0);
+    Numbers {
+        bus: [all("bus_min"), all("bus_max")],
+        gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
+        period: number("f_pwm").map(|frequency| periods / frequency),
+    }
+}
+
+/// What keeps a motor from a board, by their numbers alone.
+fn obstacle(board: &Numbers, motor: &Spec) -> Option<&'static str> {
+    let (reach, max) = (2048.0 * board.gain, motor.inverter.max_current);
+    let period = board.period.unwrap_or(motor.inverter.t_s);
+    let per_period = motor.motor.resistance * period / motor.motor.inductance;
+    if motor.inverter.v_bus < board.bus[0] || motor.inverter.v_bus > board.bus[1] {
+        Some("HX0330")
+    } else if reach < motor.motor.rated_current.max(max) {
+        Some("HX0305")
+    } else if max < 10.0 * board.gain {
+        Some("HX0317")
+    } else if per_period > 0.5 {
+        Some("HX0301")
+    } else {
+        None
+    }
+}
+
+#[test]
+fn a_motor_fits_a_board_by_voltage_current_and_time_constant() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library reads");
+    let boards = library_of_boards(&()).expect("the library reads");
+    let mut fitting = 0;
+    for (board, entry) in BOARDS.iter().zip(&boards) {
+        let numbers = numbers(&parse_board(board.text, board.name).expect("is TOML"));
+        for (motor, fit) in motors.iter().zip(&entry.motors) {
+            // A motor that generates for no inverter fits none.
+            let Ok(own) = motor.prepare(None) else {
+                assert!(!fit.fits);
+                continue;
+            };
+            let pair = format!("{} on {}", fit.motor, entry.name);
+            let reason = fit.reason.as_deref().unwrap_or_default();
+            match obstacle(&numbers, &own.spec) {
+                Some(code) => assert!(reason.contains(code), "{pair}: {code}, not {reason:?}"),
+                None => assert!(fit.fits, "{pair}: {reason}"),
+            }
+            fitting += usize::from(fit.fits);
+        }
+    }
+    assert!(fitting > 30, "{fitting} pairs fit");
+}
