@@ -333,7 +333,7 @@ fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
         ),
         EmfSource::Observer => (
             "emf: observer",
-            "it smooths the estimate, and the observer has a gain of its own",
+            "the filter smooths the estimate, and the observer has a gain of its own",
         ),
         EmfSource::Held => (
             "emf: held",
