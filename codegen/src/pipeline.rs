@@ -374,7 +374,7 @@ kind = "pdcc"
                     "emf=estimated",
                     "emf=model",
                     "emf=estimated,emf_filter=0.7",
-                    "emf=model,integral=on",
+                    "emf=observer",
                 ] {
                     for reference in ["quasi_square", "proportional"] {
                         for advance in ["0", "1.5"] {

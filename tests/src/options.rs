@@ -104,13 +104,7 @@ const SHARED: &[Row] = &[
             ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
             ("held", &[("controller", "emf", "\"held\"")]),
-            (
-                "integral",
-                &[
-                    ("controller", "emf", "\"model\""),
-                    ("controller", "integral", "\"on\""),
-                ],
-            ),
+            ("observer", &[("controller", "emf", "\"observer\"")]),
         ],
     ),
     (

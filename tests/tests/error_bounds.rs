@@ -10,7 +10,7 @@ use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 /// Drives that together have every block of a step.
 const VARIANTS: [&str; 11] = [
     "pdcc",
-    "pdcc:emf=model,saturation=nearest,integral=on",
+    "pdcc:emf=observer,saturation=nearest",
     "pdcc:modulation=pair,saturation=keep_angle,word=16",
     "pdcc:reference=proportional,emf=model",
     "pi-pwm",

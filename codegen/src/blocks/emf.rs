@@ -13,7 +13,7 @@ use crate::ir::{Exact, Expr, Lut, Named, Periodic, Phases, Real, named};
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;
 /// Fraction bits of the proportional reference's table: its values stay below 4.
-const SHAPE_BITS: u32 = 28;
+pub const SHAPE_BITS: u32 = 28;
 
 /// A periodic function as tables of parabola coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -170,6 +170,15 @@ impl<'b> FluxModel<'b> {
         };
         volts.map(|volts| volts.within(l.voltage("e_max", self.limit, doc)))
     }
+
+    /// Flux linkage at the start of the target period, and the mean EMF over it.
+    fn target(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -> [Phases<'b>; 2] {
+        let start = ahead("theta_start", rotor, delay);
+        let end = ahead("theta_end", rotor, delay + 1);
+        let at_start = self.at(l, "start", start);
+        let at_end = self.at(l, "end", end);
+        [at_start, self.emf(l, at_start, at_end)]
+    }
 }
 
 /// Mean EMF of phases a and b over the target period and, with delay 1, over the present one, from
@@ -188,12 +197,9 @@ pub fn model_emf<'b>(
             "flux linkage between end and start, which is exact for any shape and needs no speed factor.",
         ],
     );
-    let start = ahead("theta_start", rotor, delay);
-    let end = ahead("theta_end", rotor, delay + 1);
-    let at_start = flux.at(l, "start", start);
-    let at_end = flux.at(l, "end", end);
+    let [at_start, e] = flux.target(l, rotor, delay);
     named! {
-        let e = flux.emf(l, at_start, at_end);
+        let e = e;
     }
     if delay == 0 {
         return ModelledEmf {
@@ -211,14 +217,31 @@ pub fn model_emf<'b>(
     }
 }
 
-/// Reference parallel to the EMF at the end of the target period, as voltage words of phases a and
-/// b.
-pub fn proportional_reference<'b>(
+/// Mean EMF over the target period alone; phases a and b.
+pub fn model_target_emf<'b>(
     l: &Lowering<'b>,
     rotor: &Rotor<'b>,
-    set_point: Expr<'b>,
     delay: u32,
+    e_limit: f64,
 ) -> Phases<'b> {
+    let flux = FluxModel::new(l, e_limit);
+    l.b.stage(
+        "model_emf",
+        &[
+            "Mean EMF over the target period: the difference of flux linkage between end and start, which is",
+            "exact for any shape and needs no speed factor.",
+        ],
+    );
+    let [_, e_model] = flux.target(l, rotor, delay);
+    named! {
+        let e_model = e_model;
+    }
+    e_model
+}
+
+/// Current of phases a and b per ampere of set-point that is parallel to the EMF at the end of the
+/// target period; added to the open stage.
+pub fn proportional_shape<'b>(l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -> Phases<'b> {
     let motor = &l.spec.motor;
     let (shape, ratio) = (
         motor.emf_shape,
@@ -228,11 +251,14 @@ pub fn proportional_reference<'b>(
     let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
     let error = format!("{:.1e} A per ampere of set-point", fit.error);
     let table = PeriodicTable::new(l, "shape", &fit, SHAPE_BITS, [doc, &error]);
-    let doc = "Reference parallel to the EMF at the end of the target period: constant torque at least copper loss.";
-    l.b.stage("reference_proportional", &[doc]);
     let theta = ahead("theta_ref", rotor, delay + 1);
     let theta_b = lagging(l, "theta_ref_b", theta);
-    let shape = Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)]);
+    Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)])
+}
+
+/// Reference along [`proportional_shape`], as voltage words of phases a and b; added to the open
+/// stage.
+pub fn proportional_reference<'b>(shape: Phases<'b>, set_point: Expr<'b>) -> Phases<'b> {
     named! {
         let j = shape.map(|shape| set_point.mul_round(shape, SHAPE_BITS));
     }

@@ -14,7 +14,10 @@ pub mod set_point;
 mod speed;
 
 pub use commutation::{Commutation, CommutationRule};
-pub use emf::{Corner, ModelledEmf, model_emf, proportional_reference, quasi_square_reference};
+pub use emf::{
+    Corner, ModelledEmf, SHAPE_BITS, model_emf, model_target_emf, proportional_reference,
+    proportional_shape, quasi_square_reference,
+};
 pub use limit::{Hexagon, Limited, Priority};
 pub use measure::{Hall, Sample, find_sector, sample, sector_of, sector_word, third_current};
 pub use modulate::{

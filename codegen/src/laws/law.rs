@@ -65,7 +65,7 @@ pub trait Law: Sync {
                 "choose `emf: model`, an `emf_filter` below 1,"
             }
             EmfSource::Held => "choose `emf: estimated` or `emf: model`",
-            EmfSource::Estimated => "choose `emf: model`",
+            EmfSource::Estimated | EmfSource::Observer => "choose `emf: model`",
             EmfSource::Model => "shorten the control period",
         }
     }

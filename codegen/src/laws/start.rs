@@ -19,14 +19,13 @@ fn loses(shape: EmfShape) -> f64 {
 
 /// Greatest error of such an estimate over the EMF: it overshoots. (Without the advance at most 1;
 /// found by iterating z' = (1 - f) z exp(j (|z| - 1) w) + f from 0 for filters from 0.005 to 0.1
-/// and turns up to 30 degrees.) The integral beside a modelled EMF overshoots as well when the
-/// sensors begin to give the angle.
+/// and turns up to 30 degrees.) The integral of a PI regulator beside a modelled EMF overshoots as
+/// well when the sensors begin to give the angle.
 const LACK: f64 = 1.17;
 
-/// Largest line EMF over the bus for an integral that has to learn the EMF: that of a PI regulator
-/// with a slow filter, or that of a modelled EMF until the sensors give the angle. It overshoots,
-/// and beyond the bus the limit keeps a component along a wrong EMF (simulated: trips from 0.88
-/// on).
+/// Largest line EMF over the bus for the integral of a PI regulator with a slow filter, which has to
+/// learn the EMF. It overshoots, and beyond the bus the limit keeps a component along a wrong EMF
+/// (simulated: trips from 0.88 on).
 pub(super) const INTEGRATED_EMF: f64 = 0.85;
 
 /// Current of a braking speed loop over its limit: commutations overshoot (simulated).
@@ -61,12 +60,17 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let loses = estimates && turn > loses(motor.emf_shape) * filter;
     let slow = estimates && turn > filter;
     let law = law(&spec.controller);
+    // The observer starts when the sensors give the speed.
+    let resting = LoopDesign {
+        observer_gain: 0.0,
+        ..design.clone()
+    };
     let start = law.start(slow);
     let met = most.min(start.part_of_bus * inverter.lowest_bus() / line);
     let periods = f64::from(options.delay + 1);
     let vector = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
     let per_volt = law
-        .linear(spec, design)
+        .linear(spec, &resting)
         .map_or(design.plant.gain * periods, |linear| {
             linear.greatest_response(spec, turn)
         });

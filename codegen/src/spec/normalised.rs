@@ -162,7 +162,6 @@ mod tests {
             controller: ControllerSpec::Pdcc(PdccSpec {
                 modulation: Modulation::ThreePhase,
                 saturation: LimitRule::TorquePriority,
-                integral: false,
                 dead_time_compensation: false,
                 common: LoopOptions {
                     emf: EmfSource::Estimated,

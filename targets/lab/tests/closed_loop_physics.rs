@@ -163,7 +163,7 @@ fn deadbeat_steps_at_standstill_match_the_circuit() {
         "pdcc:emf=held",
         "pdcc:emf=held,delay=0",
         "pdcc:emf=model,hall_capture=timer",
-        "pdcc:emf=model,integral=on,hall_capture=timer",
+        "pdcc:emf=observer,hall_capture=timer",
         "pdcc:modulation=pair,emf=estimated",
         "pdcc:modulation=pair,emf=estimated,delay=0",
         "pdcc:modulation=pair,emf=model,hall_capture=timer",
@@ -205,11 +205,7 @@ fn torque_meets_the_demand_with_a_high_resistance() {
     let variants = [
         (RESISTIVE, "pdcc:advance=2,emf=estimated", [0.16, 3.8]),
         (RESISTIVE, "pdcc:advance=2,emf=model", [0.16, 3.8]),
-        (
-            RESISTIVE,
-            "pdcc:advance=2,emf=model,integral=on",
-            [0.16, 3.8],
-        ),
+        (RESISTIVE, "pdcc:advance=2,emf=observer", [0.16, 3.8]),
         (
             RESISTIVE,
             "pdcc:modulation=pair,advance=1.5,emf=estimated",

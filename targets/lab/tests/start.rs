@@ -33,7 +33,7 @@ const VARIANTS: [&str; 49] = [
     "pdcc:modulation=pair,emf_filter=0.1,word=16",
     "pdcc:modulation=pair,emf=model,advance=1.5",
     "pdcc:emf=model",
-    "pdcc:emf=model,integral=on",
+    "pdcc:emf=observer",
     "pdcc:emf=model,hall_capture=timer,reference=proportional",
     "pdcc:emf=held",
     "pdcc:emf=held,delay=0",

@@ -39,7 +39,11 @@ const VARIANTS: [(&str, &str, Fields); 19] = [
         &[],
     ),
     ("pdcc.word-16", "pdcc:word=16,saturation=keep_angle", &[]),
-    ("pdcc.integral", "pdcc:emf=model,integral=on", &[]),
+    (
+        "pdcc.observer",
+        "pdcc:emf=observer,reference=proportional,hall_capture=timer",
+        &[],
+    ),
     (
         "pdcc.measured-bus",
         "pdcc",

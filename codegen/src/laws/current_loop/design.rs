@@ -1,6 +1,8 @@
 //! Numbers of the predictive laws in SI units.
 
+use super::emf::OBSERVER_GAIN;
 use crate::design::DiscretePlant;
+use crate::design::emf::squared_length;
 use crate::scaling::Scaled;
 use crate::spec::{EmfShape, LoopOptions, Spec};
 use std::f64::consts::{FRAC_PI_6, PI};
@@ -25,6 +27,11 @@ pub struct LoopDesign {
     pub di_limit: f64,
     /// Largest plausible zero-sum phase EMF, volt.
     pub e_limit: f64,
+    /// Limit of the modelled EMF's error, volt: half the largest bus, up to the next power of two of
+    /// timer counts, at which a saturating instruction limits.
+    pub emf_error_limit: f64,
+    /// Greatest gain of the observer.
+    pub observer_gain: f64,
     /// Motion of an estimated EMF in one period per product of two line EMFs, 1/V; of a sine, the
     /// tangent of its turn over sqrt(3), per line EMF.
     pub slope: f64,
@@ -43,6 +50,16 @@ fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
         EmfShape::Trapezoidal { .. } => ((growth.powi(2) - 1.0) / 2.0).sqrt(),
     };
     turn.min(0.5)
+}
+
+/// Greatest length of the proportional current per ampere of set-point.
+fn longest_shape(spec: &Spec) -> f64 {
+    let motor = &spec.motor;
+    let angles = (0..60).map(|degree| f64::from(degree).to_radians());
+    let least = angles
+        .map(|theta| squared_length(motor.emf_shape, theta))
+        .fold(f64::INFINITY, f64::min);
+    2.0 / 3.0 * spec.torque_constant() / motor.emf_constant / least.sqrt()
 }
 
 impl LoopDesign {
@@ -67,6 +84,7 @@ impl LoopDesign {
         let (shape, electrical) = (motor.emf_shape, f64::from(motor.pole_pairs) * inverter.t_s);
         let line = shape.quasi_square_factor() * motor.emf_constant;
         let count = inverter.adc_gain.abs();
+        let volt = inverter.v_bus / f64::from(inverter.timer_period);
         let span = f64::from((1_u32 << inverter.adc_bits) - 1);
         let possible = plant.gain * 4.0 / 3.0 * inverter.greatest_bus() / count;
         Self {
@@ -77,6 +95,8 @@ impl LoopDesign {
             k_decay: 1.0 - plant.pole,
             di_limit: (2.0 * possible.min(span)).log2().ceil().exp2() * count,
             e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
+            emf_error_limit: (inverter.greatest_bus() / volt / 2.0).log2().ceil().exp2() * volt,
+            observer_gain: OBSERVER_GAIN * longest_shape(spec).powi(2),
             slope: match shape {
                 EmfShape::Sinusoidal => electrical / (3f64.sqrt() * line),
                 EmfShape::Trapezoidal { .. } => {

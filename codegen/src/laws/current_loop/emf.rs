@@ -5,9 +5,9 @@
 //! The estimate is that of the last period: `observer` advances it.
 
 use super::words::{EmfUse, Words};
-use super::{CurrentLoop, EMF_INTEGRAL_SHARE, read};
-use crate::blocks::{Lowering, ModelledEmf, Rotor, model_emf, product_bound};
-use crate::ir::{Coefficient, Expr, Phases, named, pick};
+use super::{CurrentLoop, read};
+use crate::blocks::{Lowering, Rotor, SHAPE_BITS, model_emf, model_target_emf, product_bound};
+use crate::ir::{Coefficient, Expr, Memory, Phases, mul_add_floor, named, pick};
 use crate::spec::EmfSource;
 
 /// EMF of phases a and b over the target period and over the present one.
@@ -17,9 +17,15 @@ pub(super) struct Emf<'b> {
     pub present: Phases<'b>,
     /// EMF of the present period that the next step's estimate starts from.
     pub expected: Phases<'b>,
-    /// New words of the integral.
-    pub integral: Option<Phases<'b>>,
+    /// Error of the modelled EMF, q and d.
+    pub emf_error: Option<[Expr<'b>; 2]>,
 }
+
+/// Shift of the sums of products that correct the error: 1/16 of a sum is 3/32 of a component.
+const OBSERVER_SHIFT: u32 = SHAPE_BITS + 4;
+
+/// Gain of the observer: share of the residual per period, for a shape of unit length.
+pub const OBSERVER_GAIN: f64 = 3.0 / 32.0;
 
 /// Documentation of an estimate's limit.
 const PLAUSIBLE: &str = "Largest plausible EMF, the largest bus voltage";
@@ -37,7 +43,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         words: &Words<'b>,
         currents: Phases<'b, 3>,
         sector: Expr<'b>,
-        rotor: Option<&Rotor<'b>>,
+        rotor: Option<(&Rotor<'b>, Option<Phases<'b>>)>,
         third: Coefficient,
         outgoing: Option<Expr<'b>>,
     ) -> Option<Emf<'b>> {
@@ -45,9 +51,21 @@ impl<'b> CurrentLoop<'_, 'b> {
             return None;
         }
         let i = currents.pair();
-        if let (Some(rotor), EmfSource::Model) = (rotor, self.options.emf) {
-            let model = model_emf(self.l, rotor, self.options.delay, self.design.e_limit);
-            return Some(self.integrate_emf(words, i, model));
+        let (delay, e_limit) = (self.options.delay, self.design.e_limit);
+        match (rotor, self.options.emf) {
+            (Some((rotor, _)), EmfSource::Model) => {
+                let model = model_emf(self.l, rotor, delay, e_limit);
+                return Some(Emf {
+                    target: model.target,
+                    present: model.present,
+                    expected: model.present,
+                    emf_error: None,
+                });
+            }
+            (Some((rotor, Some(shape))), EmfSource::Observer) => {
+                return self.observe_emf(words, i, rotor, shape);
+            }
+            _ => {}
         }
         let e = self.estimate_emf(words, i)?;
         let e = self.meet_emf(words, third, outgoing, e);
@@ -56,17 +74,19 @@ impl<'b> CurrentLoop<'_, 'b> {
             target,
             present,
             expected: present,
-            integral: None,
+            emf_error: None,
         })
     }
 
     /// Largest phase EMF before the advance, words of voltage: the bus; with floating legs the
     /// range of [`Self::meet_emf`].
     pub(super) fn e_bound(&self) -> i64 {
-        if self.options.emf == EmfSource::Model {
-            return self.l.volts_word(self.design.e_limit);
-        }
         let bus = self.l.bus_interval().high;
+        match self.options.emf {
+            EmfSource::Model => return self.l.volts_word(self.design.e_limit),
+            EmfSource::Observer => return 2 * self.emf_error_limit(),
+            EmfSource::Estimated | EmfSource::Held => {}
+        }
         if self.needs.off_leg {
             bus + 2 * product_bound(1.0 / 3.0, self.options.word, 2 * bus)
         } else {
@@ -96,56 +116,100 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// The modelled EMF corrected by the integral of its error, if the law has one.
-    fn integrate_emf(&self, words: &Words<'b>, i: Phases<'b>, model: ModelledEmf<'b>) -> Emf<'b> {
-        let unchanged = Emf {
-            target: model.target,
-            present: model.present,
-            expected: model.present,
-            integral: None,
-        };
-        let Some((e_prev, integral)) = words.e_prev.zip(words.integral) else {
-            return unchanged;
-        };
-        let (l, sight, share) = (self.l, self.sight(), EMF_INTEGRAL_SHARE);
-        let doc = "Share of the modelled EMF's error that the integral adds per period.";
-        let word = self.options.word;
-        let k_integral = l.coefficient("k_integral", share, word, doc, &share.to_string());
-        l.b.stage(
-            "integrate_emf",
+    /// Limit of the modelled EMF's error, words of voltage.
+    pub(super) fn emf_error_limit(&self) -> i64 {
+        self.l.volts_word(self.design.emf_error_limit)
+    }
+
+    /// The modelled EMF plus its error, which is observed in the rotor frame: q along `shape`, the
+    /// proportional current, d across it. Errors of R, bus and k_b have a q component, those of
+    /// angle and L a d component.
+    fn observe_emf(
+        &self,
+        words: &Words<'b>,
+        i: Phases<'b>,
+        rotor: &Rotor<'b>,
+        shape: Phases<'b>,
+    ) -> Option<Emf<'b>> {
+        let l = self.l;
+        let memories = words.emf_error?;
+        let e_model = model_target_emf(l, rotor, self.options.delay, self.design.e_limit);
+        let residual = self.emf_residual(words, i)?;
+        let lines = shape_lines(shape);
+        l.b.guarded_stage(
+            "correct_emf_error",
+            rotor.tracking,
+            false,
             &[
-                "Integral per phase of the modelled EMF's error in the last period, against the EMF from voltage and currents.",
-                "It compensates errors of the EMF constant, the angle, R and L.",
+                "Correction of the EMF error by the components of the residual along the shape (q) and across it (d), which are",
+                "2/3 and 2/sqrt(3) of these sums, with a gain of 3/32. The d component is stored over sqrt(3).",
             ],
         );
-        let Some(seen) = self.see_emf(words, i, sight) else {
-            return unchanged;
-        };
-        let (e_prev, integral) = (read(e_prev), read(integral));
-        let most = || l.voltage("integral_max", l.bus_interval().high, PLAUSIBLE);
+        let ([r_a, r_b], [p_a, p_b], [line_a, line_b]) = (residual.0, shape.0, lines.0);
+        let old = memories.map(Memory::read);
+        let along = mul_add_floor([r_a, line_a], [r_b, line_b], OBSERVER_SHIFT);
+        let across = mul_add_floor([r_b, p_a], [-r_a, p_b], OBSERVER_SHIFT);
         named! {
-            let lack = (seen - e_prev).map(|lack| lack.within(most()));
-            let integral_now = (integral + k_integral * (lack - integral)).map(|sum| sum.within(most()));
+            let e_error_q_now = self.plausible_error(old[0] + along);
+            let e_error_d_now = self.plausible_error(old[1] + across);
         }
-        let doc = "Integral of the modelled EMF's error after one step";
-        l.state_phase_volts("integral", integral_now, doc);
+        let [q, d] = l.b.join([
+            ("e_error_q_next", e_error_q_now, old[0]),
+            ("e_error_d_next", e_error_d_now, old[1]),
+        ]);
+        let doc = "Error of the modelled EMF, after one step";
+        l.state_volts("e_error_q", q, doc);
+        l.state_volts("e_error_d", d, doc);
+        let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
+        l.b.stage("observe_emf", &[doc]);
+        let error = Phases([
+            mul_add_floor([q, p_a], [-d, line_b], SHAPE_BITS),
+            mul_add_floor([q, p_b], [d, line_a], SHAPE_BITS),
+        ]);
+        let limit = 2 * self.emf_error_limit();
+        let doc =
+            "Largest plausible EMF: the largest bus, up to the next power of two of timer counts";
         named! {
-            let e_corrected = model.target + integral_now;
+            let e = (e_model + error).map(|e| {
+                e.clamp(l.voltage("e_least", -limit, doc), l.voltage("e_greatest", limit - 1, doc))
+            });
         }
-        let present = if self.options.delay == 0 {
-            e_corrected
-        } else {
-            named! {
-                let e_now_corrected = model.present + integral_now;
-            }
-            e_now_corrected
-        };
-        Emf {
-            target: e_corrected,
+        // The last step's target is the period that begins now.
+        let present = words.e_next.map_or(e, read);
+        Some(Emf {
+            target: e,
             present,
-            expected: model.present,
-            integral: Some(integral_now),
+            expected: present,
+            emf_error: Some([q, d]),
+        })
+    }
+
+    /// The EMF of the last period minus the expected one.
+    fn emf_residual(&self, words: &Words<'b>, i: Phases<'b>) -> Option<Phases<'b>> {
+        let sight = self.sight();
+        self.l.b.stage(
+            "emf_residual",
+            &[
+                "Residual: the EMF of the last period from its voltage and currents, e = v - K (i - i_prev) - R i_prev,",
+                "minus the expected one.",
+            ],
+        );
+        let seen = self.see_emf(words, i, sight)?;
+        let e_prev = read(words.e_prev?);
+        named! {
+            let residual = (seen - e_prev).map(|volts| self.plausible_error(volts));
         }
+        Some(residual)
+    }
+
+    /// An error of the modelled EMF within its limit.
+    fn plausible_error(&self, volts: Expr<'b>) -> Expr<'b> {
+        let (l, limit) = (self.l, self.emf_error_limit());
+        let doc = "Limit of the modelled EMF's error";
+        volts.clamp(
+            l.voltage("e_error_min", -limit, doc),
+            l.voltage("e_error_max", limit - 1, doc),
+        )
     }
 
     fn estimate_emf(&self, words: &Words<'b>, i: Phases<'b>) -> Option<Phases<'b>> {
@@ -246,6 +310,15 @@ impl<'b> CurrentLoop<'_, 'b> {
             ("e_b_past", e_met.b(), e.b()),
         ]))
     }
+}
+
+/// Line values of the shape, a to c and b to c: sqrt(3) times the shape turned by 90 degrees.
+fn shape_lines(shape: Phases<'_>) -> Phases<'_> {
+    let [a, b] = shape.0;
+    named! {
+        let shape_line = Phases([(a << 1) + b, (b << 1) + a]);
+    }
+    shape_line
 }
 
 /// Coefficients of the EMF of a past period.

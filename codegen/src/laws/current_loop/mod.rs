@@ -12,14 +12,14 @@ mod words;
 
 pub use design::LoopDesign;
 pub use held::{Held, LeftOver};
-pub use stability::{LinearLoop, SEARCHED, StableRange, estimate};
+pub use stability::{LinearLoop, SEARCHED, SeenEmf, StableRange};
 pub use words::{EmfUse, Needs, Words};
 
 use crate::blocks::set_point::{Gain, SetPointWords};
 use crate::blocks::{
     Applied, Bus, Command, Commutation, Corner, Hall, Lowering, OffLeg, Rotor, Sample, Scale,
-    advanced_sector, find_sector, proportional_reference, quasi_square_reference, sample,
-    sector_of, sense_direction, third_current,
+    advanced_sector, find_sector, proportional_reference, proportional_shape,
+    quasi_square_reference, sample, sector_of, sense_direction, third_current,
 };
 use crate::ir::{Coefficient, Expr, Memory, Phase, Phases, ProgramBuilder, Told, named};
 use crate::scaling::Lowered;
@@ -45,10 +45,6 @@ pub fn lower_with(
         long_products: notes.long_products,
     }
 }
-
-/// Share of the modelled EMF's error that its integral adds per period: slow against the current,
-/// fast against the commutations of an EMF with a wrong constant.
-pub const EMF_INTEGRAL_SHARE: f64 = 0.125;
 
 /// A step under construction.
 #[derive(Clone, Copy)]
@@ -98,8 +94,8 @@ pub struct Front<'b> {
     pub e_now: Option<Phases<'b>>,
     /// EMF over the present period that the next step's estimate starts from.
     pub e_expected: Option<Phases<'b>>,
-    /// Integral of the modelled EMF's error; if the law has it.
-    pub integral: Option<Phases<'b>>,
+    /// Error of the modelled EMF, q and d; with an observer only.
+    pub emf_error: Option<[Expr<'b>; 2]>,
     /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,
     /// Integral of the speed regulator, and its state; with a speed loop only.
@@ -162,13 +158,20 @@ impl<'b> CurrentLoop<'_, 'b> {
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Before the reference, so that the reference's product with a sign is added last.
         let held = self.holds_emf().then(|| self.held(currents.pair()));
-        let reference = self.reference(&tracked, sector, j);
+        let (reference, shape) = self.reference(&tracked, sector, j);
         let doc = "Mean of three legs.";
         let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
         let bus = set_point.read_bus(l);
         let outgoing = commutation.map(|commutation| commutation.outgoing);
         let rotor = tracked.rotor.as_ref();
-        let emf = self.emf(&words, currents, sector_seen, rotor, third, outgoing);
+        let emf = self.emf(
+            &words,
+            currents,
+            sector_seen,
+            rotor.map(|rotor| (rotor, shape)),
+            third,
+            outgoing,
+        );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
         let speed = regulated.map(|regulated| regulated.speed);
         self.tell([e, e_now], speed.or(rotor.map(|rotor| rotor.step_angle)));
@@ -188,7 +191,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             e,
             e_now,
             e_expected: emf.map(|emf| emf.expected),
-            integral: emf.and_then(|emf| emf.integral),
+            emf_error: emf.and_then(|emf| emf.emf_error),
             held,
             speed_integral: regulated.map(|regulated| regulated.integral),
         }
@@ -248,18 +251,27 @@ impl<'b> CurrentLoop<'_, 'b> {
         Some(rule.follow(self.l, [sector, kept, direction, j], currents))
     }
 
-    /// Step 6.
+    /// Step 6: the reference, and with an angle the shape of the proportional one.
     fn reference(
         &self,
         tracked: &Tracked<'b>,
         sector: Expr<'b>,
         set_point: Expr<'b>,
-    ) -> Phases<'b> {
+    ) -> (Phases<'b>, Option<Phases<'b>>) {
         let (l, options) = (self.l, self.options);
-        match (&tracked.rotor, options.reference) {
-            (Some(rotor), Reference::Proportional) => {
-                proportional_reference(l, rotor, set_point, options.delay)
+        let is_proportional = options.reference == Reference::Proportional;
+        let shape = tracked.rotor.filter(|_| is_proportional || self.observes()).map(|rotor| {
+            if is_proportional {
+                let doc = "Reference parallel to the EMF at the end of the target period: constant torque at least copper loss.";
+                l.b.stage("reference_proportional", &[doc]);
+            } else {
+                let doc = "Direction of the EMF at the end of the target period.";
+                l.b.stage("emf_direction", &[doc]);
             }
+            proportional_shape(l, &rotor, options.delay)
+        });
+        let reference = match shape {
+            Some(shape) if is_proportional => proportional_reference(shape, set_point),
             _ if options.advance > 0.0 => {
                 quasi_square_reference(l, Corner::Sector(sector), set_point)
             }
@@ -269,7 +281,8 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let code = tracked.sample.hall;
                 quasi_square_reference(l, Corner::HallCode(code), set_point)
             }
-        }
+        };
+        (reference, shape)
     }
 
     /// Observations: the EMF of the target period, or of the present one if the law only predicts,
@@ -416,7 +429,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             );
         }
         keep(words.e_prev, front.e_expected);
-        keep(words.integral, front.integral);
+        keep(words.e_next, front.e);
+        keep(words.emf_error, front.emf_error.map(Phases));
         keep(words.i_prev, Some(front.currents.pair()));
         if let Some(off_prev) = words.off_prev {
             let off = match words.t_cmd {

@@ -3,7 +3,7 @@
 
 use super::LoopDesign;
 use crate::design::DiscretePlant;
-use crate::spec::{Discretisation, Spec};
+use crate::spec::{Discretisation, EmfSource, LoopOptions, Spec};
 use nalgebra::{DMatrix, DVector};
 
 /// Stable ranges of true over stated inductance and resistance.
@@ -169,14 +169,46 @@ fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     coefficients
 }
 
-/// EMF estimate with filter share `share` from current and voltage, at standstill, without advance.
-pub fn estimate(share: f64, design: &LoopDesign, i: [f64; 2], v_prev: f64, e_prev: f64) -> f64 {
-    let seen = v_prev - design.k_di * (i[0] - i[1]) - design.k_r * i[1];
-    // A share of 0 means no estimate.
-    if share > 0.0 {
-        e_prev + share * (seen - e_prev)
-    } else {
-        0.0
+/// EMF of a law from current and voltage, at standstill, without advance.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeenEmf {
+    /// Over the target period.
+    pub target: f64,
+    /// Over the period that begins now.
+    pub present: f64,
+}
+
+impl SeenEmf {
+    /// From the currents of the last two samples, the voltage between them, and the EMF expected for
+    /// that period and for the one that begins now.
+    pub fn new(
+        options: &LoopOptions,
+        design: &LoopDesign,
+        i: [f64; 2],
+        v_prev: f64,
+        [e_prev, e_next]: [f64; 2],
+    ) -> Self {
+        let seen = v_prev - design.k_di * (i[0] - i[1]) - design.k_r * i[1];
+        let both = |e| Self {
+            target: e,
+            present: e,
+        };
+        match options.emf {
+            EmfSource::Estimated => both(e_prev + options.emf_filter * (seen - e_prev)),
+            // Folding does not change the loop.
+            EmfSource::Held => both(seen),
+            EmfSource::Model => both(0.0),
+            EmfSource::Observer => {
+                let correction = design.observer_gain * (seen - e_prev);
+                if options.delay == 0 {
+                    return both(e_prev + correction);
+                }
+                Self {
+                    target: e_next + correction,
+                    present: e_next,
+                }
+            }
+        }
     }
 }
 

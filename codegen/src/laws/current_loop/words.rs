@@ -15,8 +15,6 @@ pub struct Needs {
     pub off_leg: bool,
     /// The EMF.
     pub emf: EmfUse,
-    /// Integral of the modelled EMF's error.
-    pub integral: bool,
     /// Greatest magnitude of the law's own contribution to the folded words, words of voltage.
     pub memory: i64,
 }
@@ -68,8 +66,10 @@ pub struct Words<'b> {
     pub off_prev: Option<Memory<'b>>,
     /// EMF expected for the last period.
     pub e_prev: Option<[Memory<'b>; 2]>,
-    /// Integral of the modelled EMF's error.
-    pub integral: Option<[Memory<'b>; 2]>,
+    /// EMF expected of the period that begins now.
+    pub e_next: Option<[Memory<'b>; 2]>,
+    /// Error of the modelled EMF, q and d.
+    pub emf_error: Option<[Memory<'b>; 2]>,
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -80,18 +80,23 @@ impl<'b> CurrentLoop<'_, 'b> {
 
     /// Whether the law uses the rotor's angle or speed.
     fn needs_rotor(&self) -> bool {
-        self.uses(EmfSource::Model)
+        self.needs.emf != EmfUse::None && self.options.emf.is_modelled()
             || self.options.advance > 0.0
             || self.options.reference == Reference::Proportional
             || self.options.speed.is_some()
     }
 
+    /// Whether the law observes the error of the modelled EMF.
+    pub(super) fn observes(&self) -> bool {
+        self.uses(EmfSource::Observer)
+    }
+
     pub(super) fn declare(&self, set_point: &SetPointWords<'b>) -> Words<'b> {
         let (l, options, needs) = (self.l, self.options, self.needs);
-        let estimated = self.uses(EmfSource::Estimated);
+        let (estimated, observes) = (self.uses(EmfSource::Estimated), self.observes());
         let needs_rotor = self.needs_rotor();
         // The EMF of the last period is computed.
-        let sees = estimated || needs.integral;
+        let sees = estimated || observes;
         let e_bound = self.e_bound();
         let e_moves = if estimated {
             self.motion_bound(e_bound)
@@ -127,14 +132,21 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let doc = "Off leg of the last period: 1 a, 2 b, 3 c, 0 none.";
                 l.b.memory("off_prev", 0, LEGS, doc)
             }),
-            e_prev: (needs.integral || estimated && options.emf_filter < 1.0).then(|| {
+            e_prev: (observes || estimated && options.emf_filter < 1.0).then(|| {
                 let range = Interval::symmetric(e_bound + e_moves);
                 let doc = "EMF that the last step expected for the last period.";
                 l.memories(["e_a_prev", "e_b_prev"], range, doc)
             }),
-            integral: needs.integral.then(|| {
-                let doc = "Integral of the modelled EMF's error, words of voltage.";
-                l.memories(["integral_a", "integral_b"], volts, doc)
+            e_next: (observes && is_delayed).then(|| {
+                let range = Interval::symmetric(e_bound);
+                let doc = "EMF that the last step expected for the period that begins now.";
+                l.memories(["e_a_next", "e_b_next"], range, doc)
+            }),
+            emf_error: observes.then(|| {
+                let limit = self.emf_error_limit();
+                let doc = "Error of the modelled EMF in the rotor frame: q along the proportional current, d across \
+                    it over sqrt(3); words of voltage.";
+                l.memories(["e_error_q", "e_error_d"], Interval::new(-limit, limit - 1), doc)
             }),
         }
     }

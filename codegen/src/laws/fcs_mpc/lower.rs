@@ -24,7 +24,6 @@ pub(super) fn lower(
                 commutation: options.pairs(),
                 off_leg: options.floating(),
                 emf: EmfUse::Deadbeat,
-                integral: false,
                 memory: 0,
             },
         };

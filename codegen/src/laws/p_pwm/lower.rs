@@ -26,7 +26,6 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
                 commutation: false,
                 off_leg: false,
                 emf: EmfUse::FeedForward,
-                integral: false,
                 memory: 0,
             },
         };

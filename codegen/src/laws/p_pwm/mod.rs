@@ -8,7 +8,7 @@ use super::{Cause, Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::diagnostics::{engineering, percent};
 use crate::scaling::Lowered;
-use crate::spec::{EmfSource, PPwmSpec, Spec};
+use crate::spec::{PPwmSpec, Spec};
 use linear::ProportionalLoop;
 
 impl Law for PPwmSpec {
@@ -55,7 +55,7 @@ impl Law for PPwmSpec {
 
     fn start(&self, _: bool) -> Start {
         Start {
-            integrates: self.common.emf == EmfSource::Model,
+            integrates: self.common.emf.is_modelled(),
             ..Start::default()
         }
     }

@@ -29,7 +29,6 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 commutation: pair,
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
-                integral: options.integral,
                 memory: 0,
             },
         };

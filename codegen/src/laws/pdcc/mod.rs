@@ -4,7 +4,6 @@ mod linear;
 mod lower;
 
 use super::current_loop::{LinearLoop, LoopDesign};
-use super::start::INTEGRATED_EMF;
 use super::{Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::scaling::Lowered;
@@ -40,8 +39,6 @@ impl Law for PdccSpec {
 
     fn start(&self, _: bool) -> Start {
         Start {
-            part_of_bus: if self.integral { INTEGRATED_EMF } else { 1.0 },
-            integrates: self.integral,
             hides_leg: self.modulation == Modulation::Pair,
             ..Start::default()
         }

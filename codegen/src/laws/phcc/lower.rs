@@ -32,7 +32,6 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
                 } else {
                     EmfUse::None
                 },
-                integral: false,
                 memory: 0,
             },
         };

@@ -1,8 +1,8 @@
 //! The PI loop as a linear system.
 
 use crate::design::DiscretePlant;
-use crate::laws::current_loop::{LinearLoop, LoopDesign, estimate};
-use crate::spec::{EmfSource, PiPwmSpec, Spec};
+use crate::laws::current_loop::{LinearLoop, LoopDesign, SeenEmf};
+use crate::spec::{PiPwmSpec, Spec};
 use nalgebra::DVector;
 
 /// Whether the loop would be stable with the default integral time, L/R.
@@ -19,7 +19,7 @@ pub fn is_stable_with_winding_time(spec: &Spec, options: &PiPwmSpec) -> bool {
     linear.spectral_radius(spec) < 1.0
 }
 
-/// The PI loop; state i, i_prev, v_now, v_prev, e_prev, integral.
+/// The PI loop; state i, i_prev, v_now, v_prev, e_prev, e_next, integral.
 #[derive(Clone, Copy, Debug)]
 pub struct PiLoop<'d> {
     /// Options.
@@ -32,20 +32,20 @@ pub struct PiLoop<'d> {
 
 impl LinearLoop for PiLoop<'_> {
     fn order(&self) -> usize {
-        6
+        7
     }
 
     fn advance(&self, real: DiscretePlant, x: &DVector<f64>) -> DVector<f64> {
-        let [i, i_prev, v_now, v_prev, e_prev, integral] = [x[0], x[1], x[2], x[3], x[4], x[5]];
+        let [i, i_prev, v_now, v_prev, e_prev, e_next, integral] =
+            [x[0], x[1], x[2], x[3], x[4], x[5], x[6]];
         let common = &self.options.common;
-        let share = if self.options.feed_forward && common.emf == EmfSource::Estimated {
-            common.emf_filter
+        let e = if self.options.feed_forward {
+            SeenEmf::new(common, self.design, [i, i_prev], v_prev, [e_prev, e_next])
         } else {
-            0.0
+            SeenEmf::default()
         };
-        let e = estimate(share, self.design, [i, i_prev], v_prev, e_prev);
         let proportional = -self.options.proportional_gain(&self.spec.motor) * i;
-        let u = proportional + integral + e;
+        let u = proportional + integral + e.target;
         let integral = integral + self.options.integral_share(self.spec) * proportional;
         let (applied, v_next, v_last) = if common.delay == 1 {
             (v_now, u, v_now)
@@ -53,6 +53,6 @@ impl LinearLoop for PiLoop<'_> {
             (u, 0.0, u)
         };
         let next = real.pole * i + real.gain * applied;
-        DVector::from_vec(vec![next, i, v_next, v_last, e, integral])
+        DVector::from_vec(vec![next, i, v_next, v_last, e.present, e.target, integral])
     }
 }

@@ -46,7 +46,6 @@ pub(super) fn lower(
                 commutation: false,
                 off_leg: false,
                 emf,
-                integral: false,
                 memory: 0,
             },
         };

@@ -9,7 +9,7 @@ use super::{Cause, Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::diagnostics::engineering;
 use crate::scaling::Lowered;
-use crate::spec::{EmfSource, PiPwmSpec, Spec};
+use crate::spec::{PiPwmSpec, Spec};
 use linear::{PiLoop, is_stable_with_winding_time};
 
 impl Law for PiPwmSpec {
@@ -70,7 +70,7 @@ impl Law for PiPwmSpec {
             } else {
                 1.0
             },
-            integrates: self.feed_forward && self.common.emf == EmfSource::Model,
+            integrates: self.feed_forward && self.common.emf.is_modelled(),
             ..Start::default()
         }
     }

@@ -13,7 +13,15 @@ words! {
     pub enum EmfSource {
         "estimated" = Estimated: "from the voltage and currents of the last period",
         "model" = Model: "from the motor's EMF shape at the Hall angle and speed",
+        "observer" = Observer: "the modelled one plus its error, observed in the rotor frame: compensates deviations of `k_b`, R, L, bus and angle",
         "held" = Held: "taken as unchanged since the last period: fewest instructions, more ripple",
+    }
+}
+
+impl EmfSource {
+    /// Whether the motor's shape at the rotor's angle and speed says what EMF to expect.
+    pub fn is_modelled(self) -> bool {
+        matches!(self, Self::Model | Self::Observer)
     }
 }
 
@@ -259,7 +267,7 @@ pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Co
             &field.location,
             "emf",
             "held",
-            &["estimated", "model"],
+            &["estimated", "model", "observer"],
         ));
     }
 }
@@ -322,6 +330,10 @@ fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
         EmfSource::Model => (
             "emf: model",
             "the filter smooths the estimate, which the model does not use",
+        ),
+        EmfSource::Observer => (
+            "emf: observer",
+            "the filter smooths the estimate, and the observer has a gain of its own",
         ),
         EmfSource::Held => (
             "emf: held",

@@ -27,8 +27,6 @@ pub struct PdccSpec {
     pub modulation: Modulation,
     /// Saturation rule.
     pub saturation: LimitRule,
-    /// Whether an integrator corrects the modelled EMF.
-    pub integral: bool,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
     /// Options that all controllers share.
@@ -51,12 +49,6 @@ impl Options for PdccSpec {
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)
         }),
-        Row::of(
-            rule::choice::<bool>("integral", "on")
-                .preset("off")
-                .about("Whether a slow integrator corrects the modelled EMF for errors of k_b, angle, R and L; only with `emf: model`"),
-            |options| if_on(options.integral),
-        ),
     ];
 
     /// The modulation `table2` is known from the literature, but not available.
@@ -70,7 +62,7 @@ impl Options for PdccSpec {
         }
         let common = read_common(reader, surroundings, without_sectors, errors)?;
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
-            let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated` or `emf: model`";
+            let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
         }
         if common.reference == Reference::Proportional
@@ -86,7 +78,6 @@ impl Options for PdccSpec {
         Some(Self {
             modulation,
             saturation,
-            integral: read_integral(reader, common.emf, errors),
             dead_time_compensation,
             common,
         })
@@ -103,27 +94,4 @@ impl Options for PdccSpec {
     fn modulates(&self) -> bool {
         true
     }
-}
-
-/// An integral needs the modelled EMF: an estimate already contains what it would add.
-fn read_integral(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> bool {
-    let is_on = reader.switch(errors, "integral") == Some(true);
-    let other = match emf {
-        EmfSource::Estimated => "emf: estimated",
-        EmfSource::Held => "emf: held",
-        EmfSource::Model => return is_on,
-    };
-    if is_on && let Some(field) = reader.field("integral") {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "integral",
-            "on",
-            reader
-                .field("emf")
-                .map_or(reader.location(), |field| &field.location),
-            other,
-            "the estimate already contains what the integral adds to `emf: model`",
-        ));
-    }
-    is_on
 }

@@ -24,7 +24,7 @@ const VARIANTS: [&str; 16] = [
     "pdcc:emf=model,saturation=nearest",
     "pdcc:emf=model,modulation=pair,saturation=keep_angle,advance=1.5",
     "pdcc:modulation=pair,word=16",
-    "pdcc:reference=proportional,emf=model,integral=on",
+    "pdcc:reference=proportional,emf=observer",
     "pdcc:delay=0,emf_filter=1,saturation=nearest,discretisation=euler",
     "pi-pwm",
     "pi-pwm:feed_forward=off,saturation=keep_angle,word=16",

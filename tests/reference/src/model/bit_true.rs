@@ -320,25 +320,23 @@ impl<W: Word> BitTrue<W> {
 
         // 6 reference
         let delayed = self.variant.delayed();
+        let shape = if self.variant.shaped() {
+            let ahead = if delayed { 2.0 } else { 1.0 };
+            k.shape.both(angle.theta + angle.step * ahead)
+        } else {
+            [word(0.0); 2]
+        };
         let j_ref = match self.variant.options.reference {
             Reference::QuasiSquare => [
                 j * sector::CORNER_A[sector_eff],
                 j * sector::CORNER_B[sector_eff],
             ],
-            Reference::Proportional => {
-                let theta_ref = if delayed {
-                    angle.theta + angle.step * 2.0
-                } else {
-                    angle.theta + angle.step
-                };
-                k.shape
-                    .both(theta_ref)
-                    .map(|shape| k.shape_product.round_product(shape, j))
-            }
+            Reference::Proportional => shape.map(|shape| k.shape_product.round_product(shape, j)),
         };
 
         // 8 EMF
-        let (mut e, mut e_now) = match self.variant.emf {
+        let mut emf_error = self.state.emf_error;
+        let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => ([word(0.0); 2], [word(0.0); 2]),
             Some(EmfSource::Estimated) => {
                 let seen = emf::estimate(k, &self.state, i);
@@ -349,7 +347,7 @@ impl<W: Word> BitTrue<W> {
                 };
                 motion::ahead(k, delayed, sector, e)
             }
-            Some(EmfSource::Model) => {
+            Some(source @ (EmfSource::Model | EmfSource::Observer)) => {
                 let now = k.flux.both(angle.theta);
                 let start = if delayed {
                     k.flux.both(angle.theta + angle.step)
@@ -367,19 +365,16 @@ impl<W: Word> BitTrue<W> {
                         )
                     })
                 };
-                (mean(start, end), mean(now, start))
+                if source == EmfSource::Model {
+                    (mean(start, end), mean(now, start))
+                } else {
+                    emf_error = emf::corrected_error(k, &self.state, i, shape);
+                    let e = emf::corrected(k, mean(start, end), emf_error, shape);
+                    (e, if delayed { self.state.e_next } else { e })
+                }
             }
         };
-
         let expected = if delayed { e_now } else { e };
-        let mut integral = self.state.integral;
-        if self.variant.integrates() {
-            integral = emf::integrate(k, &self.state, i);
-            for x in 0..2 {
-                e[x] += integral[x];
-                e_now[x] += integral[x];
-            }
-        }
 
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
@@ -403,7 +398,7 @@ impl<W: Word> BitTrue<W> {
             e_now,
             sector_eff,
             commutating,
-            integral,
+            integral: self.state.integral,
             set_point: j,
             direction: self.state.timing.direction,
             hysteresis: self.state.hysteresis,
@@ -439,6 +434,8 @@ impl<W: Word> BitTrue<W> {
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
             self.state.e_prev = expected;
+            self.state.e_next = e;
+            self.state.emf_error = emf_error;
             self.state.speed_integral = speed_integral;
             self.state.integral = decision.integral;
             self.state.hysteresis = decision.hysteresis;

@@ -13,7 +13,7 @@ use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{Limits, Observation, Period};
 use super::trace::{Past, PhysicalState, Trace};
-use super::variant::Variant;
+use super::variant::{Variant, emf_error_limit};
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
@@ -80,6 +80,8 @@ pub struct Ideal {
     motion: EmfMotion,
     /// The largest bus voltage.
     v_largest: f64,
+    /// Limit of the modelled EMF's error, volt.
+    emf_error_limit: f64,
     max_current: f64,
     k_t: f64,
     k_phase: f64,
@@ -127,6 +129,8 @@ impl Ideal {
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
             motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,
+            emf_error_limit: emf_error_limit(spec)? * inverter.v_bus
+                / f64::from(inverter.timer_period),
             max_current: inverter.max_current,
             k_t: motor.torque_constant,
             k_phase: motor.emf_constant,
@@ -277,19 +281,19 @@ impl Ideal {
 
         // 6 reference
         let target = f64::from(1 + self.variant.options.delay) * step_angle;
+        let f = self.shape.alpha_beta(theta + target);
+        let shape = f * (2.0 / 3.0 * self.k_t / self.k_phase / f.norm_squared());
         let i_ref = match self.variant.options.reference {
             Reference::QuasiSquare => {
                 from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * current
             }
-            Reference::Proportional => {
-                let f = self.shape.alpha_beta(theta + target);
-                f * (2.0 / 3.0 * self.k_t / self.k_phase * current / f.norm_squared())
-            }
+            Reference::Proportional => shape * current,
         };
 
         // 8 EMF
         let delayed = self.variant.delayed();
-        let (mut e, mut e_now) = match self.variant.emf {
+        let mut emf_error = self.state.emf_error;
+        let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
                 let raw = self.emf_seen([i_a, i_b]);
@@ -305,7 +309,7 @@ impl Ideal {
                 let [present, target] = self.moved_on(&e, sector);
                 (if delayed { target } else { present }, present)
             }
-            Some(EmfSource::Model) => {
+            Some(source @ (EmfSource::Model | EmfSource::Observer)) => {
                 let start = theta + f64::from(self.variant.options.delay) * step_angle;
                 let mean = |from: f64, to: f64| {
                     let [e_a, e_b] = [0.0, THIRD].map(|lag| {
@@ -315,18 +319,21 @@ impl Ideal {
                     });
                     from_ab(e_a, e_b)
                 };
-                (mean(start, theta + target), mean(theta, start))
+                let e = mean(start, theta + target);
+                if source == EmfSource::Model {
+                    (e, mean(theta, start))
+                } else {
+                    emf_error = self.corrected_error([i_a, i_b], &shape);
+                    let e = self.corrected_emf(&e, emf_error, &shape);
+                    let [next_a, next_b] = self.state.e_next;
+                    (e, if delayed { from_ab(next_a, next_b) } else { e })
+                }
             }
         };
 
         let expected = if delayed { e_now } else { e };
         let [s_a, s_b] = self.state.integral;
-        let mut integral = from_ab(s_a, s_b);
-        if self.variant.integrates() {
-            integral = self.integrated([i_a, i_b]);
-            e += integral;
-            e_now += integral;
-        }
+        let integral = from_ab(s_a, s_b);
 
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
@@ -386,6 +393,8 @@ impl Ideal {
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
             self.state.e_prev = to_ab(&expected);
+            self.state.e_next = to_ab(&e);
+            self.state.emf_error = emf_error;
             self.state.speed_integral = speed_integral;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
@@ -398,6 +407,8 @@ impl Ideal {
             self.state.off_cmd = None;
             self.state.off_prev = None;
             self.state.e_prev = [0.0; 2];
+            self.state.e_next = [0.0; 2];
+            self.state.emf_error = [0.0; 2];
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
             self.state.rises = [None; 2];

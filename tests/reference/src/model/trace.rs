@@ -82,6 +82,10 @@ pub struct PhysicalState {
     pub off_prev: Option<usize>,
     /// EMF expected of the period that ends with the next sample, phases a, b, volt.
     pub e_prev: [f64; 2],
+    /// EMF expected of the period that begins with the next sample, phases a, b, volt.
+    pub e_next: [f64; 2],
+    /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
+    pub emf_error: [f64; 2],
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
     /// Whether the components along a and across it are to rise (PHCC); `None` before the first

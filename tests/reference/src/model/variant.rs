@@ -1,5 +1,6 @@
 //! Steps and state words of a variant, for both models.
 
+use crate::Error;
 use crate::spec::{
     Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg,
     Reference, Saturation, Spec, Switch,
@@ -28,8 +29,6 @@ pub struct Variant {
     pub modulated: Switch,
     /// Section 10w: changes of leg states have a cost.
     pub counts_changes: Switch,
-    /// Section 8: the modelled EMF's error is integrated.
-    pub integral: Switch,
     /// Section 11: compare values are shifted to compensate the dead time.
     pub dead_time: Switch,
     /// PI: whether there is one controller for the pair, or one per axis.
@@ -44,11 +43,10 @@ impl Variant {
         let (mut emf, mut predicts) = (Some(options.emf), true);
         let mut modulated = Switch::Off;
         let mut counts_changes = Switch::Off;
-        let (mut integral, mut dead_time) = (Switch::Off, Switch::Off);
+        let mut dead_time = Switch::Off;
         let (commutates, floating, saturation) = match &spec.controller {
             Controller::Pdcc(pdcc) => {
                 let pair = pdcc.modulation == Modulation::Pair;
-                integral = pdcc.integral;
                 dead_time = pdcc.dead_time_compensation;
                 (pair, pair, Some(pdcc.saturation))
             }
@@ -88,12 +86,11 @@ impl Variant {
         if held {
             (emf, predicts) = (None, false);
         }
-        let estimated = emf == Some(EmfSource::Estimated);
         let is_phcc = matches!(spec.controller, Controller::Phcc(_));
         let has_fixed_bus = spec.inverter.bus == Bus::Fixed;
         Self {
             options,
-            rotor: emf == Some(EmfSource::Model)
+            rotor: matches!(emf, Some(EmfSource::Model | EmfSource::Observer))
                 || options.advance > 0.0
                 || options.reference == Reference::Proportional
                 || options.has_speed_loop(),
@@ -106,10 +103,10 @@ impl Variant {
                 Switch::Off
             },
             floating,
-            applied_now: options.delay == 1 && (predicts || estimated),
+            applied_now: options.delay == 1
+                && (predicts || matches!(emf, Some(EmfSource::Estimated | EmfSource::Observer))),
             modulated,
             counts_changes,
-            integral,
             dead_time,
             six_step: match &spec.controller {
                 Controller::PiPwm(pi_pwm) => Some(pi_pwm.six_step),
@@ -143,7 +140,7 @@ impl Variant {
 
     /// Section 8: the observed EMF of the last period is used.
     pub fn sees(&self) -> bool {
-        self.estimated() || self.integrates()
+        self.estimated() || self.observes()
     }
 
     /// Section 9: contributions of past periods to the voltage are combined, with a held EMF.
@@ -156,9 +153,14 @@ impl Variant {
         self.wishes_in_due == Switch::On
     }
 
-    /// Section 8: the modelled EMF's error is integrated.
-    pub fn integrates(&self) -> bool {
-        self.integral == Switch::On
+    /// Section 8: the error of the modelled EMF is observed.
+    pub fn observes(&self) -> bool {
+        self.emf == Some(EmfSource::Observer)
+    }
+
+    /// Section 6: the shape of the proportional reference takes part.
+    pub fn shaped(&self) -> bool {
+        self.options.reference == Reference::Proportional || self.observes()
     }
 
     /// Section 11: compare values are shifted to compensate the dead time.
@@ -188,4 +190,15 @@ pub fn reference_gain(spec: &Spec) -> f64 {
             std::f64::consts::TAU * pi_pwm.bandwidth * spec.motor.inductance
         }
     }
+}
+
+/// Limit of a modelled EMF's error, timer counts: the least power of two that is not below half the
+/// largest bus.
+///
+/// # Errors
+/// When the bus is inconsistent.
+pub fn emf_error_limit(spec: &Spec) -> Result<f64, Error> {
+    let inverter = &spec.inverter;
+    let count = inverter.v_bus / f64::from(inverter.timer_period);
+    Ok((inverter.v_bus_max()? / count / 2.0).log2().ceil().exp2())
 }

@@ -112,9 +112,6 @@ options! {
         modulation: Modulation,
         /// Saturation rule outside the hexagon.
         saturation: Saturation,
-        /// Whether the modelled EMF's error is integrated.
-        #[serde(default)]
-        integral: Switch,
         /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
@@ -310,6 +307,8 @@ pub enum EmfSource {
     Estimated,
     /// From the motor's EMF shape at the interpolated Hall angle.
     Model,
+    /// The modelled one plus its error, observed in the rotor frame.
+    Observer,
     /// That of the last period, used as that of the target.
     Held,
 }

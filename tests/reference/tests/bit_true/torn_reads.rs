@@ -20,7 +20,8 @@ enum Late {
 }
 
 fn timed() -> Variant {
-    let wanted = "660 W: three_phase keep_angle model 1 integral off quasi_square advance 0 delay 1 exact timer fixed";
+    let wanted =
+        "660 W: three_phase keep_angle model 1 quasi_square advance 0 delay 1 exact timer fixed";
     let mut all = variants::all().into_iter();
     all.find(|variant| variant.name == wanted)
         .expect("the variant")

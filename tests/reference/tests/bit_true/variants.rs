@@ -89,11 +89,11 @@ pub fn all() -> Vec<Variant> {
             };
             let modulation = ["three_phase", "pair"][pick(2)];
             let saturation = ["keep_angle", "nearest", "torque_priority"][pick(3)];
-            let (emf, filter, integral) = [
-                ("estimated", 1.0, "off"),
-                ("estimated", 0.4, "off"),
-                ("model", 1.0, "off"),
-                ("model", 1.0, "on"),
+            let (emf, filter) = [
+                ("estimated", 1.0),
+                ("estimated", 0.4),
+                ("model", 1.0),
+                ("observer", 1.0),
             ][pick(4)];
             let reference = ["quasi_square", "proportional"][pick(2)];
             let advance = [0.0, 1.5][pick(2)];
@@ -109,7 +109,6 @@ modulation = "{modulation}"
 saturation = "{saturation}"
 emf = "{emf}"
 emf_filter = {filter:?}
-integral = "{integral}"
 reference = "{reference}"
 advance = {advance:?}
 delay = {delay}
@@ -120,7 +119,7 @@ commutation_timeout = 8
 "#
             );
             let name = format!(
-                "{motor}: {modulation} {saturation} {emf} {filter} integral {integral} {reference} advance {advance} delay {delay} \
+                "{motor}: {modulation} {saturation} {emf} {filter} {reference} advance {advance} delay {delay} \
                  {discretisation} {capture} {bus}"
             );
             variants.push(variant(name, text, capture, bus, &options));
@@ -309,7 +308,6 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_fade", shift(b * motor.resistance)),
         ("k_filter", shift(options.emf_filter)),
         ("k_slope", shift(slope)),
-        ("k_integral", shift(1.0 / 8.0)),
         ("k_third", shift(1.0 / 3.0)),
         ("k_sixth", shift(1.0 / 6.0)),
         ("score", 2 * f_v - 30),
@@ -380,7 +378,7 @@ pub fn has_rotor(variant: &Variant) -> bool {
         Controller::Phcc(_) => options.delay == 1,
         Controller::Pdcc(_) | Controller::FcsMpc(_) | Controller::PPwm(_) => true,
     };
-    needs_emf && options.emf == EmfSource::Model
+    needs_emf && matches!(options.emf, EmfSource::Model | EmfSource::Observer)
         || options.advance > 0.0
         || options.reference == Reference::Proportional
 }

@@ -4,10 +4,9 @@ use super::parts::{Part, Parts};
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
-use crate::model::variant::{Variant, reference_gain};
+use crate::model::variant::{Variant, emf_error_limit, reference_gain};
 use crate::{
-    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Reference, Saturation,
-    Spec, Switch,
+    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
 };
 
 /// Largest magnitude of a coefficient's word.
@@ -50,6 +49,10 @@ pub struct Constants<W> {
     pub v_largest: f64,
     /// LINE_MAX.
     pub line_max: f64,
+    /// E_ERROR_MAX.
+    pub emf_error_limit: f64,
+    /// Shift of the sums of products that correct the EMF error.
+    pub observer: Shift,
     /// 2^q, where q is not below 0.
     pub line_scale: f64,
     /// -q, where q is.
@@ -63,7 +66,6 @@ pub struct Constants<W> {
     pub k_r: Coefficient<W>,
     pub k_filter: Coefficient<W>,
     pub k_slope: Coefficient<W>,
-    pub k_integral: Coefficient<W>,
     pub k_third: Coefficient<W>,
     pub k_set: Coefficient<W>,
     pub k_torque: Coefficient<W>,
@@ -235,25 +237,26 @@ impl<W: Word> Constants<W> {
 
         let emf_shape = EmfShape::new(motor)?;
         let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w;
-        let (flux, flux_to_voltage) = if variant.emf == Some(EmfSource::Model) {
-            let bits = formats.frac_bits("flux")?;
-            if pow2(bits as i32) < two_v {
-                return Err(Error::Format {
-                    name: "flux",
-                    frac_bits: bits as i32,
-                    expected: "expected at least the voltage's",
+        let (flux, flux_to_voltage) =
+            if matches!(variant.emf, Some(EmfSource::Model | EmfSource::Observer)) {
+                let bits = formats.frac_bits("flux")?;
+                if pow2(bits as i32) < two_v {
+                    return Err(Error::Format {
+                        name: "flux",
+                        frac_bits: bits as i32,
+                        expected: "expected at least the voltage's",
+                    });
+                }
+                let segments = formats.segments("flux")?;
+                let table = Table::new(segments, bits, |theta| {
+                    linkage * emf_shape.zero_sum_integral(theta)
                 });
-            }
-            let segments = formats.segments("flux")?;
-            let table = Table::new(segments, bits, |theta| {
-                linkage * emf_shape.zero_sum_integral(theta)
-            });
-            (table, two_v * pow2(-(bits as i32)))
-        } else {
-            (Table::default(), 0.0)
-        };
+                (table, two_v * pow2(-(bits as i32)))
+            } else {
+                (Table::default(), 0.0)
+            };
         let torque_ratio = motor.torque_constant / motor.emf_constant;
-        let (shape, shape_product) = if options.reference == Reference::Proportional {
+        let (shape, shape_product) = if variant.shaped() {
             let bits = formats.frac_bits("shape")?;
             let table = Table::new(formats.segments("shape")?, bits, |theta| {
                 2.0 / 3.0 * torque_ratio * emf_shape.zero_sum(theta)
@@ -285,11 +288,10 @@ impl<W: Word> Constants<W> {
                 (Part::VoltageCommand, variant.applied_now && !floating),
                 (Part::TerminalCommand, variant.applied_now && floating),
                 (Part::OffMemory, variant.unseen()),
-                (Part::EmfMemory, filtered || variant.integrates()),
-                (
-                    Part::Integral,
-                    variant.integrates() || variant.six_step == Some(Switch::Off),
-                ),
+                (Part::EmfMemory, filtered || variant.observes()),
+                (Part::EmfNext, variant.observes() && variant.delayed()),
+                (Part::EmfError, variant.observes()),
+                (Part::Integral, variant.six_step == Some(Switch::Off)),
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (
                     Part::Hysteresis,
@@ -319,6 +321,8 @@ impl<W: Word> Constants<W> {
             e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
             v_largest,
             line_max,
+            emf_error_limit: emf_error_limit(spec)? * two_v,
+            observer: Shift::new(shape_product.bits() + 4),
             line_scale: pow2(q.max(0)),
             line_shift: (-q).max(0) as u32,
             line_product: Shift::new(options.word),
@@ -328,7 +332,6 @@ impl<W: Word> Constants<W> {
             k_di: scale.only_if(variant.sees(), "k_di", ohm / b)?,
             k_r: scale.only_if(variant.sees(), "k_r", ohm * resistance)?,
             k_filter: scale.only_if(filtered, "k_filter", options.emf_filter)?,
-            k_integral: scale.only_if(variant.integrates(), "k_integral", 1.0 / 8.0)?,
             k_slope: scale.only_if(estimated, "k_slope", slope)?,
             k_third: scale.only_if(
                 (floating && variant.applied())

@@ -29,16 +29,47 @@ pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2
     })
 }
 
-/// Error of the modelled EMF of phases a, b, updated by the period that ends with the currents `i`.
+/// Error of the modelled EMF, q and d, corrected by the period that ends with the currents `i`.
 #[inline]
-pub fn integrate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
+pub fn corrected_error<W: Word>(
+    k: &Constants<W>,
+    state: &State<W>,
+    i: [W; 2],
+    shape: [W; 2],
+) -> [W; 2] {
+    if state.timing.edges != 2 {
+        return state.emf_error;
+    }
     let seen = seen(k, state, i);
-    let believed = |e: W| within(e, -k.v_largest, k.v_largest);
-    both(|x| {
-        let lack = believed(seen[x] - state.e_prev[x]);
-        let sum = state.integral[x];
-        believed(sum + k.k_integral.mul(lack - sum))
-    })
+    let believed = |volts: W| within(volts, -k.emf_error_limit, k.emf_error_limit - 1.0);
+    let [x, y] = both(|phase| believed(seen[phase] - state.e_prev[phase]));
+    let ([a, b], [line_a, line_b]) = (shape, lines(shape));
+    let along = k.observer.floor_sum_of_products([x, line_a], [y, line_b]);
+    let across = k.observer.floor_sum_of_products([y, a], [-x, b]);
+    [
+        believed(state.emf_error[0] + along),
+        believed(state.emf_error[1] + across),
+    ]
+}
+
+/// The modelled EMF of phases a, b plus its error.
+#[inline]
+pub fn corrected<W: Word>(k: &Constants<W>, e: [W; 2], emf_error: [W; 2], shape: [W; 2]) -> [W; 2] {
+    let ([a, b], [line_a, line_b], [along, across]) = (shape, lines(shape), emf_error);
+    let turned = [
+        k.shape_product
+            .floor_sum_of_products([along, a], [-across, line_b]),
+        k.shape_product
+            .floor_sum_of_products([along, b], [across, line_a]),
+    ];
+    let most = 2.0 * k.emf_error_limit;
+    both(|x| within(e[x] + turned[x], -most, most - 1.0))
+}
+
+/// Phase a less c, and b less c.
+#[inline]
+fn lines<W: Word>([a, b]: [W; 2]) -> [W; 2] {
+    [a * 2.0 + b, b * 2.0 + a]
 }
 
 /// The estimate `seen` with the EMF of a floating leg replaced by that of the sector.

@@ -14,6 +14,8 @@ pub enum Part {
     TerminalCommand,
     OffMemory,
     EmfMemory,
+    EmfNext,
+    EmfError,
     Integral,
     PairIntegral,
     Hysteresis,

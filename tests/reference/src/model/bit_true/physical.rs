@@ -83,6 +83,8 @@ impl State<f64> {
             v_prev: volts(self.v_prev),
             off_prev: self.off_prev.checked_sub(1),
             e_prev: volts(self.e_prev),
+            e_next: volts(self.e_next),
+            emf_error: volts(self.emf_error),
             integral: volts(self.integral),
             rises: self
                 .hysteresis

@@ -27,6 +27,9 @@ pub struct State<W: Word> {
     pub v_prev: [W; 2],
     pub off_prev: usize,
     pub e_prev: [W; 2],
+    pub e_next: [W; 2],
+    /// `e_error_q`, `e_error_d`.
+    pub emf_error: [W; 2],
     pub integral: [W; 2],
     /// `h_a`, `h_b`; unless stored in the contributions of past periods.
     pub hysteresis: [W; 2],
@@ -200,6 +203,14 @@ macro_rules! for_each_word {
             $show!("e_a_prev", $state.e_prev[0]);
             $show!("e_b_prev", $state.e_prev[1]);
         }
+        if $parts.has(Part::EmfNext) {
+            $show!("e_a_next", $state.e_next[0]);
+            $show!("e_b_next", $state.e_next[1]);
+        }
+        if $parts.has(Part::EmfError) {
+            $show!("e_error_q", $state.emf_error[0]);
+            $show!("e_error_d", $state.emf_error[1]);
+        }
         if $parts.has(Part::Integral) {
             $show!("integral_a", $state.integral[0]);
             $show!("integral_b", $state.integral[1]);
@@ -264,6 +275,8 @@ impl<W: Word> State<W> {
         self.v_prev = [word(0.0); 2];
         self.off_prev = 0;
         self.e_prev = [word(0.0); 2];
+        self.e_next = [word(0.0); 2];
+        self.emf_error = [word(0.0); 2];
         self.integral = [word(0.0); 2];
         self.hysteresis = [word(0.0); 2];
         self.vector_prev = Vector(0);

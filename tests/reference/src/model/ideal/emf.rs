@@ -7,8 +7,8 @@ use crate::emf_motion::EmfMotion;
 use crate::model::sector;
 use nalgebra::{Vector2, Vector3};
 
-/// Fraction of a modelled EMF's error that is integrated per period.
-const INTEGRAL_SHARE: f64 = 1.0 / 8.0;
+/// Gain of the observer: fraction of the residual per period.
+const OBSERVER_GAIN: f64 = 3.0 / 32.0;
 
 impl Ideal {
     /// The estimate `seen` with the known EMF of a floating leg (section 8), as only the EMF
@@ -82,12 +82,31 @@ impl Ideal {
         }
     }
 
-    /// Error of the modelled EMF, updated by the period that ends with the currents `i`.
-    pub(super) fn integrated(&self, i: [f64; 2]) -> Vector2<f64> {
-        let pair = |[a, b]: [f64; 2]| from_ab(a, b);
-        let lack = self.emf_seen(i) - pair(self.state.e_prev);
-        let lack = pair(to_ab(&lack).map(|lack| self.believed(lack)));
-        let sum = pair(self.state.integral);
-        sum + (lack - sum) * INTEGRAL_SHARE
+    /// Error of the modelled EMF, q and d, corrected by the period that ends with the currents `i`.
+    pub(super) fn corrected_error(&self, i: [f64; 2], shape: &Vector2<f64>) -> [f64; 2] {
+        if self.state.timing.edges != 2 {
+            return self.state.emf_error;
+        }
+        let believed = |volts: f64| volts.clamp(-self.emf_error_limit, self.emf_error_limit);
+        let [e_a, e_b] = self.state.e_prev;
+        let [x, y] = to_ab(&(self.emf_seen(i) - from_ab(e_a, e_b))).map(believed);
+        let residual = from_ab(x, y) * OBSERVER_GAIN;
+        [
+            believed(self.state.emf_error[0] + residual.dot(shape)),
+            believed(self.state.emf_error[1] + shape.perp(&residual) / 3_f64.sqrt()),
+        ]
+    }
+
+    /// The modelled EMF plus its error.
+    pub(super) fn corrected_emf(
+        &self,
+        e: &Vector2<f64>,
+        emf_error: [f64; 2],
+        shape: &Vector2<f64>,
+    ) -> Vector2<f64> {
+        let across = Vector2::new(-shape.y, shape.x) * 3_f64.sqrt();
+        let most = 2.0 * self.emf_error_limit;
+        let [e_a, e_b] = to_ab(&(e + shape * emf_error[0] + across * emf_error[1]));
+        from_ab(e_a.clamp(-most, most), e_b.clamp(-most, most))
     }
 }
