@@ -6,4 +6,5 @@ mod explanations;
 mod front_ends;
 mod inverter;
 mod motors;
+mod sensing;
 mod spelling;
