@@ -5,7 +5,7 @@
 
 use super::ast::Basis;
 use super::controller;
-use super::rule::{Kind, Rule, integer, quantity, text, word};
+use super::rule::{Kind, Rule, integer, plain, quantity, text, word};
 use super::units::Dimension as D;
 
 /// 1 rpm in rad/s.
