@@ -13,7 +13,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{Origins, Spec};
+use crate::spec::{CurrentSensing, Origins, SensedPhases, Spec};
 use crate::stopwatch::Part;
 
 /// Input of the emitters.
@@ -67,6 +67,7 @@ fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 }
 
 fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
+    check_sensing(spec, origins)?;
     let common = spec.controller.common();
     let design = LoopDesign::new(spec, common);
     let law = law(&spec.controller);
@@ -92,6 +93,31 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let interface = interface(spec, &design, &scaled, &description, accuracy);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
+}
+
+/// What a specification can say of sensors and legs, and this version cannot generate.
+fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
+    let inverter = &spec.inverter;
+    let first = inverter.sensors()[0];
+    let asked = [
+        (
+            "current_sensing",
+            inverter.current_sensing != CurrentSensing::InPhase,
+        ),
+        ("sensed_phases", inverter.sensed_phases != SensedPhases::Ab),
+        (
+            "adc_gain",
+            inverter.other_sensors.iter().any(|sensor| *sensor != first),
+        ),
+        ("minimum_low_time", inverter.minimum_low_time > 0.0),
+        ("pwm_per_control", inverter.pwm_per_control > 1),
+    ];
+    let mut errors = Collector::new();
+    for (name, _) in asked.iter().filter(|(_, is_asked)| *is_asked) {
+        let at = origins.at(&format!("inverter.{name}"));
+        errors.push(catalogue::option_planned(at, name));
+    }
+    errors.into_result(())
 }
 
 /// Warnings about a drive that is generated nevertheless.
@@ -170,12 +196,16 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
     let stride = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
     if stride > motor.rated_current {
         let at = origins.at("controller.kind");
+        let longest = |gain| {
+            let t_s = LoopDesign::longest_period(spec, gain);
+            [t_s, inverter.pwm_frequency(t_s)]
+        };
         errors.push(catalogue::vector_too_strong(
             at,
             spec.controller.kind(),
             stride,
             motor.rated_current,
-            LoopDesign::longest_period(spec, design.plant.gain * motor.rated_current / stride),
+            longest(design.plant.gain * motor.rated_current / stride),
         ));
     }
 }
@@ -189,11 +219,12 @@ fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut 
     if miss > motor.rated_current {
         let at = origins.at("controller.modulated");
         let t_s = LoopDesign::longest_period(spec, design.plant.gain * motor.rated_current / miss);
+        let longest = [t_s, inverter.pwm_frequency(t_s)];
         errors.push(catalogue::vectors_too_coarse(
             at,
             miss,
             motor.rated_current,
-            t_s,
+            longest,
         ));
     }
 }

@@ -65,7 +65,7 @@ impl<'a> States<'a> {
             calibration: limits.offsets.map(samples),
             count_bits: limits.current_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
-            inverted: inverter.adc_gain < 0.0,
+            inverted: inverter.adc_gain.first() < 0.0,
             trip: i64::from(limits.trip) >> limits.current_bits,
             limits,
             codes: spec.motor.hall_codes,

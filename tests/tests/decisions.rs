@@ -260,7 +260,7 @@ impl Subject {
             bit_true,
             eps,
             eps_u,
-            current_word: spec.inverter.adc_gain.abs() * f64::from(-i32::from(bits)).exp2(),
+            current_word: spec.inverter.adc_gain.first().abs() * f64::from(-i32::from(bits)).exp2(),
             intervals: Supervisor::NAMES
                 .iter()
                 .map(|_| [0; 2])

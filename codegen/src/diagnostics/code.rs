@@ -117,6 +117,12 @@ codes! {
     AdcTooCoarse = 317,
     /// Speed constant or no-load speed and EMF constant contradict each other.
     SpeedContradiction = 318,
+    /// The sensing window takes too much of the PWM period.
+    SensingWindow = 319,
+    /// The least low time takes too much of the PWM period.
+    MinimumLowTime = 320,
+    /// A list that does not hold a value of each sensed phase.
+    SensedPhases = 321,
     /// A bus voltage that the board is not made for.
     OutsideOfBoard = 330,
     /// A controller that does not exist.
@@ -135,6 +141,8 @@ codes! {
     Band = 407,
     /// A switching table that cannot be read.
     SwitchingTable = 408,
+    /// Two sensors in the low legs cannot see the current of a leg that is off.
+    UnreadableLeg = 409,
     /// The inductance may lie outside the loop's stable range.
     InductanceOutsideStableRange = 501,
     /// The resistance may lie outside the loop's stable range.

@@ -310,6 +310,24 @@ impl Code {
                 "adc_bits = 12\nadc_offset = 2048",
                 "Give the count at zero current; it lies near the middle.",
             ),
+            Self::SensingWindow => say(
+                "A leg whose current is read in its low leg must be low around the sampling instant.",
+                "bus_voltage = \"48 V\"\ncurrent_sensing = \"low_side\"\nsettling_time = \"20 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
+                "bus_voltage = \"48 V\"",
+                "Shorten the settling or the conversions, or lower the PWM frequency.",
+            ),
+            Self::MinimumLowTime => say(
+                "Half of the PWM period must be left for the legs to be high.",
+                "bus_voltage = \"48 V\"\nminimum_low_time = \"30 us\"",
+                "bus_voltage = \"48 V\"",
+                "Shorten it, or lower the PWM frequency.",
+            ),
+            Self::SensedPhases => say(
+                "A list of sensors has one value of each sensed phase.",
+                "adc_bits = 12\nadc_offset = [2048, 2050, 2052]",
+                "adc_bits = 12\nadc_offset = [2048, 2048]",
+                "Give one value for all sensors, or as many as `sensed_phases` names.",
+            ),
             _ => say(
                 "Half a count of error is too much of what is measured.",
                 "bus_voltage = \"48 V\"\nmax_current = \"19 mA\"",
@@ -362,6 +380,12 @@ impl Code {
                 "kind = \"phcc\"\nband = \"20 A\"",
                 "kind = \"phcc\"\nband = \"1 A\"",
                 "Narrow it; what one vector moves the current by in a period is a good start.",
+            ),
+            Self::UnreadableLeg => say(
+                "The current of an off leg may flow past a sensor in its low leg.",
+                "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\nkind = \"phcc\"",
+                "kind = \"pdcc\"",
+                "Choose options that turn no leg off, or a board with sensors in three legs or in the phases.",
             ),
             _ => say(
                 "A switching table has 48 rows of vectors: six sectors, with and without commutation, four states of the bands.",

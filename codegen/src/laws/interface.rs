@@ -127,8 +127,8 @@ fn motor_and_inverter(spec: &Spec) -> [String; 2] {
         format!(
             "Inverter: {} bus, PWM of {} (period {}, timer of {} counts), {}-bit ADC with {} per count, trip at {}.",
             engineering(inverter.v_bus, "V"),
-            frequency(1.0 / inverter.t_s),
-            engineering(inverter.t_s, "s"),
+            frequency(1.0 / inverter.pwm_period()),
+            engineering(inverter.pwm_period(), "s"),
             inverter.timer_period,
             inverter.adc_bits,
             engineering(inverter.adc_gain, "A"),

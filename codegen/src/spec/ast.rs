@@ -74,6 +74,8 @@ pub enum Value {
     Text(String),
     /// A list of integers.
     Integers(Vec<i64>),
+    /// A list of other values.
+    List(Vec<Value>),
     /// Unreadable; the diagnostic says why.
     Malformed(Box<Diagnostic>),
 }
@@ -234,6 +236,7 @@ impl PartialEq for Value {
                 left == right
             }
             (Self::Integers(left), Self::Integers(right)) => left == right,
+            (Self::List(left), Self::List(right)) => left == right,
             _ => false,
         }
     }
@@ -247,6 +250,10 @@ impl fmt::Display for Value {
             Self::Word(word) => out.write_str(word),
             Self::Text(text) => write!(out, "{text:?}"),
             Self::Integers(list) => write!(out, "{list:?}"),
+            Self::List(list) => {
+                let texts: Vec<String> = list.iter().map(Self::to_string).collect();
+                write!(out, "[{}]", texts.join(", "))
+            }
             Self::Malformed(_) => out.write_str("(unreadable)"),
         }
     }

@@ -23,6 +23,7 @@ mod option_texts;
 mod options;
 mod rule;
 pub(crate) mod schema;
+mod sensing;
 #[cfg(test)]
 mod tests;
 mod toml_syntax;
@@ -45,6 +46,7 @@ pub use model::{BUS_FRESH, BusSource, EmfShape, HallCapture, InverterSpec, Motor
 pub use option_texts::help as option_help;
 pub use rule::Rule;
 pub use schema::section_of;
+pub use sensing::{CurrentSensing, CurrentSensor, SensedPhases, SensingTimes, SensingWindow};
 pub use toml_syntax::{parse_board, parse_toml};
 pub use variant::{apply_variant, variant_of};
 pub use words::Word;

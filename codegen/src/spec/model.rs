@@ -3,7 +3,7 @@
 //! Later stages read only these types; how a value was written, in which unit and where, ends at
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
-use crate::spec::{ControllerSpec, Reference};
+use crate::spec::{ControllerSpec, CurrentSensing, CurrentSensor, Reference, SensedPhases};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// One drive: name, motor, inverter and controller.
@@ -150,8 +150,10 @@ pub struct InverterSpec {
     pub v_bus: f64,
     /// Fixed or measured.
     pub bus: BusSource,
-    /// Control period = PWM period, second; of whole timer counts where the timer's clock is given.
+    /// Control period, second; of whole timer counts where the timer's clock is given.
     pub t_s: f64,
+    /// PWM periods in a control period, 1 to 16.
+    pub pwm_per_control: u32,
     /// Counts of the centre-aligned timer from 0 to its top: a compare value of this many counts
     /// is 100 % duty.
     pub timer_period: u32,
@@ -159,10 +161,19 @@ pub struct InverterSpec {
     pub dead_time: f64,
     /// Bits of the phase-current ADC, 8 to 16.
     pub adc_bits: u32,
-    /// Ampere per count; negative for inverting amplifiers.
+    /// Ampere per count of the first sensor, the base of words of current; negative for inverting
+    /// amplifiers.
     pub adc_gain: f64,
-    /// Count at zero current.
+    /// Count of the first sensor at zero current.
     pub adc_offset: u32,
+    /// The second sensor, and with three the third.
+    pub other_sensors: Vec<CurrentSensor>,
+    /// The phases with a sensor.
+    pub sensed_phases: SensedPhases,
+    /// Where the sensors are.
+    pub current_sensing: CurrentSensing,
+    /// Time for which each leg that switches is low in every PWM period, second.
+    pub minimum_low_time: f64,
     /// Greatest deviation of a calibrated offset from `adc_offset`, counts.
     pub offset_tolerance: u32,
     /// Current that trips the drive, ampere: a whole number of ADC counts.

@@ -1,7 +1,11 @@
 //! The normalised text of a checked specification, as documented in `normalised.md`: TOML, SI
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
-use super::{BusSource, EmfShape, HallCapture, InverterSpec, MotorSpec, Spec};
+use super::words::Words;
+use super::{
+    BusSource, CurrentSensing, EmfShape, HallCapture, InverterSpec, MotorSpec, SensedPhases,
+    SensingTimes, Spec,
+};
 use crate::spec::ControllerSpec;
 use std::fmt::{Debug, Display};
 
@@ -52,13 +56,15 @@ impl Spec {
             }
         }
         text.number("t_s", inverter.t_s);
+        if inverter.pwm_per_control > 1 {
+            text.number("pwm_per_control", inverter.pwm_per_control);
+        }
         if inverter.dead_time > 0.0 {
             text.number("dead_time", inverter.dead_time);
         }
         text.number("timer_period", inverter.timer_period);
         text.number("adc_bits", inverter.adc_bits);
-        text.number("adc_gain", inverter.adc_gain);
-        text.number("adc_offset", inverter.adc_offset);
+        write_sensors(text, inverter);
         text.number("offset_tolerance", inverter.offset_tolerance);
         text.number("trip_current", inverter.trip_current);
         text.number("max_current", inverter.max_current);
@@ -76,6 +82,34 @@ impl Spec {
         text.number("stall_periods", inverter.stall_periods);
         text.number("calibration_log2", inverter.calibration_log2);
         text.number("precharge_periods", inverter.precharge_periods);
+    }
+}
+
+/// One value where all sensors are alike, else one of each.
+fn write_sensors(text: &mut Text, inverter: &InverterSpec) {
+    let sensors = inverter.sensors();
+    let gains: Vec<f64> = sensors.iter().map(|sensor| sensor.gain).collect();
+    let offsets: Vec<u32> = sensors.iter().map(|sensor| sensor.offset).collect();
+    text.one_or_each("adc_gain", &gains);
+    text.one_or_each("adc_offset", &offsets);
+    if inverter.sensed_phases != SensedPhases::Ab {
+        text.word("sensed_phases", inverter.sensed_phases.word());
+    }
+    if let CurrentSensing::LowSide(times) = inverter.current_sensing {
+        let SensingTimes {
+            settling,
+            aperture,
+            conversion,
+            lead,
+        } = times;
+        text.word("current_sensing", "low_side");
+        text.number("settling_time", settling);
+        text.number("aperture_time", aperture);
+        text.number("conversion_time", conversion);
+        text.number("sampling_lead", lead);
+    }
+    if inverter.minimum_low_time > 0.0 {
+        text.number("minimum_low_time", inverter.minimum_low_time);
     }
 }
 
@@ -103,6 +137,15 @@ impl Text {
         self.line(&format!("{key} = {value:?}"));
     }
 
+    fn one_or_each<T: Debug + PartialEq>(&mut self, key: &str, values: &[T]) {
+        match values {
+            [first, rest @ ..] if rest.iter().all(|value| value == first) => {
+                self.number(key, first)
+            }
+            values => self.number(key, values),
+        }
+    }
+
     fn word(&mut self, key: &str, value: impl Display) {
         self.line(&format!("{key} = \"{value}\""));
     }
@@ -116,8 +159,9 @@ impl Text {
 #[cfg(test)]
 mod tests {
     use crate::spec::{
-        BusSource, ControllerSpec, Discretisation, EmfShape, EmfSource, HallCapture, InverterSpec,
-        LimitRule, LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, Spec,
+        BusSource, ControllerSpec, CurrentSensing, CurrentSensor, Discretisation, EmfShape,
+        EmfSource, HallCapture, InverterSpec, LimitRule, LoopOptions, Modulation, MotorSpec,
+        PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {
@@ -144,11 +188,19 @@ mod tests {
                 v_bus: 48.0,
                 bus: BusSource::Fixed,
                 t_s: 5e-5,
+                pwm_per_control: 1,
                 timer_period: 1800,
                 dead_time: 0.0,
                 adc_bits: 12,
                 adc_gain: 0.019_531_25,
                 adc_offset: 2048,
+                other_sensors: vec![CurrentSensor {
+                    gain: 0.019_531_25,
+                    offset: 2048,
+                }],
+                sensed_phases: SensedPhases::Ab,
+                current_sensing: CurrentSensing::InPhase,
+                minimum_low_time: 0.0,
                 offset_tolerance: 102,
                 trip_current: 38.0,
                 max_current: 20.0,
@@ -227,5 +279,33 @@ commutation_timeout = 8
 "#;
         assert_eq!(hub_drive().to_toml(), expected);
         expected.parse::<toml_edit::DocumentMut>().expect("is TOML");
+    }
+
+    #[test]
+    fn sensing_is_written_where_it_is_not_the_usual_one() {
+        let mut spec = hub_drive();
+        let inverter = &mut spec.inverter;
+        inverter.pwm_per_control = 3;
+        inverter.other_sensors[0] = CurrentSensor {
+            gain: -0.02,
+            offset: 2050,
+        };
+        inverter.sensed_phases = SensedPhases::Bc;
+        inverter.current_sensing = CurrentSensing::LowSide(SensingTimes {
+            settling: 1e-6,
+            aperture: 2e-7,
+            conversion: 0.0,
+            lead: 0.0,
+        });
+        inverter.minimum_low_time = 2e-6;
+        let text = spec.to_toml();
+        for lines in [
+            "t_s = 5e-5\npwm_per_control = 3\n",
+            "adc_gain = [0.01953125, -0.02]\nadc_offset = [2048, 2050]\nsensed_phases = \"bc\"\n\
+             current_sensing = \"low_side\"\nsettling_time = 1e-6\naperture_time = 2e-7\n\
+             conversion_time = 0.0\nsampling_lead = 0.0\nminimum_low_time = 2e-6\noffset_tolerance",
+        ] {
+            assert!(text.contains(lines), "{text}");
+        }
     }
 }

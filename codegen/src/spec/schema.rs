@@ -5,7 +5,7 @@
 
 use super::ast::Basis;
 use super::controller;
-use super::rule::{Kind, Rule, integer, quantity, text, word};
+use super::rule::{Kind, Rule, integer, plain, quantity, text, word};
 use super::units::Dimension as D;
 
 /// 1 rpm in rad/s.
@@ -92,6 +92,17 @@ pub(crate) const INVERTER: &[Rule] = &[
     ),
     integer("adc_offset", 0, 65535, "2048"),
     word("adc_inverted", "off"),
+    quantity("shunt", &[D::Resistance], 1e-6, 100.0, "1 mohm"),
+    plain("amplifier_gain", 1e-2, 1e4, "20"),
+    quantity("adc_reference", &[D::Voltage], 0.1, 20.0, "3.3 V"),
+    word("current_sensing", "low_side"),
+    word("sensed_phases", "ab"),
+    quantity("settling_time", &[D::Time], 0.0, 1e-4, "1 us"),
+    quantity("aperture_time", &[D::Time], 0.0, 1e-4, "200 ns"),
+    quantity("conversion_time", &[D::Time], 0.0, 1e-4, "0 us"),
+    quantity("sampling_lead", &[D::Time], 0.0, 1e-4, "500 ns"),
+    quantity("minimum_low_time", &[D::Time], 0.0, 1e-3, "2 us"),
+    integer("pwm_per_control", 1, 16, "3"),
     quantity("offset_tolerance", &[D::Current], 1e-5, 2e4, "2 A"),
     quantity("trip_current", &[D::Current], 0.01, 2e4, "38 A"),
     quantity("max_current", &[D::Current], 0.01, 2e4, "20 A"),
@@ -118,13 +129,24 @@ fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
 }
 
 /// Fields that state one quantity in two ways.
-const ALTERNATIVES: [[&str; 2]; 5] = [
+const ALTERNATIVES: [[&str; 2]; 11] = [
     ["pole_pairs", "poles"],
     ["back_emf", "speed_constant"],
     ["f_pwm", "sampling_time"],
     ["timer_clock", "timer_period"],
     ["adc_range", "adc_gain"],
+    ["adc_range", "shunt"],
+    ["adc_range", "amplifier_gain"],
+    ["adc_range", "adc_reference"],
+    ["adc_gain", "shunt"],
+    ["adc_gain", "amplifier_gain"],
+    ["adc_gain", "adc_reference"],
 ];
+
+/// Whether the field takes a list in brackets, a value of each sensed phase, in place of one.
+pub(crate) fn takes_each(name: &str) -> bool {
+    matches!(name, "adc_gain" | "adc_offset" | "adc_inverted")
+}
 
 /// Whether the one field replaces the other.
 pub(crate) fn same_quantity(one: &str, other: &str) -> bool {

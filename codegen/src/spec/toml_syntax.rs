@@ -349,11 +349,28 @@ impl File<'_> {
                         number.as_integer().filter(|_| is_decimal)
                     })
                     .collect();
-                numbers.map_or_else(|| unreadable(self.written(array)), Value::Integers)
+                match numbers {
+                    Some(numbers) => Value::Integers(numbers),
+                    None if schema::takes_each(field) => self.read_each(field, list, at),
+                    None => unreadable(self.written(array)),
+                }
             }
             Some(other) => unreadable(self.written(other)),
             None => unreadable("a table"),
         }
+    }
+
+    /// A value of each sensed phase.
+    fn read_each(&self, field: &str, list: &toml_edit::Array, at: &Location) -> Value {
+        let mut values = vec![];
+        for item in list {
+            let item = Item::Value(item.clone());
+            match self.read_value(field, &item, at) {
+                error @ Value::Malformed(_) => return error,
+                value => values.push(value),
+            }
+        }
+        Value::List(values)
     }
 
     /// A value as written in the file.

@@ -90,9 +90,13 @@ fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
                 basis,
             }))
         }
-        [Lexeme::Symbol('['), list @ .., Lexeme::Symbol(']')] if sign.is_empty() => read_list(list)
-            .map(Value::Integers)
-            .ok_or_else(|| malformed(field, text, at)),
+        [Lexeme::Symbol('['), list @ .., Lexeme::Symbol(']')] if sign.is_empty() => {
+            match read_list(list) {
+                Some(integers) => Ok(Value::Integers(integers)),
+                None if schema::takes_each(field) => read_each(field, list, at),
+                None => Err(malformed(field, text, at)),
+            }
+        }
         words if sign.is_empty() => read_word(words)
             .map(Value::Word)
             .ok_or_else(|| malformed(field, text, at)),
@@ -399,6 +403,17 @@ fn read_list(lexemes: &[Lexeme]) -> Option<Vec<i64>> {
             _ => None,
         })
         .collect()
+}
+
+/// `[19.5 mA/count, 19.7 mA/count]` without its brackets: a value of each sensed phase.
+fn read_each(field: &str, lexemes: &[Lexeme], at: &Location) -> Result<Value, Diagnostic> {
+    let items = lexemes.split(|lexeme| *lexeme == Lexeme::Symbol(','));
+    let items = items.filter(|item| !item.is_empty());
+    let values = items.map(|item| match read(field, &written(item), at)? {
+        value @ (Value::Number(_) | Value::Word(_)) => Ok(value),
+        _ => Err(malformed(field, &written(item), at)),
+    });
+    values.collect::<Result<_, _>>().map(Value::List)
 }
 
 /// A word, or words joined by hyphens.

@@ -42,7 +42,7 @@ impl DiscretePhase {
     /// If the specification of the bus is inconsistent.
     pub fn di_limit(&self, inverter: &Inverter) -> Result<f64, Error> {
         let span = f64::from((1_u32 << inverter.adc_bits) - 1);
-        let possible = self.b * 4.0 / 3.0 * inverter.v_bus_max()? / inverter.adc_gain.abs();
+        let possible = self.b * 4.0 / 3.0 * inverter.v_bus_max()? / inverter.adc_gain.first().abs();
         Ok((2.0 * possible.min(span)).log2().ceil().exp2())
     }
 }

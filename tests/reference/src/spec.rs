@@ -82,10 +82,30 @@ pub struct Inverter {
     pub timer_period: u32,
     /// Bits of the current ADC.
     pub adc_bits: u32,
-    /// Ampere per count of the current ADC, signed.
-    pub adc_gain: f64,
-    /// Count at zero current.
-    pub adc_offset: u32,
+    /// PWM periods in a control period.
+    #[serde(default = "one")]
+    pub pwm_per_control: u32,
+    /// Ampere per count of the current ADCs, signed.
+    pub adc_gain: OfSensors<f64>,
+    /// Counts at zero current.
+    pub adc_offset: OfSensors<u32>,
+    /// The phases with a sensor.
+    #[serde(default)]
+    pub sensed_phases: SensedPhases,
+    /// Where the sensors are.
+    #[serde(default)]
+    pub current_sensing: CurrentSensing,
+    /// Time that a lower switch is on before its current can be sampled, second. Low side only.
+    pub settling_time: Option<f64>,
+    /// Time that a converter's input must stay, second. Low side only.
+    pub aperture_time: Option<f64>,
+    /// Time from a conversion to the next of the same ADC, second. Low side only.
+    pub conversion_time: Option<f64>,
+    /// Time from the sampling instant to the turning point, second. Low side only.
+    pub sampling_lead: Option<f64>,
+    /// Time for which each leg that switches is low in every PWM period, second.
+    #[serde(default)]
+    pub minimum_low_time: f64,
     /// Greatest distance of a calibrated offset from `adc_offset`, counts.
     pub offset_tolerance: u32,
     /// Trip level of the phase currents, ampere.
@@ -111,6 +131,86 @@ pub struct Inverter {
     pub calibration_log2: u32,
     /// Periods of bootstrap pre-charge; 0: none.
     pub precharge_periods: u32,
+}
+
+/// One value for all current sensors, or one of each in the order of the sensed phases.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum OfSensors<T> {
+    /// For all.
+    All(T),
+    /// Of each.
+    Each(Vec<T>),
+}
+
+impl<T: Copy> OfSensors<T> {
+    /// That of the first sensor, the base of words of current.
+    ///
+    /// # Panics
+    /// With an empty list, which [`Spec::from_toml`] refuses.
+    pub fn first(&self) -> T {
+        self.of(0)
+    }
+
+    /// That of a sensor.
+    ///
+    /// # Panics
+    /// With a shorter list, which [`Spec::from_toml`] refuses.
+    pub fn of(&self, sensor: usize) -> T {
+        match self {
+            Self::All(value) => *value,
+            Self::Each(values) => values[sensor],
+        }
+    }
+
+    fn has(&self, sensors: usize) -> bool {
+        match self {
+            Self::All(_) => true,
+            Self::Each(values) => values.len() == sensors,
+        }
+    }
+}
+
+/// Which phases have a current sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensedPhases {
+    /// Phases a and b.
+    #[default]
+    Ab,
+    /// Phases b and c.
+    Bc,
+    /// Phases c and a.
+    Ca,
+    /// All three.
+    Abc,
+}
+
+impl SensedPhases {
+    /// The phases, 0 to 2 for a to c, in the order of the sensors.
+    pub fn phases(self) -> &'static [usize] {
+        match self {
+            Self::Ab => &[0, 1],
+            Self::Bc => &[1, 2],
+            Self::Ca => &[2, 0],
+            Self::Abc => &[0, 1, 2],
+        }
+    }
+}
+
+/// Where the current sensors are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CurrentSensing {
+    /// In the phases.
+    #[default]
+    InPhase,
+    /// In the low legs.
+    LowSide,
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// Source of the bus voltage.
@@ -200,7 +300,7 @@ impl Spec {
             ("motor.torque_constant", motor.torque_constant),
             ("inverter.v_bus", inverter.v_bus),
             ("inverter.t_s", inverter.t_s),
-            ("inverter.adc_gain", inverter.adc_gain.abs()),
+            ("inverter.adc_gain", inverter.adc_gain.first().abs()),
             ("inverter.trip_current", inverter.trip_current),
             ("inverter.max_current", inverter.max_current),
             ("inverter.omega_max", inverter.omega_max),
@@ -258,6 +358,7 @@ impl Spec {
             ));
         }
         self.check_controller()?;
+        inverter.check_sensors()?;
         let mut codes = motor.hall_codes;
         codes.sort_unstable();
         if codes != [1, 2, 3, 4, 5, 6] {
@@ -348,6 +449,40 @@ impl Spec {
 }
 
 impl Inverter {
+    fn check_sensors(&self) -> Result<(), Error> {
+        let sensors = self.sensed_phases.phases().len();
+        if !(self.adc_gain.has(sensors) && self.adc_offset.has(sensors)) {
+            return Err(Error::field(
+                "inverter.adc_gain",
+                format!("{:?}, {:?}", self.adc_gain, self.adc_offset),
+                "expected one value for all sensors or one of each",
+            ));
+        }
+        if self.pwm_per_control == 0 {
+            return Err(Error::field(
+                "inverter.pwm_per_control",
+                0,
+                "expected 1 or more",
+            ));
+        }
+        if self.current_sensing == CurrentSensing::LowSide {
+            for (field, time) in [
+                ("inverter.settling_time", self.settling_time),
+                ("inverter.aperture_time", self.aperture_time),
+                ("inverter.conversion_time", self.conversion_time),
+                ("inverter.sampling_lead", self.sampling_lead),
+            ] {
+                if time.is_none() {
+                    return Err(Error::Missing {
+                        field,
+                        reason: "the current sensors are in the low legs",
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The bus voltage's measurement, if there is one.
     ///
     /// # Errors

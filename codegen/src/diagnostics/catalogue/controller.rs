@@ -63,13 +63,13 @@ pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
 }
 
 /// One vector changes the current by `stride` ampere per period, above `rated`. `t_s`: longest
-/// accepted period of whole timer counts, second.
+/// accepted period of whole timer counts, second; `f_pwm`: frequency of its PWM, hertz.
 pub fn vector_too_strong(
     at: &Location,
     kind: &str,
     stride: f64,
     rated: f64,
-    t_s: f64,
+    [t_s, f_pwm]: [f64; 2],
 ) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,
@@ -81,14 +81,20 @@ pub fn vector_too_strong(
             engineering(stride, "A"),
             engineering(rated, "A"),
             engineering(at_most(t_s), "s"),
-            engineering(at_least(1.0 / t_s), "Hz"),
+            engineering(at_least(f_pwm), "Hz"),
         ),
     )
 }
 
 /// Two vectors per period miss the current reference by up to `miss` ampere, above `rated`.
-/// `t_s`: longest accepted period of whole timer counts, second.
-pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Diagnostic {
+/// `t_s`: longest accepted period of whole timer counts, second; `f_pwm`: frequency of its PWM,
+/// hertz.
+pub fn vectors_too_coarse(
+    at: &Location,
+    miss: f64,
+    rated: f64,
+    [t_s, f_pwm]: [f64; 2],
+) -> Diagnostic {
     Diagnostic::new(
         Code::VectorTooStrong,
         at,
@@ -99,7 +105,7 @@ pub fn vectors_too_coarse(at: &Location, miss: f64, rated: f64, t_s: f64) -> Dia
             engineering(miss, "A"),
             engineering(rated, "A"),
             engineering(at_most(t_s), "s"),
-            engineering(at_least(1.0 / t_s), "Hz"),
+            engineering(at_least(f_pwm), "Hz"),
         ),
     )
 }

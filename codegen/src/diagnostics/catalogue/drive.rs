@@ -5,6 +5,7 @@ use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, frequency, percent, rpm_at_least,
     rpm_at_most, significant,
 };
+use crate::spec::controller::TurnsOff;
 
 /// A field involved in a contradiction: name, value and place.
 #[derive(Clone, Debug)]
@@ -61,14 +62,14 @@ pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagno
 }
 
 /// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
-/// period of whole timer counts that is accepted, second.
+/// period of whole timer counts that is accepted, second, and the frequency of its PWM, hertz.
 pub fn period_too_long(
     period: &Part,
     resistance: &Part,
     inductance: &Part,
     t_s: f64,
     time_constant: f64,
-    longest: f64,
+    [longest, f_pwm]: [f64; 2],
 ) -> Diagnostic {
     with_parts(
         Diagnostic::new(
@@ -82,7 +83,7 @@ pub fn period_too_long(
                 engineering(time_constant, "s"),
                 significant(t_s / time_constant),
                 engineering(at_most(longest), "s"),
-                engineering(at_least(1.0 / longest), "Hz"),
+                engineering(at_least(f_pwm), "Hz"),
             ),
         ),
         &[resistance, inductance],
@@ -630,4 +631,86 @@ pub fn adc_offset(offset: &Part, full: u32) -> Diagnostic {
             full - full / 4,
         ),
     )
+}
+
+/// The window in which a leg must be low to be sampled takes too much of the PWM period. `needed`: before and behind
+/// the turning point, second; `most`: what either may take, second, and the least duty that it leaves; `f_pwm`: the
+/// greatest PWM frequency that leaves so much, hertz.
+pub fn sensing_window(
+    parts: &[Part],
+    period: &Part,
+    [before, after]: [f64; 2],
+    [most, duty]: [f64; 2],
+    f_pwm: f64,
+) -> Diagnostic {
+    let remedy = if before >= after {
+        "shorten `settling_time`, `dead_time` or `sampling_lead`"
+    } else {
+        "shorten `aperture_time` or `conversion_time`, or raise `sampling_lead`"
+    };
+    let at = parts
+        .first()
+        .map_or(&period.location, |part| &part.location);
+    let error = Diagnostic::new(
+        Code::SensingWindow,
+        at,
+        format!(
+            "`current_sensing`: to be sampled a leg must be low for {} before the timer's turning point and {} behind it, of which either may be {} at most, so that a duty of {} can be read; {remedy}, or lower `f_pwm` to {}",
+            engineering(before, "s"),
+            engineering(after, "s"),
+            engineering(at_most(most), "s"),
+            percent(duty),
+            engineering(at_most(f_pwm), "Hz"),
+        ),
+    );
+    let parts: Vec<&Part> = parts.iter().chain([period]).collect();
+    with_parts(error, &parts)
+}
+
+/// The least low time takes too much of the PWM period; `most` of it, second; `limits`: the least duty that must be left,
+/// and the PWM period, second.
+pub fn minimum_low_time(
+    time: &Part,
+    period: &Part,
+    most: f64,
+    [duty, pwm_period]: [f64; 2],
+) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::MinimumLowTime,
+        &time.location,
+        format!(
+            "`minimum_low_time`: {} leaves a duty below {} of the PWM period of {}; shorten it to {} or lower `f_pwm`",
+            time.given,
+            percent(duty),
+            engineering(pwm_period, "s"),
+            engineering(at_most(most), "s"),
+        ),
+    );
+    with_parts(error, &[period])
+}
+
+/// A list of `given` values where there are so many sensed phases.
+pub fn not_of_each_phase(list: &Part, phases: &Part, given: usize, wanted: usize) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::SensedPhases,
+        &list.location,
+        format!(
+            "`{}`: {} holds {given} values, but `sensed_phases` {} are {wanted}; give one value for all, or {wanted}",
+            list.field, list.given, phases.given,
+        ),
+    );
+    with_parts(error, &[phases])
+}
+
+/// A controller that turns legs off where only two low legs have sensors.
+pub fn unreadable_leg(at: &Location, off: TurnsOff, place: &Part, phases: &Part) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::UnreadableLeg,
+        at,
+        format!(
+            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `sensed_phases: abc` or `current_sensing: in_phase`",
+            off.option, off.value, phases.given, off.instead,
+        ),
+    );
+    with_parts(error, &[place, phases])
 }

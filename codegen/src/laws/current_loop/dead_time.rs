@@ -19,7 +19,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     ) -> Phases<'b, 3> {
         let l = self.l;
         let inverter = &l.spec.inverter;
-        let lost = inverter.dead_time / inverter.t_s * inverter.v_bus;
+        let lost = inverter.dead_time / inverter.pwm_period() * inverter.v_bus;
         let band = SOFT_BAND * inverter.max_current;
         let share = lost / (2.0 * stiffness * band);
         let doc = format!(

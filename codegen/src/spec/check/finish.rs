@@ -49,21 +49,28 @@ pub(super) fn inverter(
     let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
         (inverter.t_s?, adc?, currents?, speeds?);
     rated?;
+    let (first, others) = adc.sensors.split_first()?;
+    let pwm_period = t_s / f64::from(inverter.pwm_per_control);
     let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
     if let Some(given) = &inverter.dead_time
-        && dead_time > 0.1 * t_s * (1.0 + 1e-9)
+        && dead_time > 0.1 * pwm_period * (1.0 + 1e-9)
     {
-        errors.push(catalogue::dead_time(&given.part, t_s));
+        errors.push(catalogue::dead_time(&given.part, pwm_period));
     }
     Some(InverterSpec {
         v_bus: inverter.v_bus.as_ref()?.si,
         bus: inverter.bus?,
         t_s,
+        pwm_per_control: inverter.pwm_per_control,
         timer_period: inverter.timer_period?,
         dead_time,
         adc_bits: adc.bits,
-        adc_gain: if adc.inverted { -adc.gain } else { adc.gain },
-        adc_offset: adc.offset,
+        adc_gain: first.gain,
+        adc_offset: first.offset,
+        other_sensors: others.to_vec(),
+        sensed_phases: inverter.sensing.phases,
+        current_sensing: inverter.sensing.place?,
+        minimum_low_time: inverter.sensing.minimum_low_time,
         offset_tolerance: adc.offset_tolerance,
         trip_current,
         max_current,

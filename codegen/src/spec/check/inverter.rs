@@ -1,11 +1,14 @@
 //! The inverter's data: bus, timer, ADCs, currents and speeds.
 
 use super::reader::{Given, Reader};
+use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
-use crate::spec::BusSource;
 use crate::spec::model::period_within;
+use crate::spec::schema;
+use crate::spec::sensing::CurrentSensor;
 use crate::spec::units::Dimension;
+use crate::spec::{BusSource, SensedPhases};
 
 /// The inverter data that could be read.
 pub(super) struct Inverter<'a> {
@@ -13,12 +16,15 @@ pub(super) struct Inverter<'a> {
     pub bus: Option<BusSource>,
     /// `f_pwm` or `sampling_time` as written.
     pub period: Option<Given<'a>>,
+    /// PWM periods per control period.
+    pub pwm_per_control: u32,
     /// Control period, second: of whole timer counts where the timer's clock is given, else as
     /// written.
     pub t_s: Option<f64>,
     pub timer_period: Option<u32>,
     pub dead_time: Option<Given<'a>>,
     pub adc: Option<Adc>,
+    pub sensing: Sensing,
     pub trip_current: Option<Given<'a>>,
     pub max_current: Option<Given<'a>>,
     pub hall_timer_clock: Option<Given<'a>>,
@@ -35,15 +41,15 @@ pub(super) struct Inverter<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Adc {
     pub bits: u32,
-    /// Ampere per count, positive.
+    /// Ampere per count of the first sensor, positive.
     pub gain: f64,
-    pub inverted: bool,
-    pub offset: u32,
-    /// Greatest deviation of a calibrated offset from `offset`, counts.
+    /// All sensors, in the order of the sensed phases.
+    pub sensors: Vec<CurrentSensor>,
+    /// Greatest deviation of a calibrated offset from the nominal one, counts.
     pub offset_tolerance: u32,
-    /// Greatest current of either sign, ampere, with one count of margin.
+    /// Greatest current of either sign on every sensor, ampere, with one count of margin.
     pub reach: f64,
-    /// `adc_range` or `adc_gain` as written.
+    /// `adc_range`, `adc_gain` or `shunt` as written.
     pub part: Part,
 }
 
@@ -58,21 +64,24 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
     reader.require(errors, &["bus_voltage", "adc_bits"]);
     reader.require_one_of(errors, ["f_pwm", "sampling_time"]);
     reader.require_one_of(errors, ["timer_clock", "timer_period"]);
-    reader.require_one_of(errors, ["adc_range", "adc_gain"]);
     let v_bus = reader.plain_quantity(errors, "bus_voltage");
     let bus = read_bus(reader, v_bus.as_ref(), errors);
     let f_pwm = reader.plain_quantity(errors, "f_pwm");
     let sampling_time = reader.plain_quantity(errors, "sampling_time");
     let period = f_pwm.or(sampling_time);
-    let (timer_period, t_s) = read_timer(reader, period.as_ref(), errors);
+    let pwm_per_control = reader.integer(errors, "pwm_per_control").unwrap_or(1);
+    let (timer_period, t_s) = read_timer(reader, period.as_ref(), pwm_per_control, errors);
+    let sensing = sensing::read(reader, errors);
     Inverter {
         v_bus,
         bus,
         period,
+        pwm_per_control,
         t_s,
         timer_period,
         dead_time: reader.plain_quantity(errors, "dead_time"),
-        adc: read_adc(reader, errors),
+        adc: read_adc(reader, sensing.phases, errors),
+        sensing,
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
         hall_timer_clock: reader.plain_quantity(errors, "hall_timer_clock"),
@@ -167,11 +176,12 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
 }
 
 /// Counts of the centre-aligned timer, clock/(2 f_pwm) rounded, and its control period,
-/// 2 counts/clock: within 0.5 % of the stated one from 100 counts on. Where counts are given in
-/// place of the clock, the period is the stated one.
+/// 2 counts/clock per PWM period: within 0.5 % of the stated one from 100 counts on. Where counts
+/// are given in place of the clock, the period is the stated one.
 fn read_timer(
     reader: &Reader,
     period: Option<&Given>,
+    pwm_per_control: u32,
     errors: &mut Collector,
 ) -> (Option<u32>, Option<f64>) {
     let given = reader.integer(errors, "timer_period");
@@ -179,14 +189,15 @@ fn read_timer(
     let Some(period) = period else {
         return (given, None);
     };
+    let per_control = f64::from(pwm_per_control);
     let asked = match period.dimension {
-        Some(Dimension::Frequency) => 1.0 / period.si,
+        Some(Dimension::Frequency) => per_control / period.si,
         _ => period.si,
     };
     let (None, Some(clock)) = (given, clock) else {
         return (given, Some(asked));
     };
-    let counts = clock.si * asked / 2.0;
+    let counts = clock.si * asked / per_control / 2.0;
     // Decimal units may round the limits.
     if !(100.0 - 1e-6..=65535.0 + 1e-6).contains(&counts) {
         errors.push(catalogue::timer_period(
@@ -194,47 +205,115 @@ fn read_timer(
             &period.part,
             counts,
             clock.si,
-            1.0 / asked,
+            per_control / asked,
         ));
         return (None, Some(asked));
     }
     let counts = counts.round();
-    (Some(counts as u32), Some(2.0 * counts / clock.si))
+    (
+        Some(counts as u32),
+        Some(per_control * 2.0 * counts / clock.si),
+    )
 }
 
-fn read_adc(reader: &Reader, errors: &mut Collector) -> Option<Adc> {
+/// The sensors: a count's worth, offset and sign, each for all phases or one of each.
+fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Option<Adc> {
     let bits = reader.integer(errors, "adc_bits");
-    let range = reader.plain_quantity(errors, "adc_range");
-    let gain = reader.plain_quantity(errors, "adc_gain");
-    let offset = reader.integer(errors, "adc_offset");
-    let inverted = reader.word(errors, "adc_inverted", &[("off", false), ("on", true)]);
-    let bits = bits?;
-    let full = 1_u32 << bits;
-    let offset = offset.unwrap_or(full / 2);
-    if !(full / 4..=full - full / 4).contains(&offset) {
-        let part = reader.part("adc_offset", || offset.to_string());
+    let counts_of = bits.map_or(0.0, |bits| f64::from(1_u32 << bits));
+    let gains = read_gains(reader, phases, counts_of, errors);
+    let each = |name, errors: &mut Collector, read: fn(&Reader, &mut Collector) -> Option<u32>| {
+        match reader.field(name) {
+            None => Some(None),
+            Some(_) => sensing::of_each_phase(reader, name, phases, errors, read).map(Some),
+        }
+    };
+    let offsets = each("adc_offset", errors, |one, errors| {
+        one.integer(errors, "adc_offset")
+    });
+    let inverted = each("adc_inverted", errors, |one, errors| {
+        one.word(errors, "adc_inverted", &[("off", 0), ("on", 1)])
+    });
+    let full = 1_u32 << bits?;
+    let count = phases.phases().len();
+    let offsets = offsets?.unwrap_or_else(|| vec![full / 2; count]);
+    if !offsets
+        .iter()
+        .all(|offset| (full / 4..=full - full / 4).contains(offset))
+    {
+        let part = reader.part("adc_offset", || (full / 2).to_string());
         errors.push(catalogue::adc_offset(&part, full));
         return None;
     }
-    let part = range
-        .as_ref()
-        .or(gain.as_ref())
-        .map(|given| given.part.clone())?;
-    let gain = match range {
-        Some(range) => 2.0 * range.si / f64::from(full),
-        None => gain?.si,
-    };
-    let reach = gain * f64::from(offset.min(full - offset));
+    let inverted = inverted?.unwrap_or_else(|| vec![0; count]);
+    let (gains, part) = gains?;
+    let signs = inverted.iter().map(|on| if *on == 1 { -1.0 } else { 1.0 });
+    let sensors: Vec<CurrentSensor> = gains
+        .iter()
+        .zip(signs)
+        .zip(&offsets)
+        .map(|((gain, sign), offset)| CurrentSensor {
+            gain: sign * gain,
+            offset: *offset,
+        })
+        .collect();
+    let reaches = gains.iter().zip(&offsets);
+    let reach = reaches
+        .map(|(gain, offset)| gain * f64::from((*offset).min(full - offset)))
+        .fold(f64::INFINITY, f64::min);
+    let gain = *gains.first()?;
     let offset_tolerance = read_offset_tolerance(reader, gain, full, errors)?;
     Some(Adc {
-        bits,
+        bits: bits?,
         gain,
-        inverted: inverted.unwrap_or(false),
-        offset,
+        sensors,
         offset_tolerance,
         reach,
         part,
     })
+}
+
+/// Fields that say together what a count is worth.
+const SHUNT: [&str; 3] = ["shunt", "amplifier_gain", "adc_reference"];
+
+/// Ampere per count of each sensor, positive: from the range, as stated, or from shunt, amplifier and reference of a
+/// converter of so many counts.
+fn read_gains(
+    reader: &Reader,
+    phases: SensedPhases,
+    counts: f64,
+    errors: &mut Collector,
+) -> Option<(Vec<f64>, Part)> {
+    let all = |gain: f64| vec![gain; phases.phases().len()];
+    let Some(shunt) = SHUNT.iter().find_map(|name| reader.field(name)) else {
+        reader.require_one_of(errors, ["adc_range", "adc_gain"]);
+        let range = reader.plain_quantity(errors, "adc_range");
+        let gains = reader.field("adc_gain").and_then(|_| {
+            sensing::of_each_phase(reader, "adc_gain", phases, errors, |one, errors| {
+                one.plain_quantity(errors, "adc_gain").map(|given| given.si)
+            })
+        });
+        return match range {
+            Some(range) => Some((all(2.0 * range.si / counts), range.part)),
+            None => Some((gains?, reader.part("adc_gain", String::new))),
+        };
+    };
+    for name in ["adc_range", "adc_gain"] {
+        if let Some(field) = reader.field(name) {
+            let (at, other) = (&shunt.name_location, &field.name_location);
+            errors.push(catalogue::exclusive_fields(at, &shunt.name, other, name));
+        }
+    }
+    for name in SHUNT {
+        if reader.field(name).is_none() {
+            let (at, example) = (&shunt.location, schema::example(name));
+            errors.push(catalogue::needed_field(at, &shunt.name, name, example));
+        }
+    }
+    let [ohm, volt] = ["shunt", "adc_reference"].map(|name| reader.plain_quantity(errors, name));
+    let amplified = reader.plain(errors, "amplifier_gain");
+    let (ohm, volt, amplified) = (ohm?, volt?, amplified?);
+    let gain = volt.si / (counts * ohm.si * amplified.si);
+    Some((all(gain), ohm.part))
 }
 
 /// Default offset tolerance of an ADC of `full` counts, counts.

@@ -14,6 +14,7 @@ mod origins;
 mod other_names;
 pub(crate) mod reader;
 mod relations;
+mod sensing;
 
 pub use origins::{Origin, Origins};
 
@@ -50,6 +51,12 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         // Torque and EMF in one wrong basis are one mistake.
         relations::check_bus(&motor_reader, &motor, &inverter, &mut errors);
     }
+    sensing::check(
+        &inverter_reader,
+        &inverter,
+        (controller.as_ref(), &ast.controller),
+        &mut errors,
+    );
     let finished = finish::inverter(
         &inverter_reader,
         &inverter,

@@ -7,7 +7,7 @@ use crate::spec::ast::{Basis, Field, Number, Section, Value};
 use crate::spec::rule::{Kind, Preset, Rule};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
-use crate::spec::value::parse_value;
+use crate::spec::value::{parse_value, plain_number};
 use crate::spec::words::Words;
 
 /// One section's fields under their rules.
@@ -181,6 +181,45 @@ impl<'a> Reader<'a> {
                 location: self.at.clone(),
             },
         }
+    }
+
+    /// What `read` makes of each value of a list, or of the one value that stands for all; none where one is in
+    /// error. `read` takes a reader in which that value stands alone.
+    pub fn each<T>(
+        &self,
+        name: &'static str,
+        mut read: impl FnMut(&Reader) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let field = self.field(name)?;
+        let values = match &field.value {
+            Value::List(values) => values.clone(),
+            Value::Integers(numbers) => {
+                let number =
+                    |number: &i64| plain_number(name, &number.to_string(), &field.location);
+                numbers.iter().map(number).collect()
+            }
+            value => vec![value.clone()],
+        };
+        let read_one = |value| {
+            let field = Field {
+                value,
+                ..field.clone()
+            };
+            let section = Section {
+                location: Some(self.at.clone()),
+                fields: vec![field],
+                incomplete: true,
+            };
+            read(&Reader::new(
+                self.name,
+                &section,
+                self.rules.clone(),
+                &self.at,
+            ))
+        };
+        // All are read, so that all errors are told at once.
+        let read: Vec<Option<T>> = values.into_iter().map(read_one).collect();
+        read.into_iter().collect()
     }
 
     fn rule(&self, name: &str) -> Option<(&'a Field, &'static Rule)> {

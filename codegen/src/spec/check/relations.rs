@@ -29,13 +29,14 @@ pub(super) fn check_period(
     if t_s / time_constant > GREATEST_DECAY * (1.0 + 1e-9) {
         let resistance = reader.part("resistance", String::new);
         let inductance = reader.part("inductance", String::new);
+        let longest = inverter.period_within(GREATEST_DECAY * time_constant);
         errors.push(catalogue::period_too_long(
             &period.part,
             &resistance,
             &inductance,
             t_s,
             time_constant,
-            inverter.period_within(GREATEST_DECAY * time_constant),
+            [longest, f64::from(inverter.pwm_per_control) / longest],
         ));
     }
     Some(())
@@ -103,7 +104,8 @@ pub(super) fn check_speeds(
     let periods = TAU / (maximum * pole_pairs * t_s);
     if periods < LEAST_PERIODS * (1.0 - 1e-9) {
         let fastest = maximum * periods / LEAST_PERIODS;
-        let f_pwm = 1.0 / inverter.period_within(t_s * periods / LEAST_PERIODS);
+        let f_pwm = f64::from(inverter.pwm_per_control)
+            / inverter.period_within(t_s * periods / LEAST_PERIODS);
         errors.push(catalogue::too_few_periods(
             maximum_part,
             &period.part,

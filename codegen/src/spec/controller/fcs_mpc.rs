@@ -1,17 +1,17 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
-use super::Options;
 use super::common::{
     EmfSource, LoopOptions, Surroundings, read_common, refuse, refuse_commutation,
 };
 use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
+use super::{Options, TurnsOff};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering};
 use crate::spec::check::reader::Reader;
 use crate::spec::health::Drive;
 use crate::spec::options::{Row, if_any, number, word};
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;
-use crate::spec::words::words;
+use crate::spec::words::{Words, words};
 
 words! {
     /// Candidate vectors.
@@ -144,6 +144,14 @@ impl Options for FcsMpcSpec {
 
     fn common_mut(&mut self) -> &mut LoopOptions {
         &mut self.common
+    }
+
+    fn turns_off(&self) -> Option<TurnsOff> {
+        self.pairs().then_some(TurnsOff {
+            option: "candidates",
+            value: self.candidates.word(),
+            instead: "candidates: three_phase",
+        })
     }
 
     fn modulates(&self) -> bool {

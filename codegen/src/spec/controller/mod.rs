@@ -52,6 +52,11 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
     /// Whether it uses pulse-width modulation, instead of one vector per period.
     fn modulates(&self) -> bool;
 
+    /// The option that turns legs off within a turn of the rotor, if one does.
+    fn turns_off(&self) -> Option<TurnsOff> {
+        None
+    }
+
     /// Greatest excess of phase currents over the reference without a fault, ampere.
     fn overshoot(&self, _: &Drive) -> f64 {
         0.0
@@ -67,6 +72,17 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
     fn refuse_trip(&self, _: &Drive, _rated: f64, _parts: [&Part; 2]) -> Option<Diagnostic> {
         None
     }
+}
+
+/// An option by which legs that carry current are turned off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TurnsOff {
+    /// The option.
+    pub option: &'static str,
+    /// Its value.
+    pub value: &'static str,
+    /// The same in place of which no leg is turned off, a setting.
+    pub instead: &'static str,
 }
 
 /// A controller and its options.
@@ -165,6 +181,11 @@ impl ControllerSpec {
     /// Whether it uses pulse-width modulation, instead of one vector per period.
     pub fn modulates(&self) -> bool {
         with_options!(self, options => options.modulates())
+    }
+
+    /// [`Options::turns_off`].
+    pub(crate) fn turns_off(&self) -> Option<TurnsOff> {
+        with_options!(self, options => options.turns_off())
     }
 
     /// The name in a specification.

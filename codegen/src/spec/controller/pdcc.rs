@@ -1,10 +1,10 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
-use super::Options;
 use super::common::{
     self, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference, Surroundings,
     read_common, read_dead_time_compensation, refuse, refuse_commutation,
 };
+use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
@@ -89,6 +89,14 @@ impl Options for PdccSpec {
 
     fn common_mut(&mut self) -> &mut LoopOptions {
         &mut self.common
+    }
+
+    fn turns_off(&self) -> Option<TurnsOff> {
+        (self.modulation == Modulation::Pair).then_some(TurnsOff {
+            option: "modulation",
+            value: "pair",
+            instead: "modulation: three_phase",
+        })
     }
 
     fn modulates(&self) -> bool {

@@ -1,8 +1,8 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use super::Options;
 use super::common::{EmfSource, LoopOptions, Surroundings, read_common, refuse};
 use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
+use super::{Options, TurnsOff};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Diagnostic};
 use crate::spec::ast::Value;
@@ -161,6 +161,14 @@ impl Options for PhccSpec {
 
     fn common_mut(&mut self) -> &mut LoopOptions {
         &mut self.common
+    }
+
+    fn turns_off(&self) -> Option<TurnsOff> {
+        (self.candidates == PhccCandidates::Table2).then_some(TurnsOff {
+            option: "candidates",
+            value: "table2",
+            instead: "candidates: three_phase",
+        })
     }
 
     fn modulates(&self) -> bool {

@@ -1,10 +1,10 @@
 //! Options of PI control, and how they are read.
 
-use super::Options;
 use super::common::{
     self, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, read_common,
     read_dead_time_compensation, refuse, refuse_held,
 };
+use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::check::reader::Reader;
@@ -149,6 +149,14 @@ impl Options for PiPwmSpec {
 
     fn common_mut(&mut self) -> &mut LoopOptions {
         &mut self.common
+    }
+
+    fn turns_off(&self) -> Option<TurnsOff> {
+        self.six_step.then_some(TurnsOff {
+            option: "six_step",
+            value: "on",
+            instead: "six_step: off",
+        })
     }
 
     fn modulates(&self) -> bool {

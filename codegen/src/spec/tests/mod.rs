@@ -7,4 +7,5 @@ mod explanations;
 mod front_ends;
 mod inverter;
 mod motors;
+mod sensing;
 mod spelling;

@@ -105,10 +105,10 @@ impl Ideal {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
         let phase = DiscretePhase::new(spec);
         let bus_sense = inverter.bus_sense()?;
-        let gain = inverter.adc_gain;
+        let gain = inverter.adc_gain.first();
         // A current of exactly the trip level is not above it, whatever these floating-point
         // numbers lose.
-        let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.abs();
+        let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.first().abs();
         let limits = Limits::new(inverter, trip_current)?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
@@ -121,7 +121,7 @@ impl Ideal {
             clock: HallClock::new(spec),
             limits,
             gain,
-            offset_nominal: f64::from(inverter.adc_offset),
+            offset_nominal: f64::from(inverter.adc_offset.first()),
             bus_sense,
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,

@@ -83,7 +83,7 @@ impl Limits {
             })?;
         Ok(Self {
             adc_max: f64::from((1u32 << inverter.adc_bits) - 1),
-            adc_offset: f64::from(inverter.adc_offset),
+            adc_offset: f64::from(inverter.adc_offset.first()),
             offset_tolerance: f64::from(inverter.offset_tolerance),
             i_trip,
             calibration_samples: f64::from(samples),

@@ -82,8 +82,8 @@ impl Uniform {
     pub fn largest(spec: &Spec) -> Result<f64, Error> {
         let inverter = &spec.inverter;
         let full = f64::from((1_u32 << inverter.adc_bits) - 1);
-        let offset = f64::from(inverter.adc_offset);
-        let current = offset.max(full - offset) * inverter.adc_gain.abs();
+        let offset = f64::from(inverter.adc_offset.first());
+        let current = offset.max(full - offset) * inverter.adc_gain.first().abs();
         let stiffness = 1.0 / DiscretePhase::new(spec).b;
         Ok(inverter.v_bus_max()?.max(current).max(stiffness))
     }

@@ -115,14 +115,14 @@ impl Stimulus {
             ticks: inverter.ticks,
             age_max: inverter.age_max,
             adc_max: (1 << inverter.adc_bits) - 1,
-            gain: inverter.adc_gain,
-            trip_counts: (inverter.trip_current / inverter.adc_gain.abs()) as i32,
+            gain: inverter.adc_gain.first(),
+            trip_counts: (inverter.trip_current / inverter.adc_gain.first().abs()) as i32,
             i_max_bits: inverter.max_current * 65_536.0,
             t_max_bits: inverter.max_current * spec.motor.torque_constant * 65_536.0,
             startup_steps: (1 << inverter.calibration_log2) + inverter.precharge_periods,
             start_up: 0,
             true_offset: [0; 2],
-            nominal_offset: inverter.adc_offset as i32,
+            nominal_offset: inverter.adc_offset.first() as i32,
             offset_tolerance: inverter.offset_tolerance as i32,
             speed_bits: spec
                 .loop_options()

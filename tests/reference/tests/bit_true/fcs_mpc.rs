@@ -51,7 +51,7 @@ fn the_nearest_candidate_is_chosen() {
         let mut v_bus = variant.spec.inverter.v_bus;
         for _ in 0..1000 {
             let context = Context {
-                offset: [f64::from(variant.spec.inverter.adc_offset); 2],
+                offset: [f64::from(variant.spec.inverter.adc_offset.first()); 2],
                 tripped: !ideal.trace().run,
             };
             let (action, sample) = stimulus.next(&context);
@@ -183,7 +183,7 @@ fn ties_choose_the_first_candidate() {
                 bit_true.set_current(bits);
                 ideal.set_current(bits);
                 let code = variant.spec.motor.hall_codes[sector - 1];
-                let sample = Sample::with_hall([inverter.adc_offset as u16; 2], code);
+                let sample = Sample::with_hall([inverter.adc_offset.first() as u16; 2], code);
                 let legs = bit_true.step(&sample);
                 let duties = ideal.step(&sample);
                 let first = if sense > 0 {

@@ -55,7 +55,8 @@ fn plain(motor: &str, table: SwitchingTable, candidates: Candidates) -> (Variant
 /// Counts of phases a and b for currents in ampere.
 fn sample(spec: &Spec, sector: usize, currents: [f64; 2]) -> Sample {
     let count = |current: f64| {
-        let counts = f64::from(spec.inverter.adc_offset) + current / spec.inverter.adc_gain;
+        let counts =
+            f64::from(spec.inverter.adc_offset.first()) + current / spec.inverter.adc_gain.first();
         counts.round() as u16
     };
     Sample::with_hall(currents.map(count), spec.motor.hall_codes[sector - 1])

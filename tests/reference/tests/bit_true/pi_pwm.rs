@@ -50,15 +50,17 @@ fn follows_a_textbook_controller() {
         for step in 0..400u32 {
             // Counts that vary around the reference, at times far enough to saturate.
             let swing = if step % 100 < 10 { 1.5 } else { 0.05 };
-            let counts =
-                |amps: f64| (f64::from(inverter.adc_offset) + amps / inverter.adc_gain).round();
+            let counts = |amps: f64| {
+                (f64::from(inverter.adc_offset.first()) + amps / inverter.adc_gain.first()).round()
+            };
             let phase = f64::from(step) * 0.3;
             let adc = [
                 counts(current * (1.0 - swing * phase.cos())),
                 counts(current * swing * phase.sin() / 2.0),
             ];
-            let i_ab =
-                adc.map(|count| (count - f64::from(inverter.adc_offset)) * inverter.adc_gain);
+            let i_ab = adc.map(|count| {
+                (count - f64::from(inverter.adc_offset.first())) * inverter.adc_gain.first()
+            });
             let i = [i_ab[0], i_ab[1], -i_ab[0] - i_ab[1]];
             let error = [0, 1, 2].map(|x| reference[x] - i[x]);
             let u = [0, 1, 2].map(|x| k_p * error[x] + integral[x]);

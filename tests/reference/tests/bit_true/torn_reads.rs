@@ -43,7 +43,7 @@ fn run(variant: &Variant, late: Late) -> Vec<[f64; 2]> {
         };
         let since = (ticks - sector(ticks) * SECTOR) * inverter.ticks;
         let code = motor.hall_codes[sector(code) as usize % 6];
-        let sample = Sample::with_hall([inverter.adc_offset as u16; 2], code);
+        let sample = Sample::with_hall([inverter.adc_offset.first() as u16; 2], code);
         model.step(&sample.hall_ticks(since as u16));
         let trace = model.trace();
         [trace.theta, trace.step_angle]

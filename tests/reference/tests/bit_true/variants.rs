@@ -261,7 +261,7 @@ rev_min = {rev_min}
 /// Formats with as many bits as the plant's ranges allow.
 pub fn formats(spec: &Spec) -> &'static [Format] {
     let (motor, inverter, options) = (&spec.motor, &spec.inverter, spec.loop_options());
-    let g = inverter.adc_gain.abs();
+    let g = inverter.adc_gain.first().abs();
     let w = inverter.v_bus / f64::from(inverter.timer_period);
     let DiscretePhase { a, b } = DiscretePhase::new(spec);
     let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);

@@ -85,7 +85,7 @@ impl Plant {
         let inverter = &self.spec.inverter;
         let max = f64::from((1u32 << inverter.adc_bits) - 1);
         let adc = |i: f64| {
-            (i / inverter.adc_gain + f64::from(inverter.adc_offset))
+            (i / inverter.adc_gain.first() + f64::from(inverter.adc_offset.first()))
                 .round()
                 .clamp(0.0, max) as u16
         };

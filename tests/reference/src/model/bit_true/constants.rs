@@ -116,7 +116,7 @@ impl<'a> Scale<'a> {
                 expected: "expected 1 or more",
             });
         }
-        let g = spec.inverter.adc_gain.abs();
+        let g = spec.inverter.adc_gain.first().abs();
         let w = spec.inverter.v_bus / f64::from(spec.inverter.timer_period);
         Ok(Self {
             formats,
@@ -304,8 +304,8 @@ impl<W: Word> Constants<W> {
             ampere: g / two_i,
             volt: w / two_v,
             count: two_i,
-            polarity: inverter.adc_gain.signum(),
-            offset: f64::from(inverter.adc_offset) * two_i,
+            polarity: inverter.adc_gain.first().signum(),
+            offset: f64::from(inverter.adc_offset.first()) * two_i,
             calibration: two_i * pow2(-(inverter.calibration_log2 as i32)),
             to_counts: 1.0 / two_v,
             half_count: two_v / 2.0,

@@ -1,0 +1,161 @@
+//! The current sensors: where they are, what a count of each is worth, and when a leg can be read.
+
+use super::inverter::Inverter;
+use super::reader::Reader;
+use crate::diagnostics::catalogue;
+use crate::diagnostics::{Collector, engineering};
+use crate::spec::ast::Section;
+use crate::spec::sensing::SensingTimes;
+use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
+
+/// Least share of the period that a leg may be high: below it not even the zero voltage of centred pulses, half the
+/// period each, could be read.
+const LEAST_DUTY: f64 = 0.5;
+
+/// What was read of the sensors' place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sensing {
+    pub phases: SensedPhases,
+    /// None together with an error.
+    pub place: Option<CurrentSensing>,
+    /// Second.
+    pub minimum_low_time: f64,
+}
+
+pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
+    Sensing {
+        phases: reader
+            .choice(errors, "sensed_phases", &[])
+            .unwrap_or(SensedPhases::Ab),
+        place: read_place(reader, errors),
+        minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
+    }
+}
+
+fn time(reader: &Reader, errors: &mut Collector, name: &'static str) -> Option<f64> {
+    reader.plain_quantity(errors, name).map(|given| given.si)
+}
+
+/// In the phase by default; sensors in the low leg need their times, others take none.
+fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing> {
+    const FIELD: &str = "current_sensing";
+    const NEEDED: [(&str, &str); 3] = [
+        ("settling_time", "1 us"),
+        ("aperture_time", "200 ns"),
+        ("conversion_time", "0 us"),
+    ];
+    let [settling, aperture, conversion, lead] = [
+        "settling_time",
+        "aperture_time",
+        "conversion_time",
+        "sampling_lead",
+    ]
+    .map(|name| time(reader, errors, name));
+    let is_low = reader
+        .word(errors, FIELD, &[("in_phase", false), ("low_side", true)])
+        .or_else(|| reader.field(FIELD).is_none().then_some(false))?;
+    if !is_low {
+        let names = NEEDED.map(|(name, _)| name);
+        for name in names.into_iter().chain(["sampling_lead"]) {
+            if let Some(field) = reader.field(name) {
+                let (at, given) = (&field.location, field.value.to_string());
+                let setting = "current_sensing: low_side";
+                errors.push(catalogue::needless_field(at, name, &given, setting));
+            }
+        }
+        return Some(CurrentSensing::InPhase);
+    }
+    for (name, example) in NEEDED {
+        if reader.field(name).is_none() {
+            let at = reader
+                .field(FIELD)
+                .map_or(reader.location(), |field| &field.location);
+            let setting = "current_sensing: low_side";
+            errors.push(catalogue::needed_field(at, setting, name, example));
+        }
+    }
+    Some(CurrentSensing::LowSide(SensingTimes {
+        settling: settling?,
+        aperture: aperture?,
+        conversion: conversion?,
+        lead: lead.unwrap_or(0.0),
+    }))
+}
+
+/// Values of a field that may hold one of each sensed phase: one for all, or as many as there are phases.
+pub(super) fn of_each_phase<T: Clone>(
+    reader: &Reader,
+    name: &'static str,
+    phases: SensedPhases,
+    errors: &mut Collector,
+    read: impl Fn(&Reader, &mut Collector) -> Option<T>,
+) -> Option<Vec<T>> {
+    let count = phases.phases().len();
+    let values = reader.each(name, |one| read(one, errors))?;
+    match values.as_slice() {
+        [one] => Some(vec![one.clone(); count]),
+        values if values.len() == count => Some(values.to_vec()),
+        values => {
+            let part = reader.part(name, String::new);
+            let named = reader.part("sensed_phases", || "ab".to_owned());
+            let given = values.len();
+            errors.push(catalogue::not_of_each_phase(&part, &named, given, count));
+            None
+        }
+    }
+}
+
+/// Accepted: a window and a least low time that leave half of the PWM period, and legs of which no off one need be read.
+pub(super) fn check(
+    reader: &Reader,
+    inverter: &Inverter,
+    (controller, options): (Option<&ControllerSpec>, &Section),
+    errors: &mut Collector,
+) -> Option<()> {
+    let pwm_period = inverter.t_s? / f64::from(inverter.pwm_per_control);
+    let half_low = pwm_period * (1.0 - LEAST_DUTY) / 2.0;
+    let sensing = &inverter.sensing;
+    let period = &inverter.period.as_ref()?.part;
+    if sensing.minimum_low_time > 2.0 * half_low * (1.0 + 1e-9) {
+        let part = reader.part("minimum_low_time", String::new);
+        errors.push(catalogue::minimum_low_time(
+            &part,
+            period,
+            2.0 * half_low,
+            [LEAST_DUTY, pwm_period],
+        ));
+    }
+    let CurrentSensing::LowSide(times) = sensing.place? else {
+        return None;
+    };
+    let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
+    let window = times.window(dead_time, sensing.phases.phases().len());
+    let needed = window.before.max(window.after);
+    if needed > half_low * (1.0 + 1e-9) {
+        let default = |time: f64| move || engineering(time, "s");
+        let parts = [
+            reader.part("settling_time", default(times.settling)),
+            reader.part("dead_time", default(0.0)),
+            reader.part("aperture_time", default(times.aperture)),
+            reader.part("conversion_time", default(times.conversion)),
+        ];
+        errors.push(catalogue::sensing_window(
+            &parts,
+            period,
+            [window.before, window.after],
+            [half_low, LEAST_DUTY],
+            (1.0 - LEAST_DUTY) / 2.0 / needed,
+        ));
+    }
+    if sensing.phases != SensedPhases::Abc
+        && let Some(off) = controller.and_then(ControllerSpec::turns_off)
+    {
+        let place = reader.part("current_sensing", String::new);
+        let phases = reader.part("sensed_phases", || "ab".to_owned());
+        let at = options
+            .field(off.option)
+            .map_or(&place.location, |field| &field.location);
+        errors.push(catalogue::unreadable_leg(at, off, &place, &phases));
+    }
+    Some(())
+}

@@ -1,0 +1,138 @@
+//! Where the phase currents are measured, and how long a leg must be low for it.
+
+use super::InverterSpec;
+use super::words::words;
+
+words! {
+    /// Which phases have a current sensor.
+    pub enum SensedPhases {
+        "ab" = Ab: "a and b",
+        "bc" = Bc: "b and c",
+        "ca" = Ca: "c and a",
+        "abc" = Abc: "all three",
+    }
+}
+
+impl SensedPhases {
+    /// The phases with a sensor, 0 to 2 for a to c, in the order in which samples and lists name them.
+    pub fn phases(self) -> &'static [usize] {
+        match self {
+            Self::Ab => &[0, 1],
+            Self::Bc => &[1, 2],
+            Self::Ca => &[2, 0],
+            Self::Abc => &[0, 1, 2],
+        }
+    }
+}
+
+/// Where the sensors are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CurrentSensing {
+    /// In the phase: every current can be read at any instant.
+    InPhase,
+    /// In the low leg: a current can be read while its leg's lower switch is on.
+    LowSide(SensingTimes),
+}
+
+/// What a sensor in the low leg needs, second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensingTimes {
+    /// Time from the lower switch's turning on until its current can be sampled.
+    pub settling: f64,
+    /// Time from the sampling instant for which a converter's input must stay.
+    pub aperture: f64,
+    /// Time from a conversion to the next one of the same ADC; 0 where each phase has its own.
+    pub conversion: f64,
+    /// Time from the sampling instant to the timer's turning point.
+    pub lead: f64,
+}
+
+/// A sensor of a phase current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurrentSensor {
+    /// Ampere per count; negative for inverting amplifiers.
+    pub gain: f64,
+    /// Count at zero current.
+    pub offset: u32,
+}
+
+/// For how long a leg must be commanded low around the turning point at which control periods begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensingWindow {
+    /// Before it, in the period that ends: dead time, settling and lead, second.
+    pub before: f64,
+    /// Behind it, in the period that begins: aperture and further conversions less the lead, second.
+    pub after: f64,
+}
+
+impl InverterSpec {
+    /// All current sensors, in the order of [`SensedPhases::phases`].
+    pub fn sensors(&self) -> Vec<CurrentSensor> {
+        let first = CurrentSensor {
+            gain: self.adc_gain,
+            offset: self.adc_offset,
+        };
+        let others = self.other_sensors.iter().copied();
+        std::iter::once(first).chain(others).collect()
+    }
+
+    /// Period of the PWM, second.
+    pub fn pwm_period(&self) -> f64 {
+        self.t_s / f64::from(self.pwm_per_control)
+    }
+
+    /// Frequency of the PWM at a control period of `t_s`, hertz.
+    pub fn pwm_frequency(&self, t_s: f64) -> f64 {
+        f64::from(self.pwm_per_control) / t_s
+    }
+
+    /// For how long a leg that is sampled must be low; none with sensors in the phases.
+    pub fn window(&self) -> Option<SensingWindow> {
+        match self.current_sensing {
+            CurrentSensing::InPhase => None,
+            CurrentSensing::LowSide(times) => {
+                let conversions = self.sensed_phases.phases().len();
+                Some(times.window(self.dead_time, conversions))
+            }
+        }
+    }
+
+    /// Largest compare value of a leg that is sampled at both ends of a period: with more counts its lower switch
+    /// would be on for too short a time. Pulses are centred, so that half of a leg's low time lies behind the
+    /// turning point with which its period begins, and half before the one with which it ends.
+    pub fn readable_top(&self) -> u32 {
+        let window = self.window();
+        let half = window.map_or(0.0, |window| window.before.max(window.after));
+        self.counts_less(half).min(self.largest_compare())
+    }
+
+    /// Largest compare value of any leg: `timer_period`, less what `minimum_low_time` takes.
+    pub fn largest_compare(&self) -> u32 {
+        self.counts_less(self.minimum_low_time / 2.0)
+    }
+
+    /// The compare value at which a leg is low for so long on either side of the turning point.
+    fn counts_less(&self, half_low: f64) -> u32 {
+        let counts = low_counts(half_low, self.pwm_period(), self.timer_period);
+        self.timer_period.saturating_sub(counts)
+    }
+}
+
+impl SensingTimes {
+    /// The window of so many conversions one after the other.
+    pub fn window(self, dead_time: f64, conversions: usize) -> SensingWindow {
+        let further = conversions.saturating_sub(1) as f64;
+        let after = self.aperture + further * self.conversion - self.lead;
+        SensingWindow {
+            before: dead_time + self.settling + self.lead,
+            after: after.max(0.0),
+        }
+    }
+}
+
+/// Whole counts of a timer that counts to `timer_period` in half of `pwm_period`, not fewer than `time`; a time
+/// that is whole but for its rounding is that number.
+pub(super) fn low_counts(time: f64, pwm_period: f64, timer_period: u32) -> u32 {
+    let counts = time / (pwm_period / 2.0) * f64::from(timer_period);
+    (counts - 1e-6).ceil().max(0.0) as u32
+}

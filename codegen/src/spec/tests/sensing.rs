@@ -1,0 +1,126 @@
+//! Sensors and their windows, as they are written and as the checks make numbers of them.
+
+use super::diagnostics::COMPLETE;
+use crate::spec::{CurrentSensing, InverterSpec, SensedPhases, check, parse_macro, parse_toml};
+use proc_macro2::TokenStream;
+use std::path::Path;
+
+/// The inverter of a complete motor file with these lines in place of its range.
+fn with_lines(lines: &str) -> InverterSpec {
+    let text = COMPLETE.replace("adc_range = \"40 A\"", lines);
+    let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+    match checked {
+        Ok((spec, _)) => spec.inverter,
+        Err(errors) => panic!("{lines}: {errors}"),
+    }
+}
+
+/// The numbers of the derivation: half of the low time lies before and half behind the turning point, so that the longer
+/// part counts twice; a trigger that is shifted into the middle counts both once.
+#[test]
+fn the_largest_readable_duty_follows_from_the_window() {
+    let low_side = |lines: &str| {
+        let needed =
+            "adc_range = \"40 A\"\ncurrent_sensing = \"low_side\"\naperture_time = \"200 ns\"\n";
+        with_lines(&format!("{needed}{lines}\n"))
+    };
+    for (lines, before, after, top) in [
+        // 0.94 of 1800 counts.
+        (
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"0 us\"",
+            1.5e-6,
+            0.2e-6,
+            1692,
+        ),
+        // Two conversions of one ADC last longer than the settling: 2 (0.2 + 2.3) us.
+        (
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"2.3 us\"",
+            1.5e-6,
+            2.5e-6,
+            1620,
+        ),
+        // The middle of both is 2 us.
+        (
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"2.3 us\"\nsampling_lead = \"500 ns\"",
+            2e-6,
+            2e-6,
+            1656,
+        ),
+        // Three sensors: a further conversion.
+        (
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"1 us\"\nsensed_phases = \"abc\"",
+            1.5e-6,
+            2.2e-6,
+            // 79.2 counts on either side, rounded up.
+            1641,
+        ),
+    ] {
+        let inverter = low_side(lines);
+        let window = inverter.window().expect("a window");
+        assert!(
+            (window.before - before).abs() < 1e-12,
+            "{lines}: {window:?}"
+        );
+        assert!((window.after - after).abs() < 1e-12, "{lines}: {window:?}");
+        assert_eq!(inverter.readable_top(), top, "{lines}");
+        assert_eq!(inverter.largest_compare(), 1800, "{lines}");
+    }
+}
+
+#[test]
+fn a_least_low_time_bounds_every_leg() {
+    let inverter = with_lines("adc_range = \"40 A\"\nminimum_low_time = \"2 us\"");
+    assert_eq!(inverter.current_sensing, CurrentSensing::InPhase);
+    // 4 % of 50 us.
+    assert_eq!(
+        [inverter.largest_compare(), inverter.readable_top()],
+        [1728; 2]
+    );
+}
+
+#[test]
+fn shunt_amplifier_and_reference_make_a_gain() {
+    let lines = "shunt = \"0.5 mohm\"\namplifier_gain = 40\nadc_reference = \"3.3 V\"\nadc_inverted = \"on\"";
+    let inverter = with_lines(lines);
+    let gain = -3.3 / (4096.0 * 0.0005 * 40.0);
+    assert!((inverter.adc_gain / gain - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn sensors_of_a_macro_call_and_of_a_file_are_alike() {
+    let file = with_lines(
+        "sensed_phases = \"bc\"\nadc_gain = [\"19.5 mA/count\", \"19.7 mA/count\"]\nadc_offset = [2048, 2051]\nadc_inverted = [\"on\", \"off\"]\n",
+    );
+    assert_eq!(file.sensed_phases, SensedPhases::Bc);
+    let sensors = file.sensors();
+    assert_eq!([sensors[0].gain, sensors[1].gain], [-0.0195, 0.0197]);
+    assert_eq!([sensors[0].offset, sensors[1].offset], [2048, 2051]);
+    let call = "pub Hub { motor: { pole_pairs: 4, resistance: 135 mohm per_phase, inductance: 0.22 mH per_phase, winding: star,
+        back_emf: 0.1648 V/(rad/s) line_to_line peak, emf_shape: trapezoidal, rated_current: 20 A, rated_speed: 2000 rpm },
+        inverter: { bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, sensed_phases: bc,
+        adc_gain: [19.5 mA/count, 19.7 mA/count], adc_offset: [2048, 2051], adc_inverted: [on, off] }, controller: pdcc }";
+    let tokens = call.parse::<TokenStream>().expect("lexes");
+    let ast = parse_macro(tokens).and_then(|input| input.load(Path::new("nowhere")));
+    let (spec, _) = ast.and_then(|ast| check(&ast)).expect("is right");
+    assert_eq!(spec.inverter, file);
+}
+
+/// Fields of a call replace those of a file that say the same thing.
+#[test]
+fn a_gain_replaces_a_shunt() {
+    let shunt = "shunt = \"0.5 mohm\"\namplifier_gain = 40\nadc_reference = \"3.3 V\"";
+    let text = COMPLETE.replace("adc_range = \"40 A\"", shunt);
+    let mut ast = parse_toml(&text, "m.toml").expect("is TOML");
+    let over = parse_toml("[inverter]\nadc_gain = \"20 mA/count\"\n", "n.toml").expect("is TOML");
+    ast.overlay(over);
+    let (spec, _) = check(&ast).expect("is right");
+    assert_eq!(spec.inverter.adc_gain, 0.02);
+}
+
+#[test]
+fn a_control_period_is_so_many_pwm_periods() {
+    let inverter = with_lines("adc_range = \"40 A\"\npwm_per_control = 3");
+    assert_eq!(inverter.timer_period, 1800);
+    assert!((inverter.t_s - 150e-6).abs() < 1e-12);
+    assert!((inverter.pwm_period() - 50e-6).abs() < 1e-12);
+}
