@@ -100,7 +100,7 @@ fn sensors_of_a_macro_call_and_of_a_file_are_alike() {
         inverter: { bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, sensed_phases: bc,
         adc_gain: [19.5 mA/count, 19.7 mA/count], adc_offset: [2048, 2051], adc_inverted: [on, off] }, controller: pdcc }";
     let tokens = call.parse::<TokenStream>().expect("lexes");
-    let ast = parse_macro(tokens).and_then(|input| input.load(Path::new("nowhere")));
+    let ast = parse_macro(tokens).and_then(|input| input.load(Path::new("nowhere"), &mut vec![]));
     let (spec, _) = ast.and_then(|ast| check(&ast)).expect("is right");
     assert_eq!(spec.inverter, file);
 }
