@@ -114,6 +114,12 @@ impl Code {
                 "bus_voltage = \"48 V\"",
                 "Add what is needed, or remove what has no use.",
             ),
+            Self::UnknownBoard => say(
+                "The library has no board of this name.",
+                "a call or motor file with `board: \"vesc-5\"`",
+                "`board: \"vesc-4\"`",
+                "Choose a board that `hexagen boards` lists, or give the path of a board's file.",
+            ),
             _ => say(
                 "The text is no TOML, or the macro call has not the shape `pub Name { section: { field: value, … }, … }`.",
                 "resistance = 135 mohm per_phase",
@@ -327,6 +333,12 @@ impl Code {
                 "adc_bits = 12\nadc_offset = [2048, 2050, 2052]",
                 "adc_bits = 12\nadc_offset = [2048, 2048]",
                 "Give one value for all sensors, or as many as `sensed_phases` names.",
+            ),
+            Self::OutsideOfBoard => say(
+                "The file of the board states the bus voltages that its parts bear.",
+                "a call or motor file with `board` and a `bus_voltage` outside the board's range",
+                "a bus voltage within it",
+                "Choose another board, or a bus voltage that this one is made for.",
             ),
             _ => say(
                 "Half a count of error is too much of what is measured.",

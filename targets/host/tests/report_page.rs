@@ -186,7 +186,7 @@ fn the_heat_table_has_a_cell_per_controller_disturbance_and_speed() {
         "10-bit ADC, 200 mA off",
         "<code>phcc</code> is missing: one vector moves the current too far",
         "<code>pdcc</code>, dead time 1 \u{b5}s: the dead time is too long",
-        "A run oscillates where",
+        "A run oscillates if",
     ] {
         assert!(sheet.contains(text), "no `{text}` in {sheet}");
     }

@@ -13,6 +13,8 @@ struct Numbers {
     gain: f64,
     /// Second; none where the motor's file says it.
     period: Option<f64>,
+    /// Its sensors are such as no controller is generated for yet.
+    waits: bool,
 }
 
 fn numbers(file: &BoardFile) -> Numbers {
@@ -24,10 +26,17 @@ fn numbers(file: &BoardFile) -> Numbers {
     let shunt = number("shunt")
         .map(|shunt| all("adc_reference") / (4096.0 * shunt * all("amplifier_gain")));
     let periods = number("pwm_per_control").unwrap_or(1.0);
+    let later = [
+        "current_sensing",
+        "sensed_phases",
+        "minimum_low_time",
+        "pwm_per_control",
+    ];
     Numbers {
         bus: [all("bus_min"), all("bus_max")],
         gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
         period: number("f_pwm").map(|frequency| periods / frequency),
+        waits: later.iter().any(|name| file.inverter.field(name).is_some()),
     }
 }
 
@@ -44,6 +53,8 @@ fn obstacle(board: &Numbers, motor: &Spec) -> Option<&'static str> {
         Some("HX0317")
     } else if per_period > 0.5 {
         Some("HX0301")
+    } else if board.waits {
+        Some("HX0402")
     } else {
         None
     }
@@ -53,7 +64,7 @@ fn obstacle(board: &Numbers, motor: &Spec) -> Option<&'static str> {
 fn a_motor_fits_a_board_by_voltage_current_and_time_constant() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library reads");
     let boards = library_of_boards(&()).expect("the library reads");
-    let mut fitting = 0;
+    let (mut fitting, mut waiting) = (0, 0);
     for (board, entry) in BOARDS.iter().zip(&boards) {
         let numbers = numbers(&parse_board(board.text, board.name).expect("is TOML"));
         for (motor, fit) in motors.iter().zip(&entry.motors) {
@@ -64,12 +75,17 @@ fn a_motor_fits_a_board_by_voltage_current_and_time_constant() {
             };
             let pair = format!("{} on {}", fit.motor, entry.name);
             let reason = fit.reason.as_deref().unwrap_or_default();
-            match obstacle(&numbers, &own.spec) {
+            let obstacle = obstacle(&numbers, &own.spec);
+            waiting += usize::from(obstacle == Some("HX0402"));
+            match obstacle {
                 Some(code) => assert!(reason.contains(code), "{pair}: {code}, not {reason:?}"),
                 None => assert!(fit.fits, "{pair}: {reason}"),
             }
             fitting += usize::from(fit.fits);
         }
     }
-    assert!(fitting > 30, "{fitting} pairs fit");
+    assert!(
+        fitting + waiting > 30,
+        "{fitting} pairs fit, {waiting} but for their sensors"
+    );
 }

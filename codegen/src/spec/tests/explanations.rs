@@ -4,8 +4,10 @@ use super::diagnostics::{COMPLETE, found_in_file};
 use crate::diagnostics::Code;
 use crate::spec::schema;
 
-/// What no motor file makes.
-const ELSEWHERE: [Code; 4] = [
+/// What no motor file makes by itself.
+const ELSEWHERE: [Code; 6] = [
+    Code::UnknownBoard,
+    Code::OutsideOfBoard,
     Code::MotorFile,
     Code::Variant,
     Code::SwingAboveTrip,

@@ -210,7 +210,7 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
         "oscillates |",
         "mean torque in Nm",
         "colour",
-        "A run oscillates where",
+        "A run oscillates if",
     ] {
         assert!(piped.contains(part), "no `{part}` in\n{piped}");
     }
