@@ -129,8 +129,15 @@ fn run(program: &Program, seed: u64) -> f64 {
             };
         }
         // The case of the step: of each condition, whether it held.
-        let holds = |condition: Value, held: bool| {
-            values[condition.index()].is_some_and(|(flag, _)| (flag == 1) == held)
+        let is_guarded = |value: Value| {
+            let stages = function.stages.iter().filter(|stage| stage.guard.is_some());
+            let mut ranges = stages.map(|stage| stage.first..stage.end);
+            ranges.any(|range| range.contains(&value.index()))
+        };
+        let holds = |condition: Value, held: bool| match values[condition.index()] {
+            Some((flag, _)) => (flag == 1) == held,
+            // A condition of a stage that did not run does not hold.
+            None => is_guarded(condition) && !held,
         };
         let case = all.iter().find(|case| {
             case.known

@@ -158,7 +158,6 @@ fn vector_constants(inverter: &InverterSpec, period: Period) -> [PublicConstant;
             &svm,
             vec![
                 "Coefficients of the paper's (16), timer counts per volt of (v_alpha, v_beta): t_a and t_b in turn for voltage sectors 1 to 6.".to_owned(),
-                String::new(),
                 match period {
                     Period::Pulses => {
                         "For comparison: the step reaches the same times by min/max injection."

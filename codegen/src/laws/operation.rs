@@ -58,8 +58,8 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     let inverter = &spec.inverter;
     let amperes = |counts: u32| engineering(f64::from(counts) * inverter.adc_gain.abs(), "A");
     let precharge = match inverter.precharge_periods {
-        0 => "no pre-charge".to_owned(),
-        periods => format!("{periods} steps of pre-charge"),
+        0 => "no pre-charge follows".to_owned(),
+        periods => format!("{periods} steps of pre-charge follow"),
     };
     let told = match inverter.bus {
         BusSource::Fixed => "",
@@ -70,7 +70,7 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         "# Start-up and faults".to_owned(),
         String::new(),
         format!(
-            "`calibrate()` takes {} steps and accepts offsets within {} of the nominal one; {precharge} follow.",
+            "`calibrate()` takes {} steps and accepts offsets within {} of the nominal one; {precharge}.",
             1_u32 << inverter.calibration_log2,
             amperes(inverter.offset_tolerance)
         ),
