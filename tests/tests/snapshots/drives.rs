@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 19] = [
+const VARIANTS: [(&str, &str, Fields); 20] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -42,6 +42,11 @@ const VARIANTS: [(&str, &str, Fields); 19] = [
     (
         "pdcc.observer",
         "pdcc:emf=observer,reference=proportional,hall_capture=timer",
+        &[],
+    ),
+    (
+        "pdcc.observer-quasi-square",
+        "pdcc:emf=observer,saturation=nearest",
         &[],
     ),
     (

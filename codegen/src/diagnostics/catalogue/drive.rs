@@ -5,7 +5,6 @@ use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, frequency, percent, rpm_at_least,
     rpm_at_most, significant,
 };
-use crate::spec::controller::TurnsOff;
 
 /// A field involved in a contradiction: name, value and place.
 #[derive(Clone, Debug)]
@@ -702,14 +701,20 @@ pub fn not_of_each_phase(list: &Part, phases: &Part, given: usize, wanted: usize
     with_parts(error, &[phases])
 }
 
-/// A controller that turns legs off where only two low legs have sensors.
-pub fn unreadable_leg(at: &Location, off: TurnsOff, place: &Part, phases: &Part) -> Diagnostic {
+/// A controller that turns legs off where only two low legs have sensors: its option, the value that
+/// does so, and the setting in place of it.
+pub fn unreadable_leg(
+    at: &Location,
+    [option, value, instead]: [&str; 3],
+    place: &Part,
+    phases: &Part,
+) -> Diagnostic {
     let error = Diagnostic::new(
         Code::UnreadableLeg,
         at,
         format!(
             "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `sensed_phases: abc` or `current_sensing: in_phase`",
-            off.option, off.value, phases.given, off.instead,
+            option, value, phases.given, instead,
         ),
     );
     with_parts(error, &[place, phases])

@@ -155,7 +155,12 @@ pub(super) fn check(
         let at = options
             .field(off.option)
             .map_or(&place.location, |field| &field.location);
-        errors.push(catalogue::unreadable_leg(at, off, &place, &phases));
+        errors.push(catalogue::unreadable_leg(
+            at,
+            [off.option, off.value, off.instead],
+            &place,
+            &phases,
+        ));
     }
     Some(())
 }
