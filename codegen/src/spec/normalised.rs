@@ -140,7 +140,7 @@ impl Text {
     fn one_or_each<T: Debug + PartialEq>(&mut self, key: &str, values: &[T]) {
         match values {
             [first, rest @ ..] if rest.iter().all(|value| value == first) => {
-                self.number(key, first)
+                self.number(key, first);
             }
             values => self.number(key, values),
         }

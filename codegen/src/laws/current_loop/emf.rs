@@ -18,7 +18,7 @@ pub(super) struct Emf<'b> {
     /// EMF of the present period that the next step's estimate starts from.
     pub expected: Phases<'b>,
     /// Error of the modelled EMF, q and d.
-    pub emf_error: Option<[Expr<'b>; 2]>,
+    pub error: Option<[Expr<'b>; 2]>,
 }
 
 /// Shift of the sums of products that correct the error: 1/16 of a sum is 3/32 of a component.
@@ -59,7 +59,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                     target: model.target,
                     present: model.present,
                     expected: model.present,
-                    emf_error: None,
+                    error: None,
                 });
             }
             (Some((rotor, Some(shape))), EmfSource::Observer) => {
@@ -74,7 +74,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             target,
             present,
             expected: present,
-            emf_error: None,
+            error: None,
         })
     }
 
@@ -180,7 +180,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             target: e,
             present,
             expected: present,
-            emf_error: Some([q, d]),
+            error: Some([q, d]),
         })
     }
 

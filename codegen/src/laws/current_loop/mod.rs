@@ -191,7 +191,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             e,
             e_now,
             e_expected: emf.map(|emf| emf.expected),
-            emf_error: emf.and_then(|emf| emf.emf_error),
+            emf_error: emf.and_then(|emf| emf.error),
             held,
             speed_integral: regulated.map(|regulated| regulated.integral),
         }
