@@ -9,6 +9,7 @@ use clap::Args;
 use hexagen_codegen::diagnostics::Code;
 use hexagen_codegen::spec::{check, parse_toml, section_of};
 use serde::Serialize;
+use std::fmt::Write as _;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -296,9 +297,9 @@ fn text(values: &Values) -> String {
         "# A motor and its drive, for hexagen. Write values as the data sheet states them, with unit and basis.\n",
     );
     for (section, lines) in SECTIONS {
-        text.push_str(&format!("\n[{section}]\n"));
+        let _ = write!(text, "\n[{section}]\n");
         for line in lines {
-            text.push_str(&format!("# {}\n", line.about));
+            let _ = writeln!(text, "# {}", line.about);
             let entry = match (value_of(values, line), line.default) {
                 (Some((name, value)), _) => entry(name, value),
                 (None, Some(default)) => entry(line.fields[0], default),
