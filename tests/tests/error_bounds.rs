@@ -102,7 +102,11 @@ fn run(program: &Program, seed: u64) -> f64 {
                 .find(|stage| (stage.first..stage.end).contains(&value.index()));
             let at = |operand: Value| values[operand.index()];
             let guard = stage.and_then(|stage| stage.guard.as_ref());
-            if guard.is_some_and(|guard| at(guard.condition).is_none_or(|(flag, _)| flag == 0)) {
+            // State words and constants may be read in a stage that does not run.
+            let is_leaf = node.op.operands().is_empty();
+            let rests =
+                guard.is_some_and(|guard| at(guard.condition).is_none_or(|(flag, _)| flag == 0));
+            if rests && !is_leaf {
                 continue;
             }
             let x: Option<Vec<Pair>> = node.op.operands().into_iter().map(at).collect();
@@ -129,15 +133,8 @@ fn run(program: &Program, seed: u64) -> f64 {
             };
         }
         // The case of the step: of each condition, whether it held.
-        let is_guarded = |value: Value| {
-            let stages = function.stages.iter().filter(|stage| stage.guard.is_some());
-            let mut ranges = stages.map(|stage| stage.first..stage.end);
-            ranges.any(|range| range.contains(&value.index()))
-        };
-        let holds = |condition: Value, held: bool| match values[condition.index()] {
-            Some((flag, _)) => (flag == 1) == held,
-            // A condition of a stage that did not run does not hold.
-            None => is_guarded(condition) && !held,
+        let holds = |condition: Value, held: bool| {
+            values[condition.index()].is_some_and(|(flag, _)| (flag == 1) == held)
         };
         let case = all.iter().find(|case| {
             case.known
