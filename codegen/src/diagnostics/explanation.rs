@@ -92,7 +92,7 @@ impl Code {
             ),
             Self::MotorFile => say(
                 "The motor file of a macro call cannot be read, is not UTF-8, or its path is absolute.",
-                "motor: \"/home/me/hub.toml\"",
+                "motor: \"/motors/hub.toml\"",
                 "motor: \"motors/hub.toml\"",
                 "Give a path relative to the crate's Cargo.toml, so that every machine builds the same.",
             ),

@@ -23,7 +23,7 @@ pub(super) use reading::in_letters;
 /// A unit as it was written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// Its spelling, with the letters of [`in_letters`].
+    /// Its spelling in letters: `ohm` for `Ω`.
     pub symbol: String,
     /// The quantity that it measures.
     pub dimension: Dimension,
