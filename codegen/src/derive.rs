@@ -35,6 +35,7 @@ pub fn derive_state(item: TokenStream) -> TokenStream {
             quote!(self.#name.0)
         }
     });
+    let reads: Vec<TokenStream> = reads.collect();
     let writes = fields.iter().enumerate().map(|(index, field)| {
         let name = &field.name;
         if field.is_half {
@@ -43,6 +44,8 @@ pub fn derive_state(item: TokenStream) -> TokenStream {
             quote!(#index => self.#name = ::hexagen::arith::Word(value),)
         }
     });
+    let count = fields.len();
+    let own_names: Vec<&Ident> = fields.iter().map(|field| &field.name).collect();
     let own = quote_spanned!(name.span() => #name);
     quote! {
         #[automatically_derived]
@@ -55,6 +58,13 @@ pub fn derive_state(item: TokenStream) -> TokenStream {
                 if let ::core::option::Option::Some(words) = words.first_chunk_mut() {
                     *words = [#(#reads),*];
                 }
+            }
+
+            type Kept = [::core::sync::atomic::AtomicI32; #count];
+
+            fn keep(&self, kept: &Self::Kept) {
+                let [#(#own_names),*] = kept;
+                #(#own_names.store(#reads, ::core::sync::atomic::Ordering::Relaxed);)*
             }
 
             #[allow(unused_variables, reason = "a law without words has no use for the value")]

@@ -137,6 +137,10 @@ pub struct Limits {
     pub precharge_periods: u16,
     /// Control periods without a Hall edge under demand that are a stall; 0 for no stall detection.
     pub stall_periods: i32,
+    /// Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code.
+    pub sectors: u32,
+    /// Control periods of a sector below which braking shorts the motor.
+    pub brake_periods: i32,
 }
 
 /// Units of the observations, in numbers with 16 fraction bits.

@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 1
+#if HEXAGEN_ABI != 2
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 
@@ -99,6 +99,10 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     supervisor->sum_b = 0;
     supervisor->offset_a = offset;
     supervisor->offset_b = offset;
+    supervisor->brake_hall = 0;
+    supervisor->brake_age = 0;
+    supervisor->brake_interval = 0;
+    supervisor->brake_direction = 0;
 }
 
 /** Turns all legs off until a reset. The first fault is kept. */
@@ -169,6 +173,8 @@ static void start_up(
         break;
     case HEXAGEN_MODE_RUN:
     case HEXAGEN_MODE_TRIPPED:
+    case HEXAGEN_MODE_COAST:
+    case HEXAGEN_MODE_BRAKE:
     default:
         break;
     }
@@ -190,35 +196,120 @@ static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexa
     return hexagen_is_stalled(supervisor, limits) ? HEXAGEN_FAULT_STALL : HEXAGEN_FAULT_NONE;
 }
 
-hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+/** Sector of a Hall code; 0 of an invalid one. */
+static uint32_t sector_of(const hexagen_limits *limits, uint16_t hall)
+{
+    return hexagen_is_hall_code(hall) ? (limits->sectors >> (4U * hall)) & 7U : 0U;
+}
+
+/** Whether a sector is the next one of the other, forward. */
+static bool follows(uint32_t sector, uint32_t next)
+{
+    return next == ((sector == 6U) ? 1U : sector + 1U);
+}
+
+/**
+ * Follows the rotor for a control period; whether a sector lasts long enough for a short-circuited
+ * motor to take no more than the largest current.
+ */
+static bool is_slow(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    const uint32_t before = sector_of(limits, supervisor->brake_hall);
+    const uint32_t now = sector_of(limits, hall);
+    if (before != 0U && now != before) {
+        if (follows(before, now)) {
+            supervisor->brake_direction = 1;
+        } else if (follows(now, before)) {
+            supervisor->brake_direction = -1;
+        }
+        supervisor->brake_interval = supervisor->brake_age;
+        supervisor->brake_age = 0;
+    }
+    supervisor->brake_hall = hall;
+    supervisor->brake_age = hexagen_min(supervisor->brake_age + 1, limits->brake_periods);
+    return hexagen_max(supervisor->brake_age, supervisor->brake_interval) == limits->brake_periods;
+}
+
+/** Shorts a slow rotor through the lower switches, and asks for torque against a fast one. */
+static hexagen_rested go_on_braking(
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, 0 };
+    if (is_slow(supervisor, limits, hall)) {
+        rested.leg = HEXAGEN_LEG_LOW;
+    } else {
+        rested.is_controlled = true;
+        rested.against = supervisor->brake_direction;
+    }
+    return rested;
+}
+
+hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, hexagen_checked *checked)
 {
     const uint16_t most = limits->adc_max;
     const uint16_t count_a = (sample->adc[0] < most) ? sample->adc[0] : most;
     const uint16_t count_b = (sample->adc[1] < most) ? sample->adc[1] : most;
+    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, 0 };
     hexagen_fault fault;
-    hexagen_leg leg;
     checked->i_a = hexagen_current(limits, count_a, supervisor->offset_a);
     checked->i_b = hexagen_current(limits, count_b, supervisor->offset_b);
     checked->hall = hexagen_is_hall_code(sample->hall) ? (int32_t)sample->hall : 0;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
     fault = find_fault(supervisor, limits, sample, checked);
-    leg = (supervisor->mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE)
-        ? HEXAGEN_LEG_LOW
-        : HEXAGEN_LEG_OFF;
     if (fault != HEXAGEN_FAULT_NONE) {
         trip(supervisor, fault);
-    } else {
-        start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
+        return rested;
     }
-    return leg;
+    if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {
+        rested.leg = HEXAGEN_LEG_LOW;
+    } else if (supervisor->mode == HEXAGEN_MODE_BRAKE) {
+        rested = go_on_braking(supervisor, limits, sample->hall);
+    }
+    start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
+    return rested;
+}
+
+/** Whether control is on, or off on purpose: not in start-up, and not tripped. */
+static bool is_ready(const hexagen_supervisor *supervisor)
+{
+    return supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_COAST
+        || supervisor->mode == HEXAGEN_MODE_BRAKE;
+}
+
+void hexagen_coast(hexagen_supervisor *supervisor)
+{
+    if (is_ready(supervisor)) {
+        supervisor->mode = HEXAGEN_MODE_COAST;
+    }
+}
+
+void hexagen_brake(hexagen_supervisor *supervisor)
+{
+    if (is_ready(supervisor) && supervisor->mode != HEXAGEN_MODE_BRAKE) {
+        supervisor->mode = HEXAGEN_MODE_BRAKE;
+        supervisor->brake_hall = 0;
+        supervisor->brake_age = 0;
+        supervisor->brake_interval = 0;
+        supervisor->brake_direction = 0;
+    }
+}
+
+bool hexagen_resume(hexagen_supervisor *supervisor)
+{
+    const bool is_off =
+        supervisor->mode == HEXAGEN_MODE_COAST || supervisor->mode == HEXAGEN_MODE_BRAKE;
+    if (is_off) {
+        supervisor->mode = HEXAGEN_MODE_RUN;
+    }
+    return is_off;
 }
 
 bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
     const int32_t offset_a = supervisor->offset_a;
     const int32_t offset_b = supervisor->offset_b;
-    if (supervisor->mode != HEXAGEN_MODE_RUN && supervisor->mode != HEXAGEN_MODE_TRIPPED) {
+    if (!is_ready(supervisor) && supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         return false;
     }
     hexagen_start(supervisor, limits);
@@ -378,6 +469,10 @@ void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
     words[6] = supervisor->offset_b;
     words[7] = supervisor->stall_count;
     words[8] = (int32_t)supervisor->hall_prev;
+    words[9] = (int32_t)supervisor->brake_hall;
+    words[10] = supervisor->brake_age;
+    words[11] = supervisor->brake_interval;
+    words[12] = supervisor->brake_direction;
 }
 
 void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
@@ -391,5 +486,9 @@ void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
     supervisor->offset_b = words[6];
     supervisor->stall_count = words[7];
     supervisor->hall_prev = (uint16_t)words[8];
+    supervisor->brake_hall = (uint16_t)words[9];
+    supervisor->brake_age = words[10];
+    supervisor->brake_interval = words[11];
+    supervisor->brake_direction = words[12];
 }
 #endif

@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 1
+#define HEXAGEN_ABI 2
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -137,7 +137,11 @@ typedef enum {
     /** Charging the bootstrap capacitors, all lower switches on. */
     HEXAGEN_MODE_PRECHARGE = 2,
     /** Tripped, all legs off, until `reset`. */
-    HEXAGEN_MODE_TRIPPED = 3
+    HEXAGEN_MODE_TRIPPED = 3,
+    /** All legs off on purpose, until `resume`. */
+    HEXAGEN_MODE_COAST = 4,
+    /** Slowing the rotor down, until `resume`. */
+    HEXAGEN_MODE_BRAKE = 5
 } hexagen_mode;
 
 /** Cause of a trip. If one sample has several, the first of this list is reported. */
@@ -348,6 +352,13 @@ typedef struct {
      * Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
      */
     int32_t stall_periods;
+    /** Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code. */
+    uint32_t sectors;
+    /**
+     * Control periods of a sector at the speed up to which the short-circuited motor takes no more
+     * than the largest current; 0 if it never takes more.
+     */
+    int32_t brake_periods;
 } hexagen_limits;
 
 /**
@@ -356,20 +367,21 @@ typedef struct {
  */
 #define HEXAGEN_LIMITS(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-    stall_periods) \
+    stall_periods, sectors, brake_periods) \
     typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), adc_inverted, current_bits, \
         (int64_t)(offset), (int64_t)(offset_least), (int64_t)(offset_most), trip, \
-        (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods) \
+        (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, brake_periods) \
         ? 1 : -1]; \
     static const hexagen_limits name = { adc_max, adc_inverted, current_bits, offset, \
         offset_least, offset_most, trip, current_least, current_most, calibration_log2, \
-        precharge_periods, stall_periods }
+        precharge_periods, stall_periods, sectors, brake_periods }
 
 /** Whether limits are valid; phase c is the negative sum of two currents. */
 #define HEXAGEN_LIMITS_HOLD(adc_max, inverted, bits, offset, least, most, trip, low, high, log2, \
-    stall) \
+    stall, brake) \
     ((bits) < 31 && (log2) < 16 && (adc_max) > 1 && (least) <= (offset) && (offset) <= (most) \
         && (most) <= (adc_max) && (trip) > 0 && (stall) >= 0 && (stall) < INT32_C(0x7fffffff) \
+        && (brake) >= 0 && (brake) < INT32_C(0x7fffffff) \
         && (low) == HEXAGEN_LEAST(adc_max, inverted, bits, most, least) \
         && (high) == HEXAGEN_MOST(adc_max, inverted, bits, most, least) \
         && -2 * (low) <= INT64_C(0x7fffffff) && 2 * (high) <= INT64_C(0x7fffffff) \
@@ -414,6 +426,13 @@ typedef struct {
     /** Offsets of phases a and b, words of current. */
     int32_t offset_a;
     int32_t offset_b;
+    /** Rotation since braking began: Hall code of the last period, 0 before the first. */
+    uint16_t brake_hall;
+    /** Control periods since the last edge, and between the last two. */
+    int32_t brake_age;
+    int32_t brake_interval;
+    /** 1 forward, -1 backward; 0 before the first edge. */
+    int32_t brake_direction;
 } hexagen_supervisor;
 
 /**
@@ -508,13 +527,40 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
  */
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
+/** What a drive does in a period that passes no check. */
+typedef struct {
+    /** The state of all legs, unless the period is one of control. */
+    hexagen_leg leg;
+    /** It brakes a fast rotor: control with the largest torque against its direction. */
+    bool is_controlled;
+    /** 1 forward, -1 backward; 0 while it is unknown: control at set-point 0. */
+    int32_t against;
+} hexagen_rested;
+
 /**
  * A period without control, after hexagen_check returned false: continues start-up, trips on a
- * fault, and returns the state of all legs. In the checked sample, counts are clamped to the ADC's
- * range, and an invalid Hall code is 0.
+ * fault, brakes, and returns what the drive does instead. In the checked sample, counts are clamped
+ * to the ADC's range, and an invalid Hall code is 0.
  */
-HEXAGEN_COLD hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const hexagen_sample *sample, hexagen_checked *checked);
+HEXAGEN_COLD hexagen_rested hexagen_rest(hexagen_supervisor *supervisor,
+    const hexagen_limits *limits, const hexagen_sample *sample, hexagen_checked *checked);
+
+/** The period of a drive that rests, or what it goes on to control with. */
+typedef struct {
+    bool is_controlled;
+    hexagen_checked checked;
+    hexagen_legs legs;
+} hexagen_period;
+
+/** What comes of a period that passed no check. */
+static inline hexagen_period hexagen_period_of(hexagen_rested rested, hexagen_checked checked)
+{
+    hexagen_period period;
+    period.is_controlled = rested.is_controlled;
+    period.checked = checked;
+    period.legs = hexagen_all_legs(rested.leg);
+    return period;
+}
 
 /**
  * Clears a trip; keeps calibrated offsets. False, without effect, during calibration and
@@ -529,6 +575,19 @@ void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *lim
  * Starts pre-charge; ignored when tripped, while calibrating, and if the specification has none.
  */
 void hexagen_precharge(hexagen_supervisor *supervisor, const hexagen_limits *limits);
+
+/** Turns all legs off until hexagen_resume. Ignored when tripped and in start-up. */
+void hexagen_coast(hexagen_supervisor *supervisor);
+
+/**
+ * Brakes until hexagen_resume: all lower switches on where the short-circuited motor takes no more
+ * than the largest current, above that speed this current against the rotation; none until the
+ * first Hall edge tells the direction. Ignored when tripped and in start-up.
+ */
+void hexagen_brake(hexagen_supervisor *supervisor);
+
+/** Ends coasting and braking. False, without effect, if the drive does neither. */
+bool hexagen_resume(hexagen_supervisor *supervisor);
 
 /** Mode and fault in one word, as the control loop publishes them. */
 static inline int32_t hexagen_status_word(const hexagen_supervisor *supervisor)
@@ -706,11 +765,11 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
 
 #ifdef HEXAGEN_VERIFICATION
 /** Words of a supervisor. */
-#define HEXAGEN_WORDS 9
+#define HEXAGEN_WORDS 13
 
 /**
  * Copies the words of a supervisor: mode, fault, countdown, sum_a, sum_b, offset_a, offset_b,
- * stall_count, hall_prev.
+ * stall_count, hall_prev, brake_hall, brake_age, brake_interval, brake_direction.
  */
 void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words);
 

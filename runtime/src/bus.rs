@@ -17,6 +17,8 @@ pub trait Bus: Debug + Send + Sync + 'static {
     fn pass_period(&self);
     /// Whether the last call that took effect is too old.
     fn is_stale(&self) -> bool;
+    /// Words of the last call, two at most; 0 where there are none.
+    fn kept(&self) -> [i32; 2];
 }
 
 /// A voltage fixed by the specification: no words.
@@ -40,6 +42,11 @@ impl Bus for FixedBus {
     #[inline]
     fn is_stale(&self) -> bool {
         false
+    }
+
+    #[inline]
+    fn kept(&self) -> [i32; 2] {
+        [0; 2]
     }
 }
 
@@ -88,5 +95,10 @@ impl<const N: usize, const PERIODS: i32> Bus for ToldBus<N, PERIODS> {
     #[inline]
     fn is_stale(&self) -> bool {
         self.watch.is_stale()
+    }
+
+    fn kept(&self) -> [i32; 2] {
+        let words = self.read();
+        [0, 1].map(|index: usize| words.get(index).map_or(0, |word| word.0))
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::arith::Word;
 use crate::bus::Bus;
-use crate::{Checked, Command, Format, Limits};
+use crate::{Checked, Command, Format, Limits, Places};
 
 /// State of a law: the words kept from one control period to the next.
 ///
@@ -15,6 +15,10 @@ pub trait State: Send + 'static {
     const INITIAL: Self;
     /// Names of the words, in the order of [`words`](Self::words).
     const NAMES: &'static [&'static str];
+    /// Where the words of a drive that tripped are kept.
+    type Kept: Places;
+    /// Keeps the words there.
+    fn keep(&self, kept: &Self::Kept);
     /// Copies the words to the front of `words`, as many as fit. For verification.
     fn words(&self, words: &mut [i32]);
     /// Overwrites word `index` with a value inside its range. For verification.

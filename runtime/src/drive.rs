@@ -3,9 +3,12 @@
 use crate::arith::Word;
 use crate::bus::Bus;
 use crate::set_point::debug;
-use crate::{Command, Control, Legs, Observation, Sample, SetPoint, State, Status, Supervisor};
+use crate::trip::Trip;
+use crate::{
+    Checked, Command, Control, Legs, Observation, Rest, Sample, SetPoint, State, Status, Supervisor,
+};
 use core::fmt;
-use core::ops::Deref;
+use core::ops::{ControlFlow, Deref};
 
 /// A drive with the controller `C`, emitted by `hexagen::controller!`.
 ///
@@ -95,6 +98,21 @@ impl<C: Control> Drive<C> {
         self.control().precharge();
     }
 
+    /// See [`ControlLoop::coast`].
+    pub fn coast(&mut self) {
+        self.control().coast();
+    }
+
+    /// See [`ControlLoop::brake`].
+    pub fn brake(&mut self) {
+        self.control().brake();
+    }
+
+    /// See [`ControlLoop::resume`].
+    pub fn resume(&mut self) {
+        self.control().resume();
+    }
+
     /// Sets the speed, bits of an `I16F16` in rpm; no effect without a speed loop. For verification
     /// of any drive; firmware uses [`SetPoint::set_speed`].
     #[doc(hidden)]
@@ -180,8 +198,12 @@ impl<C: Control> ControlLoop<'_, C> {
         let Self { set_point, core } = self;
         set_point.words.bus.pass_period();
         let is_demanded = || set_point.is_demanded();
-        let Some(checked) = core.supervisor.check(&C::LIMITS, sample, is_demanded) else {
-            return rest(set_point, core, *sample);
+        let checked = match core.supervisor.check(&C::LIMITS, sample, is_demanded) {
+            Some(checked) => checked,
+            None => match rest(set_point, core, *sample) {
+                ControlFlow::Continue(checked) => checked,
+                ControlFlow::Break(command) => return command,
+            },
         };
         let rotor = C::track(&mut core.law, &checked);
         let (law, words) = (&mut core.law, &set_point.words);
@@ -203,6 +225,7 @@ impl<C: Control> ControlLoop<'_, C> {
     pub fn reset(&mut self) {
         if self.core.supervisor.reset(&C::LIMITS) {
             self.core.law = C::State::INITIAL;
+            self.set_point.trip.forget();
             self.set_point.clear();
         }
         self.publish();
@@ -224,6 +247,32 @@ impl<C: Control> ControlLoop<'_, C> {
         self.publish();
     }
 
+    /// Turns all legs off on purpose, without a fault, until [`resume`](Self::resume) or a reset.
+    /// Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into
+    /// the bus. Ignored when tripped and in start-up.
+    pub fn coast(&mut self) {
+        self.core.supervisor.coast();
+        self.publish();
+    }
+
+    /// Slows the rotor down until [`resume`](Self::resume) or a reset: all lower switches on where
+    /// the motor takes no more than the specification's `max_current` that way; above that speed this
+    /// current against the rotation, with a speed loop speed 0 within the current that is set, into
+    /// the bus. Ignored when tripped and in start-up.
+    pub fn brake(&mut self) {
+        self.core.supervisor.brake();
+        self.publish();
+    }
+
+    /// Ends coasting and braking: control at set-point 0 follows, with the rotor's angle and speed as
+    /// they were followed meanwhile. Ignored if the drive does neither.
+    pub fn resume(&mut self) {
+        if self.core.supervisor.resume() {
+            self.set_point.clear();
+        }
+        self.publish();
+    }
+
     /// Mode and fault of the drive.
     #[must_use]
     pub fn status(&self) -> Status {
@@ -240,16 +289,40 @@ impl<C: Control> ControlLoop<'_, C> {
     }
 }
 
-/// A period without control, in start-up or with a fault. Only these change mode and fault, so they
-/// are published here. The sample is passed by value, so that it uses memory on this path only.
+/// A period without control, in start-up, with a fault or off on purpose; or one that brakes a fast
+/// rotor, which continues in control. Only these change mode and fault, so they are published here. The sample is passed by value, so that it uses memory on this path only.
 #[cold]
 #[inline(never)]
-fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> C::Command {
-    let (checked, leg) = core.supervisor.rest(&C::LIMITS, &sample);
-    let rotor = C::track(&mut core.law, &checked);
-    C::rest(&mut core.law, &checked, rotor);
+fn rest<C: Control>(
+    set_point: &SetPoint<C>,
+    core: &mut Core<C>,
+    sample: Sample,
+) -> ControlFlow<C::Command, Checked> {
+    let was_tripped = core.supervisor.fault();
+    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &sample);
+    if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
+        let [current, speed] = set_point.demands().map(|word| word.0);
+        let trip = Trip {
+            fault,
+            sample,
+            current,
+            speed,
+            bus: set_point.words.bus.kept(),
+        };
+        set_point.trip.keep(&trip, &core.supervisor, &core.law);
+    }
     set_point.status.store(core.supervisor.status_bits().into());
-    C::Command::at_rest(leg)
+    match rest {
+        Rest::Against(direction) => {
+            set_point.oppose(direction);
+            ControlFlow::Continue(checked)
+        }
+        Rest::Legs(state) => {
+            let rotor = C::track(&mut core.law, &checked);
+            C::rest(&mut core.law, &checked, rotor);
+            ControlFlow::Break(C::Command::at_rest(state))
+        }
+    }
 }
 
 impl<C: Control> fmt::Debug for ControlLoop<'_, C> {
@@ -268,6 +341,12 @@ pub trait DynLoop<Out: Command = Legs>: Send {
     fn calibrate(&mut self);
     /// See [`ControlLoop::precharge`].
     fn precharge(&mut self);
+    /// See [`ControlLoop::coast`].
+    fn coast(&mut self);
+    /// See [`ControlLoop::brake`].
+    fn brake(&mut self);
+    /// See [`ControlLoop::resume`].
+    fn resume(&mut self);
     /// See [`ControlLoop::status`].
     fn status(&self) -> Status;
 }
@@ -287,6 +366,18 @@ impl<C: Control> DynLoop<C::Command> for ControlLoop<'_, C> {
 
     fn precharge(&mut self) {
         self.precharge();
+    }
+
+    fn coast(&mut self) {
+        self.coast();
+    }
+
+    fn brake(&mut self) {
+        self.brake();
+    }
+
+    fn resume(&mut self) {
+        self.resume();
     }
 
     fn status(&self) -> Status {

@@ -33,6 +33,7 @@ mod signals;
 mod signals;
 mod status;
 mod supervisor;
+mod trip;
 mod word;
 
 pub use bus::{Bus, FixedBus, ToldBus};
@@ -50,4 +51,5 @@ pub use set_point::SetPoint;
 #[cfg(feature = "signals")]
 pub use signals::Signals;
 pub use status::{Fault, Mode, Status};
-pub use supervisor::{Limits, Supervisor};
+pub use supervisor::{Limits, Rest, Supervisor};
+pub use trip::{Places, Trip};

@@ -7,6 +7,7 @@ use crate::shared::SharedWord;
 use crate::signals::Port;
 #[cfg(feature = "signals")]
 use crate::signals::Signals;
+use crate::trip::{Trip, TripRecord};
 use crate::{Control, MeasuredBus, SpeedLoop, Status};
 use core::fmt;
 use fixed::types::I16F16;
@@ -21,6 +22,7 @@ pub struct SetPoint<C: Control> {
     pub(crate) words: Words<C>,
     pub(crate) status: SharedWord,
     pub(crate) signals: Port,
+    pub(crate) trip: TripRecord<C>,
 }
 
 impl<C: Control> SetPoint<C> {
@@ -33,6 +35,7 @@ impl<C: Control> SetPoint<C> {
             },
             status: SharedWord::new(Word(0)),
             signals: Port::new(),
+            trip: TripRecord::new(),
         }
     }
 
@@ -112,6 +115,38 @@ impl<C: Control> SetPoint<C> {
     #[must_use]
     pub fn status(&self) -> Status {
         Status::from_bits(self.status.load().0, self.words.bus.is_stale())
+    }
+
+    /// Largest torque against a direction of rotation, 0 for none; with a speed loop speed 0.
+    pub(crate) fn oppose(&self, direction: Word) {
+        if C::SPEED.is_some() {
+            self.words.speed.store(Word(0));
+        } else {
+            let most = match direction.0.signum() {
+                1 => -i32::MAX,
+                0 => 0,
+                _ => i32::MAX,
+            };
+            self.words.current.store(C::current(Word(most)));
+        }
+    }
+
+    /// The control period in which the drive tripped, kept until a reset: what was sampled, the
+    /// set-point, and at the front of `words`, as many as fit, the state words that
+    /// [`Drive::state_names`](crate::Drive::state_names) names: those of the supervisor behind that
+    /// period (the current offsets are among them), those of the law before it. `None` while the
+    /// drive is not tripped, and if a reset interrupts the call.
+    ///
+    /// A step is a function of these words: the period can be computed again from them, bit for bit.
+    /// A debugger finds them in the field `set_point.trip` of the drive.
+    #[must_use]
+    pub fn trip(&self, words: &mut [i32]) -> Option<Trip> {
+        self.trip.read(words)
+    }
+
+    /// The set-point words, as the step of a trip reads them.
+    pub(crate) fn demands(&self) -> [Word; 2] {
+        [self.words.current.load(), self.words.speed.load()]
     }
 
     /// Whether the set-point (speed with a speed loop, else current) is not 0.

@@ -17,6 +17,10 @@ pub enum Mode {
     Precharge = 2,
     /// Tripped, all legs off, until `reset()`.
     Tripped = 3,
+    /// All legs off on purpose, until `resume()`.
+    Coast = 4,
+    /// Slowing the rotor down, until `resume()`.
+    Brake = 5,
 }
 
 impl Mode {
@@ -28,6 +32,8 @@ impl Mode {
             0 => Self::Run,
             1 => Self::Calibrate,
             2 => Self::Precharge,
+            4 => Self::Coast,
+            5 => Self::Brake,
             _ => Self::Tripped,
         }
     }
@@ -137,7 +143,9 @@ mod tests {
 
     #[test]
     fn every_status_round_trips_through_its_word() {
-        for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
+        for number in 0..6 {
+            let mode = Mode::from_number(number);
+            assert_eq!(mode as i32, number);
             for number in 0..8 {
                 let fault = Fault::from_number(number);
                 let status = Status::from_bits(Status::to_bits(mode, fault), false);

@@ -33,6 +33,11 @@ pub struct Limits {
     pub precharge_periods: u16,
     /// Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
     pub stall_periods: i32,
+    /// Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code.
+    pub sectors: u32,
+    /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
+    /// than the largest current; 0 if it never takes more.
+    pub brake_periods: i32,
 }
 
 impl Limits {
@@ -61,6 +66,8 @@ impl Limits {
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
+            && self.brake_periods >= 0
+            && self.brake_periods < word as i32
             && range[0] == self.currents[0] as i64
             && range[1] == self.currents[1] as i64
             && -2 * range[0] <= word
@@ -76,6 +83,15 @@ impl Limits {
             offset - count
         } else {
             count - offset
+        }
+    }
+
+    /// Sector of a Hall code; 0 of an invalid one.
+    const fn sector(&self, hall: u8) -> u32 {
+        if is_hall_code(hall) {
+            self.sectors.wrapping_shr(4 * hall as u32) & 7
+        } else {
+            0
         }
     }
 
@@ -121,9 +137,19 @@ const fn is_hall_code(hall: u8) -> bool {
 /// A fault ends start-up and discards its results; a reset leads to control, not back into
 /// start-up.
 ///
+/// # Coasting and braking
+///
+/// [`coast`](Self::coast) turns all legs off on purpose, without a fault.
+/// [`brake`](Self::brake) slows the rotor down: below the speed at which the short-circuited motor
+/// takes the largest current (`max_current`), all lower switches are on; above it the drive controls
+/// that current against the rotation, which feeds the bus; until the first Hall edge tells the
+/// direction, no current. Both go on until [`resume`](Self::resume), a reset or a trip; the
+/// set-point is 0 then. The sensors are watched as in control, but for a stall.
+///
 /// # Safe states
 ///
-/// Each [`Fault`] turns all legs off until a reset. Neither a Hall code that skips sectors nor any
+/// Each [`Fault`] turns all legs off until a reset; the period of the trip is kept until then
+/// ([`SetPoint::trip`](crate::SetPoint::trip)). Neither a Hall code that skips sectors nor any
 /// bus voltage is a fault.
 ///
 /// # What the supervisor cannot see
@@ -156,11 +182,68 @@ pub struct Supervisor {
     sums: [Word; 2],
     /// Offsets of phases a and b, words of current.
     offsets: [Word; 2],
+    /// What braking knows of the rotor.
+    turn: Turn,
+}
+
+/// Rotation of the rotor, from the Hall edges since braking began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Turn {
+    /// Hall code of the last period; 0 before the first.
+    hall: u8,
+    /// Control periods since the last edge.
+    age: Word,
+    /// Control periods between the last two edges.
+    interval: Word,
+    /// 1 forward, -1 backward; 0 before the first edge.
+    direction: Word,
+}
+
+impl Turn {
+    const UNKNOWN: Self = Self {
+        hall: 0,
+        age: Word(0),
+        interval: Word(0),
+        direction: Word(0),
+    };
+
+    /// Follows the rotor for a control period; whether a sector lasts long enough for a
+    /// short-circuited motor to take no more than the largest current.
+    fn is_slow(&mut self, limits: &Limits, hall: u8) -> bool {
+        let (before, now) = (limits.sector(self.hall), limits.sector(hall));
+        if before != 0 && now != before {
+            if follows(before, now) {
+                self.direction = Word(1);
+            } else if follows(now, before) {
+                self.direction = Word(-1);
+            }
+            self.interval = self.age;
+            self.age = Word(0);
+        }
+        self.hall = hall;
+        self.age = (self.age + 1).min(limits.brake_periods);
+        self.age.max(self.interval) == limits.brake_periods
+    }
+}
+
+/// Whether a sector is the next one of the other, forward.
+const fn follows(sector: u32, next: u32) -> bool {
+    next == if sector == 6 { 1 } else { sector + 1 }
+}
+
+/// What a drive does in a period that passes no check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// All legs are in one state.
+    Legs(LegState),
+    /// It brakes a fast rotor: control with the largest torque against this direction, 1 forward or
+    /// -1 backward; at set-point 0 while the direction is unknown, 0.
+    Against(Word),
 }
 
 impl Supervisor {
     /// Names of the state words, in the order of [`Self::words`].
-    pub const NAMES: [&'static str; 9] = [
+    pub const NAMES: [&'static str; 13] = [
         "mode",
         "fault",
         "countdown",
@@ -170,6 +253,10 @@ impl Supervisor {
         "offset_b",
         "stall_count",
         "hall_prev",
+        "brake_hall",
+        "brake_age",
+        "brake_interval",
+        "brake_direction",
     ];
 
     /// A supervisor that allows control from the first period on, with nominal offsets.
@@ -184,6 +271,7 @@ impl Supervisor {
             stall_count: Word(0),
             sums: [Word(0); 2],
             offsets: [offset; 2],
+            turn: Turn::UNKNOWN,
         }
     }
 
@@ -250,9 +338,9 @@ impl Supervisor {
     }
 
     /// A period without control, after a [`check`](Self::check) that gave no sample: continues
-    /// start-up, trips on a fault, and returns the state of all legs. In the sample, counts are
-    /// clamped to the ADC's range, and an invalid Hall code is 0.
-    pub fn rest(&mut self, limits: &Limits, sample: &Sample) -> (Checked, LegState) {
+    /// start-up, trips on a fault, brakes, and returns what the drive does instead. In the sample,
+    /// counts are clamped to the ADC's range, and an invalid Hall code is 0.
+    pub fn rest(&mut self, limits: &Limits, sample: &Sample) -> (Checked, Rest) {
         let [adc_a, adc_b, _] = sample.adc;
         let counts = [adc_a, adc_b].map(|count| Word::from(count).min(limits.adc_max));
         let [count_a, count_b] = counts;
@@ -281,22 +369,23 @@ impl Supervisor {
         } else {
             None
         };
-        let leg = if self.mode == Mode::Precharge && found.is_none() {
-            LegState::Low
-        } else {
-            LegState::Off
-        };
-        match found {
-            Some(fault) => self.trip(fault),
-            None => self.start_up(limits, counts),
+        if let Some(fault) = found {
+            self.trip(fault);
+            return (checked, Rest::Legs(LegState::Off));
         }
-        (checked, leg)
+        let rest = match self.mode {
+            Mode::Precharge => Rest::Legs(LegState::Low),
+            Mode::Brake => self.go_on_braking(limits, sample.hall),
+            _ => Rest::Legs(LegState::Off),
+        };
+        self.start_up(limits, counts);
+        (checked, rest)
     }
 
     /// Calibration averages the counts of all its samples; then pre-charge counts its periods down.
     fn start_up(&mut self, limits: &Limits, [count_a, count_b]: [Word; 2]) {
         match self.mode {
-            Mode::Run | Mode::Tripped => {}
+            Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Calibrate => {
                 let most = Word::from(limits.adc_max) << limits.calibration_log2;
                 let [sum_a, sum_b] = self.sums;
@@ -313,6 +402,15 @@ impl Supervisor {
                     self.mode = Mode::Run;
                 }
             }
+        }
+    }
+
+    /// Shorts a slow rotor through the lower switches, and asks for torque against a fast one.
+    fn go_on_braking(&mut self, limits: &Limits, hall: u8) -> Rest {
+        if self.turn.is_slow(limits, hall) {
+            Rest::Legs(LegState::Low)
+        } else {
+            Rest::Against(self.turn.direction)
         }
     }
 
@@ -350,10 +448,39 @@ impl Supervisor {
         self.mode = Mode::Tripped;
     }
 
+    /// Whether control is on, or off on purpose: not in start-up, and not tripped.
+    const fn is_ready(&self) -> bool {
+        matches!(self.mode, Mode::Run | Mode::Coast | Mode::Brake)
+    }
+
+    /// Turns all legs off until [`resume`](Self::resume). Ignored when tripped and in start-up.
+    pub fn coast(&mut self) {
+        if self.is_ready() {
+            self.mode = Mode::Coast;
+        }
+    }
+
+    /// Brakes until [`resume`](Self::resume). Ignored when tripped and in start-up.
+    pub fn brake(&mut self) {
+        if self.is_ready() && self.mode != Mode::Brake {
+            self.mode = Mode::Brake;
+            self.turn = Turn::UNKNOWN;
+        }
+    }
+
+    /// Ends coasting and braking: control follows. False, without effect, if the drive does neither.
+    pub fn resume(&mut self) -> bool {
+        let is_off = matches!(self.mode, Mode::Coast | Mode::Brake);
+        if is_off {
+            self.mode = Mode::Run;
+        }
+        is_off
+    }
+
     /// Clears a trip; keeps calibrated offsets. Control follows, without start-up. False, without
     /// effect, during calibration and pre-charge.
     pub fn reset(&mut self, limits: &Limits) -> bool {
-        let may_reset = matches!(self.mode, Mode::Run | Mode::Tripped);
+        let may_reset = self.is_ready() || self.mode == Mode::Tripped;
         if may_reset {
             *self = Self {
                 offsets: self.offsets,
@@ -388,6 +515,12 @@ impl Supervisor {
         Status::from_bits(self.status_bits(), false)
     }
 
+    /// What tripped the drive.
+    #[inline]
+    pub(crate) const fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
     #[inline]
     pub(crate) const fn status_bits(&self) -> i32 {
         Status::to_bits(self.mode, self.fault)
@@ -398,6 +531,7 @@ impl Supervisor {
     pub fn words(&self) -> [i32; Self::NAMES.len()] {
         let [sum_a, sum_b] = self.sums;
         let [offset_a, offset_b] = self.offsets;
+        let turn = &self.turn;
         [
             self.mode as i32,
             number(self.fault),
@@ -408,6 +542,10 @@ impl Supervisor {
             offset_b.0,
             self.stall_count.0,
             self.hall_prev.into(),
+            turn.hall.into(),
+            turn.age.0,
+            turn.interval.0,
+            turn.direction.0,
         ]
     }
 
@@ -423,6 +561,10 @@ impl Supervisor {
             offset_b,
             stall_count,
             hall_prev,
+            turn_hall,
+            age,
+            interval,
+            direction,
         ] = words;
         *self = Self {
             mode: Mode::from_number(mode),
@@ -432,6 +574,12 @@ impl Supervisor {
             stall_count: Word(stall_count),
             sums: [Word(sum_a), Word(sum_b)],
             offsets: [Word(offset_a), Word(offset_b)],
+            turn: Turn {
+                hall: turn_hall as u8,
+                age: Word(age),
+                interval: Word(interval),
+                direction: Word(direction),
+            },
         };
     }
 }

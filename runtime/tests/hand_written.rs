@@ -50,6 +50,8 @@ impl Control for SixStep {
         calibration_log2: 4,
         precharge_periods: 2,
         stall_periods: 0,
+        sectors: 0x0423_6510,
+        brake_periods: 0,
     };
     const UNITS: Units = Units {
         ampere: UNIT,
@@ -163,6 +165,47 @@ fn its_words_stand_behind_the_supervisors() {
     drive.step(&sample(HALL));
     drive.state_words(&mut words);
     assert_eq!(words.last_chunk(), Some(&[i32::from(HALL), 0]));
+}
+
+/// The step in which a drive trips is kept whole until a reset, whatever comes after it.
+#[test]
+fn the_period_of_a_trip_is_kept_until_a_reset() {
+    let mut drive = Drive::<SixStep>::new();
+    drive.set_current_ma(7_000);
+    for _ in 0..3 {
+        drive.step(&sample(HALL));
+    }
+    let mut words = [0; 15];
+    assert_eq!(drive.trip(&mut words), None);
+    let mut before = [0; 15];
+    drive.state_words(&mut before);
+    let bad = Sample::with_hall([2048, 4000], 4)
+        .hall_ticks(312)
+        .third_current(77);
+    drive.step(&bad);
+    for _ in 0..3 {
+        drive.set_current_ma(9_000);
+        drive.step(&Sample::with_hall([2050, 2050], 7));
+        let trip = drive.trip(&mut words).expect("it has tripped");
+        assert_eq!((trip.fault, trip.sample), (Fault::OverCurrent, bad));
+        assert_eq!((trip.current, trip.speed, trip.bus), (126, 0, [0; 2]));
+        // The supervisor's words with the fault, the law's as that period found them.
+        assert_eq!(
+            words[..2],
+            [Mode::Tripped as i32, Fault::OverCurrent as i32]
+        );
+        assert_eq!(words[2..], before[2..]);
+    }
+    // Fewer words than there are, and none.
+    assert_eq!(drive.trip(&mut words[..1]), drive.trip(&mut []));
+    drive.reset();
+    assert_eq!(drive.trip(&mut words), None);
+    drive.step(&Sample::with_hall([2048; 2], 0));
+    let trip = drive.trip(&mut []).expect("it has tripped again");
+    assert_eq!(
+        (trip.fault, trip.sample.hall(), trip.current),
+        (Fault::Hall, 0, 0)
+    );
 }
 
 /// An angle is no Hall code: a drive that needs codes, as all do, trips on it.

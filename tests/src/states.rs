@@ -51,7 +51,7 @@ impl<'a> States<'a> {
         let words = program.states.iter();
         let words = words.map(|word| (word.interval.low as i32, word.interval.high as i32));
         let constants = program.constants.iter().map(|constant| constant.raw);
-        let of_limits = [limits.trip, limits.stall_periods];
+        let of_limits = [limits.trip, limits.stall_periods, limits.brake_periods];
         let samples = |count: u16| i64::from(count) << limits.calibration_log2;
         Self {
             random: Rng::with_seed(seed),
@@ -535,7 +535,7 @@ fn supervisor_ranges(limits: &Limits) -> [(i32, i32); Supervisor::NAMES.len()] {
         .offsets
         .map(|offset| i32::from(offset) << limits.current_bits);
     Supervisor::NAMES.map(|name| match name {
-        "mode" => (0, 3),
+        "mode" => (0, 5),
         "fault" => (0, 5),
         "countdown" => (0, samples.max(limits.precharge_periods.into())),
         "sum_a" | "sum_b" => (0, full),
@@ -543,6 +543,9 @@ fn supervisor_ranges(limits: &Limits) -> [(i32, i32); Supervisor::NAMES.len()] {
         "stall_count" => (0, limits.stall_periods),
         "hall_prev" if limits.stall_periods > 0 => (0, 6),
         "hall_prev" => (0, 0),
+        "brake_hall" => (0, 6),
+        "brake_age" | "brake_interval" => (0, limits.brake_periods),
+        "brake_direction" => (-1, 1),
         other => unreachable!("a word that no supervisor has: {other}"),
     })
 }

@@ -154,6 +154,7 @@ fn check_reach(kind: &str, total: &Report) {
     let drives = rows_of(kind).len() as u64;
     assert!(total.calibrations > drives / 2, "{kind}: {total}");
     assert!(total.precharging > 0, "{kind}: {total}");
+    assert!(total.stopped > 0 && total.opposing > 0, "{kind}: {total}");
 }
 
 #[test]

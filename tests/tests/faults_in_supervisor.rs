@@ -5,7 +5,7 @@ use hexagen::Limits;
 use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::{formats, limits};
 use hexagen_reference::verify::{Action, Context, Stimulus};
-use hexagen_reference::{BitTrue, FormatTable, Mode, Spec};
+use hexagen_reference::{BitTrue, FormatTable, Mode, Spec, Stop};
 use hexagen_tests::options::{Drive, generate_toml};
 use hexagen_tests::states::States;
 use rayon::prelude::*;
@@ -17,9 +17,13 @@ trait Supervised {
     fn reset(&mut self);
     fn calibrate(&mut self);
     fn precharge(&mut self);
-    fn words(&self) -> [i32; 9];
-    fn set_words(&mut self, words: [i32; 9]);
+    fn stop(&mut self, stop: Stop);
+    fn words(&self) -> [i32; WORDS];
+    fn set_words(&mut self, words: [i32; WORDS]);
 }
+
+/// Words of a supervisor.
+const WORDS: usize = hexagen::Supervisor::NAMES.len();
 
 type New = fn(Limits) -> Box<dyn Supervised>;
 
@@ -39,8 +43,14 @@ macro_rules! new {
                 let (checked, leg) = match supervisor.check(limits, &sample, || is_demanded) {
                     Some(checked) => (checked, None),
                     None => {
-                        let (checked, leg) = supervisor.rest(limits, &sample);
-                        (checked, Some(leg as i32))
+                        let (checked, rest) = supervisor.rest(limits, &sample);
+                        (
+                            checked,
+                            match rest {
+                                $module::Rest::Legs(leg) => Some(leg as i32),
+                                $module::Rest::Against(_) => None,
+                            },
+                        )
                     }
                 };
                 ([checked.i_a().0, checked.i_b().0], leg)
@@ -54,10 +64,19 @@ macro_rules! new {
             fn precharge(&mut self) {
                 self.0.precharge(&self.1);
             }
-            fn words(&self) -> [i32; 9] {
+            fn stop(&mut self, stop: Stop) {
+                match stop {
+                    Stop::Coast => self.0.coast(),
+                    Stop::Brake => self.0.brake(),
+                    Stop::Resume => {
+                        self.0.resume();
+                    }
+                }
+            }
+            fn words(&self) -> [i32; WORDS] {
                 self.0.words()
             }
-            fn set_words(&mut self, words: [i32; 9]) {
+            fn set_words(&mut self, words: [i32; WORDS]) {
                 self.0.set_words(words);
             }
         }
@@ -73,6 +92,8 @@ macro_rules! new {
                 calibration_log2: limits.calibration_log2,
                 precharge_periods: limits.precharge_periods,
                 stall_periods: limits.stall_periods,
+                sectors: limits.sectors,
+                brake_periods: limits.brake_periods,
             };
             Box::new(Own($module::Supervisor::new(&limits), limits))
         }
@@ -88,7 +109,7 @@ macro_rules! new {
     reason = "the runtime's own text, and what a fault leaves without use"
 )]
 mod planted {
-    use super::{Limits, New, Supervised};
+    use super::{Limits, New, Stop, Supervised, WORDS};
     use hexagen::{LegState, arith};
     use sample::{Checked, Sample};
     use status::{Fault, Mode, Status};
@@ -171,6 +192,7 @@ impl Sound {
                 Some(Action::Reset) => pair.reset(),
                 Some(Action::Calibrate) => pair.calibrate(),
                 Some(Action::Precharge) => pair.precharge(),
+                Some(Action::Stop(stop)) => pair.stop(stop),
                 _ => {}
             }
             if !pair.is_same(&sample) {
@@ -192,10 +214,13 @@ impl Sound {
             let own = pair.words.first_chunk();
             pair.supervisor
                 .set_words(*own.expect("the supervisor's words"));
-            match number % 8 {
+            match number % 12 {
                 0 => pair.reset(),
                 1 => pair.calibrate(),
                 2 => pair.precharge(),
+                3 => pair.stop(Stop::Coast),
+                4 => pair.stop(Stop::Brake),
+                5 => pair.stop(Stop::Resume),
                 _ => {}
             }
             if !pair.is_same(&sample) {
@@ -243,6 +268,11 @@ impl Pair {
     fn precharge(&mut self) {
         self.model.precharge();
         self.supervisor.precharge();
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        self.model.stop(stop);
+        self.supervisor.stop(stop);
     }
 
     /// A period of both.

@@ -98,12 +98,14 @@ fn limits() -> impl Strategy<Value = Limits> {
             any::<[i32; 2]>(),
         ),
         (number(), any::<u16>(), prop_oneof![Just(0), any::<i32>()]),
+        (any::<u32>(), any::<i32>()),
     )
         .prop_map(
             |(
                 (adc_max, adc_inverted, current_bits),
                 (offset, offsets, trip, currents),
                 (calibration_log2, precharge_periods, stall_periods),
+                (sectors, brake_periods),
             )| Limits {
                 adc_max,
                 adc_inverted,
@@ -115,6 +117,8 @@ fn limits() -> impl Strategy<Value = Limits> {
                 calibration_log2,
                 precharge_periods,
                 stall_periods,
+                sectors,
+                brake_periods,
             },
         )
 }
@@ -133,6 +137,9 @@ enum Call {
     Reset,
     Calibrate,
     Precharge,
+    Coast,
+    Brake,
+    Resume,
     Words(usize),
 }
 
@@ -149,6 +156,9 @@ fn call() -> impl Strategy<Value = Call> {
         1 => Just(Call::Reset),
         1 => Just(Call::Calibrate),
         1 => Just(Call::Precharge),
+        1 => Just(Call::Coast),
+        1 => Just(Call::Brake),
+        1 => Just(Call::Resume),
         1 => (0..100_usize).prop_map(Call::Words),
     ]
 }
@@ -170,10 +180,14 @@ fn carry_out<C: Control>(drive: &mut Drive<C>, call: Call) {
         Call::Reset => drive.reset(),
         Call::Calibrate => drive.calibrate(),
         Call::Precharge => drive.precharge(),
+        Call::Coast => drive.coast(),
+        Call::Brake => drive.brake(),
+        Call::Resume => drive.resume(),
         Call::Words(length) => drive.state_words(&mut vec![0; length]),
     }
     let status = drive.status();
     black_box((drive.signals(), format!("{drive:?} {status:?}")));
+    black_box(drive.trip(&mut [0; 30]));
 }
 
 /// Any calls, in a possibly unreachable state.
@@ -252,7 +266,7 @@ proptest! {
     fn supervision(
         limits in limits(),
         words in any::<[i32; Supervisor::NAMES.len()]>(),
-        samples in proptest::collection::vec((sample(), any::<bool>(), 0..4_u8), 1..20),
+        samples in proptest::collection::vec((sample(), any::<bool>(), 0..8_u8), 1..20),
     ) {
         black_box(limits.hold());
         let mut supervisor = Supervisor::new(&limits);
@@ -266,6 +280,11 @@ proptest! {
                 1 => supervisor.precharge(&limits),
                 2 => {
                     supervisor.reset(&limits);
+                }
+                3 => supervisor.coast(),
+                4 => supervisor.brake(),
+                5 => {
+                    supervisor.resume();
                 }
                 _ => {}
             }

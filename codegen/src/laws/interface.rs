@@ -9,7 +9,7 @@ use crate::blocks::Scale;
 use crate::diagnostics::{engineering, frequency, rpm};
 use crate::interface::{Interface, Limits, OptionEntry, PublicConstant, Unit, Units};
 use crate::scaling::Scaled;
-use crate::spec::{HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
+use crate::spec::{HallCapture, Rule, Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -32,12 +32,13 @@ pub fn interface(
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         bus_periods: inverter.bus_periods().map(|periods| periods as i32),
-        limits: limits(inverter, scaled.scale),
+        limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),
     }
 }
 
-fn limits(inverter: &InverterSpec, scale: Scale) -> Limits {
+fn limits(spec: &Spec, scale: Scale) -> Limits {
+    let inverter = &spec.inverter;
     let words = |counts: i32| counts << scale.current_bits;
     Limits {
         adc_max: inverter.adc_max() as u16,
@@ -50,6 +51,9 @@ fn limits(inverter: &InverterSpec, scale: Scale) -> Limits {
         calibration_log2: inverter.calibration_log2,
         precharge_periods: inverter.precharge_periods as u16,
         stall_periods: inverter.stall_periods as i32,
+        sectors: (spec.hall_sectors().into_iter().rev())
+            .fold(0, |word, sector| word << 4 | u32::from(sector)),
+        brake_periods: spec.brake_periods() as i32,
     }
 }
 

@@ -3,8 +3,9 @@
 use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
-use crate::diagnostics::{engineering, frequency, significant};
+use crate::diagnostics::{engineering, frequency, rpm, significant};
 use crate::spec::{BusSource, HallCapture, Spec};
+use std::f64::consts::FRAC_PI_3;
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
 fn pairs() -> [String; 6] {
@@ -87,6 +88,19 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         0 => "A stalled rotor does not (`stall_timeout` is off).".to_owned(),
         periods => {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
+        }
+    });
+    lines.push(match spec.brake_periods() {
+        0 => {
+            "`brake()` shorts the motor, which takes no more than `max_current` at any speed."
+                .to_owned()
+        }
+        periods => {
+            let electrical = FRAC_PI_3 / (f64::from(periods) * inverter.t_s);
+            format!(
+                "`brake()` shorts the motor up to {}; above, it controls `max_current` against the rotation.",
+                rpm(electrical / f64::from(spec.motor.pole_pairs))
+            )
         }
     });
     if let BusSource::Measured { min, max, .. } = inverter.bus {

@@ -24,6 +24,17 @@ impl EmfShape {
         }
     }
 
+    /// Amplitude of the fundamental.
+    pub fn fundamental(self) -> f64 {
+        match self {
+            Self::Sinusoidal => 1.0,
+            Self::Trapezoidal { flat_top_deg } => {
+                let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
+                4.0 / PI * ramp.sin() / ramp
+            }
+        }
+    }
+
     /// Peak of the line-to-line EMF over the peak of the phase EMF: 2 for a flat top of at least
     /// 60 degrees, sqrt(3) for a sine.
     pub fn line_to_line_peak(self) -> f64 {
@@ -164,6 +175,9 @@ mod tests {
             let line = |theta: f64| shape.at(theta) - shape.at(theta - TAU / 3.0);
             let peak = angles(0.0, 360.0).map(line).fold(0.0, f64::max);
             assert!(near(peak, shape.line_to_line_peak()), "{shape:?} {peak}");
+            let wave = |theta: f64| 2.0 * shape.at(theta) * theta.sin();
+            let fundamental = angles(0.0, 360.0).map(wave).sum::<f64>() / STEPS as f64;
+            assert!(near(fundamental, shape.fundamental()), "{shape:?}");
             let mean = angles(30.0, 90.0).map(line).sum::<f64>() / STEPS as f64;
             assert!(near(mean, shape.quasi_square_factor()), "{shape:?} {mean}");
         }

@@ -46,6 +46,27 @@ impl Spec {
         (self.ticks_per_second() * TAU / omega_e).floor().max(12.0) as u32
     }
 
+    /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
+    /// than the largest current: e/|Z| with the fundamental of the EMF. 0 if it never takes more.
+    pub fn brake_periods(&self) -> u32 {
+        let MotorSpec {
+            resistance,
+            inductance,
+            emf_constant,
+            emf_shape,
+            pole_pairs,
+            ..
+        } = self.motor;
+        let (current, pairs) = (self.inverter.max_current, f64::from(pole_pairs));
+        let constant = emf_constant * emf_shape.fundamental();
+        let beyond = constant.powi(2) - (current * pairs * inductance).powi(2);
+        if beyond <= 0.0 {
+            return 0;
+        }
+        let omega_e = pairs * current * resistance / beyond.sqrt();
+        (FRAC_PI_3 / omega_e / self.inverter.t_s).ceil() as u32
+    }
+
     /// Sector 1 to 6 by Hall code; 0 for invalid codes.
     pub fn hall_sectors(&self) -> [u8; 8] {
         let mut sectors = [0; 8];

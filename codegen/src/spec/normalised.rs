@@ -80,6 +80,7 @@ impl Spec {
         text.number("rev_min", self.rev_min());
         text.number("omega_max", inverter.maximum_speed);
         text.number("stall_periods", inverter.stall_periods);
+        text.number("brake_periods", self.brake_periods());
         text.number("calibration_log2", inverter.calibration_log2);
         text.number("precharge_periods", inverter.precharge_periods);
     }
@@ -261,6 +262,7 @@ age_max = 49087
 rev_min = 3751
 omega_max = 314.0
 stall_periods = 0
+brake_periods = 192
 calibration_log2 = 8
 precharge_periods = 20
 [controller]

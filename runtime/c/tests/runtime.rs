@@ -166,7 +166,23 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "if (supervisor->mode != HEXAGEN_MODE_TRIPPED)",
             "if (true)",
         ),
-        ("leg ==", "&& fault == HEXAGEN_FAULT_NONE)", ")"),
+        (
+            "rested.leg ==",
+            "if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {",
+            "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE) {",
+        ),
+        ("line", "sector + 1U);", "sector + 2U);"),
+        ("line", "supervisor->brake_direction = -1;", ""),
+        (
+            "line",
+            "supervisor->brake_interval = supervisor->brake_age;",
+            "",
+        ),
+        (
+            "line",
+            "supervisor->brake_age + 1, limits",
+            "supervisor->brake_age + 2, limits",
+        ),
     ];
     assert_eq!(unnoticed(TEST, &faults), []);
 }
@@ -187,8 +203,10 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "8",
         "20",
         "0",
+        "0x04236510",
+        "0",
     ];
-    let compiles = |arguments: [&str; 12]| {
+    let compiles = |arguments: [&str; 14]| {
         let folder = tempfile::tempdir().expect("a folder");
         let arguments = arguments.join(", ");
         let test = format!(
@@ -221,6 +239,8 @@ fn limits_that_contradict_each_other_do_not_compile() {
         (9, "16"),
         (11, "-1"),
         (11, "2147483647"),
+        (13, "-1"),
+        (13, "2147483647"),
     ] {
         let mut wrong = sound;
         wrong[place] = value;
@@ -240,10 +260,12 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "8",
         "20",
         "0",
+        "0",
+        "0",
     ];
     assert!(!compiles(wide));
     let sums = [
-        "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0",
+        "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0", "0", "0",
     ];
     assert!(compiles(sums));
 }

@@ -5,14 +5,18 @@
 #include <stdio.h>
 
 HEXAGEN_LIMITS(rising, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
-    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0);
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0,
+    0x04236510, 5);
 HEXAGEN_LIMITS(falling, 4095, true, 18, 2048, 1946, 2150, INT32_C(400000001),
-    (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5);
-HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0);
+    (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5,
+    0x04236510, 0);
+HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0,
+    0x04236510, 7);
 HEXAGEN_LIMITS(wide, 65535, false, 14, 32768, 32000, 33000, INT32_C(500000000),
-    -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7);
+    -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7,
+    0x04236510, 7);
 HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
-    INT32_C(4095) * 8, 8, 1, 0);
+    INT32_C(4095) * 8, 8, 1, 0, 0x04236510, 7);
 
 static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &loose };
 
@@ -81,12 +85,12 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     } else {
         const uint16_t a = (sample.adc[0] < most) ? sample.adc[0] : most;
         const uint16_t b = (sample.adc[1] < most) ? sample.adc[1] : most;
-        const hexagen_leg leg = hexagen_rest(&supervisor, limits, &sample, &checked);
+        const hexagen_rested rested = hexagen_rest(&supervisor, limits, &sample, &checked);
         const bool charges = mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE;
         EXPECT(checked.i_a == current(limits, a, offset_a));
         EXPECT(checked.i_b == current(limits, b, offset_b));
         EXPECT(checked.hall == ((sample.hall >= 1 && sample.hall <= 6) ? sample.hall : 0));
-        EXPECT(leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
+        EXPECT(rested.leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
         EXPECT(supervisor.fault == ((mode == HEXAGEN_MODE_TRIPPED) ? HEXAGEN_FAULT_NONE : fault));
         EXPECT((supervisor.mode == HEXAGEN_MODE_TRIPPED)
             == (mode == HEXAGEN_MODE_TRIPPED || fault != HEXAGEN_FAULT_NONE));
@@ -97,8 +101,66 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     return 0;
 }
 
+#define BRAKES(what)                                      \
+    do {                                                  \
+        if (!(what)) {                                    \
+            printf("line %d: %s\n", __LINE__, #what);     \
+            return 1;                                     \
+        }                                                 \
+    } while (0)
+
+/* A drive that brakes: what so many periods with a Hall code come to. */
+static int rests(hexagen_supervisor *supervisor, uint16_t hall, unsigned periods, hexagen_leg leg,
+    bool is_controlled, int32_t against)
+{
+    const volatile int32_t set_point = 1;
+    const hexagen_sample sample = hexagen_with_hall(all[0]->offset, all[0]->offset, hall);
+    for (unsigned period = 0; period < periods; period++) {
+        hexagen_checked checked;
+        hexagen_rested rested;
+        BRAKES(!hexagen_check(supervisor, all[0], &sample, &set_point, &checked));
+        rested = hexagen_rest(supervisor, all[0], &sample, &checked);
+        BRAKES(rested.leg == leg && rested.is_controlled == is_controlled
+            && rested.against == against);
+    }
+    return 0;
+}
+
+/* Sectors of at least five periods are shorted; shorter ones ask for torque against the rotation. */
+static int brakes(void)
+{
+    hexagen_supervisor supervisor;
+    hexagen_start(&supervisor, all[0]);
+    hexagen_coast(&supervisor);
+    BRAKES(supervisor.mode == HEXAGEN_MODE_COAST);
+    BRAKES(rests(&supervisor, 5, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
+    BRAKES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_RUN);
+    BRAKES(!hexagen_resume(&supervisor));
+    hexagen_brake(&supervisor);
+    BRAKES(rests(&supervisor, 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
+    BRAKES(rests(&supervisor, 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    BRAKES(rests(&supervisor, 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    BRAKES(rests(&supervisor, 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
+    BRAKES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    BRAKES(rests(&supervisor, 3, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    BRAKES(rests(&supervisor, 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    hexagen_brake(&supervisor);
+    BRAKES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    BRAKES(rests(&supervisor, 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
+    BRAKES(rests(&supervisor, 0, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    BRAKES(supervisor.fault == HEXAGEN_FAULT_HALL);
+    hexagen_coast(&supervisor);
+    hexagen_brake(&supervisor);
+    BRAKES(!hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_TRIPPED);
+    BRAKES(hexagen_reset(&supervisor, all[0]) && supervisor.brake_direction == 0);
+    return 0;
+}
+
 int main(void)
 {
+    if (brakes() != 0) {
+        return 1;
+    }
     for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {
         const hexagen_limits *const limits = all[set];
         const uint16_t ends[2] = { limits->offset_least, limits->offset_most };

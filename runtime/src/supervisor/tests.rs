@@ -1,7 +1,7 @@
 //! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
 //! order of faults, and contradictory limits.
 
-use super::{Limits, Supervisor};
+use super::{Limits, Rest, Supervisor, Turn};
 use crate::arith::Word;
 use crate::{Fault, LegState, Mode, Sample};
 
@@ -33,6 +33,8 @@ const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits 
         calibration_log2: 4,
         precharge_periods: 3,
         stall_periods: 20,
+        sectors: 0x0423_6510,
+        brake_periods: 5,
     }
 }
 
@@ -111,8 +113,8 @@ fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Opt
         "{limits:?} {sample:?}"
     );
     let checked = passed.unwrap_or_else(|| {
-        let (checked, leg) = supervisor.rest(limits, &sample);
-        assert_eq!(leg, LegState::Off);
+        let (checked, rest) = supervisor.rest(limits, &sample);
+        assert_eq!(rest, Rest::Legs(LegState::Off));
         let status = supervisor.status();
         assert_eq!((status.mode, status.fault), (Mode::Tripped, expected));
         checked
@@ -258,9 +260,13 @@ fn faults_are_reported_in_their_order() {
                 if passed.is_some() {
                     continue;
                 }
-                let (_, leg) = supervisor.rest(limits, &sample);
+                let (_, rest) = supervisor.rest(limits, &sample);
                 let charges = mode == Mode::Precharge && expected.is_none();
-                assert_eq!(leg == LegState::Low, charges, "{mode:?} {expected:?}");
+                assert_eq!(
+                    rest == Rest::Legs(LegState::Low),
+                    charges,
+                    "{mode:?} {expected:?}"
+                );
                 let is = (supervisor.mode, supervisor.fault);
                 let should = match (mode, expected) {
                     (Mode::Tripped, _) => (mode, Some(Fault::Offset)),
@@ -284,7 +290,10 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
     for period in 0..1_u32 << limits.calibration_log2 {
         assert_eq!(supervisor.mode, Mode::Calibrate, "{period}");
         assert!(supervisor.check(limits, &sample, || true).is_none());
-        assert_eq!(supervisor.rest(limits, &sample).1, LegState::Off);
+        assert_eq!(
+            supervisor.rest(limits, &sample).1,
+            Rest::Legs(LegState::Off)
+        );
     }
     for period in 0..limits.precharge_periods {
         if supervisor.mode == Mode::Tripped {
@@ -292,7 +301,10 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
         }
         assert_eq!(supervisor.mode, Mode::Precharge, "{period}");
         assert!(supervisor.check(limits, &sample, || true).is_none());
-        assert_eq!(supervisor.rest(limits, &sample).1, LegState::Low);
+        assert_eq!(
+            supervisor.rest(limits, &sample).1,
+            Rest::Legs(LegState::Low)
+        );
     }
 }
 
@@ -412,7 +424,7 @@ fn stalls_are_counted_between_codes() {
 #[test]
 fn commands_are_accepted_in_their_modes_only() {
     let limits = limits(12, false, 17);
-    for mode in [Mode::Run, Mode::Calibrate, Mode::Precharge, Mode::Tripped] {
+    for mode in (0..6).map(Mode::from_number) {
         let begun = Supervisor {
             mode,
             fault: (mode == Mode::Tripped).then_some(Fault::Hall),
@@ -421,10 +433,13 @@ fn commands_are_accepted_in_their_modes_only() {
             sums: [Word(5); 2],
             hall_prev: 3,
             stall_count: Word(4),
+            turn: TURN,
         };
         let mut supervisor = begun.clone();
         let is_reset = supervisor.reset(&limits);
-        assert_eq!(is_reset, matches!(mode, Mode::Run | Mode::Tripped));
+        let is_off = matches!(mode, Mode::Coast | Mode::Brake);
+        let is_ready = mode == Mode::Run || is_off;
+        assert_eq!(is_reset, is_ready || mode == Mode::Tripped);
         let cleared = Supervisor {
             offsets: [Word(123); 2],
             ..Supervisor::new(&limits)
@@ -448,6 +463,30 @@ fn commands_are_accepted_in_their_modes_only() {
                 calibrates
             }
         );
+
+        let mut supervisor = begun.clone();
+        supervisor.coast();
+        let mode_then = if is_ready { Mode::Coast } else { mode };
+        assert_eq!(
+            supervisor,
+            Supervisor {
+                mode: mode_then,
+                ..begun.clone()
+            }
+        );
+        let mut supervisor = begun.clone();
+        supervisor.brake();
+        let forgets = is_ready && mode != Mode::Brake;
+        let brakes = Supervisor {
+            mode: if is_ready { Mode::Brake } else { mode },
+            turn: if forgets { Turn::UNKNOWN } else { TURN },
+            ..begun.clone()
+        };
+        assert_eq!(supervisor, brakes);
+        let mut supervisor = begun.clone();
+        assert_eq!(supervisor.resume(), is_off);
+        let mode_then = if is_off { Mode::Run } else { mode };
+        assert_eq!(supervisor.mode, mode_then);
 
         for precharge_periods in [3, 0] {
             let limits = Limits {
@@ -477,6 +516,7 @@ fn words_round_trip() {
         stall_count: Word(-7),
         sums: [Word(8), Word(i32::MIN)],
         offsets: [Word(-9), Word(i32::MAX)],
+        turn: TURN,
     };
     let mut other = Supervisor::new(&ALL[0]);
     other.set_words(supervisor.words());
@@ -487,11 +527,86 @@ fn words_round_trip() {
     }
 }
 
+/// Some rotation.
+const TURN: Turn = Turn {
+    hall: 3,
+    age: Word(1),
+    interval: Word(2),
+    direction: Word(-1),
+};
+
+/// What each of so many periods with a Hall code comes to.
+fn rests<const N: usize>(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> [Rest; N] {
+    [(); N].map(|()| {
+        let sample = Sample::with_hall([limits.offset; 2], hall);
+        assert!(supervisor.check(limits, &sample, || true).is_none());
+        supervisor.rest(limits, &sample).1
+    })
+}
+
+#[test]
+fn coasting_turns_all_legs_off_without_a_fault_and_still_watches() {
+    let limits = limits(12, false, 17);
+    let mut supervisor = Supervisor::new(&limits);
+    supervisor.coast();
+    let off = rests(&mut supervisor, &limits, HALL);
+    assert_eq!(off, [Rest::Legs(LegState::Off); 40]);
+    assert_eq!(supervisor.status().fault, None);
+    assert!(supervisor.resume());
+    let sample = Sample::with_hall([limits.offset; 2], HALL);
+    assert!(supervisor.check(&limits, &sample, || false).is_some());
+    supervisor.coast();
+    rests::<1>(&mut supervisor, &limits, 7);
+    assert_eq!(supervisor.status().fault, Some(Fault::Hall));
+}
+
+/// Sectors of at least five periods are shorted; shorter ones ask for torque against the rotation.
+#[test]
+fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
+    let limits = limits(12, false, 17);
+    let (off, low) = (Rest::Legs(LegState::Off), Rest::Legs(LegState::Low));
+    let [forward, backward] = [1, -1].map(|direction| Rest::Against(Word(direction)));
+    let mut supervisor = Supervisor::new(&limits);
+    supervisor.brake();
+    // Nothing is known of the rotor, until it has stood for five periods.
+    let unknown = Rest::Against(Word(0));
+    assert_eq!(
+        rests(&mut supervisor, &limits, 1),
+        [unknown, unknown, unknown, unknown, low, low, low]
+    );
+    // It accelerates: the first sector since then is the first short interval.
+    assert_eq!(rests(&mut supervisor, &limits, 5), [low; 3]);
+    assert_eq!(rests(&mut supervisor, &limits, 4), [forward; 3]);
+    assert_eq!(rests(&mut supervisor, &limits, 6), [forward; 4]);
+    // A sector that is skipped tells no direction; one back does.
+    assert_eq!(rests(&mut supervisor, &limits, 3), [forward; 4]);
+    assert_eq!(rests(&mut supervisor, &limits, 2), [backward; 4]);
+    assert_eq!(
+        rests(&mut supervisor, &limits, 6),
+        [backward, backward, backward, backward, low, low]
+    );
+    // The interval that has passed was long.
+    assert_eq!(rests(&mut supervisor, &limits, 4), [low; 2]);
+    // A call while it brakes changes nothing; a fault ends it.
+    supervisor.brake();
+    assert_eq!(rests(&mut supervisor, &limits, 5), [backward; 2]);
+    assert_eq!(rests(&mut supervisor, &limits, 0), [off]);
+    assert_eq!(supervisor.status().fault, Some(Fault::Hall));
+    let always = Limits {
+        brake_periods: 0,
+        ..limits
+    };
+    let mut supervisor = Supervisor::new(&always);
+    supervisor.brake();
+    assert_eq!(rests(&mut supervisor, &always, 1), [low; 9]);
+    assert_eq!(rests(&mut supervisor, &always, 5), [low; 9]);
+}
+
 /// A planted variant of limits.
 type Variant = fn(&mut Limits);
 
 /// Contradictory limits, and limits whose sums or words would not fit.
-const CONTRADICTIONS: [(&str, Variant); 21] = [
+const CONTRADICTIONS: [(&str, Variant); 23] = [
     ("no range", |limits| limits.adc_max = 0),
     ("a range without a middle", |limits| limits.adc_max = 1),
     ("a count more", |limits| limits.adc_max -= 1),
@@ -530,6 +645,12 @@ const CONTRADICTIONS: [(&str, Variant); 21] = [
     ("too many samples", |limits| limits.calibration_log2 = 16),
     ("stall counted beyond the word", |limits| {
         limits.stall_periods = i32::MAX;
+    }),
+    ("sectors counted beyond the word", |limits| {
+        limits.brake_periods = i32::MAX;
+    }),
+    ("sectors of less than no period", |limits| {
+        limits.brake_periods = -1;
     }),
 ];
 

@@ -332,7 +332,8 @@ impl<'g> Recorder<'g> {
                     }
                 }
                 Some(Action::SetSpeed(bits)) => self.call(Record::SetSpeed(bits)),
-                None => {}
+                // Nor do vectors coast or brake.
+                Some(Action::Stop(_)) | None => {}
             }
             let legs = self.step(sample);
             stimulus.respond(legs);

@@ -1,9 +1,10 @@
 //! The generator's interpreter as a drive.
 
 use crate::{Inputs, limits};
-use hexagen::{Fault, LegState, Legs, Limits, Sample, Supervisor};
+use hexagen::{Fault, LegState, Legs, Limits, Rest, Sample, Supervisor};
 use hexagen_codegen::interface::Interface;
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
+use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
 use std::sync::{Arc, OnceLock};
 
@@ -52,6 +53,7 @@ struct Places {
     legs: [usize; 3],
     /// Index of the set-point that a reset clears.
     set_point: usize,
+    has_speed: bool,
 }
 
 impl Places {
@@ -70,6 +72,7 @@ impl Places {
             compare: three(Output::Compare)?,
             legs: three(Output::Leg)?,
             set_point: demand(Demand::Speed).or_else(|| demand(Demand::Current))?,
+            has_speed: demand(Demand::Speed).is_some(),
         })
     }
 }
@@ -128,10 +131,23 @@ impl<'g> Interpreted<'g> {
             ..
         } = self;
         let is_demanded = machine.params[places.set_point] != 0;
-        let Some(checked) = supervisor.check(limits, sample, || is_demanded) else {
-            let (checked, leg) = supervisor.rest(limits, sample);
-            machine.rest(&places.inputs.words(&checked))?;
-            return Ok(Legs::all(leg));
+        let checked = match supervisor.check(limits, sample, || is_demanded) {
+            Some(checked) => checked,
+            None => match supervisor.rest(limits, sample) {
+                (checked, Rest::Legs(leg)) => {
+                    machine.rest(&places.inputs.words(&checked))?;
+                    return Ok(Legs::all(leg));
+                }
+                (checked, Rest::Against(direction)) => {
+                    if places.has_speed {
+                        machine.params[places.set_point] = 0;
+                    } else {
+                        let most = -i32::MAX * direction.0.signum();
+                        machine.set(Setter::Current, &[most])?;
+                    }
+                    checked
+                }
+            },
         };
         let results = machine.step(&places.inputs.words(&checked))?;
         Ok(Legs::new(
@@ -193,6 +209,18 @@ impl Subject for Interpreted<'_> {
 
     fn precharge(&mut self) {
         self.supervisor.precharge(&self.limits);
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        match stop {
+            Stop::Coast => self.supervisor.coast(),
+            Stop::Brake => self.supervisor.brake(),
+            Stop::Resume => {
+                if self.supervisor.resume() {
+                    self.machine.params[self.places.set_point] = 0;
+                }
+            }
+        }
     }
 
     fn fault(&self) -> Option<Fault> {

@@ -25,6 +25,8 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         calibration_log2,
         precharge_periods,
         stall_periods,
+        sectors,
+        brake_periods,
     } = *limits;
     Limits {
         adc_max,
@@ -37,6 +39,8 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         calibration_log2,
         precharge_periods,
         stall_periods,
+        sectors,
+        brake_periods,
     }
 }
 

@@ -53,8 +53,9 @@ static bool is_running(void)
 
 int main(void)
 {
-    const hexagen_sample without_code = hexagen_with_hall(2048, 2028, 0);
+    const hexagen_sample without_code = hexagen_with_hall(2058, 2028, 0);
     hexagen_signals signals;
+    hub_trip_record record;
     hub_init(&drive);
     unit = drive.supervisor.offset_a / 2048;
     EXPECT(has_offsets(2048, 2048));
@@ -83,21 +84,40 @@ int main(void)
     EXPECT(starts_up(2048, 2028));
 
     /* A trip, which only reset ends; offsets are kept. */
+    EXPECT(!hub_trip(&drive, &record));
     (void)hub_step(&drive, &without_code);
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_TRIPPED && hub_status(&drive).fault == HEXAGEN_FAULT_HALL);
     hub_calibrate(&drive);
     hub_precharge(&drive);
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_TRIPPED);
+
+    /* The period of the trip is kept whatever comes behind it: the law's words are those before it. */
+    EXPECT(steps(4, HEXAGEN_MODE_TRIPPED, HEXAGEN_LEG_OFF, 2048, 2028) == 4);
+    EXPECT(hub_trip(&drive, &record) && record.sample.hall == 0 && record.sample.adc[0] == 2058);
+    EXPECT(record.supervisor.fault == HEXAGEN_FAULT_HALL && record.supervisor.offset_b == 2028 * unit);
+    EXPECT(record.current == 0 && record.state.i_a_prev == 0);
     hub_set_current_ma(&drive, 5000);
     EXPECT(drive.current > 0);
     hub_reset(&drive);
-    EXPECT(drive.current == 0);
+    EXPECT(drive.current == 0 && !hub_trip(&drive, &record));
     EXPECT(is_running() && hub_status(&drive).fault == HEXAGEN_FAULT_NONE);
     EXPECT(steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 40 && has_offsets(2048, 2028));
     hub_precharge(&drive);
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_PRECHARGE);
     EXPECT(steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2048, 2028) == 4);
     EXPECT(is_running());
+
+    /* Off on purpose, without a fault; then a rotor that stands is shorted as soon as it is known to. */
+    hub_coast(&drive);
+    EXPECT(steps(40, HEXAGEN_MODE_COAST, HEXAGEN_LEG_OFF, 2048, 2028) == 40);
+    EXPECT(hub_status(&drive).fault == HEXAGEN_FAULT_NONE);
+    hub_brake(&drive);
+    hub_set_current_ma(&drive, 5000);
+    (void)steps(1000, HEXAGEN_MODE_BRAKE, HEXAGEN_LEG_PULSED, 2048, 2028);
+    EXPECT(steps(40, HEXAGEN_MODE_BRAKE, HEXAGEN_LEG_LOW, 2048, 2028) == 40);
+    hub_resume(&drive);
+    EXPECT(is_running() && drive.current == 0);
+    EXPECT(steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 40);
 
     /* Signals are of the next controlled period, in which legs of 24 V make no current. */
     EXPECT(!hub_signals(&drive, &signals) && !hub_signals(&drive, &signals));

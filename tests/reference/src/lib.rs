@@ -20,7 +20,7 @@ pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;
 pub use error::Error;
 pub use formats::FormatTable;
-pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Trace, Uniform};
+pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Stop, Trace, Uniform};
 pub use spec::{
     Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
     FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, PPwm, Pdcc, Phcc, PiPwm,

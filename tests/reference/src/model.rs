@@ -19,6 +19,6 @@ mod vectors;
 
 pub use bit_true::{BitTrue, Course};
 pub use ideal::{Duties, Ideal};
-pub use supervision::Mode;
+pub use supervision::{Mode, Stop};
 pub use trace::{PhysicalState, Reach, Trace};
 pub use uniform::Uniform;

@@ -127,6 +127,9 @@ pub struct Inverter {
     pub omega_max: f64,
     /// Periods without a Hall edge that count as a stall; 0 without stall detection.
     pub stall_periods: u32,
+    /// Periods of a sector at the speed up to which a short circuit brakes; 0: at every speed.
+    #[serde(default)]
+    pub brake_periods: u32,
     /// Binary logarithm of the number of calibration samples.
     pub calibration_log2: u32,
     /// Periods of bootstrap pre-charge; 0: none.

@@ -158,6 +158,10 @@ impl<S: Subject> Pair<S> {
                 self.subject.precharge();
                 self.model.precharge();
             }
+            Action::Stop(stop) => {
+                self.subject.stop(stop);
+                self.model.stop(stop);
+            }
             Action::Remember => self.remembered = Some(self.expected.clone()),
             Action::Recall => {
                 if let Some(words) = &self.remembered {

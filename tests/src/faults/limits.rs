@@ -5,7 +5,7 @@ use hexagen_codegen::interface::Limits;
 /// A fault: name and change.
 type Fault = (&'static str, fn(&mut Limits));
 
-const FAULTS: [Fault; 19] = [
+const FAULTS: [Fault; 22] = [
     ("a count more", |limits| limits.adc_max += 1),
     ("a count less", |limits| limits.adc_max -= 1),
     ("the other way round", |limits| {
@@ -40,6 +40,16 @@ const FAULTS: [Fault; 19] = [
     }),
     ("stall a period earlier", |limits| {
         limits.stall_periods = (limits.stall_periods - 1).max(0);
+    }),
+    ("two sectors exchanged", |limits| {
+        let [low, high] = [4, 8].map(|shift| limits.sectors >> shift & 7);
+        limits.sectors ^= (low ^ high) << 4 | (low ^ high) << 8;
+    }),
+    ("short circuit up to a lower speed", |limits| {
+        limits.brake_periods += 1;
+    }),
+    ("short circuit up to a higher speed", |limits| {
+        limits.brake_periods = (limits.brake_periods - 1).max(0);
     }),
 ];
 

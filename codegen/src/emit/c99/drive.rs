@@ -3,6 +3,7 @@
 use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
 use super::names::{Names, number, typed_number};
+use crate::emit::path::SINGLE;
 use crate::interface::{Interface, Limits, Unit};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
@@ -173,17 +174,20 @@ impl Drive<'_> {
         let names = self.names;
         let takes_rotor = self.step.arguments[1].contains(&"rotor");
         let mut body = lines(&[
+            "const hexagen_mode before = drive->supervisor.mode;",
             "hexagen_checked checked;",
-            "const hexagen_leg leg = hexagen_rest(&drive->supervisor, &limits, sample, &checked);",
+            "const hexagen_rested rested = hexagen_rest(&drive->supervisor, &limits, sample, &checked);",
         ]);
+        body.push_str(&self.keep_trip());
+        body.push_str(&lines(&[
+            "drive->status = hexagen_status_word(&drive->supervisor);",
+        ]));
+        body.push_str(&self.oppose());
         body.push_str(&self.track(takes_rotor));
         if !self.step.arguments[1].is_empty() {
             body.push_str(&lines(&[&format!("{};", self.call(1, "rest", "rotor"))]));
         }
-        body.push_str(&lines(&[
-            "drive->status = hexagen_status_word(&drive->supervisor);",
-            "return hexagen_all_legs(leg);",
-        ]));
+        body.push_str(&lines(&["return hexagen_period_of(rested, checked);"]));
         let comment = names.comment(
             "",
             &[
@@ -191,13 +195,76 @@ impl Drive<'_> {
             ],
         );
         let head = format!(
-            "static hexagen_legs step_at_rest({}, const hexagen_sample *sample)",
+            "static hexagen_period step_at_rest({}, const hexagen_sample *sample)",
             self.drive()
         );
         format!(
             "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
             wrapped("", &head)
         )
+    }
+
+    /// The statements that keep the period of a trip.
+    fn keep_trip(&self) -> String {
+        let mut kept = vec![
+            "sample = *sample".to_owned(),
+            "supervisor = drive->supervisor".to_owned(),
+            "state = drive->state".to_owned(),
+        ];
+        let single = SINGLE.into_iter();
+        let single = single.filter(|(demand, _)| self.program.param(*demand).is_some());
+        kept.extend(single.map(|(_, name)| format!("{name} = drive->{name}")));
+        if self.has_bus() {
+            kept.extend(
+                [0, 1].map(|word| format!("bus[{word}] = hexagen_bus_words(&drive->bus)[{word}]")),
+            );
+        }
+        let inner = INDENT.repeat(2);
+        let mut text = format!(
+            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n             {inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n"
+        );
+        for kept in kept {
+            let _ = writeln!(text, "{inner}drive->trip.{kept};");
+        }
+        text + &format!("{inner}drive->trip_number = (drive->trip_number + 1U) | 1U;\n{INDENT}}}\n")
+    }
+
+    /// The statements that end a rest where a fast rotor is braked.
+    fn oppose(&self) -> String {
+        let inner = INDENT.repeat(2);
+        let demand = if self.has_speed() {
+            "drive->speed = 0".to_owned()
+        } else {
+            format!(
+                "{}(drive, -INT32_MAX * rested.against)",
+                self.names.public(Setter::Current.name())
+            )
+        };
+        format!(
+            "{INDENT}if (rested.is_controlled) {{\n{inner}{demand};\n\
+             {inner}return hexagen_period_of(rested, checked);\n{INDENT}}}\n"
+        )
+    }
+
+    /// What was kept of a trip.
+    fn trip(&self) -> Method {
+        Method {
+            doc: doc(&[
+                "The control period in which the drive tripped, kept until a reset: true where there is one.",
+                "False while the drive is not tripped, and if a reset interrupts the call.",
+            ]),
+            head: format!(
+                "bool {}(const {}, {} *trip)",
+                self.names.public("trip"),
+                self.drive(),
+                self.names.trip_record()
+            ),
+            body: lines(&[
+                "const uint32_t number = drive->trip_number;",
+                "*trip = drive->trip;",
+                "return (number & 1U) != 0U && drive->trip_number == number;",
+            ]),
+        }
     }
 
     fn init(&self) -> Method {
@@ -217,6 +284,7 @@ impl Drive<'_> {
         body.push_str(&lines(&[
             "hexagen_start(&drive->supervisor, &limits);",
             "drive->state = initial;",
+            "drive->trip_number = 0;",
             "drive->status = hexagen_status_word(&drive->supervisor);",
         ]));
         let signals = lines(&["hexagen_start_port(&drive->signals);"]);
@@ -248,7 +316,10 @@ impl Drive<'_> {
         body.push_str(&lines(&[&check]));
         let _ = write!(
             body,
-            "{INDENT}{INDENT}return step_at_rest(drive, sample);\n{INDENT}}}\n"
+            "{INDENT}{INDENT}const hexagen_period period = step_at_rest(drive, sample);\n\
+             {INDENT}{INDENT}if (!period.is_controlled) {{\n\
+             {INDENT}{INDENT}{INDENT}return period.legs;\n{INDENT}{INDENT}}}\n\
+             {INDENT}{INDENT}checked = period.checked;\n{INDENT}}}\n"
         );
         let takes_rotor = self.step.arguments[2].contains(&"rotor");
         body.push_str(&self.track(takes_rotor));
@@ -360,8 +431,8 @@ impl Drive<'_> {
         })
     }
 
-    /// Reset, calibration, pre-charge and status.
-    fn commands(&self) -> [Method; 4] {
+    /// All methods besides start, step and setters.
+    fn commands(&self) -> [Method; 8] {
         let publish = "drive->status = hexagen_status_word(&drive->supervisor);";
         let command = |name: &str, text: &[&str], body: String| Method {
             doc: doc(text),
@@ -371,7 +442,8 @@ impl Drive<'_> {
         let inner = INDENT.repeat(2);
         let reset = format!(
             "{INDENT}if (hexagen_reset(&drive->supervisor, &limits)) {{\n\
-             {inner}drive->state = initial;\n{inner}drive->{} = 0;\n{INDENT}}}\n",
+             {inner}drive->state = initial;\n{inner}drive->{} = 0;\n\
+             {inner}drive->trip_number = (drive->trip_number + 1U) & ~UINT32_C(1);\n{INDENT}}}\n",
             self.demand()
         );
         let run = |name: &str| lines(&[&format!("hexagen_{name}(&drive->supervisor, &limits);")]);
@@ -405,6 +477,32 @@ impl Drive<'_> {
                 ],
                 run("precharge"),
             ),
+            command(
+                "coast",
+                &[
+                    "Turns all legs off on purpose, without a fault, until `resume()` or a reset.",
+                    "Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into the bus. Ignored when tripped and in start-up.",
+                ],
+                lines(&["hexagen_coast(&drive->supervisor);"]),
+            ),
+            command(
+                "brake",
+                &[
+                    "Slows the rotor down until `resume()` or a reset: all lower switches on where the motor takes no more than `max_current` that way;",
+                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. Ignored when tripped and in start-up.",
+                ],
+                lines(&["hexagen_brake(&drive->supervisor);"]),
+            ),
+            command(
+                "resume",
+                &[
+                    "Ends coasting and braking: control at set-point 0 follows, with the rotor's angle and speed as they were followed meanwhile. Ignored if the drive does neither.",
+                ],
+                format!(
+                    "{INDENT}if (hexagen_resume(&drive->supervisor)) {{\n{inner}drive->{} = 0;\n{INDENT}}}\n",
+                    self.demand()
+                ),
+            ),
             Method {
                 doc: doc(&[
                     "Mode and fault of the drive after the last control period or call; may be called from any context.",
@@ -418,6 +516,7 @@ impl Drive<'_> {
                     "return hexagen_status_of(drive->status, {is_stale});"
                 )]),
             },
+            self.trip(),
         ]
     }
 
@@ -492,7 +591,7 @@ impl Drive<'_> {
 }
 
 /// The limits with their names, in the order of the runtime's macro.
-fn arguments(limits: &Limits) -> [(String, &'static str); 12] {
+fn arguments(limits: &Limits) -> [(String, &'static str); 14] {
     let [least, most] = limits.offsets;
     let [low, high] = limits.currents;
     [
@@ -508,5 +607,7 @@ fn arguments(limits: &Limits) -> [(String, &'static str); 12] {
         (format!("{}", limits.calibration_log2), "calibration_log2"),
         (format!("{}", limits.precharge_periods), "precharge_periods"),
         (typed_number(limits.stall_periods), "stall_periods"),
+        (format!("UINT32_C({:#010x})", limits.sectors), "sectors"),
+        (typed_number(limits.brake_periods), "brake_periods"),
     ]
 }

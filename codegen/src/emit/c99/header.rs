@@ -106,6 +106,7 @@ impl Drive<'_> {
             let _ = writeln!(text, "{INDENT}{kind} {};", names.local(&word.name));
         }
         let _ = write!(text, "}} {};\n\n", names.state());
+        text.push_str(&self.trip_record());
         let doc = "A drive; its fields are private. hexagen.h says which function may be called from where.";
         text.push_str(&names.comment("", &[doc]));
         text.push_str("typedef struct {\n");
@@ -131,6 +132,14 @@ impl Drive<'_> {
                 "State of the law; owned by the control loop.",
                 &format!("{state} state"),
             ),
+            (
+                "Odd: the drive has tripped, and the record is that trip's as long as the number stays.",
+                "volatile uint32_t trip_number",
+            ),
+            (
+                "The control period in which it tripped.",
+                &format!("volatile {} trip", self.names.trip_record()),
+            ),
         ] {
             text.push_str(&names.comment(INDENT, &[doc]));
             let _ = writeln!(text, "{INDENT}{field};");
@@ -139,6 +148,39 @@ impl Drive<'_> {
         let _ = write!(signals, "{INDENT}hexagen_port signals;");
         text.push_str(where_defined(SIGNALS, &signals).trim_end());
         text + &format!("\n}} {};\n\n", names.prefix)
+    }
+
+    /// What is kept of a trip.
+    fn trip_record(&self) -> String {
+        let names = self.names;
+        let doc = "The control period in which a drive tripped: a step is a function of these words, so it can be computed again from them, bit for bit.";
+        let mut text = names.comment("", &[doc]);
+        text.push_str("typedef struct {\n");
+        let mut field = |doc: &str, field: &str| {
+            text.push_str(&names.comment(INDENT, &[doc]));
+            let _ = writeln!(text, "{INDENT}{field};");
+        };
+        field("What was sampled.", "hexagen_sample sample");
+        field(
+            "The supervisor behind that period: its fault, the offsets of the currents.",
+            "hexagen_supervisor supervisor",
+        );
+        field(
+            "The law's state before that period.",
+            &format!("{} state", names.state()),
+        );
+        for (demand, name) in SINGLE {
+            if self.program.param(demand).is_some() {
+                field(
+                    &format!("Set-point word of the {name}."),
+                    &format!("int32_t {name}"),
+                );
+            }
+        }
+        if self.has_bus() {
+            field("Words of the bus voltage.", "int32_t bus[2]");
+        }
+        text + &format!("}} {};\n\n", names.trip_record())
     }
 }
 

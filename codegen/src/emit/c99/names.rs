@@ -80,16 +80,19 @@ const KEYWORDS: [&str; 69] = [
 ];
 
 /// Local names, types and functions of every emitted source.
-const RESERVED: [&str; 21] = [
+const RESERVED: [&str; 25] = [
+    "before",
     "bus",
     "checked",
     "drive",
     "initial",
-    "leg",
     "legs",
     "limits",
+    "number",
     "observation",
+    "period",
     "rest",
+    "rested",
     "result",
     "rotor",
     "sample",
@@ -100,19 +103,24 @@ const RESERVED: [&str; 21] = [
     "tell",
     "track",
     "tracked",
+    "trip",
     "units",
     "words",
 ];
 
 /// Functions that every header declares with the drive's prefix, besides the setters.
-const FUNCTIONS: [&str; 7] = [
+const FUNCTIONS: [&str; 11] = [
+    "brake",
     "calibrate",
+    "coast",
     "init",
     "precharge",
     "reset",
+    "resume",
     "signals",
     "status",
     "step",
+    "trip",
 ];
 
 /// Other names that a type may not take: headers of the language, and library functions whose names
@@ -165,6 +173,11 @@ impl Names {
         self.public("state")
     }
 
+    /// The type of what is kept of a trip.
+    pub(super) fn trip_record(&self) -> String {
+        self.public("trip_record")
+    }
+
     /// The identifier of a signal, state word, input or stage: its name, with an underscore
     /// appended if that is taken.
     pub(super) fn local(&self, name: &str) -> String {
@@ -173,7 +186,9 @@ impl Names {
             rest.is_some_and(|rest| {
                 let rest = rest.strip_prefix('_');
                 rest.is_none_or(|rest| {
-                    rest == "state" || FUNCTIONS.contains(&rest) || self.is_setter(rest)
+                    ["state", "trip_record"].contains(&rest)
+                        || FUNCTIONS.contains(&rest)
+                        || self.is_setter(rest)
                 })
             })
         };

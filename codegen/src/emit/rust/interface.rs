@@ -189,6 +189,8 @@ fn limits_of(limits: &Limits) -> Source {
     let log2 = n(limits.calibration_log2.into());
     let precharge = n(limits.precharge_periods.into());
     let stall = n(limits.stall_periods.into());
+    let sectors = n(limits.sectors.into());
+    let brake = n(limits.brake_periods.into());
     quote! {
         Limits {
             adc_max: #adc_max,
@@ -201,6 +203,8 @@ fn limits_of(limits: &Limits) -> Source {
             calibration_log2: #log2,
             precharge_periods: #precharge,
             stall_periods: #stall,
+            sectors: #sectors,
+            brake_periods: #brake,
         }
     }
 }

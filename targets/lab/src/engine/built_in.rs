@@ -1,6 +1,7 @@
 //! The motor library and the drives compiled into this program by its build script.
 
 use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
+use hexagen_reference::Stop;
 use hexagen_reference::verify::{Compiled, Subject};
 use std::fmt;
 
@@ -99,6 +100,10 @@ impl Subject for AnySubject {
     }
     fn precharge(&mut self) {
         self.0.precharge();
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        self.0.stop(stop);
     }
     #[inline]
     fn fault(&self) -> Option<Fault> {

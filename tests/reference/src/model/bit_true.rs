@@ -20,7 +20,7 @@ mod tables;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{BusWatch, Limits, Mode, Observation, Period};
+use super::supervision::{BusWatch, Limits, Mode, Observation, Period, Stop};
 use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
 use crate::exact::{
@@ -110,7 +110,7 @@ impl<W: Word> BitTrue<W> {
             variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
-            limits: Limits::new(&spec.inverter, k.i_trip)?,
+            limits: Limits::new(spec, k.i_trip)?,
             j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
             speed_ref: word(0.0),
             speed,
@@ -175,14 +175,19 @@ impl<W: Word> BitTrue<W> {
     /// loop, else the current); keeps the offsets. Ignored during calibration and pre-charge.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
-            match self.speed {
-                Some(_) => self.speed_ref = word(0.0),
-                None => self.j = word(0.0),
-            }
+            self.clear();
             self.state = State {
                 offset: self.state.offset,
                 ..State::default()
             };
+        }
+    }
+
+    /// Sets the set-point to 0.
+    fn clear(&mut self) {
+        match self.speed {
+            Some(_) => self.speed_ref = word(0.0),
+            None => self.j = word(0.0),
         }
     }
 
@@ -196,6 +201,19 @@ impl<W: Word> BitTrue<W> {
         self.state.supervisor.precharge(&self.limits);
     }
 
+    /// Coasts, brakes, or ends both; then the set-point is 0.
+    pub fn stop(&mut self, stop: Stop) {
+        match stop {
+            Stop::Coast => self.state.supervisor.coast(),
+            Stop::Brake => self.state.supervisor.brake(),
+            Stop::Resume => {
+                if self.state.supervisor.resume() {
+                    self.clear();
+                }
+            }
+        }
+    }
+
     /// Fault of the drive.
     pub fn fault(&self) -> Option<Fault> {
         self.state.supervisor.fault
@@ -204,6 +222,12 @@ impl<W: Word> BitTrue<W> {
     /// Mode of the drive.
     pub fn mode(&self) -> Mode {
         self.state.supervisor.mode
+    }
+
+    /// Whether the last step controlled the currents.
+    #[inline]
+    pub fn is_in_control(&self) -> bool {
+        self.last.run
     }
 
     /// Whether the bus voltage is measured.
@@ -290,6 +314,13 @@ impl<W: Word> BitTrue<W> {
                 .map(|sum| floor(sum * k.calibration));
         }
         let run = verdict.period == Period::Control;
+        if let Some(direction) = verdict.against {
+            match self.speed {
+                Some(_) => self.speed_ref = word(0.0),
+                None => self.set_current((-direction * f64::from(i32::MAX)) as i32),
+            }
+        }
+        let k = &self.k;
 
         // 4 rotor
         let sector = event.sector;
@@ -407,7 +438,7 @@ impl<W: Word> BitTrue<W> {
         });
         let command = match verdict.period {
             Period::Control => decision.command,
-            Period::Precharge => Command::idle(Legs::LOW),
+            Period::Low => Command::idle(Legs::LOW),
             Period::Off => Command::idle(Legs::OFF),
         };
 

@@ -11,7 +11,7 @@ mod vector;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{Limits, Observation, Period};
+use super::supervision::{Limits, Observation, Period, Stop};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::{Variant, emf_error_limit};
 use crate::emf_motion::EmfMotion;
@@ -109,7 +109,7 @@ impl Ideal {
         // A current of exactly the trip level is not above it, whatever these floating-point
         // numbers lose.
         let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.first().abs();
-        let limits = Limits::new(inverter, trip_current)?;
+        let limits = Limits::new(spec, trip_current)?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
             variant: Variant::new(spec),
@@ -184,14 +184,19 @@ impl Ideal {
     /// loop, else the current); keeps the offsets. Ignored during calibration and pre-charge.
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
-            match self.speed_loop {
-                Some(_) => self.speed = 0.0,
-                None => self.current = 0.0,
-            }
+            self.clear();
             self.state = PhysicalState {
                 offset: self.state.offset,
                 ..PhysicalState::default()
             };
+        }
+    }
+
+    /// Sets the set-point to 0.
+    fn clear(&mut self) {
+        match self.speed_loop {
+            Some(_) => self.speed = 0.0,
+            None => self.current = 0.0,
         }
     }
 
@@ -203,6 +208,19 @@ impl Ideal {
     /// Starts bootstrap pre-charge.
     pub fn precharge(&mut self) {
         self.state.supervisor.precharge(&self.limits);
+    }
+
+    /// Coasts, brakes, or ends both; then the set-point is 0.
+    pub fn stop(&mut self, stop: Stop) {
+        match stop {
+            Stop::Coast => self.state.supervisor.coast(),
+            Stop::Brake => self.state.supervisor.brake(),
+            Stop::Resume => {
+                if self.state.supervisor.resume() {
+                    self.clear();
+                }
+            }
+        }
     }
 
     /// Fault of the controller.
@@ -252,6 +270,12 @@ impl Ideal {
                 .map(|sum| sum / self.limits.calibration_samples);
         }
         let run = verdict.period == Period::Control;
+        if let Some(direction) = verdict.against {
+            match self.speed_loop {
+                Some(_) => self.speed = 0.0,
+                None => self.current = -direction * self.max_current,
+            }
+        }
 
         // 4 rotor
         let sector = event.sector;
@@ -369,7 +393,7 @@ impl Ideal {
         });
         let command = match verdict.period {
             Period::Control => decision.command,
-            Period::Precharge => Command::idle(Duties::LOW),
+            Period::Low => Command::idle(Duties::LOW),
             Period::Off => Command::idle(Duties::OFF),
         };
 

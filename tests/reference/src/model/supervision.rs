@@ -4,8 +4,20 @@
 
 use crate::Error;
 use crate::exact::{Word, greater, lesser, word};
-use crate::spec::{Bus, Inverter};
+use crate::model::sector::hall_sectors;
+use crate::spec::{Bus, Inverter, Spec};
 use hexagen::Fault;
+
+/// Being off on purpose, or its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// All legs off.
+    Coast,
+    /// Slowing the rotor down.
+    Brake,
+    /// The end of both.
+    Resume,
+}
 
 /// Operating mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,6 +31,10 @@ pub enum Mode {
     Precharge = 2,
     /// Latched after a fault, all legs off.
     Tripped = 3,
+    /// All legs off on purpose.
+    Coast = 4,
+    /// Slowing the rotor down.
+    Brake = 5,
 }
 
 impl Mode {
@@ -28,6 +44,8 @@ impl Mode {
             0 => Self::Run,
             1 => Self::Calibrate,
             2 => Self::Precharge,
+            4 => Self::Coast,
+            5 => Self::Brake,
             _ => Self::Tripped,
         }
     }
@@ -70,10 +88,15 @@ pub struct Limits {
     pub calibration_samples: f64,
     pub precharge_periods: f64,
     pub stall_periods: f64,
+    /// Periods of a sector up to whose speed a short circuit brakes.
+    pub brake_periods: f64,
+    /// Sector by Hall code.
+    pub sectors: [usize; 8],
 }
 
 impl Limits {
-    pub fn new(inverter: &Inverter, i_trip: f64) -> Result<Self, Error> {
+    pub fn new(spec: &Spec, i_trip: f64) -> Result<Self, Error> {
+        let inverter = &spec.inverter;
         let samples = 1u32
             .checked_shl(inverter.calibration_log2)
             .ok_or(Error::Field {
@@ -89,6 +112,8 @@ impl Limits {
             calibration_samples: f64::from(samples),
             precharge_periods: f64::from(inverter.precharge_periods),
             stall_periods: f64::from(inverter.stall_periods),
+            brake_periods: f64::from(inverter.brake_periods),
+            sectors: hall_sectors(&spec.motor),
         })
     }
 }
@@ -161,7 +186,7 @@ pub enum Period {
     /// The currents are controlled.
     Control,
     /// All legs low.
-    Precharge,
+    Low,
     /// All legs off.
     Off,
 }
@@ -170,6 +195,8 @@ pub enum Period {
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
     pub period: Period,
+    /// Control with the largest torque against this direction, or none: the drive brakes a fast rotor.
+    pub against: Option<f64>,
     /// The calibration is complete: the offsets are the sums' means from the next period on.
     pub calibrated: bool,
 }
@@ -185,6 +212,21 @@ pub struct Supervisor<W = f64> {
     pub stall_count: W,
     /// The last valid Hall code, with stall detection; 0 before the first.
     pub hall_prev: HallCode,
+    /// Rotation since braking began.
+    pub turn: Turn<W>,
+}
+
+/// Rotation of the rotor by the Hall edges since braking began.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Turn<W> {
+    /// Hall code of the last period; 0 before the first.
+    pub hall: HallCode,
+    /// Periods since the last edge.
+    pub age: W,
+    /// Periods between the last two edges.
+    pub interval: W,
+    /// 1 forward, -1 backward; 0 before the first edge.
+    pub direction: W,
 }
 
 /// A Hall code, or 0 for none.
@@ -210,7 +252,40 @@ impl<W: Word> Supervisor<W> {
 
     /// Whether a reset takes effect: start-up is not interrupted.
     pub fn may_reset(&self) -> bool {
-        matches!(self.mode, Mode::Run | Mode::Tripped)
+        !matches!(self.mode, Mode::Calibrate | Mode::Precharge)
+    }
+
+    /// Starts coasting; ignored when tripped and in start-up.
+    pub fn coast(&mut self) {
+        if self.is_in_control() {
+            self.mode = Mode::Coast;
+        }
+    }
+
+    /// Starts braking; ignored when tripped, in start-up, and while braking.
+    pub fn brake(&mut self) {
+        if self.is_in_control() && self.mode != Mode::Brake {
+            self.mode = Mode::Brake;
+            self.turn = Turn {
+                hall: HallCode::default(),
+                age: word(0.0),
+                interval: word(0.0),
+                direction: word(0.0),
+            };
+        }
+    }
+
+    /// Ends both; whether there was anything to end.
+    pub fn resume(&mut self) -> bool {
+        let is_off = matches!(self.mode, Mode::Coast | Mode::Brake);
+        if is_off {
+            self.mode = Mode::Run;
+        }
+        is_off
+    }
+
+    fn is_in_control(&self) -> bool {
+        matches!(self.mode, Mode::Run | Mode::Coast | Mode::Brake)
     }
 
     /// Starts the bootstrap pre-charge; ignored when tripped or calibrating.
@@ -248,14 +323,28 @@ impl<W: Word> Supervisor<W> {
         if self.mode == Mode::Run && found.is_none() {
             return Verdict {
                 period: Period::Control,
+                against: None,
                 calibrated: false,
             };
         }
-        let period = if self.mode == Mode::Precharge && found.is_none() {
-            Period::Precharge
-        } else {
-            Period::Off
-        };
+        let (mut period, mut against) = (Period::Off, None);
+        if self.mode == Mode::Precharge && found.is_none() {
+            period = Period::Low;
+        } else if let (Mode::Brake, Some(code), None) = (self.mode, code, found) {
+            let is_slow = self.follow(limits, code);
+            if is_slow {
+                period = Period::Low;
+            } else {
+                period = Period::Control;
+                against = Some(if self.turn.direction == 0.0 {
+                    0.0
+                } else if self.turn.direction > 0.0 {
+                    1.0
+                } else {
+                    -1.0
+                });
+            }
+        }
         if found.is_some() && self.mode != Mode::Tripped {
             // A fault ends start-up.
             self.mode = Mode::Tripped;
@@ -263,7 +352,7 @@ impl<W: Word> Supervisor<W> {
         }
         let mut calibrated = false;
         match self.mode {
-            Mode::Run | Mode::Tripped => {}
+            Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Calibrate => {
                 for (sum, adc) in self.sum.iter_mut().zip(seen.adc) {
                     *sum += lesser(adc, limits.adc_max);
@@ -293,7 +382,29 @@ impl<W: Word> Supervisor<W> {
                 }
             }
         }
-        Verdict { period, calibrated }
+        Verdict {
+            period,
+            against,
+            calibrated,
+        }
+    }
+
+    /// Follows the rotor while braking; whether it is slow enough for a short circuit.
+    fn follow(&mut self, limits: &Limits, code: HallCode) -> bool {
+        let [before, now] = [self.turn.hall, code].map(|code| limits.sectors[usize::from(code.0)]);
+        if before != 0 && before != now {
+            // Sectors ahead, of six.
+            match (now + 6 - before) % 6 {
+                1 => self.turn.direction = word(1.0),
+                5 => self.turn.direction = word(-1.0),
+                _ => {}
+            }
+            self.turn.interval = self.turn.age;
+            self.turn.age = word(0.0);
+        }
+        self.turn.hall = code;
+        self.turn.age = lesser(self.turn.age + 1.0, limits.brake_periods);
+        greater(self.turn.age, self.turn.interval) >= limits.brake_periods
     }
 
     /// Counts periods under demand since the last change of the Hall code.

@@ -16,6 +16,10 @@ pub struct Report {
     pub calibrations: u64,
     /// Steps with bootstrap pre-charge in progress.
     pub precharging: u64,
+    /// Steps coasting and braking without control.
+    pub stopped: u64,
+    /// Steps braking in control.
+    pub opposing: u64,
     /// Steps tripped.
     pub tripped: u64,
     /// Steps in control and limited to the hexagon.
@@ -55,6 +59,8 @@ impl Report {
             }
             Mode::Calibrate => self.calibrating += 1,
             Mode::Precharge => self.precharging += 1,
+            Mode::Brake if model.is_in_control() => self.opposing += 1,
+            Mode::Coast | Mode::Brake => self.stopped += 1,
             Mode::Tripped => self.tripped += 1,
         }
     }
@@ -66,6 +72,8 @@ impl Report {
         self.calibrating += other.calibrating;
         self.calibrations += other.calibrations;
         self.precharging += other.precharging;
+        self.stopped += other.stopped;
+        self.opposing += other.opposing;
         self.tripped += other.tripped;
         self.limited += other.limited;
         self.past_reach += other.past_reach;
@@ -83,7 +91,7 @@ impl fmt::Display for Report {
         write!(
             f,
             "{} steps: {:.1} % in control ({:.1} % limited, {:.1} % past reach, {:.1} % commutating, {:.1} % with angle), \
-             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % tripped; {} calls, {} calibrations",
+             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % off or braking, {:.1} % tripped; {} calls, {} calibrations",
             self.steps,
             share(self.running),
             share(self.limited),
@@ -92,6 +100,7 @@ impl fmt::Display for Report {
             share(self.timed),
             share(self.calibrating),
             share(self.precharging),
+            share(self.stopped + self.opposing),
             share(self.tripped),
             self.actions,
             self.calibrations

@@ -5,7 +5,7 @@
 //! to an earlier state). A tripped drive is reset soon, so that most steps are in control.
 
 use super::toy_motor::ToyMotor;
-use crate::{Bus, BusSense, Error, Spec};
+use crate::{Bus, BusSense, Error, Spec, Stop};
 use fastrand::Rng;
 use hexagen::{Legs, Sample};
 use std::f64::consts::TAU;
@@ -46,6 +46,8 @@ pub enum Action {
     Calibrate,
     /// Bootstrap pre-charge.
     Precharge,
+    /// Coasting, braking, or their end.
+    Stop(Stop),
     /// Keep a copy of the state words.
     Remember,
     /// Set the state words to the copy.
@@ -71,7 +73,9 @@ pub struct Stimulus {
     delay: u32,
     pending: Legs,
     sector: usize,
-    /// The last call was a reset, which leaves the set-point at 0.
+    /// Steps until coasting or braking ends; 0: it does neither.
+    stopped: u32,
+    /// The last call was a reset or an end of coasting or braking, which leaves the set-point at 0.
     is_reset: bool,
     /// Ticks since the last Hall edge.
     age: f64,
@@ -109,6 +113,7 @@ impl Stimulus {
             delay: spec.loop_options().delay,
             pending: Legs::OFF,
             sector: 0,
+            stopped: 0,
             is_reset: false,
             age: 0.0,
             codes: spec.motor.hall_codes,
@@ -181,7 +186,10 @@ impl Stimulus {
             self.motor.i = [0.0; 2];
         }
         let dice = self.random.u32(..);
-        let action = if context.tripped && dice.is_multiple_of(2) {
+        self.stopped = self.stopped.saturating_sub(1);
+        let action = if self.stopped == 1 {
+            Some(Action::Stop(Stop::Resume))
+        } else if context.tripped && dice.is_multiple_of(2) {
             Some(Action::Reset)
         } else if self.is_reset && !(dice >> 1).is_multiple_of(8) {
             Some(self.demand())
@@ -190,7 +198,7 @@ impl Stimulus {
         } else {
             None
         };
-        self.is_reset = action == Some(Action::Reset);
+        self.is_reset = matches!(action, Some(Action::Reset | Action::Stop(Stop::Resume)));
         let sample = match self.stream {
             Stream::StartUp => self.at_rest(),
             Stream::Arbitrary => self.arbitrary(context),
@@ -243,6 +251,7 @@ impl Stimulus {
                 match (rare, self.random.bool()) {
                     (true, true) => Some(Action::Calibrate),
                     (true, false) => Some(Action::Precharge),
+                    (false, true) if self.stopped == 0 => Some(self.stop()),
                     (false, _) => None,
                 }
             }
@@ -257,6 +266,13 @@ impl Stimulus {
                 None
             }
         }
+    }
+
+    /// Coasting or braking for some hundred steps.
+    fn stop(&mut self) -> Action {
+        self.stopped = self.random.u32(2..600);
+        let coasts = self.random.u8(..4) == 0;
+        Action::Stop(if coasts { Stop::Coast } else { Stop::Brake })
     }
 
     fn set_point(&mut self, max: f64) -> i32 {

@@ -1,5 +1,6 @@
 //! Subjects of a comparison with the bit-true model.
 
+use crate::Stop;
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, Legs, Sample};
 
@@ -21,6 +22,8 @@ pub trait Subject {
     fn calibrate(&mut self);
     /// Starts bootstrap pre-charge.
     fn precharge(&mut self);
+    /// Coasts, brakes, or ends both.
+    fn stop(&mut self, stop: Stop);
     /// Fault of the drive.
     fn fault(&self) -> Option<Fault>;
     /// Whether a measured bus voltage is stale.
@@ -80,6 +83,14 @@ impl<C: Control<Command = Legs>> Subject for Compiled<C> {
 
     fn precharge(&mut self) {
         self.0.precharge();
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        match stop {
+            Stop::Coast => self.0.coast(),
+            Stop::Brake => self.0.brake(),
+            Stop::Resume => self.0.resume(),
+        }
     }
 
     #[inline]

@@ -56,6 +56,11 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             }
             Some(Action::Calibrate) => bit_true.calibrate(),
             Some(Action::Precharge) => bit_true.precharge(),
+            Some(Action::Stop(stop)) => {
+                ideal.rebuild_from(&bit_true.physical_state());
+                bit_true.stop(stop);
+                ideal.stop(stop);
+            }
             Some(Action::Remember | Action::Recall) | None => {}
         }
         let before = bit_true.physical_state();

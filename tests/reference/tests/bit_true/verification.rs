@@ -4,7 +4,7 @@
 use crate::variants::{self, Variant};
 use hexagen::{Fault, Legs, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
-use hexagen_reference::{BitTrue, Bus, Controller, FormatTable, Spec};
+use hexagen_reference::{BitTrue, Bus, Controller, FormatTable, Spec, Stop};
 
 /// The model as a drive, with an optional fault.
 struct Mirror {
@@ -38,6 +38,10 @@ impl Subject for Mirror {
     }
     fn precharge(&mut self) {
         self.model.precharge();
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        self.model.stop(stop);
     }
     fn fault(&self) -> Option<Fault> {
         self.model.fault()

@@ -116,6 +116,15 @@ static void serve(drive_type *drive)
     case 9:
         set_speed(drive, word());
         break;
+    case 10:
+        CALL(coast)(drive);
+        break;
+    case 11:
+        CALL(brake)(drive);
+        break;
+    case 12:
+        CALL(resume)(drive);
+        break;
     default:
         set_state_words(drive);
         break;

@@ -65,6 +65,9 @@ fn main() {
                 6 => drive.calibrate(),
                 7 => drive.precharge(),
                 9 => drive.set_speed_bits(calls.word()),
+                10 => drive.coast(),
+                11 => drive.brake(),
+                12 => drive.resume(),
                 _ => {
                     state.fill_with(|| calls.word());
                     drive.set_state_words(&state);

@@ -6,6 +6,7 @@
 
 use super::External;
 use hexagen::{Fault, LegState, Legs, Sample};
+use hexagen_reference::Stop;
 use std::io::{self, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
@@ -34,6 +35,7 @@ pub enum Call<'w> {
     Reset,
     Calibrate,
     Precharge,
+    Stop(Stop),
     SetStateWords(&'w [i32]),
 }
 
@@ -111,6 +113,11 @@ impl Link {
             Call::Reset => calls.push(5),
             Call::Calibrate => calls.push(6),
             Call::Precharge => calls.push(7),
+            Call::Stop(stop) => calls.push(match stop {
+                Stop::Coast => 10,
+                Stop::Brake => 11,
+                Stop::Resume => 12,
+            }),
             Call::SetStateWords(words) => {
                 calls.push(8);
                 calls.extend(words.iter().flat_map(|word| word.to_le_bytes()));

@@ -10,8 +10,8 @@ mod link;
 pub use build::{Binding, BuildError, External, compile, compile_c99};
 
 use hexagen::{Fault, Format, LegState, Legs, Sample};
-use hexagen_reference::BitTrue;
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
+use hexagen_reference::{BitTrue, Stop};
 use link::{Call, Link, LinkError};
 use std::cell::RefCell;
 
@@ -148,6 +148,10 @@ impl Subject for Remote<'_> {
 
     fn precharge(&mut self) {
         self.call(Call::Precharge, BitTrue::precharge);
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        self.call(Call::Stop(stop), |model| model.stop(stop));
     }
 
     fn fault(&self) -> Option<Fault> {

@@ -151,6 +151,10 @@ macro_rules! for_each_word {
         $show!("offset_b", $state.offset[1]);
         $show!("stall_count", $state.supervisor.stall_count);
         $show!("hall_prev", $state.supervisor.hall_prev);
+        $show!("brake_hall", $state.supervisor.turn.hall);
+        $show!("brake_age", $state.supervisor.turn.age);
+        $show!("brake_interval", $state.supervisor.turn.interval);
+        $show!("brake_direction", $state.supervisor.turn.direction);
         if $parts.has(Part::Edges) {
             $show!("sector_prev", $state.sector_prev);
         }
