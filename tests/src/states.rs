@@ -361,12 +361,14 @@ impl<'a> States<'a> {
             }
             0
         };
-        let (mode, countdown) = (self.random.u8(..16), self.random.i32(0..4));
+        let (mode, countdown) = (self.random.u8(..20), self.random.i32(0..4));
         set("mode", &|_| match mode {
             0..=11 => 0,
             12 | 13 => 1,
             14 => 2,
-            _ => 3,
+            15 | 16 => 3,
+            17 => 4,
+            _ => 5,
         });
         set("countdown", &|word| {
             if countdown < 3 { countdown } else { word }
