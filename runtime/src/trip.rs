@@ -166,8 +166,8 @@ fn load_all<const N: usize>(places: &[AtomicI32; N]) -> [i32; N] {
 }
 
 fn store_all<const N: usize>(places: &[AtomicI32; N], words: [i32; N]) {
-    for (place, word) in places.iter().zip(words) {
-        store(place, word);
+    for (place, word) in places.iter().zip(&words) {
+        store(place, *word);
     }
 }
 

@@ -268,9 +268,9 @@ impl Stimulus {
         }
     }
 
-    /// Coasting or braking for some hundred steps.
+    /// Coasting or braking for up to two hundred steps: most steps shall be in control.
     fn stop(&mut self) -> Action {
-        self.stopped = self.random.u32(2..600);
+        self.stopped = self.random.u32(2..200);
         let coasts = self.random.u8(..4) == 0;
         Action::Stop(if coasts { Stop::Coast } else { Stop::Brake })
     }

@@ -90,6 +90,7 @@ const RUNTIME: [(&str, &str); 18] = [
         "supervisor.rs",
         include_str!("../../../runtime/supervisor.rs"),
     ),
+    ("trip.rs", include_str!("../../../runtime/trip.rs")),
     ("word.rs", include_str!("../../../runtime/word.rs")),
 ];
 
