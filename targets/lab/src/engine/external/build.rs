@@ -54,7 +54,7 @@ impl BuildError {
 }
 
 /// The runtime's sources, by a link to their folder, which a package contains as a folder.
-const RUNTIME: [(&str, &str); 18] = [
+const RUNTIME: [(&str, &str); 19] = [
     ("lib.rs", include_str!("../../../runtime/lib.rs")),
     ("arith.rs", include_str!("../../../runtime/arith.rs")),
     ("bus.rs", include_str!("../../../runtime/bus.rs")),
