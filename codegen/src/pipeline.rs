@@ -100,22 +100,36 @@ fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let inverter = &spec.inverter;
     let first = inverter.sensors()[0];
     let asked = [
-        (
-            "current_sensing",
-            inverter.current_sensing != CurrentSensing::InPhase,
-        ),
         ("sensed_phases", inverter.sensed_phases != SensedPhases::Ab),
         (
             "adc_gain",
             inverter.other_sensors.iter().any(|sensor| *sensor != first),
         ),
-        ("minimum_low_time", inverter.minimum_low_time > 0.0),
         ("pwm_per_control", inverter.pwm_per_control > 1),
     ];
     let mut errors = Collector::new();
     for (name, _) in asked.iter().filter(|(_, is_asked)| *is_asked) {
         let at = origins.at(&format!("inverter.{name}"));
         errors.push(catalogue::option_planned(at, name));
+    }
+    if spec.controller.common_mode().is_none() {
+        let held = [
+            (
+                "current_sensing",
+                inverter.current_sensing != CurrentSensing::InPhase,
+            ),
+            ("minimum_low_time", inverter.minimum_low_time > 0.0),
+        ];
+        for (name, _) in held.iter().filter(|(_, is_asked)| *is_asked) {
+            let path = format!("inverter.{name}");
+            let (at, given) = (origins.at(&path), origins.given(&path, ""));
+            errors.push(catalogue::legs_held_high(
+                at,
+                name,
+                &given,
+                spec.controller.kind(),
+            ));
+        }
     }
     errors.into_result(())
 }

@@ -3,6 +3,7 @@
 //! Each file builds one or two stages of a step (semantics pages under `laws`); a controller's own
 //! folder combines them. Real numbers end here: the results are integers with documentation.
 
+mod common_mode;
 mod commutation;
 mod emf;
 mod limit;
@@ -13,6 +14,7 @@ mod rotor;
 pub mod set_point;
 mod speed;
 
+pub use common_mode::CommonModeRule;
 pub use commutation::{Commutation, CommutationRule};
 pub use emf::{
     Corner, ModelledEmf, SHAPE_BITS, model_emf, model_target_emf, proportional_reference,

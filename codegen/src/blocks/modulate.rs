@@ -1,6 +1,6 @@
 //! Modulation: voltages to leg commands, and the voltage really applied (semantics, steps 7, 11).
 
-use super::{Bus, Limited, Lowering};
+use super::{Bus, CommonModeRule, Limited, Lowering};
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::ir::{
     Coefficient, Expr, Flag, Interval, Memory, Named, Output, Phase, Phases, named, pick,
@@ -67,10 +67,27 @@ pub struct Modulator<'b> {
 }
 
 impl<'b> Modulator<'b> {
-    /// Three centred pulses of a limited voltage, which is lifted if the bus is fixed.
-    pub fn centred(&self, l: &Lowering<'b>, limited: &Limited<'b>) -> Command<'b> {
-        let doc = "Compare values of a centre-aligned timer; the offset (max + min)/2 is that of space-vector modulation.";
+    /// Three pulses of a limited voltage, which is lifted already where [`CommonModeRule::lifts`] says so.
+    pub fn three(
+        &self,
+        l: &Lowering<'b>,
+        limited: &Limited<'b>,
+        common_mode: CommonModeRule,
+    ) -> Command<'b> {
+        let doc = common_mode.doc();
         l.b.stage("modulate", &[doc]);
+        if !common_mode.is_centred() {
+            named! {
+                let pulse = Phases::each(|x| {
+                    self.shifted(nominal_share(limited.centred.0[x], self.bus), x)
+                });
+                let compare_pulsed = common_mode.lifted(l, pulse).map(|lifted| counts(l, lifted));
+            }
+            return Command {
+                compares: compare_pulsed,
+                legs: Phases::each(|_| l.b.number(PULSED)),
+            };
+        }
         let is_lifted = self.bus.ratio.is_none();
         named! {
             let compare_pulsed = Phases::each(|x| {
@@ -226,11 +243,17 @@ fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>) -> Expr<'b> {
     let doc = "Duty before rounding to a compare value";
     l.b.state_error("duty", lifted, [doc, "timer counts"], count);
     let counts = lifted >> l.scale.voltage_bits;
-    let period = i64::from(l.spec.inverter.timer_period);
-    if Interval::new(0, period).contains(counts.interval()) {
+    let inverter = &l.spec.inverter;
+    let largest = i64::from(inverter.readable_top());
+    if Interval::new(0, largest).contains(counts.interval()) {
         return counts;
     }
-    let top = l.number("timer_period", period, "Compare value of 100 % duty.");
+    let top = if inverter.readable_top() == inverter.timer_period {
+        l.number("timer_period", largest, "Compare value of 100 % duty.")
+    } else {
+        let doc = "Largest compare value: the lower switch is on for long enough on either side of the pulse.";
+        l.number("compare_max", largest, doc)
+    };
     counts.clamp(0, top)
 }
 

@@ -160,9 +160,9 @@ impl Text {
 #[cfg(test)]
 mod tests {
     use crate::spec::{
-        BusSource, ControllerSpec, CurrentSensing, CurrentSensor, Discretisation, EmfShape,
-        EmfSource, HallCapture, InverterSpec, LimitRule, LoopOptions, Modulation, MotorSpec,
-        PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
+        BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor, Discretisation,
+        EmfShape, EmfSource, HallCapture, InverterSpec, LimitRule, LoopOptions, Modulation,
+        MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {
@@ -216,6 +216,7 @@ mod tests {
                 modulation: Modulation::ThreePhase,
                 saturation: LimitRule::TorquePriority,
                 dead_time_compensation: false,
+                common_mode: CommonMode::Centred,
                 common: LoopOptions {
                     emf: EmfSource::Estimated,
                     emf_filter: 1.0,

@@ -22,8 +22,8 @@ pub use error::Error;
 pub use formats::FormatTable;
 pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Stop, Trace, Uniform};
 pub use spec::{
-    Bus, BusSense, Candidates, CommutationEnd, Controller, Discretisation, EmfShapeKind, EmfSource,
-    FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg, PPwm, Pdcc, Phcc, PiPwm,
-    Reference, Saturation, Spec, Switch, SwitchingTable,
+    Bus, BusSense, Candidates, CommonMode, CommutationEnd, Controller, Discretisation,
+    EmfShapeKind, EmfSource, FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg,
+    PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Spec, Switch, SwitchingTable,
 };
 pub use verify::assert_bit_true;

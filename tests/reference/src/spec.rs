@@ -10,8 +10,9 @@ use crate::Error;
 use serde::Deserialize;
 
 pub use controller::{
-    Candidates, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc, LoopOptions,
-    Modulation, OffLeg, PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch, SwitchingTable,
+    Candidates, CommonMode, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc,
+    LoopOptions, Modulation, OffLeg, PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch,
+    SwitchingTable,
 };
 
 /// A whole normalised specification.
@@ -452,6 +453,31 @@ impl Spec {
 }
 
 impl Inverter {
+    /// Period of the PWM, second.
+    pub fn pwm_period(&self) -> f64 {
+        self.t_s / f64::from(self.pwm_per_control)
+    }
+
+    /// Largest compare value with which a leg is low for long enough on either side of the turning point.
+    ///
+    /// # Errors
+    /// When the sensors are in the low legs but a time is missing.
+    pub fn largest_compare(&self) -> Result<u32, Error> {
+        let half = self.pwm_period() / 2.0;
+        let mut low = self.minimum_low_time / 2.0;
+        if self.current_sensing == CurrentSensing::LowSide {
+            self.check_sensors()?;
+            let time = |time: Option<f64>| time.unwrap_or_default();
+            let lead = time(self.sampling_lead);
+            let further = (self.sensed_phases.phases().len() - 1) as f64;
+            let behind = time(self.aperture_time) + further * time(self.conversion_time) - lead;
+            let before = self.dead_time + time(self.settling_time) + lead;
+            low = low.max(before).max(behind);
+        }
+        let counts = (low / half * f64::from(self.timer_period) - 1e-6).ceil();
+        Ok(self.timer_period.saturating_sub(counts.max(0.0) as u32))
+    }
+
     fn check_sensors(&self) -> Result<(), Error> {
         let sensors = self.sensed_phases.phases().len();
         if !(self.adc_gain.has(sensors) && self.adc_offset.has(sensors)) {

@@ -1,7 +1,7 @@
 //! Proportional control as a program: the shared step, a gain, the voltage limit and the modulator.
 
 use crate::blocks::set_point::Gain;
-use crate::blocks::{Hexagon, Modulator, Priority, Scale};
+use crate::blocks::{CommonModeRule, Hexagon, Modulator, Priority, Scale};
 use crate::ir::named;
 use crate::laws::current_loop::{
     CurrentLoop, EmfUse, LoopDesign, Needs, lower_with, unlimited_voltage,
@@ -39,17 +39,18 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         }
         let u = unlimited_voltage(l, front.e.map_or(p, |e| p + e));
         let emf = front.e.map(|e| move || e);
+        let common_mode = CommonModeRule::new(l, options.common_mode);
         let hexagon = Hexagon {
-            bus: front.bus,
+            bus: common_mode.reach(l, front.bus),
             third: front.third,
-            lifts: front.bus.ratio.is_none(),
+            lifts: common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let modulator = Modulator {
             bus: front.bus,
             shifts: None,
         };
-        let command = modulator.centred(l, &limited);
+        let command = modulator.three(l, &limited, common_mode);
         step.remember(&front, &command, Some(limited.u), None, vec![]);
     })
 }

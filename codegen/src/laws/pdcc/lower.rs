@@ -1,7 +1,7 @@
 //! Predictive deadbeat control as a program: the shared step, the voltage limit and the modulator.
 
 use crate::blocks::set_point::Gain;
-use crate::blocks::{Hexagon, Modulator, Priority, Scale};
+use crate::blocks::{CommonModeRule, Hexagon, Modulator, Priority, Scale};
 use crate::ir::Phases;
 use crate::laws::current_loop::{
     CurrentLoop, Deadbeat, EmfUse, Held, LoopDesign, Needs, lower_with,
@@ -42,11 +42,12 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 LimitEmf::Known(e) => e,
             }
         });
+        let common_mode = CommonModeRule::new(l, options.common_mode);
         let hexagon = Hexagon {
-            bus: front.bus,
+            bus: common_mode.reach(l, front.bus),
             third: front.third,
             // A pair needs the centred voltages themselves, a measured bus those before scaling.
-            lifts: !pair && front.bus.ratio.is_none(),
+            lifts: !pair && common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let modulator = Modulator {
@@ -54,7 +55,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             shifts,
         };
         let (command, applied) = match front.commutation {
-            None => (modulator.centred(l, &limited), None),
+            None => (modulator.three(l, &limited, common_mode), None),
             Some(commutation) => {
                 let flag = commutation.flag;
                 let (command, applied) = modulator.pair(l, front.sector, flag, u, &limited);

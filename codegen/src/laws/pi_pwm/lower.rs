@@ -2,7 +2,8 @@
 
 use crate::blocks::set_point::Gain;
 use crate::blocks::{
-    Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line, pair_signs,
+    CommonModeRule, Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line,
+    pair_signs,
 };
 use crate::ir::{Coefficient, Expr, Interval, named};
 use crate::laws::current_loop::{
@@ -118,10 +119,11 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let u = unlimited_voltage(l, asked);
         let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain));
         let emf = front.e.map(|e| move || e);
+        let common_mode = CommonModeRule::new(l, self.options.common_mode);
         let hexagon = Hexagon {
-            bus: front.bus,
+            bus: common_mode.reach(l, front.bus),
             third: front.third,
-            lifts: front.bus.ratio.is_none(),
+            lifts: common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
         l.b.stage("integrate", INTEGRATION);
@@ -135,7 +137,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             bus: front.bus,
             shifts,
         };
-        let command = modulator.centred(l, &limited);
+        let command = modulator.three(l, &limited, common_mode);
         let remembered = kept(memories, integral_now).to_vec();
         step.remember(front, &command, Some(limited.u), None, remembered);
     }

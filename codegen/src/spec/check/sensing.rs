@@ -22,6 +22,13 @@ pub(super) struct Sensing {
     pub minimum_low_time: f64,
 }
 
+impl Sensing {
+    /// Whether legs must be low for a while in every period.
+    pub fn must_be_low(&self) -> bool {
+        matches!(self.place, Some(CurrentSensing::LowSide(_))) || self.minimum_low_time > 0.0
+    }
+}
+
 pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
     Sensing {
         phases: reader

@@ -51,6 +51,15 @@ words! {
 }
 
 words! {
+    /// The mean of three pulsed legs, which is free within the period.
+    pub enum CommonMode {
+        "centred" = Centred: "the legs' extremes lie as far from the ends of the period: least ripple",
+        "readable" = Readable: "centred, but lowered as far as the highest leg must be low for its sensor or its bootstrap",
+        "clamped_low" = ClampedLow: "the lowest leg stays low: a third less switching",
+    }
+}
+
+words! {
     /// Timing of Hall edges.
     pub(crate) enum HallEdges {
         "sampled" = Sampled: "at the sampling instants",
@@ -210,6 +219,36 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
     "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
 );
 
+/// The rule of the mean of three pulsed legs.
+pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "clamped_low")
+    .by_default("`readable` with `current_sensing: low_side` or a `minimum_low_time`, else `centred`")
+    .about("Where the pulses of three legs lie, which makes no difference to the motor's mean voltages");
+
+/// Its value in the normalised specification: left out where the pulses are centred.
+pub(crate) fn common_mode_line(mode: CommonMode) -> Option<String> {
+    (mode != CommonMode::Centred).then(|| word(mode))
+}
+
+/// Reads the option `common_mode`. `only`: the setting, with its reason, beside which no three legs are pulsed throughout.
+pub(crate) fn read_common_mode(
+    reader: &Reader,
+    drive: &Surroundings,
+    only: Option<([&str; 2], &str)>,
+    errors: &mut Collector,
+) -> CommonMode {
+    const OPTION: &str = "common_mode";
+    if let Some((setting, why)) = only {
+        refuse(reader, OPTION, setting, why, errors);
+        return CommonMode::Centred;
+    }
+    let by_default = if drive.must_be_low {
+        CommonMode::Readable
+    } else {
+        CommonMode::Centred
+    };
+    reader.choice(errors, OPTION, &[]).unwrap_or(by_default)
+}
+
 /// Values of the drive for defaults and limits of the options; none where they are in error.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
@@ -227,6 +266,8 @@ pub(crate) struct Surroundings {
     pub adc_gain: Option<f64>,
     /// Dead time, second; 0 where none is stated.
     pub dead_time: f64,
+    /// Whether legs must be low for a while in every period, for their sensors or their bootstrap.
+    pub must_be_low: bool,
     /// Inertia, kg m2.
     pub inertia: Option<f64>,
     /// Electrical frequency at rated speed, hertz.

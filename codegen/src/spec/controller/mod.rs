@@ -11,7 +11,9 @@ pub(crate) mod pdcc;
 pub(crate) mod phcc;
 pub(crate) mod pi_pwm;
 
-pub use common::{Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop};
+pub use common::{
+    CommonMode, Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop,
+};
 pub use fcs_mpc::{Candidates, FcsMpcSpec};
 pub use off_leg::OffLegModel;
 pub use p_pwm::PPwmSpec;
@@ -54,6 +56,11 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
 
     /// The option that turns legs off within a turn of the rotor, if one does.
     fn turns_off(&self) -> Option<TurnsOff> {
+        None
+    }
+
+    /// Where the pulses of three legs lie; none where not all three are pulsed in every period.
+    fn common_mode(&self) -> Option<CommonMode> {
         None
     }
 
@@ -186,6 +193,11 @@ impl ControllerSpec {
     /// [`Options::turns_off`].
     pub(crate) fn turns_off(&self) -> Option<TurnsOff> {
         with_options!(self, options => options.turns_off())
+    }
+
+    /// [`Options::common_mode`].
+    pub fn common_mode(&self) -> Option<CommonMode> {
+        with_options!(self, options => options.common_mode())
     }
 
     /// The name in a specification.

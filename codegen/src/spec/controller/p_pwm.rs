@@ -1,7 +1,10 @@
 //! Options of proportional control, and how they are read.
 
 use super::Options;
-use super::common::{self, LimitRule, LoopOptions, Surroundings, read_common, refuse_held};
+use super::common::{
+    self, CommonMode, LimitRule, LoopOptions, Surroundings, read_common, read_common_mode,
+    refuse_held,
+};
 use crate::diagnostics::Collector;
 use crate::spec::MotorSpec;
 use crate::spec::check::reader::Reader;
@@ -17,6 +20,8 @@ pub struct PPwmSpec {
     pub bandwidth: f64,
     /// Saturation rule.
     pub saturation: LimitRule,
+    /// Where the pulses of three legs lie.
+    pub common_mode: CommonMode,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -44,16 +49,21 @@ impl Options for PPwmSpec {
         Row::of(common::saturation("nearest"), |options| {
             Some(word(options.saturation))
         }),
+        Row::of(common::COMMON_MODE, |options| {
+            common::common_mode_line(options.common_mode)
+        }),
     ];
 
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
         let saturation = reader.choice_or_preset(errors, "saturation", &[]);
+        let common_mode = read_common_mode(reader, surroundings, None, errors);
         let common = read_common(reader, surroundings, true, errors)?;
         refuse_held(reader, &common, errors);
         Some(Self {
             bandwidth,
             saturation,
+            common_mode,
             common,
         })
     }
@@ -64,6 +74,10 @@ impl Options for PPwmSpec {
 
     fn common_mut(&mut self) -> &mut LoopOptions {
         &mut self.common
+    }
+
+    fn common_mode(&self) -> Option<CommonMode> {
+        Some(self.common_mode)
     }
 
     fn modulates(&self) -> bool {

@@ -1,8 +1,9 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
 use super::common::{
-    self, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference, Surroundings,
-    read_common, read_dead_time_compensation, refuse, refuse_commutation,
+    self, CommonMode, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference,
+    Surroundings, read_common, read_common_mode, read_dead_time_compensation, refuse,
+    refuse_commutation,
 };
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
@@ -29,6 +30,8 @@ pub struct PdccSpec {
     pub saturation: LimitRule,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
+    /// Where the pulses of three legs lie; of no effect with [`Modulation::Pair`].
+    pub common_mode: CommonMode,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -49,6 +52,9 @@ impl Options for PdccSpec {
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)
         }),
+        Row::of(common::COMMON_MODE, |options| {
+            common::common_mode_line(options.common_mode)
+        }),
     ];
 
     /// The modulation `table2` is known from the literature, but not available.
@@ -60,6 +66,9 @@ impl Options for PdccSpec {
         if without_sectors {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }
+        let why = "outside commutation one leg of the pair is low throughout and the third is off";
+        let pair = (!without_sectors).then_some((["modulation", "pair"], why));
+        let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let common = read_common(reader, surroundings, without_sectors, errors)?;
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
@@ -79,6 +88,7 @@ impl Options for PdccSpec {
             modulation,
             saturation,
             dead_time_compensation,
+            common_mode,
             common,
         })
     }
@@ -97,6 +107,10 @@ impl Options for PdccSpec {
             value: "pair",
             instead: "modulation: three_phase",
         })
+    }
+
+    fn common_mode(&self) -> Option<CommonMode> {
+        (self.modulation == Modulation::ThreePhase).then_some(self.common_mode)
     }
 
     fn modulates(&self) -> bool {

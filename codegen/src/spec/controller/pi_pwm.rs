@@ -1,8 +1,8 @@
 //! Options of PI control, and how they are read.
 
 use super::common::{
-    self, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, read_common,
-    read_dead_time_compensation, refuse, refuse_held,
+    self, CommonMode, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, read_common,
+    read_common_mode, read_dead_time_compensation, refuse, refuse_held,
 };
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
@@ -37,6 +37,8 @@ pub struct PiPwmSpec {
     pub saturation: LimitRule,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
+    /// Where the pulses of three legs lie; of no effect with [`Self::six_step`].
+    pub common_mode: CommonMode,
     /// Options that all controllers share.
     pub common: LoopOptions,
 }
@@ -94,6 +96,9 @@ impl Options for PiPwmSpec {
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)
         }),
+        Row::of(common::COMMON_MODE, |options| {
+            common::common_mode_line(options.common_mode)
+        }),
     ];
 
     /// Modulations of other controllers are known, but not available.
@@ -129,6 +134,9 @@ impl Options for PiPwmSpec {
                 ));
             }
         }
+        let why = "one leg of the pair is low throughout and the third is off";
+        let pair = six_step.then_some((["six_step", "on"], why));
+        let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let common = read_common(reader, surroundings, true, errors)?;
         refuse_held(reader, &common, errors);
         let time_constant = surroundings.inductance? / surroundings.resistance?;
@@ -139,6 +147,7 @@ impl Options for PiPwmSpec {
             six_step,
             saturation,
             dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
+            common_mode,
             common,
         })
     }
@@ -157,6 +166,10 @@ impl Options for PiPwmSpec {
             value: "on",
             instead: "six_step: off",
         })
+    }
+
+    fn common_mode(&self) -> Option<CommonMode> {
+        (!self.six_step).then_some(self.common_mode)
     }
 
     fn modulates(&self) -> bool {

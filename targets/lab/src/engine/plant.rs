@@ -1,7 +1,7 @@
 //! The plant of a specification.
 
 use crate::closed_loop::{Delay, RunOptions};
-use crate::plant::{AdcChannel, EmfShape, PlantParams};
+use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams};
 use hexagen_codegen::spec::{self, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
@@ -27,11 +27,21 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
             amperes_per_count: inverter.adc_gain,
             offset: f64::from(inverter.adc_offset),
         }; 2],
+        low_side: low_side_of(inverter),
         hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
         hall_codes: motor.hall_codes,
         hall_error_deg: [0.0; 3],
         mechanics: None,
     }
+}
+
+/// The sensors' times, where they are in the low legs. The dead time goes by before the lower switch is on.
+fn low_side_of(inverter: &spec::InverterSpec) -> Option<LowSide> {
+    let window = inverter.window()?;
+    Some(LowSide {
+        settling: window.before - inverter.dead_time,
+        hold: window.after,
+    })
 }
 
 /// Largest torque in newton metres that a drive's set-point limit allows.

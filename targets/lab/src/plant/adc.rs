@@ -1,6 +1,8 @@
 //! The current ADCs: rounding, offset, sign and saturation.
 
-use super::AdcChannel;
+use super::gates::Gate;
+use super::{AdcChannel, LowSide};
+use hexagen::{LegState, Legs};
 
 /// The largest count of an ADC with `bits` bits.
 pub(super) fn full_scale(bits: u32) -> f64 {
@@ -11,6 +13,40 @@ pub(super) fn full_scale(bits: u32) -> f64 {
 pub(super) fn convert(channel: &AdcChannel, current: f64) -> u16 {
     let count = (current / channel.amperes_per_count + channel.offset).round();
     count.clamp(0.0, full_scale(channel.bits)) as u16
+}
+
+/// Slack for the rounding of times, second.
+const ROUNDING: f64 = 1e-12;
+
+/// What a sensor sees of its phase's current at the start of a period; `held_for`: how long the leg has been as it is. A
+/// sensor in a low leg sees nothing of what flows through the upper switch or diode, or before it has settled.
+pub(super) fn seen(low_side: Option<LowSide>, gate: Gate, held_for: f64, current: f64) -> f64 {
+    let Some(LowSide { settling, .. }) = low_side else {
+        return current;
+    };
+    match gate {
+        Gate::Lower if held_for >= settling - ROUNDING => current,
+        // The lower diode conducts what flows into the motor.
+        Gate::Off => current.max(0.0),
+        Gate::Lower | Gate::Upper => 0.0,
+    }
+}
+
+/// Whether a leg's lower switch stays on for long enough behind the start of a period with this command.
+pub(super) fn is_held(
+    low_side: LowSide,
+    command: Legs,
+    leg: usize,
+    timer_period: u16,
+    t_s: f64,
+) -> bool {
+    let duty = match command.state()[leg] {
+        LegState::Pulsed => {
+            f64::from(command.compare()[leg].min(timer_period)) / f64::from(timer_period)
+        }
+        LegState::Low | LegState::Off => 0.0,
+    };
+    0.5 * t_s * (1.0 - duty) >= low_side.hold - ROUNDING
 }
 
 #[cfg(test)]

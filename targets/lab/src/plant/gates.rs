@@ -22,13 +22,16 @@ struct LegGate {
     wanted: Gate,
     /// End of the dead time, from the start of the period; infinite when none runs.
     ready: Option<f64>,
+    /// Time of the last change, from the start of the period.
+    changed: f64,
     turn_ons: u64,
 }
 
 impl LegGate {
-    fn turn(&mut self, gate: Gate) {
+    fn turn(&mut self, gate: Gate, t: f64) {
         self.ready = None;
         self.gate = gate;
+        self.changed = t;
         if gate != Gate::Off {
             self.turn_ons += 1;
         }
@@ -41,7 +44,7 @@ impl LegGate {
         let from_rest = self.wanted == Gate::Off;
         self.wanted = wanted;
         if wanted == Gate::Off || from_rest || dead_time == 0.0 {
-            self.turn(wanted);
+            self.turn(wanted, t);
         } else {
             self.gate = Gate::Off;
             self.ready = Some(t + dead_time);
@@ -101,6 +104,7 @@ impl Gates {
     pub(super) fn end(&mut self, t_s: f64) {
         for leg in &mut self.legs {
             leg.ready = leg.ready.map(|ready| ready - t_s);
+            leg.changed -= t_s;
         }
     }
 
@@ -113,12 +117,17 @@ impl Gates {
         let mut upcoming = self.requests.get(self.next).map_or(f64::INFINITY, |r| r.0);
         for leg in &mut self.legs {
             match leg.ready {
-                Some(ready) if ready <= t => leg.turn(leg.wanted),
+                Some(ready) if ready <= t => leg.turn(leg.wanted, ready),
                 Some(ready) => upcoming = upcoming.min(ready),
                 None => {}
             }
         }
         upcoming
+    }
+
+    /// How long each leg has been as it is, at the start of a period.
+    pub(super) fn held_for(&self) -> [f64; 3] {
+        self.legs.map(|leg| -leg.changed)
     }
 
     pub(super) fn state(&self) -> [Gate; 3] {

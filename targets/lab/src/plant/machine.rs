@@ -75,6 +75,7 @@ pub struct Plant {
     currents: [f64; 3],
     mean_voltages: [f64; 3],
     mean_torque: f64,
+    blind: u64,
 }
 
 impl Plant {
@@ -96,6 +97,7 @@ impl Plant {
             currents: [0.0; 3],
             mean_voltages: [0.0; 3],
             mean_torque: 0.0,
+            blind: 0,
             params,
         })
     }
@@ -146,9 +148,38 @@ impl Plant {
     pub fn sample(&self) -> Sample {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
-        let count = |phase: usize| adc::convert(&self.params.adc[phase], self.currents[phase]);
+        let count = |phase: usize| adc::convert(&self.params.adc[phase], self.seen(phase));
         Sample::with_hall([count(0), count(1)], self.sensors.code(self.theta_e))
             .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
+    }
+
+    /// What the sensor of a phase sees of its current now.
+    fn seen(&self, phase: usize) -> f64 {
+        let (gate, held_for) = (self.gates.state()[phase], self.gates.held_for()[phase]);
+        adc::seen(self.params.low_side, gate, held_for, self.currents[phase])
+    }
+
+    /// Samples so far, each sensor's by itself, that did not show the current, or that the next command cut short.
+    pub fn blind_samples(&self) -> u64 {
+        self.blind
+    }
+
+    /// Counts the sensors whose sample at the start of a period with this command is none of the current.
+    fn count_blind(&mut self, command: Legs) {
+        let PlantParams {
+            low_side: Some(low_side),
+            timer_period,
+            t_s,
+            ..
+        } = self.params
+        else {
+            return;
+        };
+        let is_blind = |phase: &usize| {
+            self.seen(*phase) != self.currents[*phase]
+                || !adc::is_held(low_side, command, *phase, timer_period, t_s)
+        };
+        self.blind += (0..self.params.adc.len()).filter(is_blind).count() as u64;
     }
 
     /// Runs one PWM period under a command.
@@ -159,6 +190,7 @@ impl Plant {
         let mut torque: Series = [0.0; TERMS];
         let mut segments = 0;
         let mut t = 0.0;
+        self.count_blind(command);
         self.gates.begin(command, self.params.timer_period, t_s);
         while t < t_s {
             let until = self.gates.advance_to(t).min(t_s);

@@ -19,7 +19,9 @@ mod segment;
 
 pub use energy::{EnergyBalance, EnergyMeter};
 pub use machine::{Observer, Plant, Truth};
-pub use params::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES};
+pub use params::{
+    AdcChannel, EmfShape, LowSide, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES,
+};
 pub(crate) use segment::integral;
 pub use segment::{Segment, Series, TERMS, Terminal};
 

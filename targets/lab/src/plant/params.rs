@@ -43,6 +43,15 @@ impl AdcChannel {
     }
 }
 
+/// Current sensors in the low legs: each shows its phase's current while the lower switch or its diode conducts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LowSide {
+    /// Time in seconds for which the lower switch must have been on before a sample.
+    pub settling: f64,
+    /// Time in seconds for which it must stay on after a sample.
+    pub hold: f64,
+}
+
 /// The mechanical side of a plant whose speed is free.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mechanics {
@@ -84,6 +93,9 @@ pub struct PlantParams {
     pub diode_drop: f64,
     /// Current channels of phases a and b.
     pub adc: [AdcChannel; 2],
+    /// Whether the sensors are in the low legs; else they are in the phases.
+    #[serde(default)]
+    pub low_side: Option<LowSide>,
     /// Timer ticks per control period of the Hall capture timer.
     pub hall_ticks_per_period: f64,
     /// Hall code shown in sectors S1 to S6.
@@ -131,6 +143,7 @@ impl PlantParams {
             dead_time: 0.0,
             diode_drop: 0.0,
             adc: [AdcChannel::bipolar(12, 40.0); 2],
+            low_side: None,
             hall_ticks_per_period: 1800.0,
             hall_codes: STANDARD_HALL_CODES,
             hall_error_deg: [0.0; 3],

@@ -115,6 +115,9 @@ options! {
         /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
+        /// Common mode of three pulsed legs.
+        #[serde(default)]
+        common_mode: CommonMode,
         /// Outgoing current that ends a commutation, ampere.
         commutation_threshold: f64,
         /// Commutation time-out, periods.
@@ -186,6 +189,9 @@ options! {
         /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
+        /// Common mode of three pulsed legs.
+        #[serde(default)]
+        common_mode: CommonMode,
     }
 }
 
@@ -196,7 +202,23 @@ options! {
         bandwidth: f64,
         /// Saturation rule outside the hexagon.
         saturation: Saturation,
+        /// Common mode of three pulsed legs.
+        #[serde(default)]
+        common_mode: CommonMode,
     }
+}
+
+/// The common mode of three pulsed legs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CommonMode {
+    /// The extremes equally far from the ends of the period.
+    #[default]
+    Centred,
+    /// Centred, but lowered as far as the highest leg requires.
+    Readable,
+    /// The lowest leg low throughout.
+    ClampedLow,
 }
 
 /// The candidate vectors of FCS-MPC, or those of a switching table.

@@ -1,5 +1,6 @@
 //! Sections 9 to 11, which differ between controllers: from reference, current and EMF to the legs.
 
+mod common_mode;
 mod dead_time;
 mod deadbeat;
 mod divided;

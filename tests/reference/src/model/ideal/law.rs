@@ -1,5 +1,6 @@
 //! Sections 9 to 11, which differ between controllers: from reference, current and EMF to the legs.
 
+mod common_mode;
 mod dead_time;
 mod deadbeat;
 mod divided;
@@ -104,7 +105,7 @@ impl Law {
             Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
-            Controller::PPwm(options) => Self::PPwm(p_pwm::PPwm::new(spec, options)),
+            Controller::PPwm(options) => Self::PPwm(p_pwm::PPwm::new(spec, options)?),
         })
     }
 

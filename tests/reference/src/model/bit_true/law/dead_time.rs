@@ -19,7 +19,7 @@ pub struct DeadTime<W> {
 impl<W: Word> DeadTime<W> {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         let inverter = &spec.inverter;
-        let lost = inverter.dead_time / inverter.t_s;
+        let lost = inverter.dead_time / inverter.pwm_period();
         let slope =
             lost * inverter.v_bus / (2.0 * reference_gain(spec) * SOFT_BAND * inverter.max_current);
         let limit = round_half_up(lost * f64::from(inverter.timer_period) * scale.two_v);

@@ -1,5 +1,6 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
+use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
 use super::deadbeat::Form;
 use super::{Decision, Inputs, pulses};
@@ -14,6 +15,7 @@ pub struct Pdcc<W> {
     saturation: Saturation,
     form: Form<W>,
     dead_time: DeadTime<W>,
+    common_mode: CommonModeRule<W>,
 }
 
 impl<W: Word> Pdcc<W> {
@@ -23,6 +25,7 @@ impl<W: Word> Pdcc<W> {
             saturation: options.saturation,
             form: Form::new(options.saturation == Saturation::TorquePriority, scale)?,
             dead_time: DeadTime::new(spec, scale)?,
+            common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
         })
     }
 
@@ -30,13 +33,19 @@ impl<W: Word> Pdcc<W> {
     pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         let u_unsat = self.form.voltage(now);
         let e = self.form.emf(now);
-        let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, e);
+        let limited = limit::limit(
+            self.saturation,
+            now.k,
+            self.common_mode.reach(now.v_bus),
+            u_unsat,
+            e,
+        );
         let Limited { u, legs, reach } = limited;
         let shifts = self.dead_time.shifts(now, self.form.kept(now));
         let command = if self.pair && !now.commutating {
             pulses::pair(now, u_unsat, shifts)
         } else {
-            pulses::three(now, legs, shifts, self.pair)
+            pulses::three(now, legs, shifts, &self.common_mode, self.pair)
         };
         Decision {
             u_unsat,

@@ -1,5 +1,6 @@
 //! PI control: proportional part, integral and EMF feed-forward, limited and pulsed.
 
+use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
@@ -18,6 +19,7 @@ pub struct PiPwm<W> {
     k_i: Coefficient<W>,
     integral_range: [f64; 2],
     dead_time: DeadTime<W>,
+    common_mode: CommonModeRule<W>,
 }
 
 impl<W: Word> PiPwm<W> {
@@ -35,6 +37,7 @@ impl<W: Word> PiPwm<W> {
             k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
             dead_time: DeadTime::new(spec, scale)?,
+            common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
             integral_range,
         })
     }
@@ -49,7 +52,13 @@ impl<W: Word> PiPwm<W> {
         let p = both(|x| now.j[x] + drop[x]);
         let u_unsat = both(|x| p[x] + now.integral[x] + now.e[x]);
         // 10, 11
-        let limited = limit::limit(self.saturation, now.k, now.v_bus, u_unsat, now.e);
+        let limited = limit::limit(
+            self.saturation,
+            now.k,
+            self.common_mode.reach(now.v_bus),
+            u_unsat,
+            now.e,
+        );
         let Limited { u, legs, reach } = limited;
         // 12
         let [low, high] = self.integral_range;
@@ -67,6 +76,7 @@ impl<W: Word> PiPwm<W> {
                 now,
                 legs,
                 self.dead_time.shifts(now, drop.map(|drop| -drop)),
+                &self.common_mode,
                 false,
             ),
             integral,

@@ -1,5 +1,6 @@
 //! From phase voltages to pulses (section 11).
 
+use super::common_mode::CommonModeRule;
 use super::{Command, Inputs};
 use crate::exact::{Word, all_three, floor, greater, halve, lesser, to_u16, within, word};
 use crate::model::sector;
@@ -7,12 +8,12 @@ use hexagen::{LegState, Legs};
 
 /// A timer compare value from a word of integer and half counts.
 #[inline]
-fn compare<W: Word>(now: &Inputs<W>, counts: W) -> u16 {
+fn compare<W: Word>(now: &Inputs<W>, counts: W, top: f64) -> u16 {
     let k = now.k;
     to_u16(within(
         floor((counts + k.half_count) * k.to_counts),
         0.0,
-        k.timer_period,
+        top,
     ))
 }
 
@@ -30,15 +31,21 @@ fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
 /// dead time.
 #[inline]
 pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
-    compare(now, nominal(now, t) + shift)
+    compare(now, nominal(now, t) + shift, now.k.timer_period)
 }
 
 /// Three pulsed legs with voltages `u` against any common point, their common mode in the middle of
 /// the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
 #[inline]
-pub fn three<W: Word>(now: &Inputs<W>, u: [W; 3], shifts: [W; 3], terminals: bool) -> Command<W> {
+pub fn three<W: Word>(
+    now: &Inputs<W>,
+    u: [W; 3],
+    shifts: [W; 3],
+    common_mode: &CommonModeRule<W>,
+    terminals: bool,
+) -> Command<W> {
     let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
-    let half = halve(now.v_bus + 1.0);
+    let half = halve(common_mode.reach(now.v_bus) + 1.0);
     let centred = all_three(|x| within(u[x] - middle, -half, half));
     let terminal = if terminals {
         let half_bus = halve(now.v_bus);
@@ -46,9 +53,11 @@ pub fn three<W: Word>(now: &Inputs<W>, u: [W; 3], shifts: [W; 3], terminals: boo
     } else {
         [word(0.0); 3]
     };
+    let pulses = all_three(|x| nominal(now, centred[x]) + shifts[x]);
+    let lift = common_mode.lift(now.k, pulses);
     Command {
         legs: Legs::new(
-            all_three(|x| compare(now, nominal(now, centred[x]) + shifts[x] + now.k.half)),
+            all_three(|x| compare(now, pulses[x] + lift, common_mode.top)),
             [LegState::Pulsed; 3],
         ),
         terminal,

@@ -21,7 +21,7 @@ impl DeadTime {
         let compensated = Variant::new(spec).compensates();
         Self {
             share: if compensated {
-                inverter.dead_time / inverter.t_s
+                inverter.dead_time / inverter.pwm_period()
             } else {
                 0.0
             },

@@ -1,5 +1,6 @@
 //! Predictive deadbeat control: the deadbeat voltage, limited and pulsed.
 
+use super::common_mode::CommonModeRule;
 use super::dead_time::{DeadTime, kept_by_deadbeat};
 use super::{Decision, Inputs, deadbeat, pulses};
 use crate::model::ideal::limit;
@@ -10,6 +11,7 @@ use crate::{Error, Modulation, Spec};
 pub struct Pdcc {
     options: crate::Pdcc,
     dead_time: DeadTime,
+    common_mode: CommonModeRule,
     /// Largest plausible EMF, volt.
     v_largest: f64,
 }
@@ -19,6 +21,7 @@ impl Pdcc {
         Ok(Self {
             options: *options,
             dead_time: DeadTime::new(spec),
+            common_mode: CommonModeRule::new(spec, options.common_mode)?,
             v_largest: spec.inverter.v_bus_max()?,
         })
     }
@@ -32,12 +35,12 @@ impl Pdcc {
             options.saturation,
             &phases(&u_unsat),
             &phases(&e),
-            now.v_bus,
+            self.common_mode.reach(now.v_bus),
         );
         let command = if options.modulation == Modulation::Pair && !now.commutating {
             pulses::pair(now, &phases(&u_unsat), &shifts)
         } else {
-            pulses::three(now, &limited.u, &shifts)
+            pulses::three(now, &limited.u, &shifts, self.common_mode)
         };
         let u = clarke(&limited.u);
         Decision {

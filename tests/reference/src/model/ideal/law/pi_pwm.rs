@@ -1,5 +1,6 @@
 //! PI control: proportional part, integral and EMF feed-forward, limited and pulsed.
 
+use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
 use crate::model::ideal::limit;
@@ -21,6 +22,7 @@ pub struct PiPwm {
     /// Largest integral, volt.
     integral_max: f64,
     dead_time: DeadTime,
+    common_mode: CommonModeRule,
 }
 
 impl PiPwm {
@@ -31,6 +33,7 @@ impl PiPwm {
             k_p: reference_gain(spec),
             k_i: spec.inverter.t_s / options.integral_time,
             dead_time: DeadTime::new(spec),
+            common_mode: CommonModeRule::new(spec, options.common_mode)?,
             integral_max: spec.inverter.v_bus_max()?,
         })
     }
@@ -45,7 +48,7 @@ impl PiPwm {
             self.saturation,
             &phases(&u_unsat),
             &phases(&now.e),
-            now.v_bus,
+            self.common_mode.reach(now.v_bus),
         );
         let u = clarke(&limited.u);
         let integral = now.integral + (p + u - u_unsat) * self.k_i;
@@ -54,7 +57,12 @@ impl PiPwm {
             u,
             reach: limited.reach,
             vector: 0,
-            command: pulses::three(now, &limited.u, &self.dead_time.shifts(now, 1.0)),
+            command: pulses::three(
+                now,
+                &limited.u,
+                &self.dead_time.shifts(now, 1.0),
+                self.common_mode,
+            ),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
             rises: now.rises,
             past: now.past,

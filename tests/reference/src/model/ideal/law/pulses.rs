@@ -1,5 +1,6 @@
 //! From phase voltages to duties (section 11).
 
+use super::common_mode::CommonModeRule;
 use super::{Command, Inputs};
 use crate::model::ideal::Duties;
 use crate::model::sector;
@@ -8,12 +9,21 @@ use nalgebra::Vector3;
 
 /// Three pulsed legs, their common mode in the middle of the bus; `shifts` are shares of the
 /// period.
-pub fn three(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
+pub fn three(
+    now: &Inputs,
+    u: &Vector3<f64>,
+    shifts: &Vector3<f64>,
+    common_mode: CommonModeRule,
+) -> Command {
     let v_bus = now.v_bus;
+    let half = common_mode.reach(v_bus) / 2.0;
+    let centred = u.map(|u_x| (u_x - u.max().midpoint(u.min())).clamp(-half, half));
+    let duties = centred / v_bus + shifts;
+    let lift = common_mode.lift(&duties);
     let terminal = u.map(|u_x| (u_x - u.max().midpoint(u.min()) + v_bus / 2.0).clamp(0.0, v_bus));
     let duties = Duties {
-        duty: (terminal / v_bus + shifts)
-            .map(|duty| duty.clamp(0.0, 1.0))
+        duty: duties
+            .map(|duty| (duty + lift).clamp(0.0, common_mode.top))
             .into(),
         state: [LegState::Pulsed; 3],
     };

@@ -1,0 +1,109 @@
+//! Current sensors in the low legs, in closed loop: an accepted drive has no blind sample, and without the window the
+//! same controller loses its currents.
+
+use hexagen_codegen::pipeline::generate;
+use hexagen_codegen::spec::{check, parse_toml};
+use hexagen_lab::Interpreted;
+use hexagen_lab::engine::plant_of;
+use hexagen_lab::plant::Plant;
+use hexagen_reference::verify::Subject;
+use std::f64::consts::TAU;
+
+const MOTOR: &str = r#"[motor]
+pole_pairs = 4
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.1648 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A"
+rated_speed = "1600 rpm"
+[inverter]
+bus_voltage = "48 V"
+f_pwm = "20 kHz"
+timer_clock = "72 MHz"
+adc_bits = 12
+adc_range = "40 A"
+dead_time = "500 ns"
+"#;
+
+const SENSORS: &str = r#"current_sensing = "low_side"
+settling_time = "1 us"
+aperture_time = "200 ns"
+conversion_time = "0 us"
+"#;
+
+/// Periods of a run, and from which on the torque counts.
+const PERIODS: u32 = 1200;
+const SETTLED: u32 = 600;
+
+struct Run {
+    blind: u64,
+    torque: f64,
+}
+
+/// A drive that was generated for `sensors`, at full current, on a plant whose sensors are in the low legs.
+fn run(sensors: &str, controller: &str, rpm: f64) -> Run {
+    let checked = |sensors: &str| {
+        let text = format!("{MOTOR}{sensors}[controller]\n{controller}\n");
+        parse_toml(&text, "m.toml")
+            .and_then(|ast| check(&ast))
+            .expect("a right specification")
+    };
+    let (spec, origins) = checked(sensors);
+    let generated = generate(&spec, &origins).expect("a drive");
+    let mut drive = Interpreted::new(generated.graph.program(), &generated.interface);
+    drive.set_current(20 << 16);
+    let params = plant_of(&checked(SENSORS).0);
+    let mut plant = Plant::new(params, 0.117, rpm * TAU / 60.0).expect("a plant");
+    let mut pending = hexagen::Legs::OFF;
+    let mut torque = 0.0;
+    for period in 0..PERIODS {
+        let command = drive.step(&plant.sample());
+        let applied = std::mem::replace(&mut pending, command);
+        plant.run_period(applied, &mut ());
+        if period >= SETTLED {
+            torque += plant.truth().mean_torque / f64::from(PERIODS - SETTLED);
+        }
+    }
+    Run {
+        blind: plant.blind_samples(),
+        torque,
+    }
+}
+
+#[test]
+fn an_accepted_drive_has_no_blind_sample() {
+    for controller in [
+        "kind = \"pdcc\"\nsaturation = \"keep_angle\"",
+        "kind = \"pdcc\"",
+        "kind = \"pdcc\"\ncommon_mode = \"clamped_low\"",
+        "kind = \"pdcc\"\ncommon_mode = \"centred\"",
+        "kind = \"pi-pwm\"",
+        "kind = \"p-pwm\"",
+    ] {
+        for rpm in [-1500.0, 300.0, 1000.0, 1500.0, 1800.0, 2200.0] {
+            let run = run(SENSORS, controller, rpm);
+            assert_eq!(run.blind, 0, "{controller} at {rpm} rpm");
+        }
+    }
+}
+
+/// The reason for the window: near the voltage limit a controller that does not know of it reads 0 A of legs that carry
+/// the whole current.
+#[test]
+fn without_the_window_the_currents_are_lost() {
+    let controller = "kind = \"pdcc\"";
+    let (with, without) = (
+        run(SENSORS, controller, 1800.0),
+        run("", controller, 1800.0),
+    );
+    assert_eq!(with.blind, 0);
+    assert!(without.blind > 100, "{} blind samples", without.blind);
+    assert!(
+        without.torque < 0.5 * with.torque,
+        "{} Nm, {} Nm",
+        without.torque,
+        with.torque
+    );
+}
