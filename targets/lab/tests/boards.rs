@@ -26,17 +26,13 @@ fn numbers(file: &BoardFile) -> Numbers {
     let shunt = number("shunt")
         .map(|shunt| all("adc_reference") / (4096.0 * shunt * all("amplifier_gain")));
     let periods = number("pwm_per_control").unwrap_or(1.0);
-    let later = [
-        "current_sensing",
-        "sensed_phases",
-        "minimum_low_time",
-        "pwm_per_control",
-    ];
+    let phases = file.inverter.field("sensed_phases").map(|field| &field.value);
+    let is_ab = phases.is_none_or(|value| matches!(value, Value::Word(word) if word == "ab"));
     Numbers {
         bus: [all("bus_min"), all("bus_max")],
         gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
         period: number("f_pwm").map(|frequency| periods / frequency),
-        waits: later.iter().any(|name| file.inverter.field(name).is_some()),
+        waits: !is_ab || periods > 1.0,
     }
 }
 

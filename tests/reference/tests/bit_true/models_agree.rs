@@ -2,13 +2,17 @@
 //! except for rounding, in every variant.
 
 use crate::variants::{self, Variant};
-use hexagen::Sample;
+use hexagen::{LegState, Sample};
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{BitTrue, Controller, DiscretePhase, Ideal, Mode, OffLeg, PhysicalState};
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
 const STEPS: u64 = 1000;
 
-/// Largest deviations, volt and counts.
+/// Largest distance of the shape's table from the shape: parabolas over 48 segments of the trapezoid.
+const SHAPE_MISFIT: f64 = 8e-5;
+
+/// Largest deviations, volt and counts; of EMF and unlimited voltage beyond the shape's misfit.
 #[derive(Debug, Default)]
 struct Worst {
     emf: f64,
@@ -82,10 +86,14 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             &mut worst,
             |phase| {
                 let exact = duties.duty[phase] * f64::from(variant.spec.inverter.timer_period);
-                (
-                    f64::from(legs.compare()[phase]) - exact,
-                    legs.state()[phase] == duties.state[phase],
-                )
+                let counts = f64::from(legs.compare()[phase]);
+                // A pulse of no length leaves a leg low: the lower of two low legs is either.
+                let state = |state, counts: f64| match state {
+                    LegState::Pulsed if counts < 0.5 => LegState::Low,
+                    state => state,
+                };
+                let same = state(legs.state()[phase], counts) == state(duties.state[phase], exact);
+                (counts - exact, same)
             },
         );
     }
@@ -107,19 +115,31 @@ fn compare(
         assert!((0..3).all(|phase| leg(phase) == (0.0, true)));
         return;
     }
-    // A threshold that falls between the two models (sector by advance, commutation's end, a
-    // clamped leg) may be taken differently. With sampled edges an advanced angle often falls on a
-    // sector edge exactly, where the rounded one stays just before it.
-    if b.sector_eff != a.sector_eff
-        || b.commutating != a.commutating
-        || (b.v_now[0] - a.v_now[0]).abs() > 0.1
-    {
+    // A threshold may fall between the two models. With sampled edges an advanced angle often falls
+    // on a sector's edge exactly, where the rounded one stays just before it.
+    if b.sector_eff != a.sector_eff {
+        let advanced = a.theta + variant.spec.loop_options().advance * a.step_angle;
+        let from_edge = (advanced - FRAC_PI_6).rem_euclid(FRAC_PI_3);
+        let distance = from_edge.min(FRAC_PI_3 - from_edge);
+        assert!(
+            distance < 1e-5,
+            "{} step {step}: {distance} rad from the sector's edge",
+            variant.name
+        );
+        return;
+    }
+    // The end of a commutation, a clamped leg.
+    if b.commutating != a.commutating || (b.v_now[0] - a.v_now[0]).abs() > 0.1 {
         worst.decided_otherwise += 1;
         return;
     }
     worst.compared += 1;
-    worst.emf = worst.emf.max(far(b.e, a.e));
-    worst.unsat = worst.unsat.max(far(b.u_unsat, a.u_unsat));
+    // The observed error of the EMF, q and d, is multiplied by shapes of phase and line, and with a
+    // bus of 390 V it may be several times the nominal bus.
+    let [q, d] = bit_true.physical_state().emf_error.map(f64::abs);
+    let misfit = SHAPE_MISFIT * (q + 3.0 * d);
+    worst.emf = worst.emf.max(far(b.e, a.e) - misfit);
+    worst.unsat = worst.unsat.max(far(b.u_unsat, a.u_unsat) - misfit);
     if b.vector != a.vector {
         if let Controller::Phcc(options) = &variant.spec.controller {
             // A direction may differ only if the error lies at the edge of its band, or at zero
@@ -203,7 +223,7 @@ fn in_every_variant() {
         let v_bus = variant.spec.inverter.v_bus;
         let named = || format!("{}: {worst:?}", variant.name);
         assert!(worst.compared > STEPS / 5, "{}", named());
-        assert!(worst.decided_otherwise <= STEPS / 20, "{}", named());
+        assert!(worst.decided_otherwise <= STEPS / 50, "{}", named());
         // The model EMF has the flux table's interpolation error; all else is rounding.
         assert!(worst.emf < 5e-4 * v_bus, "{}", named());
         assert!(worst.unsat < 1e-3 * v_bus, "{}", named());
