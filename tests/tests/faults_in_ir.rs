@@ -35,7 +35,7 @@ fn plant(drive: &Drive) -> (Vec<String>, usize) {
     let setters = constants_of_setters(program);
     let noticed = |program: &Program| {
         compare_record(&generated, program, &few).is_err()
-            || compare(&generated, program, STEPS / 10, 1).is_err()
+            || compare(&generated, program, STEPS / 8, 1).is_err()
             || compare_record(&generated, program, &some).is_err()
     };
     assert!(

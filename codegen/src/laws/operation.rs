@@ -98,7 +98,7 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         periods => {
             let electrical = FRAC_PI_3 / (f64::from(periods) * inverter.t_s);
             format!(
-                "Up to {} `brake()` shorts the motor; above, it controls `max_current` against the rotation.",
+                "`brake()` shorts the motor up to {}; above, it opposes the rotation.",
                 rpm(electrical / f64::from(spec.motor.pole_pairs))
             )
         }
