@@ -115,7 +115,7 @@ pub(crate) const INVERTER: &[Rule] = &[
         "40 rpm",
     ),
     quantity("maximum_speed", &[D::Speed], RPM, 3e5 * RPM, "3000 rpm"),
-    quantity("stall_timeout", &[D::Time], 1e-3, 60.0, "500 ms"),
+    quantity("stall_timeout", &[D::Time], 0.0, 60.0, "500 ms"),
     integer("calibration_samples", 1, 4096, "256"),
     quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
 ];

@@ -7,9 +7,15 @@ use super::{currents, relations};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
+use std::f64::consts::FRAC_PI_3;
 
 /// Default pre-charge time, second.
 const PRECHARGE: f64 = 1e-3;
+
+/// Default stall time-out of a drive with a speed loop, second, and in sectors at `minimum_speed`:
+/// the longer of both.
+const STALL_TIMEOUT: f64 = 1.0;
+const STALL_SECTORS: f64 = 5.0;
 
 /// Fills in the defaults that depend on motor and controller, and checks them. None if something
 /// is missing or in error.
@@ -77,13 +83,32 @@ pub(super) fn inverter(
         hall_capture: capture?,
         minimum_speed,
         maximum_speed,
-        stall_periods: inverter
-            .stall_timeout
-            .as_ref()
-            .map_or(0, |given| periods(given.si, t_s)),
+        stall_periods: periods(
+            stall_timeout(inverter, motor, controller, minimum_speed),
+            t_s,
+        ),
         calibration_log2: inverter.calibration_log2,
         precharge_periods: finish_precharge(reader, inverter, t_s, errors),
     })
+}
+
+/// Time without a Hall edge that trips the drive, second. By default a drive with a speed loop has
+/// one, which a rotor at the least speed with an angle does not reach.
+fn stall_timeout(
+    inverter: &Inverter,
+    motor: &Motor,
+    controller: Option<&ControllerSpec>,
+    minimum_speed: f64,
+) -> f64 {
+    let is_speed_expected = controller.is_some_and(|spec| spec.common().speed.is_some());
+    match (&inverter.stall_timeout, motor.pole_pairs) {
+        (Some(given), _) => given.si,
+        (None, Some(pole_pairs)) if is_speed_expected => {
+            let sector = FRAC_PI_3 / (minimum_speed * f64::from(pole_pairs));
+            STALL_TIMEOUT.max(STALL_SECTORS * sector)
+        }
+        (None, _) => 0.0,
+    }
 }
 
 fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {

@@ -245,3 +245,24 @@ fn limits_in_messages_are_accepted() {
     }
     assert_eq!(followed, 27);
 }
+
+#[test]
+fn a_drive_with_a_speed_loop_detects_a_stall_by_default() {
+    let periods = |inverter: &str, speed_loop: &str| {
+        let motor = MOTOR.replace("[inverter]\n", "inertia = \"3 kg cm2\"\n[inverter]\n");
+        let text = format!(
+            "{motor}{TIMER}adc_range = \"40 A\"\n{inverter}\n[controller]\nkind = \"pdcc\"\n\
+             speed_loop = \"{speed_loop}\"\n"
+        );
+        let spec = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        let (spec, _) = spec.unwrap_or_else(|errors| panic!("{inverter}: {errors}"));
+        spec.inverter.stall_periods
+    };
+    assert_eq!(periods("", "on"), 20_000);
+    // Five sectors of 625 ms.
+    let slow = periods("minimum_speed = \"4 rpm\"", "on");
+    assert!((62_500..=62_501).contains(&slow), "{slow}");
+    assert_eq!(periods("stall_timeout = \"0 s\"", "on"), 0);
+    assert_eq!(periods("stall_timeout = \"200 ms\"", "on"), 4_000);
+    assert_eq!(periods("", "off"), 0);
+}
