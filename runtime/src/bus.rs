@@ -99,6 +99,7 @@ impl<const N: usize, const PERIODS: i32> Bus for ToldBus<N, PERIODS> {
 
     fn kept(&self) -> [i32; 2] {
         let words = self.read();
-        [0, 1].map(|index: usize| words.get(index).map_or(0, |word| word.0))
+        let word = |index: usize| words.get(index).map_or(0, |word| word.0);
+        [word(0), word(1)]
     }
 }

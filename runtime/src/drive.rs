@@ -301,12 +301,12 @@ fn rest<C: Control>(
     let was_tripped = core.supervisor.fault();
     let (checked, rest) = core.supervisor.rest(&C::LIMITS, &sample);
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
-        let [current, speed] = set_point.demands().map(|word| word.0);
+        let [current, speed] = set_point.demands();
         let trip = Trip {
             fault,
             sample,
-            current,
-            speed,
+            current: current.0,
+            speed: speed.0,
             bus: set_point.words.bus.kept(),
         };
         set_point.trip.keep(&trip, &core.supervisor, &core.law);

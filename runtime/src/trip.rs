@@ -89,14 +89,15 @@ impl<C: Control> TripRecord<C> {
             bus,
         } = *trip;
         store(&self.fault, fault as i32);
-        store_all(&self.adc, sample.adc.map(i32::from));
+        let [adc_a, adc_b, adc_c] = sample.adc;
+        store_all(&self.adc, &[adc_a.into(), adc_b.into(), adc_c.into()]);
         store(&self.hall, sample.hall.into());
         store(&self.hall_ticks, sample.hall_ticks.into());
         store(&self.angle, sample.angle.cast_signed());
         store(&self.current, current);
         store(&self.speed, speed);
-        store_all(&self.bus, bus);
-        store_all(&self.supervisor, supervisor.words());
+        store_all(&self.bus, &bus);
+        store_all(&self.supervisor, &supervisor.words());
         law.keep(&self.law);
         compiler_fence(Ordering::Release);
         store(&self.number, load(&self.number).wrapping_add(1));
@@ -129,15 +130,17 @@ impl<C: Control> TripRecord<C> {
             return None;
         }
         compiler_fence(Ordering::Acquire);
+        let [adc_a, adc_b, adc_c] = &self.adc;
         let sample = Sample {
-            adc: load_all(&self.adc).map(|count| count as u16),
+            adc: [load(adc_a) as u16, load(adc_b) as u16, load(adc_c) as u16],
             hall: load(&self.hall) as u8,
             hall_ticks: load(&self.hall_ticks) as u16,
             angle: load(&self.angle).cast_unsigned(),
         };
         let fault = Fault::from_number(load(&self.fault));
         let (current, speed) = (load(&self.current), load(&self.speed));
-        let bus = load_all(&self.bus);
+        let [first, second] = &self.bus;
+        let bus = [load(first), load(second)];
         read_words();
         compiler_fence(Ordering::Acquire);
         if load(&self.number) != number {
@@ -161,13 +164,13 @@ fn store(place: &AtomicI32, word: i32) {
     place.store(word, Ordering::Relaxed);
 }
 
-fn load_all<const N: usize>(places: &[AtomicI32; N]) -> [i32; N] {
-    places.each_ref().map(load)
-}
-
-fn store_all<const N: usize>(places: &[AtomicI32; N], words: [i32; N]) {
-    for (place, word) in places.iter().zip(&words) {
-        store(place, *word);
+// `zip` and `map` of arrays have panic paths in builds that are hardly optimised.
+fn store_all(places: &[AtomicI32], words: &[i32]) {
+    let mut words = words.iter();
+    for place in places {
+        if let Some(word) = words.next() {
+            store(place, *word);
+        }
     }
 }
 

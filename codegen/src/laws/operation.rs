@@ -91,10 +91,8 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         }
     });
     lines.push(match spec.brake_periods() {
-        0 => {
-            "`brake()` shorts the motor, which takes no more than `max_current` at any speed."
-                .to_owned()
-        }
+        0 => "`brake()` shorts the motor, which takes no more than `max_current` at any speed."
+            .to_owned(),
         periods => {
             let electrical = FRAC_PI_3 / (f64::from(periods) * inverter.t_s);
             format!(

@@ -26,7 +26,10 @@ fn numbers(file: &BoardFile) -> Numbers {
     let shunt = number("shunt")
         .map(|shunt| all("adc_reference") / (4096.0 * shunt * all("amplifier_gain")));
     let periods = number("pwm_per_control").unwrap_or(1.0);
-    let phases = file.inverter.field("sensed_phases").map(|field| &field.value);
+    let phases = file
+        .inverter
+        .field("sensed_phases")
+        .map(|field| &field.value);
     let is_ab = phases.is_none_or(|value| matches!(value, Value::Word(word) if word == "ab"));
     Numbers {
         bus: [all("bus_min"), all("bus_max")],
