@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Debian's packages of all targets.
-const PACKAGES: [&str; 7] = [
+const PACKAGES: [&str; 8] = [
     "rustc-web",
     "cargo-web",
+    "rust-web-clippy",
     "rust-web-src",
     "qemu-system-arm",
     "qemu-system-misc",
@@ -20,6 +21,7 @@ const PACKAGES: [&str; 7] = [
 /// Debian's compiler and package tool; those on the path may be others.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_CARGO: &str = "/usr/bin/cargo";
+const DEBIAN_CLIPPY: &str = "/usr/bin/cargo-clippy";
 
 /// Compiler of a target.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -105,8 +107,11 @@ fn compiler(target: Target) -> Result<Toolchain, Missing> {
     };
     let root = output(Command::new(DEBIAN_RUSTC).args(["--print", "sysroot"])).unwrap_or_default();
     let sources = Path::new(root.trim()).join("lib/rustlib/src/rust/library/core");
-    if !sources.is_dir() || !Path::new(DEBIAN_CARGO).is_file() {
-        return absent("Debian's Rust is installed without cargo or the sources of `core`");
+    let tools = [DEBIAN_CARGO, DEBIAN_CLIPPY];
+    if !sources.is_dir() || !tools.iter().all(|tool| Path::new(tool).is_file()) {
+        return absent(
+            "Debian's Rust is installed without cargo, its lints or the sources of `core`",
+        );
     }
     let Some(linker) = linker(&libraries) else {
         return absent("neither the compiler on the path nor Debian has a linker `lld`");
@@ -176,8 +181,11 @@ impl Toolchain {
             Self::Installed { .. } => plain("cargo"),
             Self::Debian { linker, .. } => {
                 let triple = target.triple().replace('-', "_").to_uppercase();
-                let mut command = plain(DEBIAN_CARGO);
+                // By its own path: cargo would look beside rustup's commands first.
+                let is_lint = name == "clippy";
+                let mut command = plain(if is_lint { DEBIAN_CLIPPY } else { DEBIAN_CARGO });
                 command
+                    .env("CARGO", DEBIAN_CARGO)
                     .env("RUSTC", DEBIAN_RUSTC)
                     .env("RUSTC_BOOTSTRAP", "1")
                     .env(format!("CARGO_TARGET_{triple}_LINKER"), linker);

@@ -20,7 +20,8 @@ pub fn checks() -> Result<Vec<Step>, String> {
         firmware_format("targets/cortex-m0/Cargo.toml"),
         firmware_format("targets/riscv32/Cargo.toml"),
         firmware_format("targets/firmware-c/Cargo.toml"),
-        firmware_format("targets/frameworks/Cargo.toml"),
+        firmware_format("targets/frameworks/b-g431b-esc1/Cargo.toml"),
+        firmware_format("targets/frameworks/vesc-4/Cargo.toml"),
         packages::pack(false)?,
         Step {
             needs: Some(("clippy", "rustup component add clippy")),

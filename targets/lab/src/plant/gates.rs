@@ -8,9 +8,12 @@ use hexagen::{LegState, Legs};
 
 /// The conducting switch of a leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Gate {
+pub enum Gate {
+    /// The upper one.
     Upper,
+    /// The lower one.
     Lower,
+    /// Neither.
     #[default]
     Off,
 }
@@ -54,7 +57,7 @@ impl LegGate {
 
 /// The three legs' gate signals over one period at a time.
 #[derive(Clone, Debug)]
-pub(super) struct Gates {
+pub struct Gates {
     legs: [LegGate; 3],
     /// Requests of the running period: time, leg, gate; sorted by time from `next`.
     requests: Vec<(f64, usize, Gate)>,
@@ -63,7 +66,8 @@ pub(super) struct Gates {
 }
 
 impl Gates {
-    pub(super) fn new(dead_time: f64) -> Self {
+    /// All switches off, with a dead time in seconds.
+    pub fn new(dead_time: f64) -> Self {
         Self {
             legs: [LegGate::default(); 3],
             requests: Vec::with_capacity(9),
@@ -73,7 +77,7 @@ impl Gates {
     }
 
     /// Starts a period of `t_s` seconds with the given command.
-    pub(super) fn begin(&mut self, command: Legs, timer_period: u16, t_s: f64) {
+    pub fn begin(&mut self, command: Legs, timer_period: u16, t_s: f64) {
         self.requests.clear();
         self.next = 0;
         for leg in 0..3 {
@@ -101,7 +105,7 @@ impl Gates {
     }
 
     /// Ends a period: running dead times continue in the next one.
-    pub(super) fn end(&mut self, t_s: f64) {
+    pub fn end(&mut self, t_s: f64) {
         for leg in &mut self.legs {
             leg.ready = leg.ready.map(|ready| ready - t_s);
             leg.changed -= t_s;
@@ -109,7 +113,7 @@ impl Gates {
     }
 
     /// Applies all changes due at or before `t` and returns the time of the next one.
-    pub(super) fn advance_to(&mut self, t: f64) -> f64 {
+    pub fn advance_to(&mut self, t: f64) -> f64 {
         while let Some(&(at, leg, gate)) = self.requests.get(self.next).filter(|r| r.0 <= t) {
             self.next += 1;
             self.legs[leg].request(gate, at, self.dead_time);
@@ -130,12 +134,13 @@ impl Gates {
         self.legs.map(|leg| -leg.changed)
     }
 
-    pub(super) fn state(&self) -> [Gate; 3] {
+    /// What conducts in each leg.
+    pub fn state(&self) -> [Gate; 3] {
         self.legs.map(|leg| leg.gate)
     }
 
     /// Turn-ons of all six switches so far.
-    pub(super) fn turn_ons(&self) -> u64 {
+    pub fn turn_ons(&self) -> u64 {
         self.legs.iter().map(|leg| leg.turn_ons).sum()
     }
 }

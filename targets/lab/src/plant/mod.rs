@@ -18,6 +18,7 @@ mod roots;
 mod segment;
 
 pub use energy::{EnergyBalance, EnergyMeter};
+pub use gates::{Gate, Gates};
 pub use machine::{Observer, Plant, Truth};
 pub use params::{
     AdcChannel, EmfShape, LowSide, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES,

@@ -1,0 +1,138 @@
+//! From a drive's command to the registers of an STM32's advanced timer (TIM1, TIM8).
+//!
+//! The timer counts up and down (`CMS`), its channels are in PWM mode 1: the upper switch of leg a,
+//! b, c (channel 1, 2, 3) is on while the counter is below its compare value, so around the
+//! underflow. A period begins at the overflow, in the middle of the lower switch's time, which is
+//! where the ADCs sample. `RCR` = 1 leaves one update event per period, and the board's program
+//! starts the timer so that this one is the overflow's.
+//!
+//! Two kinds of registers carry a command, and they take effect by different events:
+//!
+//! | register | preloaded by | takes effect at |
+//! |---|---|---|
+//! | `CCR1` to `CCR3` | `OCxPE` | the update event |
+//! | `CCER` (`CCxE`, `CCxNE`) | `CCPC` | the commutation event `COM`, which an update does not cause |
+//!
+//! With `CCUS` a rising edge of the trigger input makes `COM`. A second timer closes the circle: it
+//! is reset by the advanced timer's update (`TRGO`) and passes the reset on to its trigger input.
+//! So `COM` follows the update by a few timer clocks, whatever the interrupt does; it has to come
+//! within the dead time, and both programs check at start that it comes at all.
+//!
+//! What a leg's state asks of its two outputs, with `OSSR` and `OSSI` set (RM0440 table 265, RM0090
+//! table 94):
+//!
+//! | state | `CCxE`, `CCxNE` | compare | upper | lower |
+//! |---|---|---|---|---|
+//! | pulsed | 1, 1 | of the command | reference, dead time inserted | its complement, likewise |
+//! | low | 1, 1 | 0 | low | high |
+//! | off | 1, 0 | 0 | low: the reference never rises | driven low, `OSSR`'s off-state |
+//!
+//! Off keeps `CCxE`. With both enables at 0 the timer lets go of its pins, and the gates fall as
+//! fast as pull-down resistors discharge them; so, both pins stay driven. A leg that goes from its
+//! greatest duty to off has its upper switch turned off by the update; its lower one would turn on
+//! after the dead time, which `COM` forestalls. One that comes from off has its lower switch on from
+//! `COM` on without a dead time, since its upper switch was off for a period.
+//!
+//! A break input clears `MOE`; `OSSI` with `OISx` = 0 then drives all six pins low.
+#![no_std]
+
+use hexagen::{LegState, Legs};
+
+/// `CC1E`; those of channels 2 and 3 are four bits up each.
+const ENABLE: u32 = 1;
+/// `CC1NE`, likewise.
+const ENABLE_COMPLEMENTARY: u32 = 1 << 2;
+
+/// What a control period writes to the timer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// `CCR1`, `CCR2`, `CCR3`.
+    pub compare: [u16; 3],
+    /// `CCER`: enables of channels 1 to 3, active high; channel 4 is not used.
+    pub enables: u32,
+}
+
+/// The registers of a command: leg a is channel 1, b is 2, c is 3.
+///
+/// ```
+/// use hexagen::{LegState, Legs};
+/// use hexagen_stm32::outputs;
+///
+/// let legs = Legs::new([900, 0, 0], [LegState::Pulsed, LegState::Low, LegState::Off]);
+/// let outputs = outputs(legs);
+/// assert_eq!(outputs.compare, [900, 0, 0]);
+/// assert_eq!(outputs.enables, 0x155);
+/// ```
+#[inline]
+#[must_use]
+pub const fn outputs(legs: Legs) -> Outputs {
+    let ([a, b, c], [state_a, state_b, state_c]) = (legs.compare(), legs.state());
+    Outputs {
+        compare: [on(state_a, a), on(state_b, b), on(state_c, c)],
+        enables: enables(state_a) | enables(state_b) << 4 | enables(state_c) << 8,
+    }
+}
+
+/// The compare value: 0 of all legs that are not pulsed, whatever stands in the command.
+const fn on(state: LegState, compare: u16) -> u16 {
+    match state {
+        LegState::Pulsed => compare,
+        LegState::Low | LegState::Off => 0,
+    }
+}
+
+/// The enables of channel 1.
+const fn enables(state: LegState) -> u32 {
+    match state {
+        LegState::Pulsed | LegState::Low => ENABLE | ENABLE_COMPLEMENTARY,
+        LegState::Off => ENABLE,
+    }
+}
+
+/// The bits `DTG` of a dead time in timer clocks, rounded up to what the timer can do; none of one
+/// that is longer than 1008 clocks. The timer's `CKD` is 0 (RM0440, RM0090: `TIMx_BDTR`).
+///
+/// ```
+/// use hexagen_stm32::dead_time;
+///
+/// // 500 ns at 170 MHz: 85 clocks.
+/// assert_eq!(dead_time(85), Some(85));
+/// // 360 ns at 168 MHz: 61 clocks; 1 us: 168, in steps of two.
+/// assert_eq!((dead_time(61), dead_time(168)), (Some(61), Some(0x94)));
+/// assert_eq!(dead_time(1009), None);
+/// ```
+#[must_use]
+pub const fn dead_time(clocks: u16) -> Option<u8> {
+    Some(match clocks {
+        0..=127 => clocks as u8,
+        128..=254 => 0x80 | (clocks.div_ceil(2) - 64) as u8,
+        255..=504 => 0xc0 | (clocks.div_ceil(8) - 32) as u8,
+        505..=1008 => 0xe0 | (clocks.div_ceil(16) - 32) as u8,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dead_time;
+
+    /// What the reference manuals say that the bits stand for.
+    fn clocks(bits: u8) -> u16 {
+        let bits = u16::from(bits);
+        match bits >> 5 {
+            0..=3 => bits,
+            4..=5 => 2 * (64 + (bits & 0x3f)),
+            6 => 8 * (32 + (bits & 0x1f)),
+            _ => 16 * (32 + (bits & 0x1f)),
+        }
+    }
+
+    #[test]
+    fn a_dead_time_is_the_shortest_that_is_not_below_the_wanted_one() {
+        for wanted in 0..=1008 {
+            let found = dead_time(wanted).map(clocks);
+            let shortest = (0..=255).map(clocks).filter(|&time| time >= wanted).min();
+            assert_eq!(found, shortest, "{wanted}");
+        }
+    }
+}
