@@ -36,13 +36,7 @@ impl Firmware {
     /// # Errors
     /// If a tool is missing, or the build fails.
     pub fn build(target: Target) -> Result<Self, BenchError> {
-        let toolchain = find(target)?;
-        let root = workspace();
-        let firmware = Self {
-            target,
-            toolchain,
-            built: root_of_builds(&root).join("firmware"),
-        };
+        let firmware = Self::find(target)?;
         if firmware.cargo(&[]).status()?.success() {
             Ok(firmware)
         } else {
@@ -50,38 +44,47 @@ impl Firmware {
         }
     }
 
-    /// Lints the firmware.
+    /// A target's firmware, not built yet.
+    fn find(target: Target) -> Result<Self, BenchError> {
+        Ok(Self {
+            target,
+            toolchain: find(target)?,
+            built: root_of_builds(&workspace()).join("firmware"),
+        })
+    }
+
+    /// Lints the firmware and the programs of `targets/frameworks`, which are for the Cortex-M4.
     ///
     /// # Errors
     /// If there are findings.
     pub fn lint(&self) -> Result<(), BenchError> {
-        self.lint_folder(self.target.name(), &[])
+        self.lint_folder(self.target.name())?;
+        if self.target == Target::CortexM4 {
+            self.lint_folder("frameworks")?;
+        }
+        Ok(())
     }
 
-    /// Builds and lints the programs of `targets/frameworks`, which are for the Cortex-M4.
+    /// Builds the programs of `targets/frameworks`, one by one: as members of one build they would
+    /// share the features of what both use.
     ///
     /// # Errors
-    /// If they do not build, or have findings.
-    pub fn check_frameworks(&self) -> Result<(), BenchError> {
-        if self.target != Target::CortexM4 {
-            return Ok(());
-        }
+    /// If a tool is missing, or a program does not build.
+    pub fn build_frameworks() -> Result<(), BenchError> {
+        let cortex = Self::find(Target::CortexM4)?;
         for program in FRAMEWORKS {
-            // One by one: as members of one build they would share the features of what both use.
-            let only = ["--package", program];
-            let mut build = self.command("frameworks", "build");
-            if !build.args(only).status()?.success() {
+            let mut build = cortex.command("frameworks", "build");
+            if !build.args(["--package", program]).status()?.success() {
                 return Err(BenchError::Build(program));
             }
-            self.lint_folder("frameworks", &only)?;
         }
         Ok(())
     }
 
     /// Lints a folder of `targets`.
-    fn lint_folder(&self, folder: &str, arguments: &[&str]) -> Result<(), BenchError> {
+    fn lint_folder(&self, folder: &str) -> Result<(), BenchError> {
         let mut command = self.command(folder, "clippy");
-        command.args(arguments).args(["--", "-D", "warnings"]);
+        command.args(["--", "-D", "warnings"]);
         if command.status()?.success() {
             Ok(())
         } else {

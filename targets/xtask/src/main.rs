@@ -27,8 +27,8 @@ enum Command {
     /// Format, contents of packages, lints, documentation and all tests
     Test,
     /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
-    /// all products of options, `commands`, and the proofs of all motors and of a thousand random
-    /// ones; Coq checks the shipped motors' once more
+    /// all products of options, `commands`, `programs`, and the proofs of all motors and of a
+    /// thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -38,6 +38,8 @@ enum Command {
     Packages,
     /// Builds the firmware of every target and runs it on the emulated board
     Firmware(Forwarded),
+    /// Builds the programs for real boards, `targets/frameworks`
+    Programs(Forwarded),
     /// Processor in the loop: closed-loop vectors on the emulated cores, every word compared
     /// (`--target`, `--steps`)
     Pil(Forwarded),
@@ -80,6 +82,7 @@ fn main() -> ExitCode {
             packages::check_contents().and_then(|()| steps::run(&[packages::pack(true)?]))
         }
         Command::Firmware(forwarded) => steps::run(&[steps::bench("firmware", &forwarded.options)]),
+        Command::Programs(forwarded) => steps::run(&[steps::bench("programs", &forwarded.options)]),
         Command::Pil(forwarded) => steps::run(&[steps::bench("pil", &forwarded.options)]),
         Command::Cost(forwarded) => steps::run(&[steps::bench("cost", &forwarded.options)]),
         Command::Commands(forwarded) => steps::run(&[steps::bench("commands", &forwarded.options)]),

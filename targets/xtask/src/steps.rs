@@ -220,6 +220,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         },
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
+        on_target("programs", &[]),
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),

@@ -3,11 +3,11 @@
 //! | what | where |
 //! |---|---|
 //! | gates of phases U, V, W (a, b, c) | `TIM1` channels 1 to 3: PA8, PA9, PA10; lower switches PC13, PA12, PB15; driver L6387, active high |
-//! | currents | 3 mohm in each lower leg; op-amps 1, 2, 3 (PA1, PA7, PB0) at gain 16, behind the board's dividers 64/7 |
+//! | currents | 3 mohm in each lower leg; op-amps 1, 2 (PA1, PA7) at gain 16, behind the board's dividers 64/7; op-amp 3 (PB0), of phase c, is not read |
 //! | samples | injected conversions of `ADC1` (op-amp 1, PA2) and `ADC2` (op-amp 2, PA6) at the update event |
-//! | over-current | comparators 1, 2, 4 on the op-amps' inputs, against `DAC3`: break of `TIM1` |
+//! | over-current | comparators 1, 2, 4 on the inputs of all three op-amps, against `DAC3`: break of `TIM1` |
 //! | Hall sensors | PB6, PB7, PB8: `TIM4`, whose counter each edge resets |
-//! | commutation event | `TIM2` passes the update of `TIM1` back to it (`hexagen_stm32`) |
+//! | commutation event | `TIM2`, reset by each update of `TIM1`, triggers it before the next one (`hexagen_stm32`) |
 //! | control interrupt does not come | independent watchdog, 1 ms |
 
 use crate::HubDrive;
@@ -33,7 +33,7 @@ use embassy_stm32::triggers::TIM1_TRGO;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Config, Peripherals, bind_interrupts};
 use hexagen::{Legs, Sample};
-use hexagen_stm32::{dead_time, outputs};
+use hexagen_stm32::{LEAD, dead_time, outputs};
 
 /// From the timers' clock, the specification's `timer_clock`, to the Hall timer's.
 const HALL_PRESCALER: u16 = 170;
@@ -177,13 +177,9 @@ impl Board {
                 "TIM1 updates at the underflow: the ADCs would sample the upper switches' time"
             );
             assert!(
-                timer.sr().read().comif(),
-                "no commutation event: TIM2 does not pass the update back"
+                is_commutation_next(),
+                "no commutation event before the update of TIM1: TIM2 does not trigger it"
             );
-            timer.sr().write(|w| {
-                w.0 = !0;
-                w.set_comif(false);
-            });
         }
         // Commands of the drive are OFF until it has calibrated.
         timer.bdtr().modify(|w| w.set_moe(true));
@@ -275,11 +271,17 @@ fn set_up_pwm() {
     timer.egr().write(|w| w.set_ug(true));
 }
 
-/// `TIM2` is reset by each update of `TIM1`, and hands the reset on.
+/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks before the next one,
+/// which is its trigger output.
 fn set_up_commutation() {
     rcc::enable_and_reset::<TIM2>();
     let timer = pac::TIM2;
-    timer.cr2().modify(|w| w.set_mms(vals::Mms::RESET));
+    let period = 2 * u32::from(HubDrive::TIMER_PERIOD);
+    timer.ccr(0).write_value(period - u32::from(LEAD));
+    timer
+        .ccmr_output(0)
+        .modify(|w| w.set_ocm(0, vals::Ocm::PWM_MODE2));
+    timer.cr2().modify(|w| w.set_mms(vals::Mms::COMPARE_OC1));
     timer.smcr().modify(|w| {
         w.set_ts(vals::Ts::ITR0);
         w.set_sms(vals::Sms::RESET_MODE);
@@ -314,6 +316,23 @@ pub fn let_interrupt_in() {
     interrupt::ADC1_2.set_priority(Priority::P0);
     // SAFETY: what the handler uses was handed over to it before.
     unsafe { interrupt::ADC1_2.enable() };
+}
+
+/// Whether a commutation event comes before the next update event. A turn of the loop takes less
+/// than [`LEAD`] clocks.
+fn is_commutation_next() -> bool {
+    let timer = pac::TIM1;
+    timer.sr().write(|w| {
+        w.0 = !0;
+        w.set_uif(false);
+        w.set_comif(false);
+    });
+    loop {
+        let status = timer.sr().read();
+        if status.comif() || status.uif() {
+            return status.comif();
+        }
+    }
 }
 
 /// Waits for an update event; the counter's direction behind it.

@@ -13,13 +13,21 @@
 //! | `CCR1` to `CCR3` | `OCxPE` | the update event |
 //! | `CCER` (`CCxE`, `CCxNE`) | `CCPC` | the commutation event `COM`, which an update does not cause |
 //!
-//! With `CCUS` a rising edge of the trigger input makes `COM`. A second timer closes the circle: it
-//! is reset by the advanced timer's update (`TRGO`) and passes the reset on to its trigger input.
-//! So `COM` follows the update by a few timer clocks, whatever the interrupt does; it has to come
-//! within the dead time, and both programs check at start that it comes at all.
+//! Without `CCPC` enables take effect when they are written, in the middle of the period before.
+//! With `CCPC` and `CCUS` a rising edge of the trigger input makes `COM`. So a second timer closes
+//! the circle: the advanced timer's update (`TRGO`) resets it, and [`LEAD`] clocks before the next
+//! update its compare output, the advanced timer's trigger input, rises. `COM` then comes at the same
+//! place of every period, whatever the interrupt does, as long as the command was written by then.
 //!
-//! What a leg's state asks of its two outputs, with `OSSR` and `OSSI` set (RM0440 table 265, RM0090
-//! table 94):
+//! `COM` comes before the update and not behind it, because then no upper switch is ever on when it
+//! should not be. Before the update a leg that comes back from off still has its compare value 0, so
+//! its lower switch comes first, [`LEAD`] clocks early. Behind the update its reference might be high
+//! already: with `CCxE` alone it goes to the upper switch, without a dead time. A leg that goes off
+//! loses its lower switch [`LEAD`] clocks early; its upper one, if it is on, stays on until the
+//! reference falls or the update takes it away, and the lower one does not follow.
+//!
+//! What a leg's state asks of its two outputs, with `OSSR` and `OSSI` set (in RM0440 and RM0090 the
+//! table of output control bits of complementary channels):
 //!
 //! | state | `CCxE`, `CCxNE` | compare | upper | lower |
 //! |---|---|---|---|---|
@@ -28,10 +36,7 @@
 //! | off | 1, 0 | 0 | low: the reference never rises | driven low, `OSSR`'s off-state |
 //!
 //! Off keeps `CCxE`. With both enables at 0 the timer lets go of its pins, and the gates fall as
-//! fast as pull-down resistors discharge them; so, both pins stay driven. A leg that goes from its
-//! greatest duty to off has its upper switch turned off by the update; its lower one would turn on
-//! after the dead time, which `COM` forestalls. One that comes from off has its lower switch on from
-//! `COM` on without a dead time, since its upper switch was off for a period.
+//! fast as pull-down resistors discharge them; so, both pins stay driven.
 //!
 //! A break input clears `MOE`; `OSSI` with `OISx` = 0 then drives all six pins low.
 #![no_std]
@@ -42,6 +47,10 @@ use hexagen::{LegState, Legs};
 const ENABLE: u32 = 1;
 /// `CC1NE`, likewise.
 const ENABLE_COMPLEMENTARY: u32 = 1 << 2;
+
+/// Clocks of the advanced timer from the commutation event to the update event: longer than two
+/// timers take to trigger each other (some clocks each way), and short beside a period.
+pub const LEAD: u16 = 64;
 
 /// What a control period writes to the timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

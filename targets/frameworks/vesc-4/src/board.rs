@@ -8,12 +8,12 @@
 //! | over-current | the DRV8302's own, which pulls PC12 low and stops its gates |
 //! | gate driver on | PC10; PB12 high would calibrate its amplifiers |
 //! | Hall sensors | PB6, PB7, PC11, seen at samples: they are not the inputs of one timer |
-//! | commutation event | `TIM2` passes the update of `TIM1` back to it (`hexagen_stm32`) |
+//! | commutation event | `TIM2`, reset by each update of `TIM1`, triggers it before the next one (`hexagen_stm32`) |
 //! | control interrupt does not come | independent watchdog, 1 ms |
 
 use crate::HubDrive;
 use hexagen::{Legs, Sample};
-use hexagen_stm32::{dead_time, outputs};
+use hexagen_stm32::{LEAD, dead_time, outputs};
 use stm32f4xx_hal::gpio::{Input, Output, PA7, PB6, PB7, PC4, PC10, PC11, PC12, Pull};
 use stm32f4xx_hal::pac::{ADC1, ADC2, Peripherals, TIM1, TIM2, adc1};
 use stm32f4xx_hal::prelude::*;
@@ -169,10 +169,9 @@ impl Board {
                 "TIM1 updates at the underflow: the ADCs would sample the upper switches' time"
             );
             assert!(
-                self.pwm.sr().read().comif().bit_is_set(),
-                "no commutation event: TIM2 does not pass the update back"
+                self.is_commutation_next(),
+                "no commutation event before the update of TIM1: TIM2 does not trigger it"
             );
-            self.pwm.sr().modify(|_, w| w.comif().clear_bit());
         }
         self.enable.set_high();
         // The driver charges its supplies; it reports faults meanwhile.
@@ -180,6 +179,20 @@ impl Board {
         // Commands of the drive are OFF until it has calibrated.
         self.pwm.bdtr().modify(|_, w| w.moe().set_bit());
         self.watchdog.start(1.millis());
+    }
+
+    /// Whether a commutation event comes before the next update event. A turn of the loop takes less
+    /// than [`LEAD`] clocks.
+    fn is_commutation_next(&self) -> bool {
+        self.pwm
+            .sr()
+            .modify(|_, w| w.uif().clear_bit().comif().clear_bit());
+        loop {
+            let status = self.pwm.sr().read();
+            if status.comif().bit_is_set() || status.uif().bit_is_set() {
+                return status.comif().bit_is_set();
+            }
+        }
     }
 
     /// Waits for an update event; whether the counter counts down behind it.
@@ -215,9 +228,15 @@ fn set_up_pwm(timer: &TIM1) {
     timer.egr().write(|w| w.ug().set_bit());
 }
 
-/// `TIM2` is reset by each update of `TIM1`, and hands the reset on.
+/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks of `TIM1` before the
+/// next one, which is its trigger output. It counts at half the clock of `TIM1`.
 fn set_up_commutation(timer: &TIM2) {
-    timer.cr2().write(|w| w.mms().reset());
+    let period = 2 * u32::from(HubDrive::TIMER_PERIOD);
+    timer
+        .ccr1()
+        .write(|w| w.ccr().set((period - u32::from(LEAD)) / 2));
+    timer.ccmr1_output().write(|w| w.oc1m().pwm_mode2());
+    timer.cr2().write(|w| w.mms().compare_oc1());
     // RM0090, internal triggers of TIM2: number 0 is TIM1's.
     timer.smcr().write(|w| w.ts().itr0().sms().reset_mode());
     timer.cr1().write(|w| w.cen().set_bit());

@@ -10,26 +10,23 @@ mod board;
 use panic_halt as _;
 
 hexagen::controller! {
-    /// A motor of this board's class, with Hall sensors.
+    /// A motor of this board's class, with Hall sensors. All legs are pulsed, so that the shunts in the
+    /// lower legs of phases a and b can be read in every period.
     pub HubDrive {
         motor: "../../motors/trivedi-keshri-660w.toml",
-        inverter: {
-            bus_voltage: 48 V,
-            f_pwm: 12.5 kHz,
-            timer_clock: 168 MHz,
-            dead_time: 360 ns,
-            adc_bits: 12,
-            adc_range: 165 A,
-            max_current: 22 A,
-        },
-        controller: pdcc {},
+        board: "vesc-4",
+        controller: pdcc { modulation: three_phase },
     }
 }
 
+/// The set-point in milliamperes; with `None` all legs stay off. `BRING-UP.md` says what to put here
+/// when.
+const SET_POINT_MA: Option<i32> = None;
+
 #[rtic::app(device = stm32f4xx_hal::pac)]
 mod app {
-    use crate::HubDrive;
     use crate::board::{Board, Lights};
+    use crate::{HubDrive, SET_POINT_MA};
     use cortex_m::asm::wfi;
     use hexagen::{ControlLoop, Drive, SetPoint};
 
@@ -65,6 +62,9 @@ mod app {
     fn control_period(context: control_period::Context) {
         let control_period::LocalResources { control, board, .. } = context.local;
         let sample = board.sample();
+        if SET_POINT_MA.is_none() {
+            control.coast();
+        }
         board.apply(control.step(&sample));
     }
 
@@ -79,7 +79,7 @@ mod app {
             let status = set_point.status();
             lights.show(status.is_running(), status.fault.is_some());
             if status.is_running() {
-                set_point.set_current_ma(1_000);
+                set_point.set_current_ma(SET_POINT_MA.unwrap_or(0));
             }
             wfi();
         }
