@@ -79,8 +79,8 @@ pub struct Board {
 impl Board {
     /// Sets everything up; nothing runs yet, and all gates are low.
     pub fn new(mut p: Peripherals) -> Self {
-        // Bits of op-amps and comparators are in reach behind the clock of SYSCFG, which embassy has
-        // switched on. What is dropped is switched off: what stays on for good is forgotten.
+        // Bits of op-amps and comparators are in reach behind the clock of SYSCFG, which embassy
+        // has switched on. What is dropped is switched off: what stays on for good is forgotten.
         let mut op_amp = OpAmp::new(p.OPAMP1, OpAmpSpeed::HighSpeed);
         let (plus, bias, out) = (p.PA1.reborrow(), p.PA3.reborrow(), p.PA2.reborrow());
         forget(op_amp.pga_biased_ext(plus, bias, out, OpAmpGain::Mul16));
@@ -271,8 +271,8 @@ fn set_up_pwm() {
     timer.egr().write(|w| w.set_ug(true));
 }
 
-/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks before the next one,
-/// which is its trigger output.
+/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks before the next
+/// one, which is its trigger output.
 fn set_up_commutation() {
     rcc::enable_and_reset::<TIM2>();
     let timer = pac::TIM2;

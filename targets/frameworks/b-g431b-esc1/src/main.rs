@@ -22,8 +22,8 @@ use static_cell::StaticCell;
 hexagen::controller! {
     /// A motor of this board's class, with Hall sensors on connector J8.
     ///
-    /// The board has a shunt in each lower leg. Those of phases a and b are read, at once by two ADCs;
-    /// all legs are pulsed, so that both can be read in every period.
+    /// The board has a shunt in each lower leg. Those of phases a and b are read, at once by two
+    /// ADCs; all legs are pulsed, so that both can be read in every period.
     pub HubDrive {
         motor: "../../motors/anaheim-bly172s.toml",
         board: "st-b-g431b-esc1",
@@ -34,8 +34,8 @@ hexagen::controller! {
 
 static DRIVE: StaticCell<Drive<HubDrive>> = StaticCell::new();
 
-/// The set-point in milliamperes; with `None` all legs stay off. `BRING-UP.md` says what to put here
-/// when.
+/// The set-point in milliamperes; with `None` all legs stay off. `BRING-UP.md` says what to put
+/// here when.
 const SET_POINT_MA: Option<i32> = None;
 
 /// What was sampled last, for people: counts of phases a and b, and the Hall code.
@@ -78,8 +78,8 @@ async fn drive(set_point: &'static SetPoint<HubDrive>) {
     set_point.set_current_ma(SET_POINT_MA.unwrap_or(0));
 }
 
-/// Ten times a second: mode and fault, counts and Hall code, and the signals of a controlled period.
-/// A trip is told once, with all that the drive keeps of its control period.
+/// Ten times a second: mode and fault, counts and Hall code, and the signals of a controlled
+/// period. A trip is told once, with all that the drive keeps of its control period.
 #[embassy_executor::task]
 async fn telemetry(set_point: &'static SetPoint<HubDrive>) {
     let mut is_told = false;

@@ -16,15 +16,16 @@
 //! Without `CCPC` enables take effect when they are written, in the middle of the period before.
 //! With `CCPC` and `CCUS` a rising edge of the trigger input makes `COM`. So a second timer closes
 //! the circle: the advanced timer's update (`TRGO`) resets it, and [`LEAD`] clocks before the next
-//! update its compare output, the advanced timer's trigger input, rises. `COM` then comes at the same
-//! place of every period, whatever the interrupt does, as long as the command was written by then.
+//! update its compare output, the advanced timer's trigger input, rises. `COM` then comes at the
+//! same place of every period, whatever the interrupt does, as long as the command was written by
+//! then.
 //!
 //! `COM` comes before the update and not behind it, because then no upper switch is ever on when it
-//! should not be. Before the update a leg that comes back from off still has its compare value 0, so
-//! its lower switch comes first, [`LEAD`] clocks early. Behind the update its reference might be high
-//! already: with `CCxE` alone it goes to the upper switch, without a dead time. A leg that goes off
-//! loses its lower switch [`LEAD`] clocks early; its upper one, if it is on, stays on until the
-//! reference falls or the update takes it away, and the lower one does not follow.
+//! should not be. Before the update a leg that comes back from off still has its compare value 0,
+//! so its lower switch comes first, [`LEAD`] clocks early. Behind the update its reference might be
+//! high already: with `CCxE` alone it goes to the upper switch, without a dead time. A leg that
+//! goes off loses its lower switch [`LEAD`] clocks early; its upper one, if it is on, stays on
+//! until the reference falls or the update takes it away, and the lower one does not follow.
 //!
 //! What a leg's state asks of its two outputs, with `OSSR` and `OSSI` set (in RM0440 and RM0090 the
 //! table of output control bits of complementary channels):

@@ -181,8 +181,8 @@ impl Board {
         self.watchdog.start(1.millis());
     }
 
-    /// Whether a commutation event comes before the next update event. A turn of the loop takes less
-    /// than [`LEAD`] clocks.
+    /// Whether a commutation event comes before the next update event. A turn of the loop takes
+    /// less than [`LEAD`] clocks.
     fn is_commutation_next(&self) -> bool {
         self.pwm
             .sr()
@@ -228,8 +228,8 @@ fn set_up_pwm(timer: &TIM1) {
     timer.egr().write(|w| w.ug().set_bit());
 }
 
-/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks of `TIM1` before the
-/// next one, which is its trigger output. It counts at half the clock of `TIM1`.
+/// `TIM2` is reset by each update of `TIM1`; its channel 1 rises [`LEAD`] clocks of `TIM1` before
+/// the next one, which is its trigger output. It counts at half the clock of `TIM1`.
 fn set_up_commutation(timer: &TIM2) {
     let period = 2 * u32::from(HubDrive::TIMER_PERIOD);
     timer
@@ -242,7 +242,8 @@ fn set_up_commutation(timer: &TIM2) {
     timer.cr1().write(|w| w.cen().set_bit());
 }
 
-/// One injected conversion of a channel from 0 to 9 at each update of `TIM1`, sampled for 15 clocks.
+/// One injected conversion of a channel from 0 to 9 at each update of `TIM1`, sampled for 15
+/// clocks.
 fn set_up_adc(adc: &adc1::RegisterBlock, channel: u8, interrupts: bool) {
     adc.cr1().write(|w| w.jeocie().bit(interrupts));
     adc.smpr2().write(|w| w.smp(channel).cycles15());

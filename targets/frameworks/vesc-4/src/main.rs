@@ -1,7 +1,7 @@
 //! A drive on a VESC 4 (STM32F405, DRV8302, two shunts in the lower legs), in RTIC 2.
 //!
-//! The control loop is a local resource of the task that the ADCs' interrupt starts: no lock at all.
-//! What the board's peripherals do is in [`board`].
+//! The control loop is a local resource of the task that the ADCs' interrupt starts: no lock at
+//! all. What the board's peripherals do is in [`board`].
 #![no_std]
 #![no_main]
 
@@ -10,8 +10,8 @@ mod board;
 use panic_halt as _;
 
 hexagen::controller! {
-    /// A motor of this board's class, with Hall sensors. All legs are pulsed, so that the shunts in the
-    /// lower legs of phases a and b can be read in every period.
+    /// A motor of this board's class, with Hall sensors. All legs are pulsed, so that the shunts in
+    /// the lower legs of phases a and b can be read in every period.
     pub HubDrive {
         motor: "../../motors/trivedi-keshri-660w.toml",
         board: "vesc-4",
@@ -19,8 +19,8 @@ hexagen::controller! {
     }
 }
 
-/// The set-point in milliamperes; with `None` all legs stay off. `BRING-UP.md` says what to put here
-/// when.
+/// The set-point in milliamperes; with `None` all legs stay off. `BRING-UP.md` says what to put
+/// here when.
 const SET_POINT_MA: Option<i32> = None;
 
 #[rtic::app(device = stm32f4xx_hal::pac)]
