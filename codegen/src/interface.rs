@@ -114,7 +114,8 @@ pub struct Interface {
     pub units: Units,
 }
 
-/// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits.
+/// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits. Of
+/// two sensors that differ, sign and offset are the first one's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest count of the phase-current ADC.
@@ -141,6 +142,47 @@ pub struct Limits {
     pub sectors: u32,
     /// Control periods of a sector below which braking shorts the motor.
     pub brake_periods: i32,
+    /// The current sensors.
+    pub sensors: Sensors,
+}
+
+/// Two current sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensors {
+    /// Their phases.
+    pub phases: SensedPhases,
+    /// The second one, where it differs from the first.
+    pub second: Option<Sensor>,
+}
+
+impl Sensors {
+    /// Alike, of phases a and b.
+    pub const AB: Self = Self {
+        phases: SensedPhases::Ab,
+        second: None,
+    };
+}
+
+/// The phases of two current sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensedPhases {
+    /// Phases a and b.
+    Ab,
+    /// Phases b and c.
+    Bc,
+    /// Phases c and a.
+    Ca,
+}
+
+/// Sign and offset of a current sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensor {
+    /// Whether counts fall with the current into the motor.
+    pub adc_inverted: bool,
+    /// ADC count at zero current before calibration.
+    pub offset: u16,
+    /// Least and greatest offset that calibration accepts, counts.
+    pub offsets: [u16; 2],
 }
 
 /// Units of the observations, in numbers with 16 fraction bits.

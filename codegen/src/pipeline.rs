@@ -13,7 +13,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{CurrentSensing, Origins, SensedPhases, Spec};
+use crate::spec::{CurrentSensing, CurrentSensor, Origins, SensedPhases, Spec};
 use crate::stopwatch::Part;
 
 /// Input of the emitters.
@@ -99,12 +99,10 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let inverter = &spec.inverter;
     let first = inverter.sensors()[0];
+    let has_gain = |sensor: &CurrentSensor| sensor.gain.abs() == first.gain.abs();
     let asked = [
-        ("sensed_phases", inverter.sensed_phases != SensedPhases::Ab),
-        (
-            "adc_gain",
-            inverter.other_sensors.iter().any(|sensor| *sensor != first),
-        ),
+        ("sensed_phases", inverter.sensed_phases == SensedPhases::Abc),
+        ("adc_gain", !inverter.other_sensors.iter().all(has_gain)),
         ("pwm_per_control", inverter.pwm_per_control > 1),
     ];
     let mut errors = Collector::new();

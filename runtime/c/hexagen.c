@@ -89,7 +89,6 @@ int32_t hexagen_whole(int32_t number)
 
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    const int32_t offset = hexagen_wrap((uint32_t)limits->offset << limits->current_bits);
     supervisor->mode = HEXAGEN_MODE_RUN;
     supervisor->fault = HEXAGEN_FAULT_NONE;
     supervisor->countdown = 0;
@@ -97,8 +96,10 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     supervisor->stall_count = 0;
     supervisor->sum_a = 0;
     supervisor->sum_b = 0;
-    supervisor->offset_a = offset;
-    supervisor->offset_b = offset;
+    supervisor->offset_a =
+        hexagen_wrap((uint32_t)limits->sensors[0].offset << limits->current_bits);
+    supervisor->offset_b =
+        hexagen_wrap((uint32_t)limits->sensors[1].offset << limits->current_bits);
     supervisor->brake_hall = 0;
     supervisor->brake_age = 0;
     supervisor->brake_interval = 0;
@@ -114,11 +115,11 @@ static void trip(hexagen_supervisor *supervisor, hexagen_fault fault)
     supervisor->mode = HEXAGEN_MODE_TRIPPED;
 }
 
-static bool is_bad_offset(const hexagen_limits *limits, int32_t sum)
+static bool is_bad_offset(const hexagen_limits *limits, uint16_t sensor, int32_t sum)
 {
     const uint16_t log2 = limits->calibration_log2;
-    return sum < hexagen_shift_left((int32_t)limits->offset_least, log2)
-        || sum > hexagen_shift_left((int32_t)limits->offset_most, log2);
+    return sum < hexagen_shift_left((int32_t)limits->sensors[sensor].offset_least, log2)
+        || sum > hexagen_shift_left((int32_t)limits->sensors[sensor].offset_most, log2);
 }
 
 /** The mean of a calibration's counts in words of current, rounded down. */
@@ -132,7 +133,8 @@ static int32_t mean(const hexagen_limits *limits, int32_t sum)
 
 static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    if (is_bad_offset(limits, supervisor->sum_a) || is_bad_offset(limits, supervisor->sum_b)) {
+    if (is_bad_offset(limits, 0, supervisor->sum_a)
+        || is_bad_offset(limits, 1, supervisor->sum_b)) {
         trip(supervisor, HEXAGEN_FAULT_OFFSET);
         return;
     }
@@ -182,15 +184,16 @@ static void start_up(
 
 /** The first fault of a sample. */
 static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const hexagen_sample *sample, const hexagen_checked *checked)
+    const hexagen_sample *sample, int32_t first, int32_t second)
 {
-    if (hexagen_is_at_end(limits, sample->adc[0]) || hexagen_is_at_end(limits, sample->adc[1])) {
+    if (hexagen_is_at_end(limits, hexagen_count(limits, sample, 0))
+        || hexagen_is_at_end(limits, hexagen_count(limits, sample, 1))) {
         return HEXAGEN_FAULT_ADC_RANGE;
     }
     if (!hexagen_is_hall_code(sample->hall)) {
         return HEXAGEN_FAULT_HALL;
     }
-    if (hexagen_is_over(limits, checked->i_a, checked->i_b)) {
+    if (hexagen_is_over(limits, first, second)) {
         return HEXAGEN_FAULT_OVER_CURRENT;
     }
     return hexagen_is_stalled(supervisor, limits) ? HEXAGEN_FAULT_STALL : HEXAGEN_FAULT_NONE;
@@ -248,15 +251,20 @@ hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits
     const hexagen_sample *sample, hexagen_checked *checked)
 {
     const uint16_t most = limits->adc_max;
-    const uint16_t count_a = (sample->adc[0] < most) ? sample->adc[0] : most;
-    const uint16_t count_b = (sample->adc[1] < most) ? sample->adc[1] : most;
+    const uint16_t read_a = hexagen_count(limits, sample, 0);
+    const uint16_t read_b = hexagen_count(limits, sample, 1);
+    const uint16_t count_a = (read_a < most) ? read_a : most;
+    const uint16_t count_b = (read_b < most) ? read_b : most;
+    const int32_t first = hexagen_current(limits, 0, count_a, supervisor->offset_a);
+    const int32_t second = hexagen_current(limits, 1, count_b, supervisor->offset_b);
+    const int32_t third = hexagen_clamp(
+        hexagen_third(first, second), limits->current_least, limits->current_most);
     hexagen_rested rested = { HEXAGEN_LEG_OFF, false, 0 };
     hexagen_fault fault;
-    checked->i_a = hexagen_current(limits, count_a, supervisor->offset_a);
-    checked->i_b = hexagen_current(limits, count_b, supervisor->offset_b);
+    hexagen_take_currents(limits, checked, first, second, third);
     checked->hall = hexagen_is_hall_code(sample->hall) ? (int32_t)sample->hall : 0;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
-    fault = find_fault(supervisor, limits, sample, checked);
+    fault = find_fault(supervisor, limits, sample, first, second);
     if (fault != HEXAGEN_FAULT_NONE) {
         trip(supervisor, fault);
         return rested;

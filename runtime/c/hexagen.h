@@ -36,7 +36,7 @@ extern "C" {
 
 /** Measurements at the beginning of a control period, as the hardware gives them. */
 typedef struct {
-    /** ADC counts of the currents of phases a, b, c; 0 where there is no sensor. */
+    /** ADC counts of the currents of phases a, b, c; ignored where there is no sensor. */
     uint16_t adc[3];
     /** Hall code `Ha Hb Hc`, Ha in bit 2; 0 where there is an angle. */
     uint16_t hall;
@@ -85,7 +85,7 @@ static inline hexagen_sample hexagen_with_ticks(hexagen_sample sample, uint16_t 
     return sample;
 }
 
-/** The same sample with the ADC count of phase c, for drives with three current sensors. */
+/** The same sample with the ADC count of phase c, for drives with a current sensor there. */
 static inline hexagen_sample hexagen_with_third(hexagen_sample sample, uint16_t adc_c)
 {
     sample.adc[2] = adc_c;
@@ -324,21 +324,35 @@ int32_t hexagen_whole(int32_t number);
 /* ---- Supervision ------------------------------------------------------------------------- */
 
 /**
+ * The phases with a current sensor, in the order of the sensors; the third phase has the rest of
+ * their currents.
+ */
+typedef enum { HEXAGEN_SENSED_AB = 0, HEXAGEN_SENSED_BC = 1, HEXAGEN_SENSED_CA = 2 } hexagen_sensed;
+
+/** Sign and offset of a current sensor. */
+typedef struct {
+    /** Whether counts fall with the current into the motor. */
+    bool inverted;
+    /** ADC count at zero current before calibration. */
+    uint16_t offset;
+    /** Least and greatest offset that calibration accepts, counts. */
+    uint16_t offset_least;
+    uint16_t offset_most;
+} hexagen_sensor;
+
+/**
  * Limits of a drive's samples, and its start-up times. Words of current are ADC counts with
  * `current_bits` fraction bits.
  */
 typedef struct {
     /** Largest count of the current ADC. */
     uint16_t adc_max;
-    /** Whether counts fall with the current into the motor. */
-    bool adc_inverted;
     /** Fraction bits of words of current. */
     uint16_t current_bits;
-    /** ADC count at zero current before calibration. */
-    uint16_t offset;
-    /** Least and greatest offset that calibration accepts, counts. */
-    uint16_t offset_least;
-    uint16_t offset_most;
+    /** The phases with a sensor. */
+    hexagen_sensed sensed;
+    /** Their sensors. */
+    hexagen_sensor sensors[2];
     /** Trip level, words of current: a phase current above it trips. */
     int32_t trip;
     /** Least and greatest current over all counts and accepted offsets, words of current. */
@@ -362,30 +376,60 @@ typedef struct {
 } hexagen_limits;
 
 /**
- * Defines constant limits with this name. Does not compile if they contradict each other, or if a
- * sum or a current does not fit 32 bits.
+ * Defines constant limits with this name, of two sensors alike in phases a and b. Does not compile
+ * if they contradict each other, or if a sum or a current does not fit 32 bits.
  */
 #define HEXAGEN_LIMITS(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
     stall_periods, sectors, brake_periods) \
-    typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), adc_inverted, current_bits, \
-        (int64_t)(offset), (int64_t)(offset_least), (int64_t)(offset_most), trip, \
-        (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, brake_periods) \
-        ? 1 : -1]; \
-    static const hexagen_limits name = { adc_max, adc_inverted, current_bits, offset, \
-        offset_least, offset_most, trip, current_least, current_most, calibration_log2, \
-        precharge_periods, stall_periods, sectors, brake_periods }
+    HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
+        offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
+        stall_periods, sectors, brake_periods, HEXAGEN_SENSED_AB, adc_inverted, offset, \
+        offset_least, offset_most)
 
-/** Whether limits are valid; phase c is the negative sum of two currents. */
-#define HEXAGEN_LIMITS_HOLD(adc_max, inverted, bits, offset, least, most, trip, low, high, log2, \
-    stall, brake) \
-    ((bits) < 31 && (log2) < 16 && (adc_max) > 1 && (least) <= (offset) && (offset) <= (most) \
-        && (most) <= (adc_max) && (trip) > 0 && (stall) >= 0 && (stall) < INT32_C(0x7fffffff) \
-        && (brake) >= 0 && (brake) < INT32_C(0x7fffffff) \
-        && (low) == HEXAGEN_LEAST(adc_max, inverted, bits, most, least) \
-        && (high) == HEXAGEN_MOST(adc_max, inverted, bits, most, least) \
+/** The same for any two sensors: the first one's sign and offset, then phases and the second's. */
+#define HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
+    offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
+    stall_periods, sectors, brake_periods, sensed, second_inverted, second_offset, second_least, \
+    second_most) \
+    typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), current_bits, trip, \
+        (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, \
+        brake_periods) \
+        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), offset, offset_least, offset_most) \
+        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), second_offset, second_least, second_most) \
+        && (int64_t)(current_least) == HEXAGEN_LESSER( \
+            HEXAGEN_LEAST((int64_t)(adc_max), adc_inverted, current_bits, (int64_t)(offset_most), \
+                (int64_t)(offset_least)), \
+            HEXAGEN_LEAST((int64_t)(adc_max), second_inverted, current_bits, \
+                (int64_t)(second_most), (int64_t)(second_least))) \
+        && -(int64_t)(current_most) == HEXAGEN_LESSER( \
+            -HEXAGEN_MOST((int64_t)(adc_max), adc_inverted, current_bits, (int64_t)(offset_most), \
+                (int64_t)(offset_least)), \
+            -HEXAGEN_MOST((int64_t)(adc_max), second_inverted, current_bits, \
+                (int64_t)(second_most), (int64_t)(second_least))) \
+        && ((sensed) == HEXAGEN_SENSED_AB \
+            || ((trip) <= (current_most) && -(int64_t)(trip) >= (current_least))) \
+        ? 1 : -1]; \
+    static const hexagen_limits name = { adc_max, current_bits, sensed, \
+        { { adc_inverted, offset, offset_least, offset_most }, \
+            { second_inverted, second_offset, second_least, second_most } }, \
+        trip, current_least, current_most, calibration_log2, precharge_periods, stall_periods, \
+        sectors, brake_periods }
+
+/**
+ * Whether limits are valid, but for their sensors; the phase without a sensor has the negative sum
+ * of two currents. A law takes its current, within the trip level, where it is that of a or b.
+ */
+#define HEXAGEN_LIMITS_HOLD(adc_max, bits, trip, low, high, log2, stall, brake) \
+    ((bits) < 31 && (log2) < 16 && (adc_max) > 1 && (trip) > 0 && (stall) >= 0 \
+        && (stall) < INT32_C(0x7fffffff) && (brake) >= 0 && (brake) < INT32_C(0x7fffffff) \
         && -2 * (low) <= INT64_C(0x7fffffff) && 2 * (high) <= INT64_C(0x7fffffff) \
         && (adc_max) * (INT64_C(1) << ((log2) & 15)) <= INT64_C(0x7fffffff))
+
+#define HEXAGEN_SENSOR_HOLDS(adc_max, offset, least, most) \
+    ((least) <= (offset) && (offset) <= (most) && (most) <= (adc_max))
+
+#define HEXAGEN_LESSER(x, y) ((x) < (y) ? (x) : (y))
 
 #define HEXAGEN_LEAST(adc_max, inverted, bits, most, least) \
     (((inverted) ? (least) - (adc_max) : -(most)) * (INT64_C(1) << ((bits) & 31)))
@@ -402,7 +446,7 @@ typedef struct {
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
  *   mid-scale can let the true current rise to several times the trip level;
- * - the current of phase c, which has no sensor: it is taken as -(a + b);
+ * - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;
  * - a bus voltage, be it too high for the switches.
@@ -420,10 +464,10 @@ typedef struct {
     uint16_t hall_prev;
     /** Periods under demand since the last Hall edge. */
     int32_t stall_count;
-    /** Sums of calibration samples, counts. */
+    /** Sums of calibration samples of the first and the second sensor, counts. */
     int32_t sum_a;
     int32_t sum_b;
-    /** Offsets of phases a and b, words of current. */
+    /** Offsets of both, words of current. */
     int32_t offset_a;
     int32_t offset_b;
     /** Rotation since braking began: Hall code of the last period, 0 before the first. */
@@ -449,12 +493,41 @@ typedef struct {
     int32_t hall_ticks;
 } hexagen_checked;
 
-/** A phase current in words of current; `offset` is a word of current, too. */
-static inline int32_t hexagen_current(const hexagen_limits *limits, uint16_t count, int32_t offset)
+/** The count of the first or second sensor, 0 or 1. */
+static inline uint16_t hexagen_count(
+    const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
+{
+    const uint16_t first = (limits->sensed == HEXAGEN_SENSED_AB) ? 0U
+        : (limits->sensed == HEXAGEN_SENSED_BC)                  ? 1U
+                                                                 : 2U;
+    return sample->adc[(first + sensor) % 3U];
+}
+
+/** A sensor's phase current in words of current; `offset` is a word of current, too. */
+static inline int32_t hexagen_current(
+    const hexagen_limits *limits, uint16_t sensor, uint16_t count, int32_t offset)
 {
     const uint32_t word = (uint32_t)count << limits->current_bits;
     const uint32_t zero = (uint32_t)offset;
-    return hexagen_wrap(limits->adc_inverted ? zero - word : word - zero);
+    return hexagen_wrap(limits->sensors[sensor].inverted ? zero - word : word - zero);
+}
+
+/** Current of the phase without a sensor. */
+static inline int32_t hexagen_third(int32_t first, int32_t second)
+{
+    return hexagen_wrap(UINT32_C(0) - ((uint32_t)first + (uint32_t)second));
+}
+
+/** The currents of phases a and b, from the sensed ones and that of the third phase. */
+static inline void hexagen_take_currents(const hexagen_limits *limits, hexagen_checked *checked,
+    int32_t first, int32_t second, int32_t third)
+{
+    checked->i_a = (limits->sensed == HEXAGEN_SENSED_AB) ? first
+        : (limits->sensed == HEXAGEN_SENSED_BC)          ? third
+                                                         : second;
+    checked->i_b = (limits->sensed == HEXAGEN_SENSED_AB) ? second
+        : (limits->sensed == HEXAGEN_SENSED_BC)          ? first
+                                                         : third;
 }
 
 /** Whether an ADC is at an end of its range: count 0, the largest, or more. */
@@ -469,12 +542,12 @@ static inline bool hexagen_is_hall_code(uint16_t hall)
     return hall >= 1U && hall <= 6U;
 }
 
-/** Whether a phase current is above the trip level. */
-static inline bool hexagen_is_over(const hexagen_limits *limits, int32_t i_a, int32_t i_b)
+/** Whether a phase current is above the trip level: one that is sensed, or the third. */
+static inline bool hexagen_is_over(const hexagen_limits *limits, int32_t first, int32_t second)
 {
-    const int32_t i_c = hexagen_wrap(UINT32_C(0) - ((uint32_t)i_a + (uint32_t)i_b));
-    return hexagen_exceeds(i_a, limits->trip) || hexagen_exceeds(i_b, limits->trip)
-        || hexagen_exceeds(i_c, limits->trip);
+    const int32_t third = hexagen_third(first, second);
+    return hexagen_exceeds(first, limits->trip) || hexagen_exceeds(second, limits->trip)
+        || hexagen_exceeds(third, limits->trip);
 }
 
 /** Whether the stall time-out has passed. */
@@ -513,13 +586,16 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)
 {
     const bool is_stalled = hexagen_watch_stall(supervisor, limits, sample->hall, set_point);
-    checked->i_a = hexagen_current(limits, sample->adc[0], supervisor->offset_a);
-    checked->i_b = hexagen_current(limits, sample->adc[1], supervisor->offset_b);
+    const uint16_t count_first = hexagen_count(limits, sample, 0);
+    const uint16_t count_second = hexagen_count(limits, sample, 1);
+    const int32_t first = hexagen_current(limits, 0, count_first, supervisor->offset_a);
+    const int32_t second = hexagen_current(limits, 1, count_second, supervisor->offset_b);
+    hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->hall = (int32_t)sample->hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
-    return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is_at_end(limits, sample->adc[0])
-        && !hexagen_is_at_end(limits, sample->adc[1]) && hexagen_is_hall_code(sample->hall)
-        && !hexagen_is_over(limits, checked->i_a, checked->i_b) && !is_stalled;
+    return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is_at_end(limits, count_first)
+        && !hexagen_is_at_end(limits, count_second) && hexagen_is_hall_code(sample->hall)
+        && !hexagen_is_over(limits, first, second) && !is_stalled;
 }
 
 /**
@@ -540,7 +616,8 @@ typedef struct {
 /**
  * A period without control, after hexagen_check returned false: continues start-up, trips on a
  * fault, brakes, and returns what the drive does instead. In the checked sample, counts are clamped
- * to the ADC's range, and an invalid Hall code is 0.
+ * to the ADC's range, the current of a phase without a sensor to that of one with a sensor, and an
+ * invalid Hall code is 0.
  */
 HEXAGEN_COLD hexagen_rested hexagen_rest(hexagen_supervisor *supervisor,
     const hexagen_limits *limits, const hexagen_sample *sample, hexagen_checked *checked);

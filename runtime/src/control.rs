@@ -5,7 +5,7 @@
 
 use crate::arith::Word;
 use crate::bus::Bus;
-use crate::{Checked, Command, Format, Limits, Places};
+use crate::{Checked, Command, Format, Limits, Places, Sensors};
 
 /// State of a law: the words kept from one control period to the next.
 ///
@@ -70,6 +70,8 @@ pub trait Control: Sized + 'static {
     const FORMATS: &'static [Format];
     /// Limits of samples, and start-up times.
     const LIMITS: Limits;
+    /// The current sensors. The macro sets it unless they are alike and in phases a and b.
+    const SENSORS: Sensors = Sensors::AB;
     /// Units of an [`Observation`] and of commands.
     const UNITS: Units;
     /// Initial set-point word: 0, or with `speed_loop: on` the greatest current.

@@ -46,14 +46,14 @@ impl<C: Control> Drive<C> {
     pub const fn new() -> Self {
         const {
             assert!(
-                C::LIMITS.hold(),
+                C::LIMITS.hold(&C::SENSORS),
                 "limits of a controller contradict each other"
             );
         };
         Self {
             set_point: SetPoint::new(),
             core: Core {
-                supervisor: Supervisor::new(&C::LIMITS),
+                supervisor: Supervisor::new(&C::LIMITS, &C::SENSORS),
                 law: C::State::INITIAL,
             },
         }
@@ -198,7 +198,8 @@ impl<C: Control> ControlLoop<'_, C> {
         let Self { set_point, core } = self;
         set_point.words.bus.pass_period();
         let is_demanded = || set_point.is_demanded();
-        let checked = match core.supervisor.check(&C::LIMITS, sample, is_demanded) {
+        let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
+        let checked = match core.supervisor.check(limits, sensors, sample, is_demanded) {
             Some(checked) => checked,
             None => match rest(set_point, core, *sample) {
                 ControlFlow::Continue(checked) => checked,
@@ -223,7 +224,7 @@ impl<C: Control> ControlLoop<'_, C> {
     /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and
     /// speed 0 brakes a turning rotor with up to the current limit.
     pub fn reset(&mut self) {
-        if self.core.supervisor.reset(&C::LIMITS) {
+        if self.core.supervisor.reset(&C::LIMITS, &C::SENSORS) {
             self.core.law = C::State::INITIAL;
             self.set_point.trip.forget();
             self.set_point.clear();
@@ -299,7 +300,7 @@ fn rest<C: Control>(
     sample: Sample,
 ) -> ControlFlow<C::Command, Checked> {
     let was_tripped = core.supervisor.fault();
-    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &sample);
+    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, &sample);
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
         let [current, speed] = set_point.demands();
         let trip = Trip {

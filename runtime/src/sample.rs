@@ -5,6 +5,7 @@ use crate::arith::Word;
 /// Measurements at the beginning of a control period, as the hardware gives them.
 ///
 /// ADC counts of the phase currents, and the rotor's position: a Hall code or an electrical angle.
+/// There is a count per phase; that of a phase without a sensor is ignored.
 ///
 /// ```
 /// use hexagen::Sample;
@@ -14,6 +15,9 @@ use crate::arith::Word;
 /// // Three current sensors and an encoder.
 /// let turned = Sample::with_angle([2048, 2100], 0x4000_0000).third_current(1996);
 /// assert_ne!(sample, turned);
+/// // Sensors in phases b and c (`sensed_phases: bc`).
+/// let of_b_and_c = Sample::with_hall([0, 2100], 0b101).third_current(1996);
+/// assert_eq!(of_b_and_c.adc(), [0, 2100, 1996]);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -26,7 +30,9 @@ pub struct Sample {
 
 impl Sample {
     /// ADC counts of the currents of phases a and b, which rise with the current into the motor
-    /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2.
+    /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2. Where one of the
+    /// two phases has no sensor, its count is any, and [`third_current`](Self::third_current) adds
+    /// that of phase c.
     ///
     /// Any code is accepted: one that Hall sensors cannot give (0, 7 and above) trips the drive.
     #[inline]
@@ -68,7 +74,7 @@ impl Sample {
         }
     }
 
-    /// The ADC count of phase c, for drives with three current sensors; not used so far.
+    /// The ADC count of phase c, for drives with a current sensor there.
     #[inline]
     #[must_use]
     pub const fn third_current(self, adc_c: u16) -> Self {
@@ -79,7 +85,7 @@ impl Sample {
         }
     }
 
-    /// ADC counts of phases a, b, c; 0 if there is no sensor.
+    /// ADC counts of phases a, b, c; ignored where there is no sensor.
     #[inline]
     #[must_use]
     pub const fn adc(&self) -> [u16; 3] {

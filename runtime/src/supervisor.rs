@@ -8,7 +8,8 @@ use crate::arith::Word;
 use crate::status::{Fault, Mode, Status, number};
 use crate::{Checked, LegState, Sample};
 
-/// Limits of a drive's samples, and its start-up times.
+/// Limits of a drive's samples, and its start-up times. Of two sensors that differ these are the
+/// first one's: see [`Sensors`].
 ///
 /// Words of current are ADC counts with [`current_bits`](Self::current_bits) fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,46 +45,58 @@ impl Limits {
     /// Whether sums and words of these limits fit 32 bits and [`currents`](Self::currents) holds
     /// every current, so that no computation of the supervisor can overflow.
     #[must_use]
-    pub const fn hold(&self) -> bool {
-        let [least, most] = self.offsets;
-        let one = 1_i64 << (self.current_bits & 31);
-        let (top, zero) = (self.adc_max as i64 * one, 0);
-        let (low, high) = (least as i64 * one, most as i64 * one);
-        let range = if self.adc_inverted {
-            [low - top, high - zero]
-        } else {
-            [zero - high, top - low]
-        };
+    pub const fn hold(&self, sensors: &Sensors) -> bool {
+        let [first, second] = sensors.both(self);
+        let (one, other) = (self.range(&first), self.range(&second));
+        let low = if one[0] < other[0] { one[0] } else { other[0] };
+        let high = if one[1] > other[1] { one[1] } else { other[1] };
         let sum = (self.adc_max as i64) << (self.calibration_log2 & 15);
-        // Phase c is the negative sum of two currents.
+        // The phase without a sensor has the negative sum of two currents.
         let word = 0x7fff_ffff;
+        // A law takes its current, within the trip level, where it is that of a or b.
+        let is_within = matches!(sensors.phases, SensedPhases::Ab)
+            || (low <= -(self.trip as i64) && self.trip as i64 <= high);
         self.current_bits < 31
             && self.calibration_log2 < 16
             && self.adc_max > 1
-            && least <= self.offset
-            && self.offset <= most
-            && most <= self.adc_max
+            && first.hold(self.adc_max)
+            && second.hold(self.adc_max)
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
             && self.brake_periods >= 0
             && self.brake_periods < word as i32
-            && range[0] == self.currents[0] as i64
-            && range[1] == self.currents[1] as i64
-            && -2 * range[0] <= word
-            && 2 * range[1] <= word
+            && low == self.currents[0] as i64
+            && high == self.currents[1] as i64
+            && -2 * low <= word
+            && 2 * high <= word
             && sum <= word
+            && is_within
     }
 
-    /// A phase current in words of current; `offset` is a word of current, too.
-    #[inline]
-    fn current(&self, count: Word, offset: Word) -> Word {
-        let count = count << self.current_bits;
-        if self.adc_inverted {
-            offset - count
+    /// Least and greatest current over all counts and accepted offsets of a sensor.
+    const fn range(&self, sensor: &Sensor) -> [i64; 2] {
+        let [least, most] = sensor.offsets;
+        let one = 1_i64 << (self.current_bits & 31);
+        let (top, zero) = (self.adc_max as i64 * one, 0);
+        let (low, high) = (least as i64 * one, most as i64 * one);
+        if sensor.adc_inverted {
+            [low - top, high - zero]
         } else {
-            count - offset
+            [zero - high, top - low]
         }
+    }
+
+    /// The sensed currents in words of current; `offsets` are words of current, too.
+    #[inline]
+    fn sensed(&self, sensors: &Sensors, counts: [Word; 2], offsets: [Word; 2]) -> [Word; 2] {
+        let [first, second] = sensors.both(self);
+        let [first_count, second_count] = counts.map(|count| count << self.current_bits);
+        let [first_offset, second_offset] = offsets;
+        [
+            first.current(first_count, first_offset),
+            second.current(second_count, second_offset),
+        ]
     }
 
     /// Sector of a Hall code; 0 of an invalid one.
@@ -101,14 +114,113 @@ impl Limits {
         count == 0 || count >= self.adc_max
     }
 
-    /// Whether a phase current is above the trip level.
+    /// Whether a phase current is above the trip level: one that is sensed, or the third.
     #[inline]
-    fn is_over(&self, [i_a, i_b]: [Word; 2]) -> bool {
-        let i_c = -(i_a + i_b);
+    fn is_over(&self, [first, second]: [Word; 2]) -> bool {
+        let third = third_of([first, second]);
         let range = self.trip.wrapping_neg()..=self.trip;
         let is_within = |i: Word| range.contains(&i.0);
-        !(is_within(i_a) && is_within(i_b) && is_within(i_c))
+        !(is_within(first) && is_within(second) && is_within(third))
     }
+}
+
+/// The phases with a current sensor, in the order of the sensors; the third phase has the rest of
+/// their currents, and its count in a [`Sample`] is ignored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensedPhases {
+    /// Phases a and b.
+    Ab,
+    /// Phases b and c.
+    Bc,
+    /// Phases c and a.
+    Ca,
+}
+
+impl SensedPhases {
+    /// What belongs to the sensed phases, first and second, of what belongs to phases a, b, c.
+    #[inline]
+    const fn of<T: Copy>(self, [a, b, c]: [T; 3]) -> [T; 2] {
+        match self {
+            Self::Ab => [a, b],
+            Self::Bc => [b, c],
+            Self::Ca => [c, a],
+        }
+    }
+
+    /// Currents of phases a and b, from the sensed ones and that of the third phase.
+    #[inline]
+    fn a_and_b(self, [first, second]: [Word; 2], third: impl FnOnce() -> Word) -> [Word; 2] {
+        match self {
+            Self::Ab => [first, second],
+            Self::Bc => [third(), first],
+            Self::Ca => [second, third()],
+        }
+    }
+}
+
+/// Sign and offset of a current sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensor {
+    /// Whether counts fall with the current into the motor.
+    pub adc_inverted: bool,
+    /// ADC count at zero current before calibration.
+    pub offset: u16,
+    /// Least and greatest offset that calibration accepts, counts.
+    pub offsets: [u16; 2],
+}
+
+impl Sensor {
+    const fn hold(&self, adc_max: u16) -> bool {
+        let [least, most] = self.offsets;
+        least <= self.offset && self.offset <= most && most <= adc_max
+    }
+
+    /// A phase current, of a count and an offset in words of current.
+    #[inline]
+    fn current(&self, count: Word, offset: Word) -> Word {
+        if self.adc_inverted {
+            offset - count
+        } else {
+            count - offset
+        }
+    }
+}
+
+/// The two current sensors of a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensors {
+    /// The phases that have them.
+    pub phases: SensedPhases,
+    /// The second sensor, where its sign or offset is not that of the first, which [`Limits`] have.
+    pub second: Option<Sensor>,
+}
+
+impl Sensors {
+    /// Two sensors alike, of phases a and b.
+    pub const AB: Self = Self {
+        phases: SensedPhases::Ab,
+        second: None,
+    };
+
+    /// First and second sensor of a drive with these limits.
+    #[inline]
+    const fn both(&self, limits: &Limits) -> [Sensor; 2] {
+        let one = Sensor {
+            adc_inverted: limits.adc_inverted,
+            offset: limits.offset,
+            offsets: limits.offsets,
+        };
+        match self.second {
+            None => [one, one],
+            Some(other) => [one, other],
+        }
+    }
+}
+
+/// Current of the phase without a sensor.
+#[inline]
+fn third_of([first, second]: [Word; 2]) -> Word {
+    -(first + second)
 }
 
 /// Whether the Hall code is valid: 001 to 110.
@@ -160,7 +272,7 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
 ///   mid-scale can let the true current rise to several times the trip level;
-/// - the current of phase c, which has no sensor: it is taken as -(a + b);
+/// - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
 /// - a control interrupt that does not come: the last command stands;
 /// - heat, shoot-through, and what is shorter than a control period;
 /// - a bus voltage, be it too high for the switches.
@@ -178,9 +290,9 @@ pub struct Supervisor {
     hall_prev: u8,
     /// Periods under demand since the last Hall edge.
     stall_count: Word,
-    /// Sums of calibration samples, counts.
+    /// Sums of calibration samples of the first and the second sensor, counts.
     sums: [Word; 2],
-    /// Offsets of phases a and b, words of current.
+    /// Offsets of both, words of current.
     offsets: [Word; 2],
     /// What braking knows of the rotor.
     turn: Turn,
@@ -242,7 +354,8 @@ pub enum Rest {
 }
 
 impl Supervisor {
-    /// Names of the state words, in the order of [`Self::words`].
+    /// Names of the state words, in the order of [`Self::words`]; `_a` is the first sensed phase,
+    /// `_b` the second.
     pub const NAMES: [&'static str; 13] = [
         "mode",
         "fault",
@@ -261,8 +374,9 @@ impl Supervisor {
 
     /// A supervisor that allows control from the first period on, with nominal offsets.
     #[must_use]
-    pub const fn new(limits: &Limits) -> Self {
-        let offset = Word((limits.offset as i32).wrapping_shl(limits.current_bits));
+    pub const fn new(limits: &Limits, sensors: &Sensors) -> Self {
+        let [first, second] = sensors.both(limits);
+        let bits = limits.current_bits;
         Self {
             mode: Mode::Run,
             fault: None,
@@ -270,7 +384,10 @@ impl Supervisor {
             hall_prev: 0,
             stall_count: Word(0),
             sums: [Word(0); 2],
-            offsets: [offset; 2],
+            offsets: [
+                Word((first.offset as i32).wrapping_shl(bits)),
+                Word((second.offset as i32).wrapping_shl(bits)),
+            ],
             turn: Turn::UNKNOWN,
         }
     }
@@ -283,24 +400,22 @@ impl Supervisor {
     pub fn check(
         &mut self,
         limits: &Limits,
+        sensors: &Sensors,
         sample: &Sample,
         is_demanded: impl FnOnce() -> bool,
     ) -> Option<Checked> {
-        let [adc_a, adc_b, _] = sample.adc;
-        let [offset_a, offset_b] = self.offsets;
-        let i = [
-            limits.current(adc_a.into(), offset_a),
-            limits.current(adc_b.into(), offset_b),
-        ];
+        let [first, second] = sensors.phases.of(sample.adc);
+        let counts = [first.into(), second.into()];
+        let i = limits.sensed(sensors, counts, self.offsets);
         let stalled = self.watch_stall(limits, sample.hall, is_demanded);
         let is_fit = self.mode == Mode::Run
-            && !limits.is_at_end(adc_a)
-            && !limits.is_at_end(adc_b)
+            && !limits.is_at_end(first)
+            && !limits.is_at_end(second)
             && is_hall_code(sample.hall)
             && !limits.is_over(i)
             && !stalled;
         is_fit.then(|| Checked {
-            i,
+            i: sensors.phases.a_and_b(i, || third_of(i)),
             hall: sample.hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         })
@@ -339,18 +454,17 @@ impl Supervisor {
 
     /// A period without control, after a [`check`](Self::check) that gave no sample: continues
     /// start-up, trips on a fault, brakes, and returns what the drive does instead. In the sample,
-    /// counts are clamped to the ADC's range, and an invalid Hall code is 0.
-    pub fn rest(&mut self, limits: &Limits, sample: &Sample) -> (Checked, Rest) {
-        let [adc_a, adc_b, _] = sample.adc;
-        let counts = [adc_a, adc_b].map(|count| Word::from(count).min(limits.adc_max));
-        let [count_a, count_b] = counts;
-        let [offset_a, offset_b] = self.offsets;
+    /// counts are clamped to the ADC's range, the current of a phase without a sensor to that of one
+    /// with a sensor, and an invalid Hall code is 0.
+    pub fn rest(&mut self, limits: &Limits, sensors: &Sensors, sample: &Sample) -> (Checked, Rest) {
+        let adc = sensors.phases.of(sample.adc);
+        let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
+        let i = limits.sensed(sensors, counts, self.offsets);
+        let [least, most] = limits.currents;
+        let third = || third_of(i).min(most).max(least);
         let has_code = is_hall_code(sample.hall);
         let checked = Checked {
-            i: [
-                limits.current(count_a, offset_a),
-                limits.current(count_b, offset_b),
-            ],
+            i: sensors.phases.a_and_b(i, third),
             hall: if has_code {
                 sample.hall.into()
             } else {
@@ -358,11 +472,11 @@ impl Supervisor {
             },
             hall_ticks: sample.hall_ticks.into(),
         };
-        let found = if limits.is_at_end(adc_a) || limits.is_at_end(adc_b) {
+        let found = if adc.into_iter().any(|count| limits.is_at_end(count)) {
             Some(Fault::AdcRange)
         } else if !has_code {
             Some(Fault::Hall)
-        } else if limits.is_over(checked.i) {
+        } else if limits.is_over(i) {
             Some(Fault::OverCurrent)
         } else if self.is_stalled(limits) {
             Some(Fault::Stall)
@@ -378,12 +492,12 @@ impl Supervisor {
             Mode::Brake => self.go_on_braking(limits, sample.hall),
             _ => Rest::Legs(LegState::Off),
         };
-        self.start_up(limits, counts);
+        self.start_up(limits, sensors, counts);
         (checked, rest)
     }
 
     /// Calibration averages the counts of all its samples; then pre-charge counts its periods down.
-    fn start_up(&mut self, limits: &Limits, [count_a, count_b]: [Word; 2]) {
+    fn start_up(&mut self, limits: &Limits, sensors: &Sensors, [count_a, count_b]: [Word; 2]) {
         match self.mode {
             Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Calibrate => {
@@ -393,7 +507,7 @@ impl Supervisor {
                 self.sums = [(sum_a + count_a).min(most), (sum_b + count_b).min(most)];
                 self.countdown = self.countdown.saturating_sub(1);
                 if self.countdown == 0 {
-                    self.end_calibration(limits);
+                    self.end_calibration(limits, sensors);
                 }
             }
             Mode::Precharge => {
@@ -414,13 +528,15 @@ impl Supervisor {
         }
     }
 
-    fn end_calibration(&mut self, limits: &Limits) {
-        let [least, most] = limits
-            .offsets
-            .map(|offset| Word::from(offset) << limits.calibration_log2);
-        let is_bad = |sum: Word| sum < least || sum > most;
-        let [sum_a, sum_b] = self.sums;
-        if is_bad(sum_a) || is_bad(sum_b) {
+    fn end_calibration(&mut self, limits: &Limits, sensors: &Sensors) {
+        let is_bad = |sensor: &Sensor, sum: Word| {
+            let [least, most] = sensor
+                .offsets
+                .map(|offset| Word::from(offset) << limits.calibration_log2);
+            sum < least || sum > most
+        };
+        let ([first, second], [sum_a, sum_b]) = (sensors.both(limits), self.sums);
+        if is_bad(&first, sum_a) || is_bad(&second, sum_b) {
             self.trip(Fault::Offset);
             return;
         }
@@ -479,12 +595,12 @@ impl Supervisor {
 
     /// Clears a trip; keeps calibrated offsets. Control follows, without start-up. False, without
     /// effect, during calibration and pre-charge.
-    pub fn reset(&mut self, limits: &Limits) -> bool {
+    pub fn reset(&mut self, limits: &Limits, sensors: &Sensors) -> bool {
         let may_reset = self.is_ready() || self.mode == Mode::Tripped;
         if may_reset {
             *self = Self {
                 offsets: self.offsets,
-                ..Self::new(limits)
+                ..Self::new(limits, sensors)
             };
         }
         may_reset

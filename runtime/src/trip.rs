@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn a_read_gives_one_trip_whole_or_none() {
         let record = TripRecord::<Law>::new();
-        let supervisor = Supervisor::new(&Law::LIMITS);
+        let supervisor = Supervisor::new(&Law::LIMITS, &Law::SENSORS);
         let keep = |number| record.keep(&trip(number), &supervisor, &Kept(number));
         let mut words = [0; 14];
         assert_eq!(record.read(&mut words), None);

@@ -4,7 +4,7 @@
 //! The program lists its comparisons; their operands' values come from the model.
 
 use crate::set::Set;
-use hexagen::{Limits, Sample, Supervisor};
+use hexagen::{Limits, Sample, Sensors, Supervisor};
 use hexagen_codegen::ir::{Machine, Op, Output, Program, Setter, Value};
 use hexagen_lab::Inputs;
 
@@ -68,7 +68,7 @@ impl Comparisons {
     /// # Panics
     ///
     /// If the program is not that of a drive.
-    pub fn probe(&self, limits: Limits, sample: Sample, set: Set) -> Probe<'_> {
+    pub fn probe(&self, supervised: (Limits, Sensors), sample: Sample, set: Set) -> Probe<'_> {
         let mut machine = Machine::of_program(&self.probe);
         if let Some(counts) = set.bus {
             // A value that leaves its interval shows in the comparison with the model.
@@ -84,7 +84,7 @@ impl Comparisons {
                 Setter::Current
             },
             inputs: Inputs::of(&self.probe).expect("the program of a drive"),
-            limits,
+            supervised,
             sample,
             unguarded: &self.unguarded,
             machine,
@@ -98,7 +98,7 @@ pub struct Probe<'p> {
     machine: Machine<'p>,
     setter: Setter,
     inputs: Inputs,
-    limits: Limits,
+    supervised: (Limits, Sensors),
     sample: Sample,
     unguarded: &'p [bool],
 }
@@ -111,9 +111,10 @@ impl Probe<'_> {
         let (bits, words) = words.split_first()?;
         self.machine.set(self.setter, &[*bits]).ok()?;
         let (supervisor_words, law) = words.split_first_chunk()?;
-        let mut supervisor = Supervisor::new(&self.limits);
+        let (limits, sensors) = &self.supervised;
+        let mut supervisor = Supervisor::new(limits, sensors);
         supervisor.set_words(*supervisor_words);
-        let checked = supervisor.check(&self.limits, &self.sample, || *bits != 0)?;
+        let checked = supervisor.check(limits, sensors, &self.sample, || *bits != 0)?;
         self.machine.state.copy_from_slice(law);
         let results = self.machine.step(&self.inputs.words(&checked)).ok()?;
         let [a, b, guard] = results[RESULTS * comparison..][..RESULTS] else {

@@ -160,17 +160,19 @@ const KINDS_OF_SUPERVISOR: &[Kind] = &[
         [low, replaced(text, code, "LegState::Off", "LegState::Low")].concat()
     }),
     ("phases exchanged", |text, code| {
-        let edits = ["count_a", "sum_a", "offset_a"]
-            .into_iter()
-            .flat_map(|name| {
-                let other = name.replace("_a", "_b");
-                // At its uses, not its declaration.
-                let used = |edit: &Edit| !text[..edit.range.start].ends_with('[');
-                replaced(text, code, name, &other)
-                    .into_iter()
-                    .filter(used)
-                    .collect::<Vec<_>>()
-            });
+        let names = [
+            ("count_a", "count_b"),
+            ("sum_a", "sum_b"),
+            ("first", "second"),
+        ];
+        let edits = names.into_iter().flat_map(|(name, other)| {
+            // At its uses, not its declaration.
+            let used = |edit: &Edit| !text[..edit.range.start].ends_with('[');
+            replaced(text, code, name, other)
+                .into_iter()
+                .filter(used)
+                .collect::<Vec<_>>()
+        });
         edits.collect()
     }),
 ];
@@ -187,7 +189,7 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
 ///
 /// If the text is not the supervisor's.
 pub fn mutants_of_supervisor(text: &str) -> Vec<Mutant> {
-    let behind = text.find("    /// A phase current in words of current");
+    let behind = text.find("    /// The sensed currents in words of current");
     let mut start = behind.expect("what stands behind `Limits::hold`");
     let end = text.find("    /// Mode and fault of the drive.");
     let end = end.expect("what stands before the words");

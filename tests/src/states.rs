@@ -9,10 +9,10 @@ use crate::edges::{self, Watched};
 use crate::equality::{Comparisons, seek_zero};
 use crate::set::Set;
 use fastrand::Rng;
-use hexagen::{Limits, Sample, Supervisor};
+use hexagen::{Limits, Sample, Sensors, Supervisor};
 use hexagen_codegen::pipeline::Generated;
-use hexagen_lab::limits;
-use hexagen_reference::{BitTrue, HallCapture, Spec};
+use hexagen_lab::{limits, sensors};
+use hexagen_reference::{BitTrue, HallCapture, SensedPhases, Spec};
 
 /// Generator of states and of samples for them.
 #[derive(Debug)]
@@ -20,16 +20,19 @@ pub struct States<'a> {
     random: Rng,
     names: &'a [&'static str],
     limits: Limits,
+    sensors: Sensors,
+    sensed: SensedPhases,
     /// Intervals of the state words: the supervisor's, and the law's proven ones.
     ranges: Vec<(i32, i32)>,
     /// Constants of the program, trip level and stall time-out.
     constants: Vec<i32>,
     comparisons: Comparisons,
-    /// Least and greatest valid sum of calibration samples.
-    calibration: [i64; 2],
+    /// Least and greatest valid sum of calibration samples of each sensor.
+    calibration: [[i64; 2]; 2],
     count_bits: u32,
     adc_max: i64,
-    inverted: bool,
+    /// Of each sensor.
+    inverted: [bool; 2],
     /// Trip level, counts.
     trip: i64,
     codes: [u8; 6],
@@ -47,7 +50,15 @@ impl<'a> States<'a> {
     pub fn new(spec: &Spec, generated: &Generated, names: &'a [&'static str], seed: u64) -> Self {
         let inverter = &spec.inverter;
         let program = generated.graph.program();
-        let limits = limits(&generated.interface.limits);
+        let (limits, sensors) = (
+            limits(&generated.interface.limits),
+            sensors(&generated.interface.limits),
+        );
+        let offsets = [
+            Some(limits.offsets),
+            sensors.second.map(|second| second.offsets),
+        ];
+        let offsets = offsets.map(|offsets| offsets.unwrap_or(limits.offsets));
         let words = program.states.iter();
         let words = words.map(|word| (word.interval.low as i32, word.interval.high as i32));
         let constants = program.constants.iter().map(|constant| constant.raw);
@@ -56,18 +67,20 @@ impl<'a> States<'a> {
         Self {
             random: Rng::with_seed(seed),
             names,
-            ranges: supervisor_ranges(&limits)
+            ranges: supervisor_ranges(&limits, offsets)
                 .into_iter()
                 .chain(words)
                 .collect(),
             constants: constants.chain(of_limits).collect(),
             comparisons: Comparisons::of(program),
-            calibration: limits.offsets.map(samples),
+            calibration: offsets.map(|ends| ends.map(samples)),
             count_bits: limits.current_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
-            inverted: inverter.adc_gain.first() < 0.0,
+            inverted: [0, 1].map(|sensor| inverter.adc_gain.of(sensor) < 0.0),
             trip: i64::from(limits.trip) >> limits.current_bits,
             limits,
+            sensors,
+            sensed: inverter.sensed_phases,
             codes: spec.motor.hall_codes,
             age_max: inverter.age_max,
             ticks: inverter.ticks as i32,
@@ -182,7 +195,7 @@ impl<'a> States<'a> {
         }
         let is_slow = self.random.u8(..16) == 0;
         let counts = self.fill_currents(words, is_slow);
-        let sample = Sample::with_hall(counts, hall).hall_ticks(hall_ticks);
+        let sample = self.sensed.sample(counts, hall).hall_ticks(hall_ticks);
         if is_slow {
             self.slow_down(words);
         }
@@ -308,11 +321,13 @@ impl<'a> States<'a> {
             currents = [0; 2];
         }
         let mut counts = [0; 2];
-        for (phase, name) in ["a", "b"].into_iter().enumerate() {
-            let current = if self.inverted {
-                -currents[phase]
+        let third = -(currents[0] + currents[1]);
+        let of_phases = self.sensed.of_phases(currents, third);
+        for (sensor, name) in ["a", "b"].into_iter().enumerate() {
+            let current = if self.inverted[sensor] {
+                -currents[sensor]
             } else {
-                currents[phase]
+                currents[sensor]
             };
             // offset = count 2^bits - current has to lie within its range.
             let place = self.place(&format!("offset_{name}"));
@@ -335,7 +350,7 @@ impl<'a> States<'a> {
                 2 => self.adc_max,
                 _ => count,
             };
-            counts[phase] = count.clamp(0, 65_535) as u16;
+            counts[sensor] = count.clamp(0, 65_535) as u16;
             if let Some(place) = self.place(&format!("i_{name}_prev"))
                 && self.random.u8(..4) != 0
             {
@@ -345,7 +360,7 @@ impl<'a> States<'a> {
                     _ => self.random.i64(-trip..=trip) / 8,
                 };
                 let (low, high) = self.ranges[place];
-                let before = (currents[phase] - change).clamp(i64::from(low), i64::from(high));
+                let before = (of_phases[sensor] - change).clamp(i64::from(low), i64::from(high));
                 words[place] = before as i32;
             }
         }
@@ -407,9 +422,9 @@ impl<'a> States<'a> {
             return;
         }
         words[countdown] = self.random.i32(0..3);
-        let [least, most] = self.calibration;
-        let [adc_a, adc_b, _] = sample.adc();
-        for (place, count) in [(sum_a, adc_a), (sum_b, adc_b)] {
+        let counts = self.sensed.of_sensors(sample.adc());
+        for (sensor, place) in [sum_a, sum_b].into_iter().enumerate() {
+            let ([least, most], count) = (self.calibration[sensor], counts[sensor]);
             let sum = match self.random.u8(..8) {
                 0 => least + self.random.i64(-1..=1),
                 1 => most + self.random.i64(-1..=1),
@@ -458,7 +473,9 @@ impl<'a> States<'a> {
         let comparison = self.random.usize(..self.comparisons.len());
         let mut free = self.free(words);
         free.push(words.len());
-        let mut probe = self.comparisons.probe(self.limits, sample, *set);
+        let mut probe = self
+            .comparisons
+            .probe((self.limits, self.sensors), sample, *set);
         let mut all = [&[set.bits], &*words].concat();
         for _ in 0..3 {
             // The set-point is before the words of the state.
@@ -530,18 +547,21 @@ impl<'a> States<'a> {
 }
 
 /// Least and greatest value of each of the supervisor's words.
-fn supervisor_ranges(limits: &Limits) -> [(i32, i32); Supervisor::NAMES.len()] {
+fn supervisor_ranges(
+    limits: &Limits,
+    offsets: [[u16; 2]; 2],
+) -> [(i32, i32); Supervisor::NAMES.len()] {
     let samples = 1 << limits.calibration_log2;
     let full = i32::from(limits.adc_max) << limits.calibration_log2;
-    let [least, most] = limits
-        .offsets
-        .map(|offset| i32::from(offset) << limits.current_bits);
+    let word = |offset: u16| i32::from(offset) << limits.current_bits;
+    let [first, second] = offsets.map(|[least, most]| (word(least), word(most)));
     Supervisor::NAMES.map(|name| match name {
         "mode" => (0, 5),
         "fault" => (0, 5),
         "countdown" => (0, samples.max(limits.precharge_periods.into())),
         "sum_a" | "sum_b" => (0, full),
-        "offset_a" | "offset_b" => (least, most),
+        "offset_a" => first,
+        "offset_b" => second,
         "stall_count" => (0, limits.stall_periods),
         "hall_prev" if limits.stall_periods > 0 => (0, 6),
         "hall_prev" => (0, 0),

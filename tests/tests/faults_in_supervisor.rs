@@ -1,19 +1,20 @@
 //! The bit-true model's own supervision detects every fault planted in the text of the runtime's
 //! supervisor, except equivalent ones.
 
-use hexagen::Limits;
+use hexagen::{Limits, Sensors};
 use hexagen_codegen::pipeline::Generated;
-use hexagen_lab::{formats, limits};
+use hexagen_lab::{formats, limits, sensors};
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{BitTrue, FormatTable, Mode, Spec, Stop};
 use hexagen_tests::options::{Drive, generate_toml};
+use hexagen_tests::sensors::specification;
 use hexagen_tests::states::States;
 use rayon::prelude::*;
 
 /// A supervisor of one drive.
 trait Supervised {
     /// A period: the passed currents, or the number of the state of all legs if the drive rests.
-    fn period(&mut self, adc: [u16; 2], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
+    fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
     fn reset(&mut self);
     fn calibrate(&mut self);
     fn precharge(&mut self);
@@ -25,38 +26,39 @@ trait Supervised {
 /// Words of a supervisor.
 const WORDS: usize = hexagen::Supervisor::NAMES.len();
 
-type New = fn(Limits) -> Box<dyn Supervised>;
+type New = fn(Limits, Sensors) -> Box<dyn Supervised>;
 
 /// A supervisor of a module, behind the trait.
 macro_rules! new {
     ($module:ident) => {{
-        struct Own($module::Supervisor, $module::Limits);
+        struct Own($module::Supervisor, $module::Limits, $module::Sensors);
         impl Supervised for Own {
             fn period(
                 &mut self,
-                adc: [u16; 2],
+                [adc_a, adc_b, adc_c]: [u16; 3],
                 hall: u8,
                 is_demanded: bool,
             ) -> ([i32; 2], Option<i32>) {
-                let Self(supervisor, limits) = self;
-                let sample = Sample::with_hall(adc, hall);
-                let (checked, leg) = match supervisor.check(limits, &sample, || is_demanded) {
-                    Some(checked) => (checked, None),
-                    None => {
-                        let (checked, rest) = supervisor.rest(limits, &sample);
-                        (
-                            checked,
-                            match rest {
-                                $module::Rest::Legs(leg) => Some(leg as i32),
-                                $module::Rest::Against(_) => None,
-                            },
-                        )
-                    }
-                };
+                let Self(supervisor, limits, sensors) = self;
+                let sample = Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c);
+                let (checked, leg) =
+                    match supervisor.check(limits, sensors, &sample, || is_demanded) {
+                        Some(checked) => (checked, None),
+                        None => {
+                            let (checked, rest) = supervisor.rest(limits, sensors, &sample);
+                            (
+                                checked,
+                                match rest {
+                                    $module::Rest::Legs(leg) => Some(leg as i32),
+                                    $module::Rest::Against(_) => None,
+                                },
+                            )
+                        }
+                    };
                 ([checked.i_a().0, checked.i_b().0], leg)
             }
             fn reset(&mut self) {
-                self.0.reset(&self.1);
+                self.0.reset(&self.1, &self.2);
             }
             fn calibrate(&mut self) {
                 self.0.calibrate(&self.1);
@@ -80,7 +82,7 @@ macro_rules! new {
                 self.0.set_words(words);
             }
         }
-        |limits: Limits| -> Box<dyn Supervised> {
+        |limits: Limits, sensors: Sensors| -> Box<dyn Supervised> {
             let limits = $module::Limits {
                 adc_max: limits.adc_max,
                 adc_inverted: limits.adc_inverted,
@@ -95,7 +97,20 @@ macro_rules! new {
                 sectors: limits.sectors,
                 brake_periods: limits.brake_periods,
             };
-            Box::new(Own($module::Supervisor::new(&limits), limits))
+            let sensors = $module::Sensors {
+                phases: match sensors.phases {
+                    hexagen::SensedPhases::Ab => $module::SensedPhases::Ab,
+                    hexagen::SensedPhases::Bc => $module::SensedPhases::Bc,
+                    hexagen::SensedPhases::Ca => $module::SensedPhases::Ca,
+                },
+                second: sensors.second.map(|second| $module::Sensor {
+                    adc_inverted: second.adc_inverted,
+                    offset: second.offset,
+                    offsets: second.offsets,
+                }),
+            };
+            let supervisor = $module::Supervisor::new(&limits, &sensors);
+            Box::new(Own(supervisor, limits, sensors))
         }
     }};
 }
@@ -109,7 +124,7 @@ macro_rules! new {
     reason = "the runtime's own text, and what a fault leaves without use"
 )]
 mod planted {
-    use super::{Limits, New, Stop, Supervised, WORDS};
+    use super::{Limits, New, Sensors, Stop, Supervised, WORDS};
     use hexagen::{LegState, arith};
     use sample::{Checked, Sample};
     use status::{Fault, Mode, Status};
@@ -140,6 +155,12 @@ const DRIVES: [Drive; 3] = [
     },
 ];
 
+/// Sensors of further drives: in other phases, and unlike.
+const SENSORS: [&str; 2] = [
+    "sensed_phases = \"bc\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]",
+    "sensed_phases = \"ca\"\nadc_offset = [2000, 2048]",
+];
+
 /// Steps in streams, and from arbitrary states, within which a fault must be detected.
 const STEPS: u64 = 200_000;
 
@@ -150,22 +171,29 @@ const EQUIVALENT: &[(&str, &str)] = &[(
 )];
 
 /// A drive without fault.
+#[derive(Clone)]
 struct Sound {
     generated: Generated,
     spec: Spec,
     model: BitTrue,
     limits: Limits,
+    sensors: Sensors,
 }
 
 impl Sound {
     fn of(drive: &Drive) -> Self {
-        let (_, generated) = generate_toml(&drive.toml(None)).expect("the drive generates");
+        Self::of_toml(&drive.toml(None))
+    }
+
+    fn of_toml(toml: &str) -> Self {
+        let (_, generated) = generate_toml(toml).expect("the drive generates");
         let interface = &generated.interface;
         let spec = Spec::from_toml(&interface.spec_toml).expect("a specification");
         let table = FormatTable::new(&formats(&interface.formats));
         Self {
             model: BitTrue::new(&spec, &table).expect("a model"),
             limits: limits(&interface.limits),
+            sensors: sensors(&interface.limits),
             spec,
             generated,
         }
@@ -246,7 +274,7 @@ impl Pair {
         let names = sound.model.state_names();
         let place = |name| names.iter().position(|known| *known == name);
         Self {
-            supervisor: new(sound.limits),
+            supervisor: new(sound.limits, sound.sensors),
             model: sound.model.clone(),
             words: vec![0; names.len()],
             currents: ["i_a_prev", "i_b_prev"]
@@ -278,10 +306,9 @@ impl Pair {
     /// A period of both.
     fn is_same(&mut self, sample: &hexagen::Sample) -> bool {
         let is_demanded = self.model.set_point_words()[0] != 0.0;
-        let [adc_a, adc_b, _] = sample.adc();
         let (currents, leg) = self
             .supervisor
-            .period([adc_a, adc_b], sample.hall(), is_demanded);
+            .period(sample.adc(), sample.hall(), is_demanded);
         self.legs = self.model.step(sample);
         self.model.state_words(&mut self.words);
         let expected = (!self.model.trace().run).then(|| self.legs.state()[0] as i32);
@@ -293,7 +320,9 @@ impl Pair {
 
 #[test]
 fn every_planted_fault_is_detected() {
-    let sound = DRIVES.map(|drive| Sound::of(&drive));
+    let sensors = SENSORS.map(|sensors| specification(sensors, "kind = \"pdcc\""));
+    let mut sound = DRIVES.map(|drive| Sound::of(&drive)).to_vec();
+    sound.extend(sensors.map(|toml| Sound::of_toml(&toml)));
     let noticed = |new: New| sound.iter().any(|sound| sound.differs(new));
     let [(_, healthy), planted @ ..] = planted::SUPERVISORS else {
         panic!("no supervisor");

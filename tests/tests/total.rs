@@ -9,7 +9,7 @@ use hexagen::arith::{
 use hexagen::fixed::types::{I8F24, I16F16};
 use hexagen::{
     Bus, Command, Control, Drive, DynLoop, Fault, FixedBus, Format, Intervals, LegState, Legs,
-    Limits, Mode, Rounding, Sample, Supervisor, ToldBus,
+    Limits, Mode, Rounding, Sample, SensedPhases, Sensor, Sensors, Supervisor, ToldBus,
 };
 use proptest::prelude::*;
 use std::hint::black_box;
@@ -85,6 +85,23 @@ fn sample() -> impl Strategy<Value = Sample> {
 
 fn leg() -> impl Strategy<Value = LegState> {
     any::<i32>().prop_map(LegState::from_number)
+}
+
+/// Sensors that may be invalid.
+fn sensors() -> impl Strategy<Value = Sensors> {
+    let phases = prop_oneof![
+        Just(SensedPhases::Ab),
+        Just(SensedPhases::Bc),
+        Just(SensedPhases::Ca)
+    ];
+    let second = (any::<bool>(), any::<u16>(), any::<[u16; 2]>());
+    let second = second.prop_map(|(adc_inverted, offset, offsets)| Sensor {
+        adc_inverted,
+        offset,
+        offsets,
+    });
+    let second = proptest::option::of(second);
+    (phases, second).prop_map(|(phases, second)| Sensors { phases, second })
 }
 
 /// Limits that may be invalid.
@@ -265,21 +282,22 @@ proptest! {
     #[test]
     fn supervision(
         limits in limits(),
+        sensors in sensors(),
         words in any::<[i32; Supervisor::NAMES.len()]>(),
         samples in proptest::collection::vec((sample(), any::<bool>(), 0..8_u8), 1..20),
     ) {
-        black_box(limits.hold());
-        let mut supervisor = Supervisor::new(&limits);
+        black_box(limits.hold(&sensors));
+        let mut supervisor = Supervisor::new(&limits, &sensors);
         supervisor.set_words(words);
         for (sample, is_demanded, call) in samples {
-            if supervisor.check(&limits, &sample, || is_demanded).is_none() {
-                black_box(supervisor.rest(&limits, &sample));
+            if supervisor.check(&limits, &sensors, &sample, || is_demanded).is_none() {
+                black_box(supervisor.rest(&limits, &sensors, &sample));
             }
             match call {
                 0 => supervisor.calibrate(&limits),
                 1 => supervisor.precharge(&limits),
                 2 => {
-                    supervisor.reset(&limits);
+                    supervisor.reset(&limits, &sensors);
                 }
                 3 => supervisor.coast(),
                 4 => supervisor.brake(),

@@ -7,9 +7,11 @@ use super::current_loop::LoopDesign;
 use super::operation;
 use crate::blocks::Scale;
 use crate::diagnostics::{engineering, frequency, rpm};
-use crate::interface::{Interface, Limits, OptionEntry, PublicConstant, Unit, Units};
+use crate::interface::{
+    Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, Unit, Units,
+};
 use crate::scaling::Scaled;
-use crate::spec::{HallCapture, Rule, Spec, SpeedLoop};
+use crate::spec::{self, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -40,12 +42,13 @@ pub fn interface(
 fn limits(spec: &Spec, scale: Scale) -> Limits {
     let inverter = &spec.inverter;
     let words = |counts: i32| counts << scale.current_bits;
+    let [first, second] = sensors(inverter);
     Limits {
         adc_max: inverter.adc_max() as u16,
-        adc_inverted: inverter.adc_gain < 0.0,
+        adc_inverted: first.adc_inverted,
         current_bits: scale.current_bits,
-        offset: inverter.adc_offset as u16,
-        offsets: inverter.offsets().map(|offset| offset as u16),
+        offset: first.offset,
+        offsets: first.offsets,
         trip: (inverter.trip_current * scale.current() + 0.5).floor() as i32,
         currents: inverter.current_counts().map(words),
         calibration_log2: inverter.calibration_log2,
@@ -54,7 +57,28 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
         sectors: (spec.hall_sectors().into_iter().rev())
             .fold(0, |word, sector| word << 4 | u32::from(sector)),
         brake_periods: spec.brake_periods() as i32,
+        sensors: Sensors {
+            phases: match inverter.sensed_phases {
+                spec::SensedPhases::Bc => SensedPhases::Bc,
+                spec::SensedPhases::Ca => SensedPhases::Ca,
+                spec::SensedPhases::Ab | spec::SensedPhases::Abc => SensedPhases::Ab,
+            },
+            second: (second != first).then_some(second),
+        },
     }
+}
+
+/// First and second sensor.
+fn sensors(inverter: &InverterSpec) -> [Sensor; 2] {
+    let sensors = inverter.sensors();
+    [0, 1].map(|place| {
+        let sensor = sensors[place];
+        Sensor {
+            adc_inverted: sensor.gain < 0.0,
+            offset: sensor.offset as u16,
+            offsets: inverter.offsets(sensor).map(|offset| offset as u16),
+        }
+    })
 }
 
 fn units(spec: &Spec, scale: Scale) -> Units {

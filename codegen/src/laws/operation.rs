@@ -4,7 +4,7 @@ use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, rpm, significant};
-use crate::spec::{BusSource, HallCapture, Spec};
+use crate::spec::{BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec};
 use std::f64::consts::FRAC_PI_3;
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
@@ -20,20 +20,46 @@ fn pairs() -> [String; 6] {
     })
 }
 
+/// The phases with a sensor, and the third.
+fn named_phases(inverter: &InverterSpec) -> [&'static str; 3] {
+    let name = |place: usize| ["a", "b", "c"][place % 3];
+    let first = inverter.sensed_phases.phases()[0];
+    [name(first), name(first + 1), name(first + 2)]
+}
+
+/// What the counts say of the currents.
+fn sensors(inverter: &InverterSpec) -> String {
+    let all = inverter.sensors();
+    let gain = engineering(inverter.adc_gain.abs(), "A");
+    let way = |sensor: &CurrentSensor| if sensor.gain < 0.0 { "fall" } else { "rise" };
+    let [x, y, _] = named_phases(inverter);
+    let (first, second) = (&all[0], &all[1]);
+    if first == second {
+        let [x, y] = if x < y { [x, y] } else { [y, x] };
+        return format!(
+            "Phase currents are positive into the motor; the counts of phases {x} and {y} {} with the current, {gain} each, from {} at zero",
+            way(first),
+            first.offset
+        );
+    }
+    format!(
+        "Phase currents are positive into the motor, {gain} each count; those of phase {x} {} with the current from {}, of phase {y} {} from {} at zero",
+        way(first),
+        first.offset,
+        way(second),
+        second.offset
+    )
+}
+
 /// Signs, sectors, and the sensors' scales.
 pub fn wiring(spec: &Spec) -> Vec<String> {
     let inverter = &spec.inverter;
-    let way = if inverter.adc_gain < 0.0 {
-        "fall"
-    } else {
-        "rise"
-    };
     let codes = spec.motor.hall_codes.map(|code| format!("{code:03b}"));
     let mut lines = vec![
         String::new(),
         "# Signs and wiring".to_owned(),
         String::new(),
-        format!("Phase currents are positive into the motor; the counts of phases a and b {way} with the current, {} each, from {} at zero", engineering(inverter.adc_gain.abs(), "A"), inverter.adc_offset),
+        sensors(inverter),
         "current. Forward is the order of the sectors, in which the EMFs of a, b and c peak one after the other:".to_owned(),
         String::new(),
         "| sector | S1 | S2 | S3 | S4 | S5 | S6 |".to_owned(),
@@ -43,6 +69,13 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
     ];
+    if inverter.sensed_phases != SensedPhases::Ab {
+        let [x, y, z] = named_phases(inverter);
+        lines.extend([
+            String::new(),
+            format!("The current of phase {z}, which has no sensor, is -(i_{x} + i_{y}); its count in the sample is ignored."),
+        ]);
+    }
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
         lines.extend([
             String::new(),

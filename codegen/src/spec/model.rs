@@ -251,24 +251,29 @@ impl InverterSpec {
         (1 << self.adc_bits) - 1
     }
 
-    /// Least and greatest offset that calibration accepts, counts.
-    pub fn offsets(&self) -> [u32; 2] {
-        let (offset, tolerance) = (self.adc_offset, self.offset_tolerance);
+    /// Least and greatest offset of a sensor that calibration accepts, counts.
+    pub fn offsets(&self, sensor: CurrentSensor) -> [u32; 2] {
+        let tolerance = self.offset_tolerance;
         [
-            offset.saturating_sub(tolerance),
-            (offset + tolerance).min(self.adc_max()),
+            sensor.offset.saturating_sub(tolerance),
+            (sensor.offset + tolerance).min(self.adc_max()),
         ]
     }
 
-    /// Least and greatest current of any count at any accepted offset, counts.
+    /// Least and greatest current of any count at any accepted offset of any sensor, counts.
     pub fn current_counts(&self) -> [i32; 2] {
-        let [least, most] = self.offsets().map(|offset| offset as i32);
         let top = self.adc_max() as i32;
-        if self.adc_gain < 0.0 {
-            [least - top, most]
-        } else {
-            [-most, top - least]
-        }
+        let ranges = self.sensors().into_iter().map(|sensor| {
+            let [least, most] = self.offsets(sensor).map(|offset| offset as i32);
+            if sensor.gain < 0.0 {
+                [least - top, most]
+            } else {
+                [-most, top - least]
+            }
+        });
+        ranges.fold([0; 2], |[low, high], [least, most]| {
+            [low.min(least), high.max(most)]
+        })
     }
 
     /// [`BUS_FRESH`] in periods, where the bus is measured.

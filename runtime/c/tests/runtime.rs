@@ -142,8 +142,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ("line", "hall <= 6U", "hall <= 7U"),
         (
             "line",
-            "exceeds(i_c, limits->trip)",
-            "exceeds(-i_c, INT32_MAX)",
+            "exceeds(third, limits->trip)",
+            "exceeds(-third, INT32_MAX)",
         ),
         ("passes ==", "&& hexagen_is_hall_code(sample->hall)", ""),
         (
@@ -153,13 +153,33 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "checked.i_a ==",
-            "limits->adc_inverted ? zero - word",
-            "limits->adc_inverted ? word - zero",
+            "limits->sensors[sensor].inverted ? zero - word",
+            "limits->sensors[sensor].inverted ? word - zero",
+        ),
+        (
+            "checked.i_",
+            "limits->sensors[sensor].inverted ? zero",
+            "limits->sensors[sensor & 0U].inverted ? zero",
+        ),
+        (
+            "checked.i_a ==",
+            "== HEXAGEN_SENSED_BC)          ? third",
+            "== HEXAGEN_SENSED_BC)          ? second",
         ),
         (
             "checked.i_b ==",
-            "count_b = (sample->adc[1] < most) ? sample->adc[1] : most",
-            "count_b = sample->adc[1]",
+            "== HEXAGEN_SENSED_BC)          ? first",
+            "== HEXAGEN_SENSED_BC)          ? third",
+        ),
+        (
+            "checked.i_a ==",
+            "hexagen_third(first, second), limits->current_least, limits->current_most)",
+            "hexagen_third(first, second), INT32_MIN, INT32_MAX)",
+        ),
+        (
+            "checked.i_b ==",
+            "count_b = (read_b < most) ? read_b : most",
+            "count_b = read_b",
         ),
         (
             "supervisor.fault ==",

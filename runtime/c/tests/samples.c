@@ -15,10 +15,17 @@ HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 
 HEXAGEN_LIMITS(wide, 65535, false, 14, 32768, 32000, 33000, INT32_C(500000000),
     -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7,
     0x04236510, 7);
+HEXAGEN_LIMITS_OF(of_b_and_c, 4095, false, 18, 2048, 1946, 2150, INT32_C(400000001),
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0x04236510, 5,
+    HEXAGEN_SENSED_BC, false, 2048, 1946, 2150);
+HEXAGEN_LIMITS_OF(of_c_and_a, 4095, false, 10, 2048, 1946, 2150, INT32_C(2000000),
+    -INT32_C(2195) * 1024, INT32_C(2202) * 1024, 8, 20, 0, 0x04236510, 5,
+    HEXAGEN_SENSED_CA, true, 2000, 1900, 2202);
 HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
     INT32_C(4095) * 8, 8, 1, 0, 0x04236510, 7);
 
-static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &loose };
+static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &of_b_and_c,
+    &of_c_and_a, &loose };
 
 static unsigned long passed;
 static unsigned long tripped[6];
@@ -28,16 +35,20 @@ static int64_t size(int64_t x)
     return (x < 0) ? -x : x;
 }
 
-static int64_t current(const hexagen_limits *limits, int64_t count, int64_t offset)
+static int64_t current(const hexagen_limits *limits, int sensor, int64_t count, int64_t offset)
 {
     const int64_t word = (count - offset) * (INT64_C(1) << limits->current_bits);
-    return limits->adc_inverted ? -word : word;
+    return limits->sensors[sensor].inverted ? -word : word;
 }
+
+/* Phases of the sensors, 0 to 2. */
+static const int phases[3][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 } };
 
 static hexagen_fault fault_of(
     const hexagen_limits *limits, const hexagen_sample *sample, int64_t i_a, int64_t i_b)
 {
-    const uint16_t a = sample->adc[0], b = sample->adc[1];
+    const int *const places = phases[limits->sensed];
+    const uint16_t a = sample->adc[places[0]], b = sample->adc[places[1]];
     const int64_t trip = limits->trip;
     if (a == 0 || b == 0 || a >= limits->adc_max || b >= limits->adc_max) {
         return HEXAGEN_FAULT_ADC_RANGE;
@@ -66,9 +77,12 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
 {
     const volatile int32_t set_point = 1;
     const uint16_t most = limits->adc_max;
-    const int64_t i_a = current(limits, sample.adc[0], offset_a);
-    const int64_t i_b = current(limits, sample.adc[1], offset_b);
-    const hexagen_fault fault = fault_of(limits, &sample, i_a, i_b);
+    const int *const places = phases[limits->sensed];
+    const uint16_t counts[2] = { sample.adc[places[0]], sample.adc[places[1]] };
+    const int64_t first = current(limits, 0, counts[0], offset_a);
+    const int64_t second = current(limits, 1, counts[1], offset_b);
+    const hexagen_fault fault = fault_of(limits, &sample, first, second);
+    int64_t i[3];
     hexagen_supervisor supervisor;
     hexagen_checked checked;
     bool passes;
@@ -81,14 +95,23 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     EXPECT(passes == (mode == HEXAGEN_MODE_RUN && fault == HEXAGEN_FAULT_NONE));
     if (passes) {
         passed += 1;
-        EXPECT(checked.i_a == i_a && checked.i_b == i_b && checked.hall == sample.hall);
+        i[places[0]] = first;
+        i[places[1]] = second;
+        i[3 - places[0] - places[1]] = -(first + second);
+        EXPECT(checked.i_a == i[0] && checked.i_b == i[1] && checked.hall == sample.hall);
     } else {
-        const uint16_t a = (sample.adc[0] < most) ? sample.adc[0] : most;
-        const uint16_t b = (sample.adc[1] < most) ? sample.adc[1] : most;
+        const uint16_t a = (counts[0] < most) ? counts[0] : most;
+        const uint16_t b = (counts[1] < most) ? counts[1] : most;
+        const int64_t low = limits->current_least, high = limits->current_most;
+        int64_t third;
         const hexagen_rested rested = hexagen_rest(&supervisor, limits, &sample, &checked);
         const bool charges = mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE;
-        EXPECT(checked.i_a == current(limits, a, offset_a));
-        EXPECT(checked.i_b == current(limits, b, offset_b));
+        i[places[0]] = current(limits, 0, a, offset_a);
+        i[places[1]] = current(limits, 1, b, offset_b);
+        third = -(i[places[0]] + i[places[1]]);
+        i[3 - places[0] - places[1]] = (third < low) ? low : (third > high) ? high : third;
+        EXPECT(checked.i_a == i[0]);
+        EXPECT(checked.i_b == i[1]);
         EXPECT(checked.hall == ((sample.hall >= 1 && sample.hall <= 6) ? sample.hall : 0));
         EXPECT(rested.leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
         EXPECT(supervisor.fault == ((mode == HEXAGEN_MODE_TRIPPED) ? HEXAGEN_FAULT_NONE : fault));
@@ -114,7 +137,7 @@ static int rests(hexagen_supervisor *supervisor, uint16_t hall, unsigned periods
     bool is_controlled, int32_t against)
 {
     const volatile int32_t set_point = 1;
-    const hexagen_sample sample = hexagen_with_hall(all[0]->offset, all[0]->offset, hall);
+    const hexagen_sample sample = hexagen_with_hall(2048, 2048, hall);
     for (unsigned period = 0; period < periods; period++) {
         hexagen_checked checked;
         hexagen_rested rested;
@@ -156,6 +179,18 @@ static int brakes(void)
     return 0;
 }
 
+/* A sample with counts of the two sensors; that of the third phase says nothing. */
+static hexagen_sample sample_of(
+    const hexagen_limits *limits, uint16_t first, uint16_t second, uint16_t hall)
+{
+    const int *const places = phases[limits->sensed];
+    hexagen_sample sample = hexagen_with_hall(first, first, hall);
+    sample.adc[2] = 0;
+    sample.adc[places[0]] = first;
+    sample.adc[places[1]] = second;
+    return sample;
+}
+
 int main(void)
 {
     if (brakes() != 0) {
@@ -163,18 +198,23 @@ int main(void)
     }
     for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {
         const hexagen_limits *const limits = all[set];
-        const uint16_t ends[2] = { limits->offset_least, limits->offset_most };
-        const uint16_t others[] = { 0, 1, limits->offset, (uint16_t)(limits->adc_max - 1U),
+        const hexagen_sensor *const both = limits->sensors;
+        const uint16_t others[] = { 0, 1, both[0].offset, (uint16_t)(limits->adc_max - 1U),
             limits->adc_max, 65535 };
         for (uint32_t count = 0; count <= 65535; count++) {
             for (unsigned choice = 0; choice < 6 * 4; choice++) {
                 const uint16_t hall = (uint16_t)((count + choice) % 9U);
-                const uint16_t offset_a = ends[choice & 1U], offset_b = ends[(choice >> 1) & 1U];
+                const uint16_t offset_a =
+                    (choice & 1U) ? both[0].offset_most : both[0].offset_least;
+                const uint16_t offset_b =
+                    (choice & 2U) ? both[1].offset_most : both[1].offset_least;
                 const hexagen_mode mode =
                     (count % 7U == 0U) ? (hexagen_mode)(count % 4U) : HEXAGEN_MODE_RUN;
                 const uint16_t other = others[choice >> 2];
-                const hexagen_sample sample = hexagen_with_hall((uint16_t)count, other, hall);
-                const hexagen_sample turned = hexagen_with_hall(other, (uint16_t)count, hall);
+                const hexagen_sample sample =
+                    sample_of(limits, (uint16_t)count, other, hall);
+                const hexagen_sample turned =
+                    sample_of(limits, other, (uint16_t)count, hall);
                 if (try(limits, sample, offset_a, offset_b, mode) != 0
                     || try(limits, turned, offset_a, offset_b, mode) != 0) {
                     return 1;

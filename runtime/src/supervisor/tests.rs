@@ -1,7 +1,7 @@
 //! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
 //! order of faults, and contradictory limits.
 
-use super::{Limits, Rest, Supervisor, Turn};
+use super::{Limits, Rest, Sensors, Supervisor, Turn};
 use crate::arith::Word;
 use crate::{Fault, LegState, Mode, Sample};
 
@@ -58,7 +58,7 @@ const ALL: [Limits; 12] = [
 fn calibrated(limits: &Limits, [offset_a, offset_b]: [i32; 2]) -> Supervisor {
     Supervisor {
         offsets: [Word(offset_a), Word(offset_b)],
-        ..Supervisor::new(limits)
+        ..Supervisor::new(limits, &Sensors::AB)
     }
 }
 
@@ -106,14 +106,14 @@ fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Opt
     let sample = Sample::with_hall(adc, hall).hall_ticks(adc[0]);
     let expected = fault(limits, adc, hall, offsets);
     let held = [0, 1].map(|phase| adc[phase].min(limits.adc_max));
-    let passed = supervisor.check(limits, &sample, || false);
+    let passed = supervisor.check(limits, &Sensors::AB, &sample, || false);
     assert_eq!(
         passed.is_some(),
         expected.is_none(),
         "{limits:?} {sample:?}"
     );
     let checked = passed.unwrap_or_else(|| {
-        let (checked, rest) = supervisor.rest(limits, &sample);
+        let (checked, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
         assert_eq!(rest, Rest::Legs(LegState::Off));
         let status = supervisor.status();
         assert_eq!((status.mode, status.fault), (Mode::Tripped, expected));
@@ -138,7 +138,7 @@ fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Opt
 #[test]
 fn every_count_at_the_ends_and_in_the_middle_of_the_offsets() {
     for limits in &ALL {
-        assert!(limits.hold(), "{limits:?}");
+        assert!(limits.hold(&Sensors::AB), "{limits:?}");
         let mut found = [0_u32; 3];
         for offset in offsets(limits) {
             // Almost no current, for the other phase.
@@ -170,7 +170,8 @@ fn ends_of_the_currents_are_reached() {
         let mut reached = [0; 2];
         for (count, offset) in [(0, most), (u16::MAX, least)] {
             let mut supervisor = calibrated(limits, [offset; 2]);
-            let (checked, _) = supervisor.rest(limits, &Sample::with_hall([count; 2], HALL));
+            let (checked, _) =
+                supervisor.rest(limits, &Sensors::AB, &Sample::with_hall([count; 2], HALL));
             let end = usize::from((count == 0) == limits.adc_inverted);
             reached[end] = checked.i_a().0;
         }
@@ -201,7 +202,7 @@ fn the_trip_level_is_exact() {
             let is = current(limits, count, offset).unsigned_abs() as i32;
             for (trip, expected) in [(is, None), (is - 1, Some(Fault::OverCurrent))] {
                 let limits = Limits { trip, ..*limits };
-                assert!(limits.hold());
+                assert!(limits.hold(&Sensors::AB));
                 let adc = [count, limits.offset];
                 assert_eq!(supervise(&limits, adc, HALL, [offset; 2]), expected);
                 // Half of it in each of two phases: all of it in the third.
@@ -251,16 +252,16 @@ fn faults_are_reported_in_their_order() {
                     countdown: if ends { 1 } else { 9 },
                     hall_prev: HALL,
                     stall_count: Word(if has(3) { limits.stall_periods - 1 } else { 0 }),
-                    ..Supervisor::new(limits)
+                    ..Supervisor::new(limits, &Sensors::AB)
                 };
-                let passed = supervisor.check(limits, &sample, || true);
+                let passed = supervisor.check(limits, &Sensors::AB, &sample, || true);
                 // There is no stall outside control.
                 let expected = expected.filter(|&fault| fault != Fault::Stall || mode == Mode::Run);
                 assert_eq!(passed.is_some(), mode == Mode::Run && expected.is_none());
                 if passed.is_some() {
                     continue;
                 }
-                let (_, rest) = supervisor.rest(limits, &sample);
+                let (_, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
                 let charges = mode == Mode::Precharge && expected.is_none();
                 assert_eq!(
                     rest == Rest::Legs(LegState::Low),
@@ -274,7 +275,10 @@ fn faults_are_reported_in_their_order() {
                     (Mode::Calibrate, None) => (Mode::Tripped, Some(Fault::Offset)),
                     (_, None) => (mode, None),
                 };
-                assert_eq!(supervisor.offsets, Supervisor::new(limits).offsets);
+                assert_eq!(
+                    supervisor.offsets,
+                    Supervisor::new(limits, &Sensors::AB).offsets
+                );
                 assert_eq!(is, should, "{mode:?}, {set:04b}");
             }
         }
@@ -289,9 +293,13 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
     let sample = Sample::with_hall(adc, HALL);
     for period in 0..1_u32 << limits.calibration_log2 {
         assert_eq!(supervisor.mode, Mode::Calibrate, "{period}");
-        assert!(supervisor.check(limits, &sample, || true).is_none());
+        assert!(
+            supervisor
+                .check(limits, &Sensors::AB, &sample, || true)
+                .is_none()
+        );
         assert_eq!(
-            supervisor.rest(limits, &sample).1,
+            supervisor.rest(limits, &Sensors::AB, &sample).1,
             Rest::Legs(LegState::Off)
         );
     }
@@ -300,9 +308,13 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
             return;
         }
         assert_eq!(supervisor.mode, Mode::Precharge, "{period}");
-        assert!(supervisor.check(limits, &sample, || true).is_none());
+        assert!(
+            supervisor
+                .check(limits, &Sensors::AB, &sample, || true)
+                .is_none()
+        );
         assert_eq!(
-            supervisor.rest(limits, &sample).1,
+            supervisor.rest(limits, &Sensors::AB, &sample).1,
             Rest::Legs(LegState::Low)
         );
     }
@@ -318,11 +330,11 @@ fn calibration_takes_offsets_within_their_range_and_no_others() {
                 calibration_log2,
                 ..*limits
             };
-            assert!(limits.hold());
+            assert!(limits.hold(&Sensors::AB));
             for count in [least - 1, least, limits.offset, most, most + 1] {
                 let is_good = (least..=most).contains(&count);
                 for adc in [[count, limits.offset], [limits.offset, count]] {
-                    let mut supervisor = Supervisor::new(&limits);
+                    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
                     start_up(&limits, &mut supervisor, adc);
                     let fault = (!is_good).then_some(Fault::Offset);
                     assert_eq!(supervisor.fault, fault, "{limits:?} {adc:?}");
@@ -346,13 +358,13 @@ fn a_mean_between_two_counts_keeps_its_fraction() {
         (0, 2048),
     ] {
         limits.current_bits = current_bits;
-        let mut supervisor = Supervisor::new(&limits);
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
         supervisor.calibrate(&limits);
         // Three of sixteen samples are one count higher.
         for period in 0..16 {
             let count = 2048 + u16::from(period % 5 == 1);
             let sample = Sample::with_hall([count; 2], HALL);
-            supervisor.rest(&limits, &sample);
+            supervisor.rest(&limits, &Sensors::AB, &sample);
         }
         assert_eq!(supervisor.offsets, [Word(expected); 2], "{current_bits}");
     }
@@ -366,18 +378,22 @@ fn stalls_are_counted_between_codes() {
     let sample = |hall| Sample::with_hall([limits.offset; 2], hall);
     let periods_until_stall = |supervisor: &mut Supervisor, hall: u8| {
         (1..=2 * limits.stall_periods).find(|_| {
-            let passed = supervisor.check(&limits, &sample(hall), || true);
+            let passed = supervisor.check(&limits, &Sensors::AB, &sample(hall), || true);
             passed.is_none() && supervisor.is_stalled(&limits)
         })
     };
     let stall = Some(limits.stall_periods);
     // The first code is no edge.
-    let mut supervisor = Supervisor::new(&limits);
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
     assert_eq!(periods_until_stall(&mut supervisor, 1), stall);
     let begun = |periods: i32| {
-        let mut supervisor = Supervisor::new(&limits);
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
         for _ in 0..periods {
-            assert!(supervisor.check(&limits, &sample(1), || true).is_some());
+            assert!(
+                supervisor
+                    .check(&limits, &Sensors::AB, &sample(1), || true)
+                    .is_some()
+            );
         }
         supervisor
     };
@@ -393,32 +409,44 @@ fn stalls_are_counted_between_codes() {
         Some(limits.stall_periods + 1)
     );
     let mut supervisor = begun(7);
-    assert!(supervisor.check(&limits, &sample(1), || false).is_some());
+    assert!(
+        supervisor
+            .check(&limits, &Sensors::AB, &sample(1), || false)
+            .is_some()
+    );
     assert_eq!(periods_until_stall(&mut supervisor, 1), stall);
     for lost in [0, 7, 8, 0xff] {
         let mut supervisor = begun(7);
-        assert!(supervisor.check(&limits, &sample(lost), || true).is_none());
+        assert!(
+            supervisor
+                .check(&limits, &Sensors::AB, &sample(lost), || true)
+                .is_none()
+        );
         assert_eq!(supervisor.stall_count, 8);
         assert_eq!(supervisor.hall_prev, 1);
     }
     let mut supervisor = begun(7);
     supervisor.calibrate(&limits);
-    assert!(supervisor.check(&limits, &sample(1), || true).is_none());
+    assert!(
+        supervisor
+            .check(&limits, &Sensors::AB, &sample(1), || true)
+            .is_none()
+    );
     assert_eq!(supervisor.stall_count, 0);
     // Without a time-out no stall is detected, whatever the demand.
     let unwatched = Limits {
         stall_periods: 0,
         ..limits
     };
-    let mut supervisor = Supervisor::new(&unwatched);
+    let mut supervisor = Supervisor::new(&unwatched, &Sensors::AB);
     for hall in [1, 5, 1, 1] {
         assert!(
             supervisor
-                .check(&unwatched, &sample(hall), || true)
+                .check(&unwatched, &Sensors::AB, &sample(hall), || true)
                 .is_some()
         );
     }
-    assert_eq!(supervisor, Supervisor::new(&unwatched));
+    assert_eq!(supervisor, Supervisor::new(&unwatched, &Sensors::AB));
 }
 
 #[test]
@@ -436,13 +464,13 @@ fn commands_are_accepted_in_their_modes_only() {
             turn: TURN,
         };
         let mut supervisor = begun.clone();
-        let is_reset = supervisor.reset(&limits);
+        let is_reset = supervisor.reset(&limits, &Sensors::AB);
         let is_off = matches!(mode, Mode::Coast | Mode::Brake);
         let is_ready = mode == Mode::Run || is_off;
         assert_eq!(is_reset, is_ready || mode == Mode::Tripped);
         let cleared = Supervisor {
             offsets: [Word(123); 2],
-            ..Supervisor::new(&limits)
+            ..Supervisor::new(&limits, &Sensors::AB)
         };
         assert_eq!(supervisor, if is_reset { cleared } else { begun.clone() });
 
@@ -518,7 +546,7 @@ fn words_round_trip() {
         offsets: [Word(-9), Word(i32::MAX)],
         turn: TURN,
     };
-    let mut other = Supervisor::new(&ALL[0]);
+    let mut other = Supervisor::new(&ALL[0], &Sensors::AB);
     other.set_words(supervisor.words());
     assert_eq!(other, supervisor);
     let names = Supervisor::NAMES.iter().zip(supervisor.words());
@@ -539,22 +567,30 @@ const TURN: Turn = Turn {
 fn rests<const N: usize>(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> [Rest; N] {
     [(); N].map(|()| {
         let sample = Sample::with_hall([limits.offset; 2], hall);
-        assert!(supervisor.check(limits, &sample, || true).is_none());
-        supervisor.rest(limits, &sample).1
+        assert!(
+            supervisor
+                .check(limits, &Sensors::AB, &sample, || true)
+                .is_none()
+        );
+        supervisor.rest(limits, &Sensors::AB, &sample).1
     })
 }
 
 #[test]
 fn coasting_turns_all_legs_off_without_a_fault_and_still_watches() {
     let limits = limits(12, false, 17);
-    let mut supervisor = Supervisor::new(&limits);
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
     supervisor.coast();
     let off = rests(&mut supervisor, &limits, HALL);
     assert_eq!(off, [Rest::Legs(LegState::Off); 40]);
     assert_eq!(supervisor.status().fault, None);
     assert!(supervisor.resume());
     let sample = Sample::with_hall([limits.offset; 2], HALL);
-    assert!(supervisor.check(&limits, &sample, || false).is_some());
+    assert!(
+        supervisor
+            .check(&limits, &Sensors::AB, &sample, || false)
+            .is_some()
+    );
     supervisor.coast();
     rests::<1>(&mut supervisor, &limits, 7);
     assert_eq!(supervisor.status().fault, Some(Fault::Hall));
@@ -566,7 +602,7 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
     let limits = limits(12, false, 17);
     let (off, low) = (Rest::Legs(LegState::Off), Rest::Legs(LegState::Low));
     let [forward, backward] = [1, -1].map(|direction| Rest::Against(Word(direction)));
-    let mut supervisor = Supervisor::new(&limits);
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
     supervisor.brake();
     // Nothing is known of the rotor, until it has stood for five periods.
     let unknown = Rest::Against(Word(0));
@@ -596,7 +632,7 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
         brake_periods: 0,
         ..limits
     };
-    let mut supervisor = Supervisor::new(&always);
+    let mut supervisor = Supervisor::new(&always, &Sensors::AB);
     supervisor.brake();
     assert_eq!(rests(&mut supervisor, &always, 1), [low; 9]);
     assert_eq!(rests(&mut supervisor, &always, 5), [low; 9]);
@@ -660,7 +696,7 @@ fn contradictory_limits_do_not_hold() {
         for (what, variant) in CONTRADICTIONS {
             let mut planted = *limits;
             variant(&mut planted);
-            assert!(!planted.hold(), "{what}: {planted:?}");
+            assert!(!planted.hold(&Sensors::AB), "{what}: {planted:?}");
         }
     }
 }
@@ -670,7 +706,7 @@ fn contradictory_limits_do_not_hold() {
 fn words_that_do_not_fit_do_not_hold() {
     for adc_bits in [8, 12, 16] {
         for adc_inverted in [false, true] {
-            let holds = |bits| limits(adc_bits, adc_inverted, bits).hold();
+            let holds = |bits| limits(adc_bits, adc_inverted, bits).hold(&Sensors::AB);
             assert!(holds(30 - adc_bits));
             assert!(!holds(31 - adc_bits), "the third current needs a bit more");
         }

@@ -1,7 +1,7 @@
 //! The generator's interpreter as a drive.
 
-use crate::{Inputs, limits};
-use hexagen::{Fault, LegState, Legs, Limits, Rest, Sample, Supervisor};
+use crate::{Inputs, limits, sensors};
+use hexagen::{Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
 use hexagen_codegen::interface::Interface;
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
 use hexagen_reference::Stop;
@@ -18,6 +18,7 @@ pub struct Interpreted<'g> {
     machine: Machine<'g>,
     supervisor: Supervisor,
     limits: Limits,
+    sensors: Sensors,
     bus: Option<BusWatch>,
     places: Places,
     escape: Arc<OnceLock<Escape>>,
@@ -85,13 +86,14 @@ impl<'g> Interpreted<'g> {
     /// If the program is not of a drive (inputs, outputs or words are missing), or its limits are
     /// contradictory.
     pub fn new(program: &'g Program, interface: &Interface) -> Self {
-        let limits = limits(&interface.limits);
-        assert!(limits.hold(), "contradictory limits: {limits:?}");
+        let (limits, sensors) = (limits(&interface.limits), sensors(&interface.limits));
+        assert!(limits.hold(&sensors), "contradictory limits: {limits:?}");
         Self {
             program,
             machine: Machine::of_program(program),
-            supervisor: Supervisor::new(&limits),
+            supervisor: Supervisor::new(&limits, &sensors),
             limits,
+            sensors,
             bus: interface.bus_periods.map(|periods| BusWatch {
                 told: false,
                 left: 0,
@@ -127,13 +129,14 @@ impl<'g> Interpreted<'g> {
             machine,
             supervisor,
             limits,
+            sensors,
             places,
             ..
         } = self;
         let is_demanded = machine.params[places.set_point] != 0;
-        let checked = match supervisor.check(limits, sample, || is_demanded) {
+        let checked = match supervisor.check(limits, sensors, sample, || is_demanded) {
             Some(checked) => checked,
-            None => match supervisor.rest(limits, sample) {
+            None => match supervisor.rest(limits, sensors, sample) {
                 (checked, Rest::Legs(leg)) => {
                     machine.rest(&places.inputs.words(&checked))?;
                     return Ok(Legs::all(leg));
@@ -196,7 +199,7 @@ impl Subject for Interpreted<'_> {
     }
 
     fn reset(&mut self) {
-        if self.supervisor.reset(&self.limits) {
+        if self.supervisor.reset(&self.limits, &self.sensors) {
             let words = self.program.states.iter();
             self.machine.state = words.map(|word| word.initial).collect();
             self.machine.params[self.places.set_point] = 0;

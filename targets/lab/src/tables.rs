@@ -1,6 +1,6 @@
 //! Tables of a generated drive in the types of the runtime.
 
-use hexagen::{Format, Limits, Rounding, Supervisor};
+use hexagen::{Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor};
 use hexagen_codegen::interface::{self, FormatEntry};
 use hexagen_codegen::ir::Program;
 use std::collections::BTreeSet;
@@ -27,6 +27,7 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         stall_periods,
         sectors,
         brake_periods,
+        sensors: _,
     } = *limits;
     Limits {
         adc_max,
@@ -41,6 +42,23 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         stall_periods,
         sectors,
         brake_periods,
+    }
+}
+
+/// The current sensors.
+pub fn sensors(limits: &interface::Limits) -> Sensors {
+    let interface::Sensors { phases, second } = limits.sensors;
+    Sensors {
+        phases: match phases {
+            interface::SensedPhases::Ab => SensedPhases::Ab,
+            interface::SensedPhases::Bc => SensedPhases::Bc,
+            interface::SensedPhases::Ca => SensedPhases::Ca,
+        },
+        second: second.map(|second| Sensor {
+            adc_inverted: second.adc_inverted,
+            offset: second.offset,
+            offsets: second.offsets,
+        }),
     }
 }
 

@@ -30,12 +30,12 @@ fn numbers(file: &BoardFile) -> Numbers {
         .inverter
         .field("sensed_phases")
         .map(|field| &field.value);
-    let is_ab = phases.is_none_or(|value| matches!(value, Value::Word(word) if word == "ab"));
+    let is_abc = phases.is_some_and(|value| matches!(value, Value::Word(word) if word == "abc"));
     Numbers {
         bus: [all("bus_min"), all("bus_max")],
         gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
         period: number("f_pwm").map(|frequency| periods / frequency),
-        waits: !is_ab || periods > 1.0,
+        waits: is_abc || periods > 1.0,
     }
 }
 

@@ -7,6 +7,7 @@ use hexagen_lab::engine::{Prepared, Verifier, prepare_ast};
 use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::kinds;
+use hexagen_tests::sensors;
 use rayon::prelude::*;
 use std::process::Command;
 use std::{env, fs};
@@ -62,6 +63,19 @@ fn emitted_c_is_bit_true() {
         println!("{}: {rows} drives", kind.name);
         assert!(rows >= 16, "{}", kind.name);
     }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn emitted_c_of_other_sensors_is_bit_true() {
+    let failures: Vec<String> = sensors::drives()
+        .par_iter()
+        .enumerate()
+        .filter_map(|(place, (what, toml))| {
+            let flags = if place % CHECKED == 0 { CHECK } else { "" };
+            difference(&prepared(toml, what), flags, place as u64)
+        })
+        .collect();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 

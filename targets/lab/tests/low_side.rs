@@ -44,6 +44,11 @@ struct Run {
 
 /// A drive that was generated for `sensors`, at full current, on a plant whose sensors are in the low legs.
 fn run(sensors: &str, controller: &str, rpm: f64) -> Run {
+    run_on(sensors, SENSORS, controller, rpm)
+}
+
+/// The same on a plant with its own sensors.
+fn run_on(sensors: &str, own: &str, controller: &str, rpm: f64) -> Run {
     let checked = |sensors: &str| {
         let text = format!("{MOTOR}{sensors}[controller]\n{controller}\n");
         parse_toml(&text, "m.toml")
@@ -54,7 +59,7 @@ fn run(sensors: &str, controller: &str, rpm: f64) -> Run {
     let generated = generate(&spec, &origins).expect("a drive");
     let mut drive = Interpreted::new(generated.graph.program(), &generated.interface);
     drive.set_current(20 << 16);
-    let params = plant_of(&checked(SENSORS).0);
+    let params = plant_of(&checked(own).0);
     let mut plant = Plant::new(params, 0.117, rpm * TAU / 60.0).expect("a plant");
     let mut pending = hexagen::Legs::OFF;
     let mut torque = 0.0;
@@ -69,6 +74,25 @@ fn run(sensors: &str, controller: &str, rpm: f64) -> Run {
     Run {
         blind: plant.blind_samples(),
         torque,
+    }
+}
+
+/// The same controller with its sensors in any two legs, and unlike: it reads the currents of the right ones.
+#[test]
+fn sensors_of_any_two_legs_show_the_same_torque() {
+    let controller = "kind = \"pdcc\"";
+    let expected = run(SENSORS, controller, 1500.0).torque;
+    for sensors in [
+        "sensed_phases = \"bc\"\n",
+        "sensed_phases = \"ca\"\n",
+        "sensed_phases = \"ca\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]\n",
+    ] {
+        let sensors = format!("{SENSORS}{sensors}");
+        let own = run_on(&sensors, &sensors, controller, 1500.0);
+        assert_eq!(own.blind, 0, "{sensors}");
+        assert!((own.torque / expected - 1.0).abs() < 0.01, "{sensors}: {} Nm", own.torque);
+        let other = run_on(&sensors, SENSORS, controller, 1500.0);
+        assert!(other.torque < 0.5 * expected, "{sensors}: {} Nm", other.torque);
     }
 }
 

@@ -24,6 +24,6 @@ pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Stop
 pub use spec::{
     Bus, BusSense, Candidates, CommonMode, CommutationEnd, Controller, Discretisation,
     EmfShapeKind, EmfSource, FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg,
-    PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Spec, Switch, SwitchingTable,
+    PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, SensedPhases, Spec, Switch, SwitchingTable,
 };
 pub use verify::assert_bit_true;

@@ -7,6 +7,7 @@
 mod controller;
 
 use crate::Error;
+use hexagen::Sample;
 use serde::Deserialize;
 
 pub use controller::{
@@ -199,6 +200,26 @@ impl SensedPhases {
             Self::Ca => &[2, 0],
             Self::Abc => &[0, 1, 2],
         }
+    }
+
+    /// What belongs to the first two sensors, of what belongs to phases a, b, c.
+    pub fn of_sensors<T: Copy>(self, of_phases: [T; 3]) -> [T; 2] {
+        [0, 1].map(|sensor| of_phases[self.phases()[sensor]])
+    }
+
+    /// What belongs to phases a, b, c, of what belongs to the first two sensors and the third phase.
+    pub fn of_phases<T: Copy>(self, [first, second]: [T; 2], third: T) -> [T; 3] {
+        let mut all = [third; 3];
+        all[self.phases()[0]] = first;
+        all[self.phases()[1]] = second;
+        all
+    }
+
+    /// A sample with these counts of two sensors, and of a phase without one a count that says nothing.
+    pub fn sample(self, counts: [u16; 2], hall: u8) -> Sample {
+        let none = if self == Self::Ab { 0 } else { !counts[0] };
+        let [adc_a, adc_b, adc_c] = self.of_phases(counts, none);
+        Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c)
     }
 }
 

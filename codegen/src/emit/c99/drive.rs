@@ -4,7 +4,7 @@ use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
 use super::names::{Names, number, typed_number};
 use crate::emit::path::SINGLE;
-use crate::interface::{Interface, Limits, Unit};
+use crate::interface::{Interface, Limits, SensedPhases, Sensor, Sensors, Unit};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
@@ -76,11 +76,15 @@ impl Drive<'_> {
     /// Limits, units and initial state.
     pub(super) fn constants(&self) -> String {
         let Interface { limits, units, .. } = self.interface;
-        let limits = arguments(limits).map(|(value, name)| format!("{value} /* {name} */"));
+        let (macro_name, arguments) = limits_of(limits);
+        let arguments = arguments.into_iter();
+        let limits: Vec<String> = arguments
+            .map(|(value, name)| format!("{value} /* {name} */"))
+            .collect();
         let limits = limits.join(&format!(",\n{INDENT}"));
         let comment = "Limits of samples, and start-up.";
         let mut text = self.names.comment("", &[comment]);
-        let _ = write!(text, "HEXAGEN_LIMITS(limits,\n{INDENT}{limits});\n\n");
+        let _ = write!(text, "{macro_name}(limits,\n{INDENT}{limits});\n\n");
 
         let mut signals = self.names.comment("", &["Units of the signals."]);
         let sectors = units.sectors.map(|sector| sector.to_string()).join(", ");
@@ -588,6 +592,37 @@ impl Drive<'_> {
             },
         ]
     }
+}
+
+/// The runtime's macro for these limits, and its arguments with their names.
+fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static str)>) {
+    let mut all = arguments(limits).to_vec();
+    let Sensors { phases, second } = limits.sensors;
+    if limits.sensors == Sensors::AB {
+        return ("HEXAGEN_LIMITS", all);
+    }
+    let phases = match phases {
+        SensedPhases::Ab => "HEXAGEN_SENSED_AB",
+        SensedPhases::Bc => "HEXAGEN_SENSED_BC",
+        SensedPhases::Ca => "HEXAGEN_SENSED_CA",
+    };
+    let Sensor {
+        adc_inverted,
+        offset,
+        offsets: [least, most],
+    } = second.unwrap_or(Sensor {
+        adc_inverted: limits.adc_inverted,
+        offset: limits.offset,
+        offsets: limits.offsets,
+    });
+    all.extend([
+        (phases.to_owned(), "sensed"),
+        (format!("{adc_inverted}"), "second_inverted"),
+        (format!("{offset}"), "second_offset"),
+        (format!("{least}"), "second_least"),
+        (format!("{most}"), "second_most"),
+    ]);
+    ("HEXAGEN_LIMITS_OF", all)
 }
 
 /// The limits with their names, in the order of the runtime's macro.

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 16] = [
+const SHARED: [&str; 19] = [
     "Checked",
     "Control",
     "FixedBus",
@@ -23,6 +23,9 @@ const SHARED: [&str; 16] = [
     "MeasuredBus",
     "Observation",
     "Rounding",
+    "SensedPhases",
+    "Sensor",
+    "Sensors",
     "SpeedLoop",
     "ToldBus",
     "Unit",

@@ -5,7 +5,8 @@ use super::imports::unsettled;
 use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
 use crate::interface::{
-    FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, Unit,
+    FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, SensedPhases, Sensor,
+    Sensors, Unit,
 };
 use crate::ir::{Demand, Program, Setter};
 
@@ -66,6 +67,10 @@ impl Types<'_> {
         } = self.interface;
         let spec = raw_text(spec_toml);
         let formats = formats.iter().map(format);
+        let sensors = (limits.sensors != Sensors::AB).then(|| {
+            let sensors = sensors_of(limits.sensors);
+            quote!(const SENSORS: Sensors = #sensors;)
+        });
         let limits = limits_of(limits);
         let [ampere, volt, volt_per_count, rpm] =
             [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
@@ -112,6 +117,7 @@ impl Types<'_> {
                 const SPEC: &'static str = #spec;
                 const FORMATS: &'static [Format] = &[#(#formats),*];
                 const LIMITS: Limits = #limits;
+                #sensors
                 const UNITS: Units = Units {
                     ampere: #ampere,
                     volt: #volt,
@@ -205,6 +211,39 @@ fn limits_of(limits: &Limits) -> Source {
             stall_periods: #stall,
             sectors: #sectors,
             brake_periods: #brake,
+        }
+    }
+}
+
+fn sensors_of(sensors: Sensors) -> Source {
+    let phases = match sensors.phases {
+        SensedPhases::Ab => quote!(Ab),
+        SensedPhases::Bc => quote!(Bc),
+        SensedPhases::Ca => quote!(Ca),
+    };
+    let second = match sensors.second {
+        None => quote!(None),
+        Some(Sensor {
+            adc_inverted,
+            offset,
+            offsets,
+        }) => {
+            let inverted = Source::of(adc_inverted.to_string());
+            let offset = number(offset.into());
+            let [least, most] = offsets.map(|offset| number(offset.into()));
+            quote! {
+                Some(Sensor {
+                    adc_inverted: #inverted,
+                    offset: #offset,
+                    offsets: [#least, #most],
+                })
+            }
+        }
+    };
+    quote! {
+        Sensors {
+            phases: SensedPhases::#phases,
+            second: #second,
         }
     }
 }

@@ -8,6 +8,7 @@ use hexagen_codegen::spec::{self, Spec};
 /// time of the specification, ideal diodes, the shaft held at its speed.
 pub fn plant_of(spec: &Spec) -> PlantParams {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let sensors = inverter.sensors();
     PlantParams {
         pole_pairs: motor.pole_pairs,
         resistance: [motor.resistance; 3],
@@ -22,11 +23,12 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         timer_period: inverter.timer_period as u16,
         dead_time: inverter.dead_time,
         diode_drop: 0.0,
-        adc: [AdcChannel {
+        adc: [0, 1].map(|place| AdcChannel {
             bits: inverter.adc_bits,
-            amperes_per_count: inverter.adc_gain,
-            offset: f64::from(inverter.adc_offset),
-        }; 2],
+            amperes_per_count: sensors[place].gain,
+            offset: f64::from(sensors[place].offset),
+        }),
+        sensed: [0, 1].map(|place| inverter.sensed_phases.phases()[place]),
         low_side: low_side_of(inverter),
         hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
         hall_codes: motor.hall_codes,

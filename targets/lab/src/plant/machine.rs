@@ -148,8 +148,13 @@ impl Plant {
     pub fn sample(&self) -> Sample {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
-        let count = |phase: usize| adc::convert(&self.params.adc[phase], self.seen(phase));
-        Sample::with_hall([count(0), count(1)], self.sensors.code(self.theta_e))
+        let mut counts = [0; 3];
+        for (channel, phase) in self.params.adc.iter().zip(self.params.sensed) {
+            counts[phase] = adc::convert(channel, self.seen(phase));
+        }
+        let [adc_a, adc_b, adc_c] = counts;
+        Sample::with_hall([adc_a, adc_b], self.sensors.code(self.theta_e))
+            .third_current(adc_c)
             .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
     }
 
@@ -175,11 +180,11 @@ impl Plant {
         else {
             return;
         };
-        let is_blind = |phase: &usize| {
-            self.seen(*phase) != self.currents[*phase]
-                || !adc::is_held(low_side, command, *phase, timer_period, t_s)
+        let is_blind = |phase: &&usize| {
+            self.seen(**phase) != self.currents[**phase]
+                || !adc::is_held(low_side, command, **phase, timer_period, t_s)
         };
-        self.blind += (0..self.params.adc.len()).filter(is_blind).count() as u64;
+        self.blind += self.params.sensed.iter().filter(is_blind).count() as u64;
     }
 
     /// Runs one PWM period under a command.

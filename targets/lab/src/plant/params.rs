@@ -91,8 +91,11 @@ pub struct PlantParams {
     pub dead_time: f64,
     /// Forward drop of the freewheel diodes in volts; 0 for ideal diodes. Switches are ideal.
     pub diode_drop: f64,
-    /// Current channels of phases a and b.
+    /// Current channels.
     pub adc: [AdcChannel; 2],
+    /// Their phases, 0 to 2 for a to c.
+    #[serde(default = "a_and_b")]
+    pub sensed: [usize; 2],
     /// Whether the sensors are in the low legs; else they are in the phases.
     #[serde(default)]
     pub low_side: Option<LowSide>,
@@ -124,6 +127,11 @@ pub enum PlantError {
     },
 }
 
+/// The phases of current channels that no file names.
+fn a_and_b() -> [usize; 2] {
+    [0, 1]
+}
+
 impl PlantParams {
     /// An ideal plant with equal phases: trapezoidal EMF with a 120 degree flat top, no dead time,
     /// ideal diodes, 12-bit channels of +-40 A, standard Hall wiring, fixed speed, 1800 timer
@@ -143,6 +151,7 @@ impl PlantParams {
             dead_time: 0.0,
             diode_drop: 0.0,
             adc: [AdcChannel::bipolar(12, 40.0); 2],
+            sensed: a_and_b(),
             low_side: None,
             hall_ticks_per_period: 1800.0,
             hall_codes: STANDARD_HALL_CODES,
@@ -281,6 +290,13 @@ impl PlantParams {
                 &format!("from 0 to {} counts", full_scale(channel.bits)),
             )?;
         }
+        let [first, second] = self.sensed;
+        require(
+            first < 3 && second < 3 && first != second,
+            "sensed",
+            (second as f64, ""),
+            "two different phases, 0 to 2",
+        )?;
         let ticks = self.hall_ticks_per_period;
         require(
             positive(ticks),

@@ -110,7 +110,7 @@ impl<W: Word> BitTrue<W> {
             variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
-            limits: Limits::new(spec, k.i_trip)?,
+            limits: Limits::new(spec, k.i_trip, k.count)?,
             j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
             speed_ref: word(0.0),
             speed,
@@ -124,7 +124,10 @@ impl<W: Word> BitTrue<W> {
             law: Law::new(spec, &scale)?,
             k,
         };
-        model.state.offset = [word(model.k.offset); 2];
+        model.state.offset = model
+            .limits
+            .adc_offset
+            .map(|offset| word(offset * model.k.count));
         Ok(model)
     }
 
@@ -284,12 +287,13 @@ impl<W: Word> BitTrue<W> {
         }
         let k = &self.k;
         // 1 measure
-        let [adc_a, adc_b, _] = sample.adc();
-        let adc: [W; 2] = [input(adc_a), input(adc_b)];
+        let limits = &self.limits;
+        let adc: [W; 2] = limits.sensed.of_sensors(sample.adc()).map(input);
         let counted = |x: usize| {
-            (lesser(adc[x], self.limits.adc_max) * k.count - self.state.offset[x]) * k.polarity
+            (lesser(adc[x], limits.adc_max) * k.count - self.state.offset[x]) * limits.polarity[x]
         };
-        let i = [counted(0), counted(1)];
+        let measured = limits.phases([counted(0), counted(1)]);
+        let i = limits.for_law(measured);
         let i_c = -(i[0] + i[1]);
 
         // 2 hall, 3 supervise
@@ -298,7 +302,7 @@ impl<W: Word> BitTrue<W> {
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
-            i: [i[0], i[1], i_c],
+            i: measured,
             hall: sample.hall(),
             demand: match self.speed {
                 Some(_) => self.speed_ref != 0.0,

@@ -71,7 +71,6 @@ pub struct Ideal {
     clock: HallClock,
     limits: Limits,
     gain: f64,
-    offset_nominal: f64,
     bus_sense: Option<BusSense>,
     bus_count_max: f64,
     timer_period: u16,
@@ -105,11 +104,11 @@ impl Ideal {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
         let phase = DiscretePhase::new(spec);
         let bus_sense = inverter.bus_sense()?;
-        let gain = inverter.adc_gain.first();
+        let gain = inverter.adc_gain.first().abs();
         // A current of exactly the trip level is not above it, whatever these floating-point
         // numbers lose.
-        let trip_current = inverter.trip_current + 1e-6 * inverter.adc_gain.first().abs();
-        let limits = Limits::new(spec, trip_current)?;
+        let trip_current = inverter.trip_current + 1e-6 * gain;
+        let limits = Limits::new(spec, trip_current, gain)?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
             variant: Variant::new(spec),
@@ -121,11 +120,10 @@ impl Ideal {
             clock: HallClock::new(spec),
             limits,
             gain,
-            offset_nominal: f64::from(inverter.adc_offset.first()),
             bus_sense,
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,
-            di_limit: phase.di_limit(inverter)? * gain.abs(),
+            di_limit: phase.di_limit(inverter)? * gain,
             e_max: 1.5 * motor.emf_constant * inverter.omega_max,
             motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,
@@ -146,7 +144,7 @@ impl Ideal {
             state: PhysicalState::default(),
             trace: Trace::default(),
         };
-        ideal.state.offset = [ideal.offset_nominal; 2];
+        ideal.state.offset = ideal.limits.adc_offset;
         Ok(ideal)
     }
 
@@ -241,10 +239,13 @@ impl Ideal {
     /// One control period: reads the sample, returns the exact command.
     pub fn step(&mut self, sample: &Sample) -> Duties {
         // 1 measure
-        let [adc_a, adc_b, _] = sample.adc();
-        let adc = [adc_a, adc_b].map(f64::from);
-        let [i_a, i_b] =
-            [0, 1].map(|x| (adc[x].min(self.limits.adc_max) - self.state.offset[x]) * self.gain);
+        let limits = &self.limits;
+        let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
+        let sensed = [0, 1].map(|x| {
+            (adc[x].min(limits.adc_max) - self.state.offset[x]) * limits.polarity[x] * self.gain
+        });
+        let measured = limits.phases(sensed);
+        let [i_a, i_b] = limits.for_law(measured);
         let i_abc = Vector3::new(i_a, i_b, -(i_a + i_b));
         let i = clarke(&i_abc);
 
@@ -254,7 +255,7 @@ impl Ideal {
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
-            i: i_abc.into(),
+            i: measured,
             hall: sample.hall(),
             demand: match self.speed_loop {
                 Some(_) => self.speed != 0.0,

@@ -3,9 +3,9 @@
 //! compared in the model's unit.
 
 use crate::Error;
-use crate::exact::{Word, greater, lesser, word};
+use crate::exact::{Word, greater, lesser, within, word};
 use crate::model::sector::hall_sectors;
-use crate::spec::{Bus, Inverter, Spec};
+use crate::spec::{Bus, Inverter, SensedPhases, Spec};
 use hexagen::Fault;
 
 /// Being off on purpose, or its end.
@@ -77,13 +77,19 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
     }
 }
 
-/// Limits of the supervision, `i_trip` in the model's unit of current.
+/// Limits of the supervision, currents in the model's unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub adc_max: f64,
-    /// Count at zero current, and its tolerance in calibration.
-    pub adc_offset: f64,
+    /// The phases with a sensor.
+    pub sensed: SensedPhases,
+    /// 1, or -1 where the counts of a sensor fall with the current.
+    pub polarity: [f64; 2],
+    /// Count of each sensor at zero current, and its tolerance in calibration.
+    pub adc_offset: [f64; 2],
     pub offset_tolerance: f64,
+    /// Least and greatest current of any sensor at any of its offsets, in the model's unit.
+    pub currents: [f64; 2],
     pub i_trip: f64,
     pub calibration_samples: f64,
     pub precharge_periods: f64,
@@ -95,8 +101,20 @@ pub struct Limits {
 }
 
 impl Limits {
-    pub fn new(spec: &Spec, i_trip: f64) -> Result<Self, Error> {
+    /// Those of a specification; the trip level, and what a count is worth, in the model's unit.
+    pub fn new(spec: &Spec, i_trip: f64, count: f64) -> Result<Self, Error> {
         let inverter = &spec.inverter;
+        let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
+        let polarity = [0, 1].map(|sensor| inverter.adc_gain.of(sensor).signum());
+        let adc_offset = [0, 1].map(|sensor| f64::from(inverter.adc_offset.of(sensor)));
+        let tolerance = f64::from(inverter.offset_tolerance);
+        let ends = [0, 1].map(|sensor: usize| {
+            let far = (adc_offset[sensor] + tolerance).min(adc_max);
+            let near = (adc_offset[sensor] - tolerance).max(0.0);
+            let ends = [-far, adc_max - near].map(|end| end * count * polarity[sensor]);
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        });
+        let currents = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
         let samples = 1u32
             .checked_shl(inverter.calibration_log2)
             .ok_or(Error::Field {
@@ -105,9 +123,12 @@ impl Limits {
                 expected: "expected less than 32",
             })?;
         Ok(Self {
-            adc_max: f64::from((1u32 << inverter.adc_bits) - 1),
-            adc_offset: f64::from(inverter.adc_offset.first()),
-            offset_tolerance: f64::from(inverter.offset_tolerance),
+            adc_max,
+            sensed: inverter.sensed_phases,
+            polarity,
+            adc_offset,
+            offset_tolerance: tolerance,
+            currents,
             i_trip,
             calibration_samples: f64::from(samples),
             precharge_periods: f64::from(inverter.precharge_periods),
@@ -167,10 +188,29 @@ impl BusWatch {
     }
 }
 
+impl Limits {
+    /// Currents of all phases, of those that are sensed: the third phase has the rest.
+    pub fn phases<W: Word>(&self, [first, second]: [W; 2]) -> [W; 3] {
+        self.sensed.of_phases([first, second], -(first + second))
+    }
+
+    /// The currents of phases a and b for the law: that of a phase without a sensor is limited to what a sensor
+    /// shows, which at rest it may exceed.
+    pub fn for_law<W: Word>(&self, [i_a, i_b, _]: [W; 3]) -> [W; 2] {
+        let [least, most] = self.currents;
+        let limited = |i| within(i, least, most);
+        match self.sensed {
+            SensedPhases::Bc => [limited(i_a), i_b],
+            SensedPhases::Ca => [i_a, limited(i_b)],
+            SensedPhases::Ab | SensedPhases::Abc => [i_a, i_b],
+        }
+    }
+}
+
 /// The supervisor's inputs of one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<W> {
-    /// ADC counts as read.
+    /// ADC counts of the two sensors, as read.
     pub adc: [W; 2],
     /// Phase currents.
     pub i: [W; 3],
@@ -359,10 +399,11 @@ impl<W: Word> Supervisor<W> {
                 }
                 self.countdown = greater(self.countdown - 1.0, 0.0);
                 let samples = limits.calibration_samples;
-                let is_far = |sum: &W| {
-                    (*sum - limits.adc_offset * samples).abs() > limits.offset_tolerance * samples
+                let is_far = |(sum, offset): (&W, f64)| {
+                    (*sum - offset * samples).abs() > limits.offset_tolerance * samples
                 };
-                if self.countdown == 0.0 && self.sum.iter().any(is_far) {
+                let mut sums = self.sum.iter().zip(limits.adc_offset);
+                if self.countdown == 0.0 && sums.any(is_far) {
                     self.mode = Mode::Tripped;
                     self.fault = Some(Fault::Offset);
                 } else if self.countdown == 0.0 {

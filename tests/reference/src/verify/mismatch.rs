@@ -56,7 +56,7 @@ pub struct Difference {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [adc_a, adc_b, _] = self.sample.adc();
+        let [adc_a, adc_b, adc_c] = self.sample.adc();
         let (hall, hall_ticks) = (self.sample.hall(), self.sample.ticks());
         writeln!(
             f,
@@ -68,7 +68,7 @@ impl fmt::Display for Mismatch {
         }
         writeln!(
             f,
-            "  adc_a = {adc_a}, adc_b = {adc_b}, hall = {hall:03b}, hall_ticks = {hall_ticks}"
+            "  adc_a = {adc_a}, adc_b = {adc_b}, adc_c = {adc_c}, hall = {hall:03b}, hall_ticks = {hall_ticks}"
         )?;
         writeln!(
             f,

@@ -5,7 +5,7 @@
 //! to an earlier state). A tripped drive is reset soon, so that most steps are in control.
 
 use super::toy_motor::ToyMotor;
-use crate::{Bus, BusSense, Error, Spec, Stop};
+use crate::{Bus, BusSense, Error, SensedPhases, Spec, Stop};
 use fastrand::Rng;
 use hexagen::{Legs, Sample};
 use std::f64::consts::TAU;
@@ -83,7 +83,9 @@ pub struct Stimulus {
     ticks: f64,
     age_max: u32,
     adc_max: i32,
-    gain: f64,
+    sensed: SensedPhases,
+    /// Ampere per count of each sensor.
+    gain: [f64; 2],
     trip_counts: i32,
     i_max_bits: f64,
     t_max_bits: f64,
@@ -91,7 +93,7 @@ pub struct Stimulus {
     /// Remaining steps of start-up, and the true offsets during it, ADC counts.
     start_up: u32,
     true_offset: [i32; 2],
-    nominal_offset: i32,
+    nominal_offset: [i32; 2],
     offset_tolerance: i32,
     bus: Option<BusSense>,
     /// Bits of the greatest speed, with a speed loop.
@@ -120,14 +122,15 @@ impl Stimulus {
             ticks: inverter.ticks,
             age_max: inverter.age_max,
             adc_max: (1 << inverter.adc_bits) - 1,
-            gain: inverter.adc_gain.first(),
+            sensed: inverter.sensed_phases,
+            gain: [0, 1].map(|sensor| inverter.adc_gain.of(sensor)),
             trip_counts: (inverter.trip_current / inverter.adc_gain.first().abs()) as i32,
             i_max_bits: inverter.max_current * 65_536.0,
             t_max_bits: inverter.max_current * spec.motor.torque_constant * 65_536.0,
             startup_steps: (1 << inverter.calibration_log2) + inverter.precharge_periods,
             start_up: 0,
             true_offset: [0; 2],
-            nominal_offset: inverter.adc_offset.first() as i32,
+            nominal_offset: [0, 1].map(|sensor| inverter.adc_offset.of(sensor) as i32),
             offset_tolerance: inverter.offset_tolerance as i32,
             speed_bits: spec
                 .loop_options()
@@ -153,14 +156,14 @@ impl Stimulus {
         self.pending = Legs::OFF;
         self.start_up = (self.startup_steps + 2).min(START_UP);
         let tolerance = self.offset_tolerance;
-        self.true_offset = [0; 2].map(|_: i32| {
+        self.true_offset = self.nominal_offset.map(|nominal| {
             let distance = match self.random.u8(..4) {
                 0 => tolerance + self.random.i32(-2..=2),
                 1 => tolerance - self.random.i32(0..=tolerance / 8),
                 _ => self.random.i32(0..=tolerance),
             };
             let sign = if self.random.bool() { 1 } else { -1 };
-            self.nominal_offset + sign * distance
+            nominal + sign * distance
         });
     }
 
@@ -211,8 +214,10 @@ impl Stimulus {
     /// A motor without current, its ADCs at their true offsets.
     fn at_rest(&mut self) -> Sample {
         let noise = [0; 2].map(|_: i32| self.random.i32(-1..=1));
-        let [adc_a, adc_b] = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
-        Sample::with_hall([adc_a, adc_b], self.codes[self.sector]).hall_ticks(u16::MAX)
+        let counts = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
+        self.sensed
+            .sample(counts, self.codes[self.sector])
+            .hall_ticks(u16::MAX)
     }
 
     /// Takes the drive's answer to the last sample.
@@ -335,24 +340,30 @@ impl Stimulus {
     fn arbitrary(&mut self, context: &Context) -> Sample {
         let (hall, hall_ticks) = self.wandering_hall();
         let dice = self.random.u32(..);
-        let (adc_a, adc_b) = match dice & 0x7f {
-            0 => (self.random.u16(..), self.random.u16(..)),
-            1 => (
+        let counts = match dice & 0x7f {
+            0 => [self.random.u16(..), self.random.u16(..)],
+            1 => [
                 self.random.i32(0..=self.adc_max) as u16,
                 self.random.i32(0..=self.adc_max) as u16,
-            ),
+            ],
             _ => {
                 // All three currents within the trip level.
                 let trip = self.trip_counts;
                 let a = self.random.i32(-trip..=trip);
                 let b = self.random.i32((-trip).max(-trip - a)..=trip.min(trip - a));
-                (
+                // Of unlike sensors the counts of one current move to different sides.
+                let b = if self.gain[0] * self.gain[1] < 0.0 {
+                    -b
+                } else {
+                    b
+                };
+                [
                     self.adc(context.offset[0] as i32 + a),
                     self.adc(context.offset[1] as i32 + b),
-                )
+                ]
             }
         };
-        Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks)
+        self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
     }
 
     fn motor(&mut self, context: &Context) -> Sample {
@@ -366,16 +377,20 @@ impl Stimulus {
         }
         self.sector = sector;
         let noise = [(dice & 3) as i32 - 1, ((dice >> 2) & 3) as i32 - 1];
-        let count = |phase: usize| {
-            let counts = context.offset[phase] + self.motor.i[phase] / self.gain;
-            self.adc(counts as i32 + noise[phase])
+        let [i_a, i_b] = self.motor.i;
+        let currents = self.sensed.of_sensors([i_a, i_b, -(i_a + i_b)]);
+        let count = |sensor: usize| {
+            let counts = context.offset[sensor] + currents[sensor] / self.gain[sensor];
+            self.adc(counts as i32 + noise[sensor])
         };
         let hall = if (dice >> 12).is_multiple_of(1 << 14) {
             0
         } else {
             self.codes[sector]
         };
-        Sample::with_hall([count(0), count(1)], hall).hall_ticks(self.age as u16)
+        self.sensed
+            .sample([count(0), count(1)], hall)
+            .hall_ticks(self.age as u16)
     }
 
     fn corners(&mut self, context: &Context) -> Sample {
@@ -395,8 +410,7 @@ impl Stimulus {
         };
         let counts = context.offset.map(&mut corner);
         // One above the ADC's range is a corner case, too.
-        let [adc_a, adc_b] =
-            counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
-        Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks)
+        let counts = counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
+        self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
     }
 }

@@ -36,10 +36,11 @@ static void step(drive_type *drive)
 {
     const uint16_t adc_a = (uint16_t)bytes(2);
     const uint16_t adc_b = (uint16_t)bytes(2);
+    const uint16_t adc_c = (uint16_t)bytes(2);
     const uint16_t hall = (uint16_t)bytes(1);
     const uint16_t hall_ticks = (uint16_t)bytes(2);
-    const hexagen_sample sample =
-        hexagen_with_ticks(hexagen_with_hall(adc_a, adc_b, hall), hall_ticks);
+    const hexagen_sample counts = hexagen_with_third(hexagen_with_hall(adc_a, adc_b, hall), adc_c);
+    const hexagen_sample sample = hexagen_with_ticks(counts, hall_ticks);
     const hexagen_legs legs = CALL(step)(drive, &sample);
     const hexagen_status status = CALL(status)(drive);
     for (int leg = 0; leg < 3; leg++) {

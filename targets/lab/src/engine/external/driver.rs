@@ -46,8 +46,10 @@ fn main() {
                 0 => drive = Drive::new(),
                 1 => {
                     let adc = [calls.half(), calls.half()];
+                    let adc_c = calls.half();
                     let [hall] = calls.bytes();
-                    let legs = drive.step(&Sample::with_hall(adc, hall).hall_ticks(calls.half()));
+                    let sample = Sample::with_hall(adc, hall).third_current(adc_c);
+                    let legs = drive.step(&sample.hall_ticks(calls.half()));
                     for compare in legs.compare() {
                         answers.extend(compare.to_le_bytes());
                     }

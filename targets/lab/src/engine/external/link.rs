@@ -127,9 +127,8 @@ impl Link {
 
     fn send_step(&mut self, sample: Sample) {
         self.calls.push(1);
-        let [adc_a, adc_b, _] = sample.adc();
-        self.calls.extend(adc_a.to_le_bytes());
-        self.calls.extend(adc_b.to_le_bytes());
+        let counts = sample.adc().into_iter();
+        self.calls.extend(counts.flat_map(u16::to_le_bytes));
         self.calls.push(sample.hall());
         self.calls.extend(sample.ticks().to_le_bytes());
         self.pending += 1;

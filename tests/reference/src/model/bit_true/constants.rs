@@ -23,10 +23,6 @@ pub struct Constants<W> {
     pub volt: f64,
     /// Current words per ADC count, 2^f_i.
     pub count: f64,
-    /// Sign of the ADC gain.
-    pub polarity: f64,
-    /// Initial offset word.
-    pub offset: f64,
     /// 2^f_i / 2^CAL_LOG2.
     pub calibration: f64,
     /// 2^-f_v.
@@ -304,8 +300,6 @@ impl<W: Word> Constants<W> {
             ampere: g / two_i,
             volt: w / two_v,
             count: two_i,
-            polarity: inverter.adc_gain.first().signum(),
-            offset: f64::from(inverter.adc_offset.first()) * two_i,
             calibration: two_i * pow2(-(inverter.calibration_log2 as i32)),
             to_counts: 1.0 / two_v,
             half_count: two_v / 2.0,

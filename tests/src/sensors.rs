@@ -1,0 +1,68 @@
+//! Drives whose current sensors are not two alike of phases a and b.
+
+/// The paper's motor, with fields of its inverter to come.
+const MOTOR: &str = r#"[motor]
+pole_pairs = 4
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.1648 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A"
+rated_speed = "1600 rpm"
+[inverter]
+bus_voltage = "48 V"
+f_pwm = "20 kHz"
+timer_clock = "72 MHz"
+adc_bits = 12
+adc_range = "40 A"
+dead_time = "500 ns"
+calibration_samples = 16
+"#;
+
+/// Sensors in the phases.
+const SENSORS: [&str; 5] = [
+    "sensed_phases = \"bc\"",
+    "sensed_phases = \"ca\"\nadc_inverted = \"on\"",
+    "adc_inverted = [\"off\", \"on\"]\nadc_offset = [2048, 1990]",
+    "sensed_phases = \"bc\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]",
+    "sensed_phases = \"ca\"\nadc_offset = [2000, 2048]\nprecharge = \"0.2 ms\"",
+];
+
+/// Sensors in the low legs.
+const LOW_SIDE: &str = r#"current_sensing = "low_side"
+settling_time = "1 us"
+aperture_time = "200 ns"
+conversion_time = "0 us"
+"#;
+
+const CONTROLLERS: [&str; 5] = [
+    "kind = \"pdcc\"",
+    "kind = \"pdcc\"\nmodulation = \"pair\"\nemf = \"model\"\nword = 16",
+    "kind = \"fcs-mpc\"",
+    "kind = \"phcc\"",
+    "kind = \"pi-pwm\"",
+];
+
+/// A drive's specification: fields of the inverter, and the controller's section.
+pub fn specification(inverter: &str, controller: &str) -> String {
+    format!("{MOTOR}{inverter}\n[controller]\n{controller}\n")
+}
+
+/// What each drive is, and its specification.
+pub fn drives() -> Vec<(String, String)> {
+    let each = |inverter: String, controllers: &'static [&'static str]| {
+        controllers.iter().map(move |controller| {
+            let what = format!("{inverter}, {controller}").replace('\n', ", ");
+            (what, specification(&inverter, controller))
+        })
+    };
+    let in_phase = SENSORS
+        .iter()
+        .flat_map(|sensors| each((*sensors).to_owned(), &CONTROLLERS));
+    let low_side = SENSORS.iter().flat_map(|sensors| {
+        let inverter = format!("{sensors}\n{LOW_SIDE}");
+        each(inverter, &["kind = \"pdcc\"", "kind = \"p-pwm\""])
+    });
+    in_phase.chain(low_side).collect()
+}
