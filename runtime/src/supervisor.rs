@@ -59,8 +59,8 @@ impl Limits {
         self.current_bits < 31
             && self.calibration_log2 < 16
             && self.adc_max > 1
-            && first.hold(self.adc_max)
-            && second.hold(self.adc_max)
+            && self.includes(&first)
+            && self.includes(&second)
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
@@ -72,6 +72,12 @@ impl Limits {
             && 2 * high <= word
             && sum <= word
             && is_within
+    }
+
+    /// Whether offset and tolerance of a sensor are in the ADC's range.
+    const fn includes(&self, sensor: &Sensor) -> bool {
+        let [least, most] = sensor.offsets;
+        least <= sensor.offset && sensor.offset <= most && most <= self.adc_max
     }
 
     /// Least and greatest current over all counts and accepted offsets of a sensor.
@@ -170,11 +176,6 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    const fn hold(&self, adc_max: u16) -> bool {
-        let [least, most] = self.offsets;
-        least <= self.offset && self.offset <= most && most <= adc_max
-    }
-
     /// A phase current, of a count and an offset in words of current.
     #[inline]
     fn current(&self, count: Word, offset: Word) -> Word {

@@ -90,9 +90,17 @@ fn sensors_of_any_two_legs_show_the_same_torque() {
         let sensors = format!("{SENSORS}{sensors}");
         let own = run_on(&sensors, &sensors, controller, 1500.0);
         assert_eq!(own.blind, 0, "{sensors}");
-        assert!((own.torque / expected - 1.0).abs() < 0.01, "{sensors}: {} Nm", own.torque);
+        assert!(
+            (own.torque / expected - 1.0).abs() < 0.01,
+            "{sensors}: {} Nm",
+            own.torque
+        );
         let other = run_on(&sensors, SENSORS, controller, 1500.0);
-        assert!(other.torque < 0.5 * expected, "{sensors}: {} Nm", other.torque);
+        assert!(
+            other.torque < 0.5 * expected,
+            "{sensors}: {} Nm",
+            other.torque
+        );
     }
 }
 
